@@ -1,0 +1,13 @@
+# Turns a SPIR-V file into a header: view_sample.comp → kViewSampleComp.
+file(READ ${SPIRV} bytes HEX)
+string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${bytes}")
+string(REPLACE "." "_" parts ${NAME})
+string(REPLACE "_" ";" parts ${parts})
+set(name k)
+foreach(part ${parts})
+  string(SUBSTRING ${part} 0 1 first)
+  string(SUBSTRING ${part} 1 -1 rest)
+  string(TOUPPER ${first} first)
+  string(APPEND name ${first}${rest})
+endforeach()
+file(WRITE ${HEADER} "#pragma once\n#include <cstdint>\nnamespace penumbra::shaders {\ninline constexpr std::uint32_t ${name}[] = {${words}};\n}\n")

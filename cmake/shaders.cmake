@@ -1,0 +1,31 @@
+# penumbra_shaders(target file.comp [file.frag …] [DEFINES A=1 …])
+# Compiles GLSL to SPIR-V with glslang (true dependencies through a depfile), validates it with spirv-val and embeds
+# it as "<folder>/<name>.<stage>.spv.hpp" with `inline constexpr std::uint32_t k<Name><Stage>[]`, on the target's include path.
+find_program(GLSLANG glslangValidator REQUIRED)
+find_program(SPIRV_VAL spirv-val REQUIRED)
+
+function(penumbra_shaders target)
+  cmake_parse_arguments(ARG "" "" "DEFINES" ${ARGN})
+  set(headers)
+  foreach(source ${ARG_UNPARSED_ARGUMENTS})
+    file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+    set(spirv ${PROJECT_BINARY_DIR}/shaders/${path}.spv)
+    set(header ${spirv}.hpp)
+    get_filename_component(folder ${spirv} DIRECTORY)
+    file(MAKE_DIRECTORY ${folder})
+    list(TRANSFORM ARG_DEFINES PREPEND -D OUTPUT_VARIABLE defines)
+    add_custom_command(
+      OUTPUT ${header}
+      COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR} ${defines} --depfile ${spirv}.d
+              -o ${spirv} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
+      COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${spirv}
+      COMMAND ${CMAKE_COMMAND} -DSPIRV=${spirv} -DHEADER=${header} -DNAME=${source} -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+      DEPFILE ${spirv}.d
+      COMMENT "shader ${path}"
+      VERBATIM)
+    list(APPEND headers ${header})
+  endforeach()
+  target_sources(${target} PRIVATE ${headers})
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+endfunction()

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::visibility {
+
+enum class Family { reference, geometry, image };
+enum class Output {
+  mask,      ///< one bit a light sample: visible or not
+  scalar,    ///< V alone
+};
+const char* name_of(Family family);
+const char* name_of(Output output);
+
+struct OptionDescription {
+  std::string name;
+  std::string values;         ///< "on|off", "1 … 4096"
+  std::string default_value;
+  std::string help;
+};
+
+/// What `penumbra methods` prints of a method.
+struct MethodDescription {
+  std::string name;
+  Family family = Family::geometry;
+  std::string paper;
+  Output output = Output::mask;
+  std::string exact_for;                    ///< what it is exact for, in words
+  std::vector<LightKind> lights;            ///< shapes it can do
+  std::vector<OptionDescription> options;
+};
+
+/// KEY=VALUE pairs as the user gave them.
+using MethodOptions = std::map<std::string, std::string>;
+
+/// A band of whole pixel rows.
+struct Tile {
+  std::uint32_t first_row = 0, row_count = 0;
+};
+
+struct PassTime {
+  std::string name;
+  double milliseconds = 0;
+};
+
+/// One way to turn view samples into visibility. The host calls, in this order and each as often as it likes:
+/// prepare_mesh, prepare_light, prepare_view, then for each tile evaluate and read. It times them, chooses tiles no
+/// higher than max_tile_rows(), and never calls two methods at once. Every call completes before it returns.
+/// Throws InputError for a light it cannot do, ResourceError when memory does not suffice.
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  [[nodiscard]] virtual const MethodDescription& description() const = 0;
+
+  /// Once a mesh: adjacency, hierarchies, upload. `scene` must outlive the method.
+  virtual void prepare_mesh(const SceneFloats& scene) = 0;
+  /// Redone when a light moves. `light` must outlive its use.
+  virtual void prepare_light(const Light& light) = 0;
+  /// Takes over the view samples (upload; shared work of all methods, not part of `shadow`). Must outlive its use.
+  virtual void prepare_view(const ViewSamples& samples) = 0;
+  /// The most pixel rows that one evaluate can take within the device's limits; at least 1.
+  [[nodiscard]] virtual std::uint32_t max_tile_rows() const = 0;
+  /// From stored view samples to V or masks in the method's own memory.
+  virtual void evaluate(const Tile& tile) = 0;
+
+  /// Output::mask only: for each pixel of the tile last evaluated, words_per_mask() words in which bit j mod 32 of word
+  /// j / 32 is set iff light sample j is visible. Background pixels: all N bits set. Bits beyond N are 0.
+  virtual void read_masks(std::span<std::uint32_t> masks);
+  /// V of each pixel of the tile last evaluated; background 1.
+  virtual void read_visibility(std::span<float> visibility) = 0;
+
+  /// Since the last call: GPU passes (or CPU stages) with their times, summed by name.
+  virtual std::vector<PassTime> take_pass_times() { return {}; }
+  /// Counters for --stats (candidate pairs, retries, fallbacks …) of the last evaluate calls since prepare_light.
+  [[nodiscard]] virtual std::map<std::string, std::uint64_t> counters() const { return {}; }
+  /// Bytes of device memory (or, for CPU methods, of their own structures) at their peak.
+  [[nodiscard]] virtual std::uint64_t memory_bytes() const { return 0; }
+};
+
+/// Refuses, with what can be done instead, a light that the method cannot do and options that it does not have.
+void check_light(const MethodDescription& description, const Light& light);
+void check_options(const MethodDescription& description, const MethodOptions& options);
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "scenes/scene.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::visibility {
+
+using Triangle = mesh::Triangle;
+
+/// The one set of numbers that device, rays, predicates and oracles share: float32 of (world − origin), where origin
+/// is the centre of the bounding box of all mesh vertices, in double. Far from zero or tiny, a scene looks the same.
+struct SceneFloats {
+  glm::dvec3 origin{0};
+  std::vector<glm::vec3> positions;         ///< one per soup position
+  std::vector<Triangle> triangles;          ///< soup order; each with its vertices in lexicographic order of position (−0 = +0),
+                                            ///< so that nothing computed from them depends on winding or first vertex
+  std::vector<std::uint32_t> object;        ///< for each triangle
+  std::vector<std::uint32_t> plane;         ///< for each triangle: equal numbers ⇔ exactly coplanar (kNoPlane: zero area)
+  std::vector<std::uint32_t> rank;          ///< for each triangle: its place in the lexicographic order of sorted vertices;
+                                            ///< triangles with the same three vertices share a rank
+  std::vector<std::uint8_t> casts_shadow;   ///< for each triangle: false for objects that cast none and for zero-area triangles
+  std::vector<std::uint8_t> receives_shadow;  ///< for each triangle
+  std::vector<std::int32_t> emits;          ///< for each triangle: the light it is the body of, or −1
+  glm::vec3 lower{0}, upper{0};             ///< bounding box of positions
+
+  static constexpr std::uint32_t kNoPlane = 0xffffffffu;
+
+  [[nodiscard]] std::array<glm::vec3, 3> corners(std::uint32_t triangle) const {
+    const Triangle& t = triangles[triangle];
+    return {positions[t[0]], positions[t[1]], positions[t[2]]};
+  }
+};
+
+/// Throws InputError when a position, taken relative to the origin, is not finite in float32.
+SceneFloats make_scene_floats(const scenes::Scene& scene);
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "scenes/scene.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace penumbra::visibility {
+
+/// A pinhole camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is
+/// eye + t · (forward + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)), all unit vectors:
+/// t is the distance along the view axis.
+struct PinholeCamera {
+  glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
+  double tan_half_fov = 1;
+  std::uint32_t width = 0, height = 0;
+
+  [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
+};
+
+/// Throws InputError when eye and target coincide or `up` is parallel to the view direction.
+PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width, std::uint32_t height);
+
+/// What each pixel sees, in scan-line order: carrying triangle, p, geometric normal toward the viewer.
+struct ViewSamples {
+  static constexpr std::int32_t kBackground = -1;
+
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::int32_t> triangle;  ///< carrying triangle (index into SceneFloats::triangles), or kBackground
+  std::vector<glm::vec3> p;            ///< relative to the origin, rounded once from double; 0 for background
+  std::vector<glm::vec3> n;            ///< unit geometric normal turned toward the viewer; 0 for background
+  std::vector<float> depth;            ///< along the view axis; 0 for background
+  glm::vec3 eye{0};                    ///< float32 of the camera's eye, for decisions that need the viewer's side
+
+  [[nodiscard]] std::size_t size() const { return triangle.size(); }
+};
+
+/// Does the pixel's ray from the camera meet the closed triangle (sorted vertices) in front of the eye, and at which t?
+/// Double arithmetic on the scene floats; each edge's sign is computed from its end points in lexicographic order, so
+/// two triangles that share an edge never leave a crack. Triangles of zero area or seen edge-on cover nothing.
+std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direction, const std::array<glm::vec3, 3>& corners);
+
+/// Fills p, n and depth from the carrying triangle of each pixel (kBackground where there is none). The definition:
+/// intersection of the pixel's ray with the triangle's plane in double from its sorted vertices; p rounded once.
+ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera& camera, std::vector<std::int32_t> triangles);
+
+/// The C++ twin of the visibility buffer: tries every triangle at every pixel. Slow; the truth in tests.
+ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCamera& camera);
+
+/// What kind of receiver a pixel is for one light.
+enum class PixelClass : std::uint8_t {
+  background,   ///< A = 0
+  emitter,      ///< carries the body of some light: V = 1
+  unshadowed,   ///< receivesShadow is false: V = 1
+  judged,       ///< the whole light is above the tangent plane and p is in front of the light
+  horizon,      ///< some of the light is not strictly above the tangent plane
+  behind,       ///< p is not strictly on an emitting side of the light
+};
+
+/// Exact (the predicates of pair_truth on the stored floats; the light by its outline). One entry a pixel.
+std::vector<PixelClass> classify_pixels(const SceneFloats& scene, const ViewSamples& samples, const Light& light);
+
+}  // namespace penumbra::visibility
