@@ -15,7 +15,7 @@ function(penumbra_shaders target)
     file(MAKE_DIRECTORY ${folder})
     list(TRANSFORM ARG_DEFINES PREPEND -D OUTPUT_VARIABLE defines)
     add_custom_command(
-      OUTPUT ${header}
+      OUTPUT ${spirv} ${header}  # the depfile names the SPIR-V: it must come first, or ninja rebuilds every time
       COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR} ${defines} --depfile ${spirv}.d
               -o ${spirv} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
       COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${spirv}

@@ -33,7 +33,7 @@ struct Light {
   LightKind kind = LightKind::rectangle;
   bool two_sided = false;
   glm::dvec3 radiance{0};
-  double area = 0;                           ///< |L| in world units, double
+  double area = 0;                           ///< |L| in world units, double (a sphere's: its facing disk's)
 
   /// The stored frame: three points that span the light's plane and say where it emits: (u − c) × (v − c) points to
   /// the emitting side. rectangle: centre, centre + halfU, centre + halfV; disk: centre and two points of its rim;
@@ -48,8 +48,8 @@ struct Light {
   std::vector<double> row_shift;             ///< rows pattern: each row's shift in cells, in (−0.5, 0.5); else empty
   std::vector<glm::vec3> points;             ///< the light samples as stored in float32 (a sphere's: empty)
   std::vector<glm::dvec2> coordinates;       ///< the same samples before rounding, in [−1, 1]² along (u − c, v − c)
-                                             ///< (rectangle); for disk and polygon in the frame of their outline; a
-                                             ///< sphere's: on the unit disk
+                                             ///< (rectangle); a disk's and a sphere's: on the unit disk; a polygon's:
+                                             ///< over its bounding rectangle
 
   [[nodiscard]] std::uint32_t sample_count() const { return static_cast<std::uint32_t>(coordinates.size()); }
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
@@ -57,13 +57,21 @@ struct Light {
 
 /// The unit-square samples of a pattern, in [0, 1)², in contract order (row-major for rows and grid: x along the row).
 /// rows: L = round(√N) rows of B = ceil(N / L) points, cell-centred, each row shifted along itself by its own fixed
-/// fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: stratified on the nearest L × B.
+/// fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: one point in
+/// each of N strata of equal area, in L = round(√N) rows.
 std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
 
 /// Throws InputError for a light of zero area or one whose points are not finite in float32 relative to `origin`.
 /// If rows or grid rounded the count, `notes` (when given) gets a line that says so.
 Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin, const SampleRequest& request,
                  std::vector<std::string>* notes = nullptr);
+
+/// The axes u, v of the light as seen from p: centre → centre + halfU and → centre + halfV of the stored frame; for a
+/// sphere the axes, one radius long, of the disk through its centre that faces p (u × v points to p).
+struct LightAxes {
+  glm::dvec3 u, v;
+};
+LightAxes light_axes(const Light& light, const glm::vec3& p);
 
 /// The light points of one view sample: `light.points`, or for a sphere the disk through its centre that faces p.
 /// Writes sample_count() points to `out`.

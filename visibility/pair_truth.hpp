@@ -26,7 +26,8 @@ bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec
 /// What an exact segment–triangle test found, and whether some predicate on the way was exactly zero.
 struct Meeting {
   bool meets = false;
-  bool zero_predicate = false;  ///< an edge sign or a plane side was exactly zero (and read as the contract says)
+  bool zero_predicate = false;  ///< an edge sign or a plane side was exactly zero (and read as the contract says), and
+                                ///< the signs that are not zero do not already say that the line passes the triangle by
 };
 
 /// Does the open segment p→l meet the triangle? Exact. An edge sign that is zero is read as that of
@@ -46,8 +47,9 @@ struct PairTruth {
   bool zero_predicate = false;
 };
 
-/// Condition (1): l strictly on the viewer's side of the carrier's plane. Exact.
-bool above_horizon(const std::array<glm::vec3, 3>& carrier, const glm::vec3& eye, const glm::vec3& l);
+/// Condition (1): l strictly on the viewer's side of the carrier's plane; `facing` is ViewSamples::facing (+1: the
+/// viewer is where (b − a) × (c − a) points, −1: behind). Exact.
+bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l);
 
 /// Condition (2): p strictly on an emitting side of the light's plane. Exact. Always true for a sphere.
 bool in_front_of_light(const Light& light, const glm::vec3& p);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace penumbra::app {
+
+/// What all commands share.
+struct GlobalOptions {
+  bool quiet = false, verbose = false;
+  std::vector<std::string> arguments;  ///< what followed the program's name
+};
+
+/// A subcommand: holds the options that it added to the command line, and does the job when it was chosen.
+class Command {
+ public:
+  virtual ~Command() = default;
+  /// Returns the exit code, or throws Error.
+  virtual int run(const GlobalOptions& global) = 0;
+  [[nodiscard]] bool chosen() const;
+
+ protected:
+  Command(CLI::App& app, const std::string& name, const std::string& help);
+  CLI::App& cli_;
+};
+
+std::unique_ptr<Command> make_render_command(CLI::App& app);
+std::unique_ptr<Command> make_compare_command(CLI::App& app);
+std::unique_ptr<Command> make_methods_command(CLI::App& app);
+std::unique_ptr<Command> make_devices_command(CLI::App& app);
+std::unique_ptr<Command> make_convert_command(CLI::App& app);
+/// A name that is taken: whoever calls it learns that its time has yet to come.
+std::unique_ptr<Command> make_command_not_there_yet(CLI::App& app, const std::string& name);
+
+}  // namespace penumbra::app

@@ -1,0 +1,297 @@
+#include "app/comparison.hpp"
+
+#include "app/device_source.hpp"
+#include "app/judge.hpp"
+#include "app/methods.hpp"
+#include "app/output.hpp"
+#include "app/runner.hpp"
+#include "app/sample_pixels.hpp"
+#include "app/session.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "base/png.hpp"
+#include "compare/error_picture.hpp"
+#include "compare/report.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using visibility::Light;
+using visibility::MethodDescription;
+using visibility::Output;
+
+/// A run with what is made of it on the way.
+struct Finished {
+  MethodRun run;
+  std::vector<glm::vec3> beauty;
+};
+
+class Comparison {
+ public:
+  Comparison(const RunOptions& run, const ComparisonOptions& options, Progress& progress)
+      : run_(run),
+        options_(options),
+        progress_(progress),
+        reference_(describe_reference(options.reference)),
+        same_samples_(options.reference_samples == "same"),
+        devices_(run.device) {
+    reference_request_ = parse_reference_samples();
+    prepare_folder();
+    session_ = open_session(run, devices_, options.runs, progress);
+    progress.clear();
+    for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
+    choose_entries();
+    reference_lights_ = same_samples_ ? session_.lights : lights_of_reference();
+    const auto& classes = session_.classes.front();
+    judged_ = sample_pixels(compare::pixels_of_class(classes, visibility::PixelClass::judged), options.sample_pixels,
+                            session_.width, session_.height);
+    horizon_ = sample_pixels(compare::pixels_of_class(classes, visibility::PixelClass::horizon), options.sample_pixels,
+                             session_.width, session_.height);
+    if (judged_.empty()) {
+      warn(
+          "no pixel is judged (none sees the whole light above its tangent plane, or --sample-pixels chose none): "
+          "there is no error to report");
+    }
+  }
+
+  compare::Metrics run(const std::vector<std::string>& arguments) {
+    run_reference();
+    for (const MethodEntry& entry : entries_) run_entry(entry);
+    write_error_pictures();
+    progress_.clear();
+    const std::string json = compare::json_text(compare::to_json(report_.metrics));
+    write_file_atomically(run_.out / "metrics.json", json);
+    if (!options_.stats.empty()) write_file_atomically(options_.stats, json);
+    finish_report(arguments);
+    compare::write_report(run_.out / "report.html", report_);
+    return std::move(report_.metrics);
+  }
+
+ private:
+  static const MethodDescription& describe_reference(const std::string& name) {
+    const MethodDescription& description = describe_method(name);
+    if (description.family != visibility::Family::reference) {
+      throw UsageError("--reference {}: a {} method is no judge; expected raytrace", name,
+                       visibility::name_of(description.family));
+    }
+    return description;
+  }
+
+  [[nodiscard]] visibility::SampleRequest parse_reference_samples() const {
+    RunOptions reference = run_;
+    if (!same_samples_) reference.light_samples = options_.reference_samples;
+    try {
+      return parse_light_samples(reference);
+    } catch (const UsageError&) {
+      if (same_samples_) throw;
+      throw UsageError("--reference-samples {}: expected a number of light samples from 1 to 4096, or same",
+                       options_.reference_samples);
+    }
+  }
+
+  void prepare_folder() const {
+    std::error_code error;
+    std::filesystem::create_directories(run_.out, error);
+    if (error || !std::filesystem::is_directory(run_.out)) {
+      throw ResourceError("cannot make the folder \"{}\": {}", run_.out.string(),
+                          error ? error.message() : "not a folder");
+    }
+    for (const std::filesystem::path& path : {run_.out / "metrics.json", run_.out / "report.html", options_.stats}) {
+      require_writable(path);
+    }
+  }
+
+  /// Refuses, before anything long, what would fail later; leaves out of a group what cannot do the lights.
+  void choose_entries() {
+    for (const Light& light : session_.lights) check_light(reference_, light);
+    for (MethodEntry entry : options_.methods) {
+      const MethodDescription& description = describe_method(entry.name);
+      if (entry.from_group && !can_do(description, session_.lights)) {
+        warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.name));
+        continue;
+      }
+      for (const Light& light : session_.lights) check_light(description, light);
+      entries_.push_back(std::move(entry));
+    }
+    if (entries_.empty()) {
+      throw InputError(
+          "none of the chosen methods can do the lights of {}; name one that can with --methods (see "
+          "`penumbra methods`)",
+          session_.scene.name);
+    }
+    for (const auto& [key, value] : options_.method_options) {
+      bool known = false;
+      for (MethodEntry& entry : entries_) {
+        const auto& has = describe_method(entry.name).options;
+        if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
+        entry.options.emplace(key, value);  // an entry's own option stands
+        known = true;
+      }
+      if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
+    }
+  }
+
+  [[nodiscard]] std::vector<Light> lights_of_reference() const {
+    std::vector<Light> lights;
+    for (const Light& light : session_.lights) {
+      lights.push_back(visibility::make_light(session_.scene, static_cast<std::uint32_t>(light.index),
+                                              session_.floats.origin, reference_request_));
+    }
+    return lights;
+  }
+
+  void run_reference() {
+    const visibility::MethodOptions no_options;
+    const bool keep_masks = same_samples_ && reference_.output == Output::mask;
+    Finished done = run_one("reference", reference_, no_options, reference_lights_, [&](const TileResult& tile) {
+      if (keep_masks && tile.light == 0) {
+        reference_masks_.insert(reference_masks_.end(), tile.masks.begin(), tile.masks.end());
+      }
+    });
+    report_.exposure = compare::auto_exposure(done.beauty);
+    const MethodLabel label{reference_, no_options, device_of(reference_, devices_.name())};
+    report_.metrics.reference = make_stats(session_, reference_lights_, label, done.run);
+    report_.metrics.judged_pixels = judged_.size();
+    report_.metrics.horizon_pixels = horizon_.size();
+    report_.reference = pictures_of("reference", reference_, done);
+    reference_visibility_ = std::move(done.run.visibility.front());
+  }
+
+  void run_entry(const MethodEntry& entry) {
+    const MethodDescription& description = describe_method(entry.name);
+    std::optional<PairJudge> judge;
+    if (!reference_masks_.empty() && description.output == Output::mask) judge.emplace(session_, reference_masks_);
+    Finished done = run_one(entry.label, description, entry.options, session_.lights, [&](const TileResult& tile) {
+      if (judge && tile.light == 0) judge->add(tile);
+    });
+
+    const MethodLabel label{description, entry.options, device_of(description, devices_.name())};
+    compare::MethodResult result;
+    result.entry = entry.label;
+    result.stats = make_stats(session_, session_.lights, label, done.run);
+    result.error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, judged_);
+    result.horizon_error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, horizon_);
+    if (judge) {
+      result.pairs = judge->counts();
+      const compare::PairVerdicts verdicts = judge->decide(progress_);
+      result.stats.counters["exactDecided"] = verdicts.decided;
+      result.stats.counters["methodRight"] = verdicts.method_right;
+      result.stats.counters["referenceRight"] = verdicts.reference_right;
+      if (judge->kept_all()) {
+        result.verdicts = verdicts;
+      } else {
+        result.stats.warnings.push_back(fmt::format("{} pairs differ; {} of them, evenly spaced, were decided exactly",
+                                                    result.pairs->differing, verdicts.decided));
+      }
+    }
+    report_.metrics.methods.push_back(std::move(result));
+    report_.methods.push_back(pictures_of(entry.label, description, done));
+    visibility_.push_back(std::move(done.run.visibility.front()));
+  }
+
+  /// Runs a method and writes its EXR and, if wanted, its bits.
+  Finished run_one(const std::string& name, const MethodDescription& description,
+                   const visibility::MethodOptions& options, const std::vector<Light>& lights, const TileSink& sink) {
+    const auto method = make_method(description.name, options, devices_);
+    BeautyAccumulator beauty(session_, lights);
+    std::optional<BitsOutput> bits;
+    if (options_.bits && description.output == Output::mask) {
+      bits.emplace(file_of(name, ".bits"), session_, lights.front(), description);
+    }
+    const RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true};
+    Finished done;
+    done.run = run_method(
+        *method, session_, plan,
+        [&](const TileResult& tile) {
+          beauty.add(tile);
+          if (bits && tile.light == 0) bits->add(tile);
+          sink(tile);
+        },
+        progress_);
+    done.beauty = beauty.pixels();
+    devices_.check_validation();
+    progress_.clear();
+    const MethodLabel label{description, options, device_of(description, devices_.name())};
+    write_picture(file_of(name, ".exr"), session_, lights, label, done.run, done.beauty);
+    if (bits) bits->commit();
+    return done;
+  }
+
+  compare::ReportEntry pictures_of(const std::string& name, const MethodDescription& description,
+                                   const Finished& done) {
+    compare::ReportEntry entry;
+    entry.description = description;
+    entry.beauty = to_srgb(session_.width, session_.height, done.beauty, report_.exposure);
+    entry.visibility = compare::visibility_picture(session_.samples, done.run.visibility.front());
+    if (options_.png) write_png(file_of(name, ".png"), *entry.beauty);
+    return entry;
+  }
+
+  /// Last, because all share one scale.
+  void write_error_pictures() {
+    double largest = 0;
+    for (const compare::MethodResult& result : report_.metrics.methods) {
+      if (result.error) largest = std::max(largest, result.error->max);
+    }
+    report_.error_limit = compare::error_scale_limit(largest);
+    for (std::size_t i = 0; i < visibility_.size(); ++i) {
+      report_.methods[i].error =
+          compare::error_picture(session_.samples, visibility_[i], reference_visibility_, report_.error_limit);
+      write_png(file_of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].error);
+    }
+  }
+
+  void finish_report(const std::vector<std::string>& arguments) {
+    report_.version = PENUMBRA_VERSION;
+    report_.arguments = arguments;
+    report_.scene = compare::describe_scene(session_.scene, session_.camera_index);
+    report_.light = session_.lights.front().name;
+    report_.same_samples = same_samples_;
+    report_.sampled_pixels = options_.sample_pixels == "all" ? 0 : judged_.size();
+    report_.machine = compare::this_machine();
+    report_.warnings = warnings_;
+  }
+
+  [[nodiscard]] std::filesystem::path file_of(const std::string& name, const char* ending) const {
+    return run_.out / (name + ending);
+  }
+
+  void warn(std::string text) {
+    progress_.clear();
+    spdlog::warn("{}", text);
+    warnings_.push_back(std::move(text));
+  }
+
+  const RunOptions& run_;
+  const ComparisonOptions& options_;
+  Progress& progress_;
+  const MethodDescription& reference_;
+  bool same_samples_;
+  visibility::SampleRequest reference_request_;
+  DeviceSource devices_;
+  Session session_;
+  std::vector<Light> reference_lights_;
+  std::vector<MethodEntry> entries_;
+  std::vector<std::uint32_t> judged_, horizon_;  ///< pixels that errors are taken over
+  std::vector<std::uint32_t> reference_masks_;   ///< of the first light; empty unless pairs can be compared
+  std::vector<float> reference_visibility_;      ///< of the first light
+  std::vector<std::vector<float>> visibility_;   ///< of each entry, of the first light
+  std::vector<std::string> warnings_;
+  compare::ReportInput report_;
+};
+
+}  // namespace
+
+compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
+                                 const std::vector<std::string>& arguments, Progress& progress) {
+  return Comparison(run, options, progress).run(arguments);
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "render/device.hpp"
+
+#include <optional>
+#include <string>
+
+namespace penumbra::app {
+
+/// The Vulkan device of this run, made when first asked for, so that what needs none works without any.
+class DeviceSource {
+ public:
+  /// `wanted` as `--device` takes it. PENUMBRA_VALIDATION=1 in the environment switches the validation layer on.
+  explicit DeviceSource(std::string wanted);
+
+  /// Throws ResourceError with the reason why each device was refused.
+  const render::Device& device();
+  /// Name of the device, or "none" if nobody asked for one.
+  [[nodiscard]] std::string name() const;
+  /// Throws ResourceError with all that the validation layer said so far; a run with messages is a failed run.
+  void check_validation() const;
+
+ private:
+  render::DeviceOptions options_;
+  std::optional<render::Device> device_;
+};
+
+}  // namespace penumbra::app

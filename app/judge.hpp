@@ -1,0 +1,49 @@
+#pragma once
+
+#include "app/progress.hpp"
+#include "app/runner.hpp"
+#include "app/session.hpp"
+#include "compare/metrics.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::app {
+
+/// One pair of view sample and light sample on which a method and its reference differ.
+struct DifferingPair {
+  std::uint32_t pixel = 0, light_sample = 0;
+  bool visible_for_method = false;
+};
+
+/// Counts, tile by tile, where the masks of a method differ from those of the reference on the same light samples (of
+/// the first light), and keeps some of the differing pairs for exact decision: all of them while there are few, then
+/// evenly spaced ones.
+class PairJudge {
+ public:
+  /// `reference`: masks of the whole image; both must outlive it.
+  PairJudge(const Session& session, std::span<const std::uint32_t> reference);
+
+  /// For tiles of light 0, with masks.
+  void add(const TileResult& result);
+
+  [[nodiscard]] const compare::PairCounts& counts() const { return counts_; }
+  [[nodiscard]] const std::vector<DifferingPair>& kept() const { return kept_; }
+  /// Are these all differing pairs?
+  [[nodiscard]] bool kept_all() const { return stride_ == 1; }
+
+  /// Who was right on the kept pairs: the exact pair decision says. Milliseconds each.
+  [[nodiscard]] compare::PairVerdicts decide(Progress& progress) const;
+
+  static constexpr std::size_t kMostDecided = 4000;
+
+ private:
+  const Session& session_;
+  std::span<const std::uint32_t> reference_;
+  compare::PairCounts counts_;
+  std::vector<DifferingPair> kept_;
+  std::uint64_t seen_ = 0, stride_ = 1;  ///< every stride-th differing pair in scan-line order is kept
+};
+
+}  // namespace penumbra::app

@@ -1,0 +1,94 @@
+#include "app/commands.hpp"
+#include "app/interrupt.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <vector>
+
+namespace {
+
+using penumbra::ExitCode;
+
+constexpr const char* kDescription =
+    "Penumbra: soft shadows from area lights, geometry-based, image-based and ray-traced, on the same view samples.\n"
+    "Results go to stdout, messages to stderr.";
+
+constexpr const char* kFooter =
+    "Exit codes: 0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or resource;\n"
+    "130 interrupted. An output file appears whole or not at all.\n"
+    "`penumbra COMMAND --help` explains a command.";
+
+void start_log(const penumbra::app::GlobalOptions& global) {
+  auto logger = spdlog::stderr_logger_st("penumbra");
+  logger->set_pattern("penumbra: %l: %v");
+  logger->set_level(global.quiet ? spdlog::level::err : global.verbose ? spdlog::level::debug : spdlog::level::info);
+  spdlog::set_default_logger(logger);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(kDescription, "penumbra");
+  app.footer(kFooter);
+  app.set_version_flag("--version", "penumbra " PENUMBRA_VERSION);
+  app.require_subcommand(0, 1);  // none is refused below: CLI11 would not name a word that it does not know
+  app.fallthrough();             // --quiet and --verbose stand before or after the command's name
+  app.get_formatter()->column_width(34);
+
+  penumbra::app::GlobalOptions global;
+  global.arguments.assign(argv + 1, argv + argc);
+  auto* quiet = app.add_flag("-q,--quiet", global.quiet, "only errors on stderr, no progress bar");
+  app.add_flag("-v,--verbose", global.verbose, "say what is being done")->excludes(quiet);
+
+  std::vector<std::unique_ptr<penumbra::app::Command>> commands;
+  commands.push_back(penumbra::app::make_render_command(app));
+  commands.push_back(penumbra::app::make_compare_command(app));
+  commands.push_back(penumbra::app::make_methods_command(app));
+  commands.push_back(penumbra::app::make_devices_command(app));
+  commands.push_back(penumbra::app::make_convert_command(app));
+  for (const char* name : {"inspect", "wedges"}) {
+    commands.push_back(penumbra::app::make_command_not_there_yet(app, name));
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version: on stdout
+    fmt::print(stderr, "penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n", error.what(),
+               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    return static_cast<int>(ExitCode::usage);
+  }
+  start_log(global);
+  const auto chosen = std::ranges::find_if(commands, [](const auto& command) { return command->chosen(); });
+  if (chosen == commands.end()) throw penumbra::UsageError("no command; `penumbra --help` lists what there is");
+  const int code = (*chosen)->run(global);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw penumbra::ResourceError("cannot write to stdout");
+  return code;
+}
+
+int fail(ExitCode code, const char* message) {
+  fmt::print(stderr, "penumbra: error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  penumbra::app::watch_for_interrupts();
+  try {
+    return run(argc, argv);
+  } catch (const penumbra::Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::resource, "out of memory; choose a smaller --size, fewer --light-samples or a smaller scene");
+  } catch (const std::exception& error) {
+    // No library's exception should come this far; if one does, it is ours to mend, and no crash for the user.
+    return fail(ExitCode::resource, fmt::format("internal: {}", error.what()).c_str());
+  }
+}

@@ -1,0 +1,177 @@
+#include "app/methods.hpp"
+
+#include "base/error.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+// A family that this build goes without is not a CMake target; its methods are then not in the table.
+#ifdef PENUMBRA_HAS_VSM
+#include "vsm/view_sample.hpp"
+#endif
+#ifdef PENUMBRA_HAS_MAPS
+#include "maps/accumulate.hpp"
+#include "maps/pcss.hpp"
+#include "maps/shadow_map.hpp"
+#endif
+#ifdef PENUMBRA_HAS_REFERENCE
+#include "reference/ray_traced.hpp"
+#endif
+
+namespace penumbra::app {
+namespace {
+
+using visibility::Family;
+using visibility::Light;
+using visibility::Method;
+using visibility::MethodDescription;
+using visibility::MethodOptions;
+
+struct TableRow {
+  const MethodDescription& (*describe)();
+  std::unique_ptr<Method> (*make)(DeviceSource&, const MethodOptions&);
+  bool on_device = false;
+};
+
+/// A method that runs on the Vulkan device.
+template <auto kDescribe, auto kMake>
+[[maybe_unused]] TableRow on_device() {
+  return {[]() -> const MethodDescription& {
+            static const MethodDescription description = kDescribe();
+            return description;
+          },
+          [](DeviceSource& devices, const MethodOptions& options) { return kMake(devices.device(), options); }, true};
+}
+
+/// A method that runs on the processor, on a machine without Vulkan too: an instance can be asked what it is.
+template <auto kMake>
+[[maybe_unused]] TableRow on_processor() {
+  return {[]() -> const MethodDescription& {
+            static const MethodDescription description = kMake({})->description();
+            return description;
+          },
+          [](DeviceSource&, const MethodOptions& options) { return kMake(options); }, false};
+}
+
+/// The table of methods: one line a method; within a family the best comes first.
+const std::vector<TableRow>& table() {
+  static const std::vector<TableRow> rows = {
+#ifdef PENUMBRA_HAS_VSM
+      on_device<vsm::view_sample_description, vsm::make_view_sample>(),
+#endif
+#ifdef PENUMBRA_HAS_MAPS
+      on_device<maps::pcss_description, maps::make_pcss>(),
+      on_device<maps::accumulate_description, maps::make_accumulate>(),
+      on_device<maps::shadow_map_description, maps::make_shadow_map>(),
+#endif
+#ifdef PENUMBRA_HAS_REFERENCE
+      on_processor<reference::make_ray_traced>(),
+#endif
+  };
+  return rows;
+}
+
+/// Names that the program will understand some day; they mean nothing else until then.
+constexpr std::array kNotThereYet = {"exact",
+                                     "hard-volume",
+                                     "wedge-ramp",
+                                     "soft-volume",
+                                     "soft-volume-blend",
+                                     "depth-complexity",
+                                     "alias-free",
+                                     "view-sample-planar",
+                                     "view-sample",
+                                     "soft-irregular",
+                                     "hierarchical-penumbra",
+                                     "shadow-map",
+                                     "pcf",
+                                     "pcss",
+                                     "vssm",
+                                     "soft-shadow-map",
+                                     "backproject",
+                                     "backproject-peel",
+                                     "bitmask",
+                                     "contour",
+                                     "packet",
+                                     "accumulate",
+                                     "adaptive-light",
+                                     "layered-attenuation",
+                                     "deep-penumbra",
+                                     "occlusion-textures",
+                                     "convolution",
+                                     "edge-scatter",
+                                     "raytrace"};
+
+std::vector<std::string> names_of(const std::vector<const MethodDescription*>& methods) {
+  std::vector<std::string> names;
+  for (const MethodDescription* method : methods) names.push_back(method->name);
+  return names;
+}
+
+const TableRow& find_row(std::string_view name) {
+  const auto row = std::ranges::find_if(table(), [&](const TableRow& r) { return r.describe().name == name; });
+  if (row != table().end()) return *row;
+  const auto there = fmt::format("{}", fmt::join(names_of(all_methods()), ", "));
+  if (std::ranges::find(kNotThereYet, name) != kNotThereYet.end()) {
+    throw UsageError("method \"{}\" is not there yet; what is: {}", name, there);
+  }
+  throw UsageError("there is no method \"{}\"; what is there: {}", name, there);
+}
+
+}  // namespace
+
+std::vector<const MethodDescription*> all_methods() {
+  std::vector<const MethodDescription*> methods;
+  for (const TableRow& row : table()) methods.push_back(&row.describe());
+  return methods;
+}
+
+std::optional<std::vector<const MethodDescription*>> method_group(std::string_view group) {
+  auto methods = all_methods();
+  if (group == "all") return methods;
+  for (const Family family : {Family::reference, Family::geometry, Family::image}) {
+    if (group != visibility::name_of(family)) continue;
+    std::erase_if(methods, [&](const MethodDescription* method) { return method->family != family; });
+    return methods;
+  }
+  return std::nullopt;
+}
+
+const MethodDescription& describe_method(std::string_view name) {
+  return find_row(name).describe();
+}
+
+std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& options, DeviceSource& devices) {
+  const TableRow& row = find_row(name);
+  visibility::check_options(row.describe(), options);
+  return row.make(devices, options);
+}
+
+bool runs_on_device(std::string_view name) {
+  return find_row(name).on_device;
+}
+
+bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
+  return std::ranges::all_of(
+      lights, [&](const Light& light) { return std::ranges::find(method.lights, light.kind) != method.lights.end(); });
+}
+
+const MethodDescription& default_method(const std::vector<Light>& lights) {
+  std::vector<std::string> others;
+  for (const MethodDescription* method : all_methods()) {
+    if (!can_do(*method, lights)) continue;
+    if (method->family == Family::geometry) return *method;
+    others.push_back(method->name);
+  }
+  std::vector<std::string> kinds;
+  for (const Light& light : lights)
+    kinds.emplace_back(fmt::format("{} ({})", light.name, visibility::name_of(light.kind)));
+  throw InputError(
+      "no geometry-based method can do all of the scene's lights yet: {}; choose a method with --method: {}",
+      fmt::join(kinds, ", "), others.empty() ? "none in this build" : fmt::format("{}", fmt::join(others, ", ")));
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "app/device_source.hpp"
+#include "visibility/method.hpp"
+
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace penumbra::app {
+
+/// All methods of this build, in the order of `penumbra methods`. Needs no device.
+std::vector<const visibility::MethodDescription*> all_methods();
+
+/// The members of `reference`, `geometry`, `image` or `all`; nothing for any other word.
+std::optional<std::vector<const visibility::MethodDescription*>> method_group(std::string_view group);
+
+/// Throws UsageError, listing what is there, for an unknown name and (in other words) for one whose time has yet to
+/// come.
+const visibility::MethodDescription& describe_method(std::string_view name);
+
+/// Does it run on the Vulkan device? (Otherwise: on the processor.)
+bool runs_on_device(std::string_view name);
+
+/// Checks the options, then builds the method. Only methods that run on a device ask `devices` for one.
+std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,
+                                                DeviceSource& devices);
+
+bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
+
+/// The best geometry-based method that can do all these lights. Throws InputError, naming what else can, if none.
+const visibility::MethodDescription& default_method(const std::vector<visibility::Light>& lights);
+
+}  // namespace penumbra::app

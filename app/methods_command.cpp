@@ -1,0 +1,77 @@
+#include "app/commands.hpp"
+#include "app/methods.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace penumbra::app {
+namespace {
+
+using visibility::LightKind;
+using visibility::MethodDescription;
+using visibility::OptionDescription;
+
+std::vector<std::string> light_names(const MethodDescription& method) {
+  std::vector<std::string> names;
+  for (const LightKind kind : method.lights) names.emplace_back(visibility::name_of(kind));
+  return names;
+}
+
+void print_table(const std::vector<const MethodDescription*>& methods) {
+  fmt::print("{:<14} {:<10} {:<7} {:<32} {}\n", "method", "family", "output", "lights", "paper");
+  for (const MethodDescription* method : methods) {
+    fmt::print("{:<14} {:<10} {:<7} {:<32} {}\n", method->name, visibility::name_of(method->family),
+               visibility::name_of(method->output), fmt::format("{}", fmt::join(light_names(*method), ", ")),
+               method->paper);
+    fmt::print("{:<14} exact for: {}\n", "", method->exact_for);
+    for (const OptionDescription& option : method->options) {
+      fmt::print("{:<14} {}={} (default {}): {}\n", "", option.name, option.values, option.default_value, option.help);
+    }
+  }
+}
+
+void print_json(const std::vector<const MethodDescription*>& methods) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const MethodDescription* method : methods) {
+    auto options = nlohmann::ordered_json::array();
+    for (const OptionDescription& option : method->options) {
+      options.push_back(
+          {{"name", option.name}, {"values", option.values}, {"default", option.default_value}, {"help", option.help}});
+    }
+    rows.push_back({{"name", method->name},
+                    {"family", visibility::name_of(method->family)},
+                    {"paper", method->paper},
+                    {"output", visibility::name_of(method->output)},
+                    {"exactFor", method->exact_for},
+                    {"lights", light_names(*method)},
+                    {"options", options}});
+  }
+  fmt::print("{}\n", nlohmann::ordered_json{{"methods", rows}}.dump(2));
+}
+
+class MethodsCommand : public Command {
+ public:
+  explicit MethodsCommand(CLI::App& app)
+      : Command(app, "methods", "list the shadow methods: family, paper, output, what each is exact for, options") {
+    cli_.add_flag("--json", json_, "as JSON");
+  }
+
+  int run(const GlobalOptions&) override {
+    json_ ? print_json(all_methods()) : print_table(all_methods());
+    return 0;
+  }
+
+ private:
+  bool json_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_methods_command(CLI::App& app) {
+  return std::make_unique<MethodsCommand>(app);
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,186 @@
+#include "app/options.hpp"
+
+#include "app/methods.hpp"
+#include "app/parse.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+namespace penumbra::app {
+namespace {
+
+constexpr std::uint32_t kMostLightSamples = 4096;
+constexpr std::uint32_t kLongestSide = 32768;
+
+/// "AxB" → both numbers, or nothing.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> parse_product(std::string_view text) {
+  const auto x = text.find('x');
+  if (x == std::string_view::npos) return std::nullopt;
+  const auto first = parse_integer<std::uint32_t>(text.substr(0, x));
+  const auto second = parse_integer<std::uint32_t>(text.substr(x + 1));
+  if (!first || !second) return std::nullopt;
+  return std::pair{*first, *second};
+}
+
+void insert_option(visibility::MethodOptions& options, std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    throw UsageError("method option \"{}\": expected KEY=VALUE; `penumbra methods` lists each method's keys", text);
+  }
+  const auto [place, inserted] = options.emplace(text.substr(0, equals), text.substr(equals + 1));
+  if (!inserted) throw UsageError("method option \"{}\" is given twice", place->first);
+}
+
+visibility::SamplePattern parse_pattern(const std::string& text) {
+  using visibility::SamplePattern;
+  for (const SamplePattern pattern :
+       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+    if (text == visibility::name_of(pattern)) return pattern;
+  }
+  throw UsageError("--sample-pattern {}: expected rows, grid, sobol or jittered", text);
+}
+
+/// A label becomes a file name: what a shell, a URL or a file system could stumble over becomes '_'.
+std::string file_name_of(std::string_view label) {
+  std::string name(label);
+  std::ranges::replace_if(
+      name,
+      [](unsigned char c) {
+        return std::isalnum(c) == 0 && std::string_view("-_.=:+").find(static_cast<char>(c)) == std::string_view::npos;
+      },
+      '_');
+  return name;
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("SCENE", options.scene, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
+  command.add_option("--light-samples", options.light_samples, "light samples: N or LxB, 1 to 4096 points")
+      ->type_name("N|LxB")
+      ->capture_default_str();
+  command.add_option("--sample-pattern", options.sample_pattern, "rows, grid, sobol or jittered")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_option("--sample-seed", options.sample_seed, "seed of sobol and jittered")
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--size", options.size, "image size in pixels (default: the scene's)")->type_name("WxH");
+  command
+      .add_option("--light", options.light,
+                  "the light that comes first: channel V, --bits, error (default: the scene's first)")
+      ->type_name("NAME");
+  command.add_option("--camera", options.camera, "camera to look through (default: the scene's first)")
+      ->type_name("NAME");
+  command
+      .add_option("--device", options.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
+      ->type_name("NAME|INDEX|cpu");
+  command.add_option("--method-option", options.method_options, "option of the method; may be given again")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_flag("--allow-outside", options.allow_outside, "let a scene name files outside its own folder");
+}
+
+visibility::SampleRequest parse_light_samples(const RunOptions& options) {
+  visibility::SampleRequest request;
+  request.pattern = parse_pattern(options.sample_pattern);
+  request.seed = options.sample_seed;
+  const std::string& text = options.light_samples;
+  if (const auto product = parse_product(text)) {
+    request.rows = product->first;
+    request.columns = product->second;
+    const std::uint64_t count = std::uint64_t{request.rows} * request.columns;
+    if (count == 0 || count > kMostLightSamples) {
+      throw UsageError("--light-samples {}: {} points; expected 1 to {}", text, count, kMostLightSamples);
+    }
+    request.count = static_cast<std::uint32_t>(count);
+    return request;
+  }
+  const auto count = parse_integer<std::uint32_t>(text);
+  if (!count || *count == 0 || *count > kMostLightSamples) {
+    throw UsageError("--light-samples {}: expected a number from 1 to {}, or LxB such as 16x16", text,
+                     kMostLightSamples);
+  }
+  request.count = *count;
+  return request;
+}
+
+std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text) {
+  const auto size = parse_product(text);
+  if (!size || size->first == 0 || size->second == 0 || size->first > kLongestSide || size->second > kLongestSide) {
+    throw UsageError("--size {}: expected WxH with sides from 1 to {} pixels, such as 512x512", text, kLongestSide);
+  }
+  return *size;
+}
+
+FrameRange parse_frames(std::string_view text) {
+  const auto dash = text.find('-', 1);  // from 1: a first frame may be negative
+  if (dash != std::string_view::npos) {
+    const auto first = parse_integer<std::int64_t>(text.substr(0, dash));
+    const auto last = parse_integer<std::int64_t>(text.substr(dash + 1));
+    if (first && last && *first <= *last && *last - *first < 100'000) return {*first, *last};
+  }
+  throw UsageError("--frames {}: expected A-B with A not above B and fewer than 100000 frames, such as 1-24", text);
+}
+
+visibility::MethodOptions parse_method_options(const std::vector<std::string>& texts) {
+  visibility::MethodOptions options;
+  for (const std::string& text : texts) insert_option(options, text);
+  return options;
+}
+
+std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame) {
+  const std::string name = out.filename().string();
+  if (const auto percent = name.find('%'); percent != std::string::npos) {
+    auto end = percent + 1;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0) ++end;
+    const auto width = parse_integer<int>(std::string_view(name).substr(percent + 1, end - percent - 1));
+    if (end < name.size() && name[end] == 'd' && width.value_or(1) <= 20) {
+      return out.parent_path() /
+             fmt::format("{}{:0{}}{}", name.substr(0, percent), frame, width.value_or(1), name.substr(end + 1));
+    }
+  }
+  return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
+}
+
+std::vector<MethodEntry> parse_methods(std::string_view text) {
+  std::vector<MethodEntry> entries;
+  std::set<std::string> labels;
+  const auto add = [&](std::string_view label, std::string_view name, visibility::MethodOptions options,
+                       bool from_group) {
+    MethodEntry entry{file_name_of(label), std::string(name), std::move(options), from_group};
+    for (int number = 2; !labels.insert(entry.label).second; ++number) {
+      entry.label = fmt::format("{}-{}", file_name_of(label), number);
+    }
+    entries.push_back(std::move(entry));
+  };
+  for (const std::string_view part : split(text, ',')) {
+    const auto fields = split(part, ':');
+    visibility::MethodOptions options;
+    for (std::size_t i = 1; i < fields.size(); ++i) insert_option(options, fields[i]);
+    if (const auto group = method_group(fields[0])) {
+      if (group->empty()) throw UsageError("--methods {}: this build has no {} method", text, fields[0]);
+      for (const visibility::MethodDescription* description : *group) {
+        visibility::check_options(*description, options);
+        add(description->name, description->name, options, true);
+      }
+    } else {
+      const auto& description = describe_method(fields[0]);  // throws for a name that is not there
+      visibility::check_options(description, options);
+      add(part, fields[0], std::move(options), false);
+    }
+  }
+  return entries;
+}
+
+void require_writable(const std::filesystem::path& path) {
+  if (path.empty()) return;
+  const AtomicFile probe(path);  // makes and removes a temporary file beside it
+}
+
+}  // namespace penumbra::app

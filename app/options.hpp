@@ -1,0 +1,64 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "visibility/method.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace penumbra::app {
+
+struct FrameRange {
+  std::int64_t first = 0, last = 0;
+};
+
+/// What `render` and `compare` have in common, as the user gave it.
+struct RunOptions {
+  std::filesystem::path scene;
+  std::filesystem::path out;
+  std::string light_samples = "256";
+  std::string sample_pattern = "rows";
+  std::uint32_t sample_seed = 0;
+  std::string size;                   ///< empty: the scene's
+  std::string light, camera, device;  ///< empty: the first, the first, the best
+  std::vector<std::string> method_options;
+  bool allow_outside = false;
+};
+
+/// Adds the options of RunOptions that mean the same in `render` and in `compare`.
+void add_run_options(CLI::App& command, RunOptions& options);
+
+/// "256" or "16x16"; 1 … 4096 samples. All parsers here throw UsageError that says what would be right.
+visibility::SampleRequest parse_light_samples(const RunOptions& options);
+/// "1920x1080" → width, height.
+std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text);
+/// "A-B", A ≤ B.
+FrameRange parse_frames(std::string_view text);
+/// KEY=VALUE texts → options; a key given twice is an error.
+visibility::MethodOptions parse_method_options(const std::vector<std::string>& texts);
+/// OUT.exr and frame 7 → OUT.0007.exr; a name that holds "%04d" (any width) gets the number there.
+std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame);
+
+/// One entry of `--methods`: a name with options of its own.
+struct MethodEntry {
+  std::string label;  ///< as the user gave it, made unique and fit for a file name: names the entry's files
+  std::string name;
+  visibility::MethodOptions options;
+  bool from_group = false;  ///< not asked for by name: left out, with a warning, where it cannot do the scene's lights
+};
+/// "a,b:key=value:key=value,c"; `geometry`, `image` and `all` stand for the methods of these families in the table.
+std::vector<MethodEntry> parse_methods(std::string_view text);
+
+/// Throws ResourceError now, before long work, if a file could not be written at `path`.
+void require_writable(const std::filesystem::path& path);
+
+}  // namespace penumbra::app

@@ -1,0 +1,176 @@
+#include "app/output.hpp"
+
+#include "app/methods.hpp"
+#include "base/error.hpp"
+#include "base/exr.hpp"
+#include "compare/beauty.hpp"
+#include "compare/machine.hpp"
+
+#include <fmt/ranges.h>
+
+#include <array>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+std::string options_text(const visibility::MethodOptions& options) {
+  std::string text;
+  for (const auto& [key, value] : options) text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, value);
+  return text;
+}
+
+/// Rows [tile.first_row, + row_count) as view samples of their own.
+visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibility::Tile& tile) {
+  const auto first = static_cast<std::ptrdiff_t>(std::size_t{tile.first_row} * all.width);
+  const auto end = first + static_cast<std::ptrdiff_t>(std::size_t{tile.row_count} * all.width);
+  visibility::ViewSamples rows;
+  rows.width = all.width;
+  rows.height = tile.row_count;
+  rows.triangle.assign(all.triangle.begin() + first, all.triangle.begin() + end);
+  rows.p.assign(all.p.begin() + first, all.p.begin() + end);
+  rows.n.assign(all.n.begin() + first, all.n.begin() + end);
+  rows.depth.assign(all.depth.begin() + first, all.depth.begin() + end);
+  rows.eye = all.eye;
+  return rows;
+}
+
+/// The components of interleaved vectors or colours as channels that need no copy.
+void add_components(ExrImage& image, std::array<const char*, 3> names, std::span<const glm::vec3> values) {
+  const auto* floats = &values.front().x;
+  for (std::size_t c = 0; c < 3; ++c) {
+    image.channels.push_back({names[c], std::span<const float>(floats + c, 3 * values.size() - 2), 3});
+  }
+}
+
+}  // namespace
+
+BeautyAccumulator::BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights)
+    : session_(session), lights_(lights), pixels_(session.pixel_count(), glm::vec3(0)) {
+  for (const scenes::Object& object : session.scene.objects) colors_.push_back(object.color);
+}
+
+void BeautyAccumulator::add(const TileResult& result) {
+  // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
+  const visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
+  compare::LightVisibility seen;
+  if (result.masks.empty()) {
+    seen.visibility = result.visibility;
+  } else {
+    seen.masks = result.masks;
+  }
+  const auto band =
+      compare::integrate_beauty({session_.floats, rows, colors_, lights_.subspan(result.light, 1)}, {&seen, 1});
+  const std::size_t first = std::size_t{result.tile.first_row} * session_.width;
+  for (std::size_t i = 0; i < band.size(); ++i) pixels_[first + i] += band[i];
+}
+
+BitsOutput::BitsOutput(std::filesystem::path path, const Session& session, const visibility::Light& light,
+                       const visibility::MethodDescription& description)
+    : path_(std::move(path)), session_(session), light_(light) {
+  if (description.output != visibility::Output::mask) {
+    throw UsageError("--bits: method {} gives V alone, not one bit a light sample; see `penumbra methods`",
+                     description.name);
+  }
+  if (light.kind == visibility::LightKind::sphere) {
+    throw UsageError(
+        "--bits: light \"{}\" is a sphere, whose points differ from pixel to pixel; choose another with --light",
+        light.name);
+  }
+}
+
+void BitsOutput::add(const TileResult& result) {
+  if (!writer_) {
+    open_.emplace();
+    writer_.emplace(path_, session_.floats.origin, session_.samples, light_);
+  }
+  writer_->append(result.masks);
+}
+
+void BitsOutput::commit() {
+  writer_->commit();
+  writer_.reset();
+  open_.reset();
+}
+
+std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device) {
+  return runs_on_device(description.name) ? vulkan_device : compare::this_machine().processor;
+}
+
+void write_picture(const std::filesystem::path& path, const Session& session, std::span<const visibility::Light> lights,
+                   const MethodLabel& label, const MethodRun& run, std::span<const glm::vec3> beauty) {
+  const visibility::ViewSamples& samples = session.samples;
+  const std::size_t count = session.pixel_count();
+  std::vector<float> alpha(count);
+  std::vector<std::uint32_t> id(count);
+  std::vector<glm::vec3> world(count, glm::vec3(0));
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool background = samples.triangle[i] == visibility::ViewSamples::kBackground;
+    alpha[i] = background ? 0.0f : 1.0f;
+    id[i] = static_cast<std::uint32_t>(samples.triangle[i]);  // background: 4294967295
+    if (!background) world[i] = glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
+  }
+
+  ExrImage image;
+  image.width = session.width;
+  image.height = session.height;
+  add_components(image, {"R", "G", "B"}, beauty);
+  image.channels.push_back({"A", std::span<const float>(alpha), 1});
+  image.channels.push_back({"V", std::span<const float>(run.visibility.front()), 1});
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    image.channels.push_back({"V." + lights[light].name, std::span<const float>(run.visibility[light]), 1});
+  }
+  add_vector_channels(image, "P", world);
+  add_vector_channels(image, "Prel", samples.p);
+  add_vector_channels(image, "N", samples.n);
+  image.channels.push_back({"Z", std::span<const float>(samples.depth), 1});
+  image.channels.push_back({"id", std::span<const std::uint32_t>(id), 1});
+
+  const bool masks = label.description.output == visibility::Output::mask;
+  image.attributes = {{"penumbra.method", label.description.name},
+                      {"penumbra.options", options_text(label.options)},
+                      {"penumbra.output", visibility::name_of(label.description.output)},
+                      {"penumbra.beauty",
+                       masks ? "radiance and cosines integrated sample by sample" : "V times the unshadowed integral"},
+                      {"penumbra.lightSamples", fmt::format("{}", lights.front().sample_count())},
+                      {"penumbra.samplePattern", visibility::name_of(lights.front().pattern)},
+                      {"penumbra.scene", session.scene.name},
+                      {"penumbra.version", PENUMBRA_VERSION},
+                      {"penumbra.device", label.device}};
+  image.vectors = {{"penumbra.origin", session.floats.origin}};
+  write_exr(path, image);
+}
+
+compare::Stats make_stats(const Session& session, std::span<const visibility::Light> lights, const MethodLabel& label,
+                          const MethodRun& run) {
+  compare::Stats stats;
+  stats.scene = session.scene.name;
+  stats.width = session.width;
+  stats.height = session.height;
+  stats.device = label.device;
+  stats.triangles = session.floats.triangles.size();
+  stats.method = label.description.name;
+  stats.options = label.options;
+  stats.light_samples = lights.front().sample_count();
+  stats.sample_pattern = visibility::name_of(lights.front().pattern);
+  stats.seconds.load = session.load_seconds;
+  stats.seconds.mesh = run.times.mesh;
+  stats.seconds.view = session.view_seconds;
+  stats.seconds.light = run.times.light;
+  stats.seconds.evaluate = run.times.evaluate;
+  stats.seconds.warmup = run.times.warmup;
+  stats.seconds.total = session.open_seconds + run.times.total;
+  stats.passes = run.passes;
+  stats.peak_memory_bytes = run.memory_bytes;
+  stats.counters = run.counters;
+  stats.warnings = session.warnings;
+  return stats;
+}
+
+std::string summary(const compare::Stats& stats) {
+  return fmt::format("{}: {}x{}, {} triangles, {} light samples ({}); shadow {:.3f} s on {}", stats.method, stats.width,
+                     stats.height, stats.triangles, stats.light_samples, stats.sample_pattern,
+                     stats.seconds.shadow().value_or(0), stats.device);
+}
+
+}  // namespace penumbra::app

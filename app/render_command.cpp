@@ -1,0 +1,117 @@
+#include "app/commands.hpp"
+#include "app/methods.hpp"
+#include "app/options.hpp"
+#include "app/output.hpp"
+#include "app/runner.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "base/png.hpp"
+#include "compare/error_picture.hpp"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include <optional>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+class RenderCommand : public Command {
+ public:
+  explicit RenderCommand(CLI::App& app) : Command(app, "render", "render one image with one method") {
+    add_run_options(cli_, options_);
+    cli_.add_option("-o,--output", options_.out, "image to write: linear beauty, V, positions, normals, ids")
+        ->required()
+        ->type_name("OUT.exr");
+    cli_.add_option("--method", method_,
+                    "shadow method, see `penumbra methods` (default: the best geometry-based one "
+                    "that can do the scene's lights)")
+        ->type_name("NAME");
+    cli_.add_option("--stats", stats_, "times, counters and warnings as JSON; times of one run, the first")
+        ->type_name("FILE.json");
+    cli_.add_option("--png", png_, "the beauty for eyes, exposed automatically")->type_name("FILE.png");
+    cli_.add_option("--bits", bits_, "every pair's answer for the first light (penumbra-bits/1; mask methods)")
+        ->type_name("FILE");
+    auto* frame = cli_.add_option("--frame", frame_, "frame of the scene's animation")->type_name("F");
+    cli_.add_option("--frames", frames_, "several frames, to OUT.0001.exr and so on")
+        ->type_name("A-B")
+        ->excludes(frame);
+  }
+
+  int run(const GlobalOptions& global) override {
+    const auto method_options = parse_method_options(options_.method_options);
+    if (!method_.empty()) check_options(describe_method(method_), method_options);
+    const std::vector<std::filesystem::path> pictures = picture_paths();
+    if (options_.out.extension() != ".exr") {
+      throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
+                       options_.out.string());
+    }
+    for (const std::filesystem::path& path : {pictures.front(), stats_, png_, bits_}) require_writable(path);
+
+    Progress progress(!global.quiet);
+    DeviceSource devices(options_.device);
+    const Session session = open_session(options_, devices, 0, progress);
+    report_warnings(session, progress);
+    const auto& description = method_.empty() ? default_method(session.lights) : describe_method(method_);
+    const MethodLabel label{description, method_options, device_of(description, devices.name())};
+    std::optional<BitsOutput> bits;
+    if (!bits_.empty()) bits.emplace(bits_, session, session.lights.front(), description);
+    const auto method = make_method(description.name, method_options, devices);
+
+    BeautyAccumulator beauty(session, session.lights);
+    const RunPlan plan{.lights = session.lights};
+    const MethodRun result = run_method(
+        *method, session, plan,
+        [&](const TileResult& tile) {
+          beauty.add(tile);
+          if (bits && tile.light == 0) bits->add(tile);
+        },
+        progress);
+    devices.check_validation();  // before anything appears: a picture that cannot be trusted is none
+
+    progress.clear();
+    for (const std::filesystem::path& path : pictures) {
+      write_picture(path, session, session.lights, label, result, beauty.pixels());
+    }
+    if (bits) bits->commit();
+    if (!png_.empty()) {
+      write_png(png_, to_srgb(session.width, session.height, beauty.pixels(), compare::auto_exposure(beauty.pixels())));
+    }
+    const compare::Stats stats = make_stats(session, session.lights, label, result);
+    if (!stats_.empty()) write_file_atomically(stats_, compare::json_text(compare::to_json(stats)));
+    spdlog::info("{}", summary(stats));
+    return 0;
+  }
+
+ private:
+  /// Scenes stand still so far: every frame shows the same, and is written all the same.
+  [[nodiscard]] std::vector<std::filesystem::path> picture_paths() const {
+    if (frames_.empty()) return {options_.out};
+    std::vector<std::filesystem::path> paths;
+    const FrameRange range = parse_frames(frames_);
+    for (std::int64_t frame = range.first; frame <= range.last; ++frame)
+      paths.push_back(frame_path(options_.out, frame));
+    return paths;
+  }
+
+  void report_warnings(const Session& session, Progress& progress) const {
+    progress.clear();
+    for (const std::string& warning : session.warnings) spdlog::warn("{}", warning);
+    if (frame_ || !frames_.empty()) spdlog::warn("{} has no animation: every frame shows the same", session.scene.name);
+  }
+
+  RunOptions options_;
+  std::string method_;
+  std::optional<std::int64_t> frame_;
+  std::string frames_;
+  std::filesystem::path stats_, png_, bits_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_render_command(CLI::App& app) {
+  return std::make_unique<RenderCommand>(app);
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,156 @@
+#include "app/runner.hpp"
+
+#include "app/interrupt.hpp"
+#include "app/stopwatch.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using visibility::Light;
+using visibility::Output;
+using visibility::PixelClass;
+using visibility::Tile;
+
+bool lies_in_light_by_rule(PixelClass pixel) {
+  return pixel == PixelClass::background || pixel == PixelClass::emitter || pixel == PixelClass::unshadowed;
+}
+
+/// One run's times, summed over the lights.
+struct OneRun {
+  double light = 0, evaluate = 0;
+};
+
+/// Runs a method on all lights of a session; knows where the results of the last run go.
+class Host {
+ public:
+  Host(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
+       Progress& progress)
+      : method_(method), session_(session), plan_(plan), sink_(sink), progress_(progress) {}
+
+  OneRun run(bool last, MethodRun& result) {
+    OneRun times;
+    for (std::size_t light = 0; light < plan_.lights.size(); ++light) {
+      Stopwatch watch;
+      {
+        const MayExitAtOnce at_once;
+        watch.restart();
+        method_.prepare_light(plan_.lights[light]);
+        times.light += watch.seconds();
+        method_.prepare_view(session_.samples);
+      }
+      std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
+      rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
+      for (std::uint32_t row = 0; row < session_.height; row += rows) {
+        const Tile tile{row, std::min(rows, session_.height - row)};
+        times.evaluate += evaluate(tile);
+        if (last) read(light, tile, result);
+        progress_.advance(tile.row_count);
+      }
+      if (last) {
+        // Counters start again with each light; what is wanted is their sum.
+        for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
+      }
+    }
+    return times;
+  }
+
+ private:
+  /// Masks of a tile are read back into memory of the host: a quarter of a GiB is plenty, and never more than it.
+  [[nodiscard]] std::uint32_t most_rows_to_read(const Light& light) const {
+    constexpr std::uint64_t kMostBytes = 1u << 28;
+    const std::uint64_t row_bytes = std::uint64_t{4} * session_.width * light.words_per_mask();
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostBytes / row_bytes, 1, session_.height));
+  }
+
+  double evaluate(const Tile& tile) {
+    const MayExitAtOnce at_once;
+    const Stopwatch watch;
+    method_.evaluate(tile);
+    return watch.seconds();
+  }
+
+  void read(std::size_t light_index, const Tile& tile, MethodRun& result) {
+    const Light& light = plan_.lights[light_index];
+    const std::size_t first = std::size_t{tile.first_row} * session_.width;
+    const std::size_t count = std::size_t{tile.row_count} * session_.width;
+    const std::span<const PixelClass> classes = std::span(session_.classes[light_index]).subspan(first, count);
+    const std::span<float> values = std::span(result.visibility[light_index]).subspan(first, count);
+    method_.read_visibility(values);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
+    }
+    masks_.clear();
+    if (method_.description().output == Output::mask) read_masks(light, classes);
+    if (sink_) sink_({light_index, tile, values, masks_});
+  }
+
+  void read_masks(const Light& light, std::span<const PixelClass> classes) {
+    const std::size_t words = light.words_per_mask();
+    masks_.resize(classes.size() * words);
+    method_.read_masks(masks_);
+    const std::uint32_t rest = light.sample_count() % 32;
+    const std::uint32_t last_word = rest == 0 ? 0xffffffffu : (1u << rest) - 1;
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      if (!lies_in_light_by_rule(classes[i])) continue;
+      const std::span<std::uint32_t> mask = std::span(masks_).subspan(i * words, words);
+      std::ranges::fill(mask, 0xffffffffu);
+      mask.back() = last_word;
+    }
+  }
+
+  visibility::Method& method_;
+  const Session& session_;
+  const RunPlan& plan_;
+  const TileSink& sink_;
+  Progress& progress_;
+  std::vector<std::uint32_t> masks_;
+};
+
+}  // namespace
+
+MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
+                     Progress& progress) {
+  // Lights that the method cannot do are refused before any work.
+  for (const Light& light : plan.lights) visibility::check_light(method.description(), light);
+
+  const Stopwatch total;
+  MethodRun result;
+  result.visibility.assign(plan.lights.size(), std::vector<float>(session.pixel_count()));
+  const std::uint32_t discarded = plan.discard_first ? 1 : 0;
+  progress.begin(method.description().name,
+                 std::uint64_t{session.height} * plan.lights.size() * (plan.runs + discarded));
+  {
+    const MayExitAtOnce at_once;
+    const Stopwatch mesh;
+    method.prepare_mesh(session.floats);
+    result.times.mesh = mesh.seconds();
+  }
+
+  Host host(method, session, plan, sink, progress);
+  std::vector<double> light_seconds, evaluate_seconds;
+  std::optional<OneRun> first;
+  for (std::uint32_t run = 0; run < plan.runs + discarded; ++run) {
+    method.take_pass_times();  // those of earlier runs
+    const bool last = run + 1 == plan.runs + discarded;
+    const OneRun times = host.run(last, result);
+    if (run < discarded) {
+      first = times;
+      continue;
+    }
+    light_seconds.push_back(times.light);
+    evaluate_seconds.push_back(times.evaluate);
+  }
+  result.times.light = median(std::move(light_seconds));
+  result.times.evaluate = median(std::move(evaluate_seconds));
+  if (first) result.times.warmup = first->light + first->evaluate - result.times.light - result.times.evaluate;
+  result.passes = method.take_pass_times();
+  result.memory_bytes = method.memory_bytes();
+  result.times.total = total.seconds();
+  return result;
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "app/progress.hpp"
+#include "app/session.hpp"
+#include "visibility/method.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// What a method made of one tile for one light, with the host's rules applied (see run_method).
+struct TileResult {
+  std::size_t light = 0;  ///< index into RunPlan::lights
+  visibility::Tile tile;
+  std::span<const float> visibility;     ///< V of each pixel of the tile
+  std::span<const std::uint32_t> masks;  ///< words_per_mask() words a pixel; empty for a method without masks
+};
+
+/// Gets each tile of each light once, in order, from the last run.
+using TileSink = std::function<void(const TileResult&)>;
+
+struct RunPlan {
+  std::span<const visibility::Light> lights;  ///< as in Session::lights, perhaps with other light samples
+  std::uint32_t runs = 1;                     ///< timed runs
+  bool discard_first = false;                 ///< one more before them, which warms up and does not count
+};
+
+/// Times of one method over all lights, in seconds: medians where there were several runs.
+struct RunTimes {
+  double mesh = 0, light = 0, evaluate = 0;
+  std::optional<double> warmup;  ///< the discarded run's light + evaluate less the medians; empty: no run was discarded
+  double total = 0;              ///< wall-clock of all that was done for this method, reading back and sinks included
+};
+
+struct MethodRun {
+  RunTimes times;
+  std::vector<std::vector<float>> visibility;  ///< for each light, V of each pixel
+  std::vector<visibility::PassTime> passes;    ///< of the last run
+  std::map<std::string, std::uint64_t> counters;
+  std::uint64_t memory_bytes = 0;
+};
+
+/// Runs a method on a session: mesh once, then light and tiles, and reads the last run's result. In one place for every
+/// method stand the host's rules: background, pixels that carry a light's body, and receivers with receivesShadow =
+/// false are visible from every light sample.
+MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
+                     Progress& progress);
+
+}  // namespace penumbra::app

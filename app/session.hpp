@@ -1,0 +1,43 @@
+#pragma once
+
+#include "app/device_source.hpp"
+#include "app/options.hpp"
+#include "app/progress.hpp"
+#include "scenes/scene.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// The question that every method of a run answers: the scene, what each pixel sees of it, and the light samples.
+struct Session {
+  scenes::Scene scene;
+  std::uint32_t width = 0, height = 0;
+  visibility::SceneFloats floats;
+  std::size_t camera_index = 0;  ///< the chosen one of scene.cameras
+  visibility::PinholeCamera camera;
+  visibility::ViewSamples samples;
+  std::vector<visibility::Light> lights;  ///< the chosen one first, then the others in the scene's order
+  std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
+  double load_seconds = 0;  ///< reading the scene, its floats, and handing them to the visibility buffer
+  double view_seconds = 0;  ///< finding the view samples: the median of the runs asked for
+  double open_seconds = 0;  ///< wall-clock of all that made this session
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width} * height; }
+};
+
+/// Reads the scene and finds its view samples on the device; once if `runs` is 0, else `runs` times after a
+/// discarded one.
+/// Throws UsageError, InputError or ResourceError.
+Session open_session(const RunOptions& options, DeviceSource& devices, std::uint32_t runs, Progress& progress);
+
+/// The middle one; of an even number, the mean of the two in the middle. Not of nothing.
+double median(std::vector<double> values);
+
+}  // namespace penumbra::app

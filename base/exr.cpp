@@ -1,0 +1,178 @@
+#include "base/exr.hpp"
+
+#include "base/assert.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfVecAttribute.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <set>
+#include <string_view>
+#include <thread>
+
+namespace penumbra {
+namespace {
+
+/// OpenEXR writes its table of line offsets last, from a destructor that swallows every error: a full disk would
+/// leave a broken file and no message. So the file is made in memory, and reaches the disk by our own hands.
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : OStream("memory") {}
+  void write(const char* bytes, int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    bytes_.resize(std::max(bytes_.size(), position_ + size));
+    std::copy_n(bytes, size, bytes_.begin() + static_cast<std::ptrdiff_t>(position_));
+    position_ += size;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  [[nodiscard]] std::string_view bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t position_ = 0;
+};
+
+/// OpenEXR's worker threads are the process's; they only compress and uncompress, so they never change the bytes.
+void start_worker_threads() {
+  static std::once_flag once;
+  std::call_once(once, [] { Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency())); });
+}
+
+void check_name(const std::filesystem::path& path, const char* what, const std::string& name) {
+  constexpr std::size_t kLongestName = 255;  // of an OpenEXR 2.0 file with long names
+  if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) {
+    throw InputError(
+        "cannot write \"{}\": an OpenEXR {} has 1 to {} bytes and no zero byte, but \"{}\" has {}; use a shorter name",
+        path.string(), what, kLongestName, name.c_str(), name.size());
+  }
+}
+
+/// Where OpenEXR shall find (or put) pixel (0, 0); strides in bytes.
+template <typename Value>
+Imf::Slice slice_of(Imf::PixelType type, const Value* values, std::size_t stride, std::uint32_t width) {
+  // Slice wants a mutable pointer for both directions; writing a file only reads.
+  char* base = reinterpret_cast<char*>(const_cast<Value*>(values));
+  return {type, base, stride * sizeof(Value), stride * sizeof(Value) * width};
+}
+
+}  // namespace
+
+void add_vector_channels(ExrImage& image, const std::string& layer, std::span<const glm::vec3> vectors) {
+  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+  if (vectors.empty()) return;
+  const float* first = &vectors.front().x;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::span<const float> values(first + axis, 3 * vectors.size() - axis);
+    image.channels.push_back({layer + "." + "XYZ"[axis], values, 3});
+  }
+}
+
+void write_exr(const std::filesystem::path& path, const ExrImage& image) {
+  constexpr std::uint32_t kLargestSide = 1u << 24;
+  if (image.width == 0 || image.height == 0 || image.width > kLargestSide || image.height > kLargestSide) {
+    throw ResourceError("cannot write \"{}\": {}x{} pixels; an OpenEXR image has 1 to {} a side", path.string(),
+                        image.width, image.height, kLargestSide);
+  }
+  AtomicFile file(path);  // first, so that a place that cannot be written is told before any work
+  Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, value] : image.attributes) {
+    check_name(path, "attribute's name", name);
+    header.insert(name, Imf::StringAttribute(value));
+  }
+  for (const auto& [name, value] : image.vectors) {
+    check_name(path, "attribute's name", name);
+    header.insert(name, Imf::V3dAttribute(Imath::V3d(value.x, value.y, value.z)));
+  }
+
+  Imf::FrameBuffer pixels;
+  std::set<std::string> names;
+  const std::size_t pixel_count = std::size_t{image.width} * image.height;
+  for (const ExrChannel& channel : image.channels) {
+    check_name(path, "channel's name", channel.name);
+    PENUMBRA_ASSERT(names.insert(channel.name).second, "two channels are called {}", channel.name);
+    std::visit(
+        [&](auto values) {
+          PENUMBRA_ASSERT(values.size() > (pixel_count - 1) * channel.stride,
+                          "channel {}: {} values for {} pixels with stride {}", channel.name, values.size(),
+                          pixel_count, channel.stride);
+          constexpr bool kIsFloat = std::is_same_v<decltype(values), std::span<const float>>;
+          constexpr Imf::PixelType kType = kIsFloat ? Imf::FLOAT : Imf::UINT;
+          header.channels().insert(channel.name, Imf::Channel(kType));
+          pixels.insert(channel.name, slice_of(kType, values.data(), channel.stride, image.width));
+        },
+        channel.values);
+  }
+
+  start_worker_threads();
+  MemoryStream stream;
+  try {
+    Imf::OutputFile output(stream, header);
+    output.setFrameBuffer(pixels);
+    output.writePixels(static_cast<int>(image.height));
+  } catch (const std::exception& error) {
+    throw ResourceError("cannot write \"{}\": OpenEXR says: {}", path.string(), error.what());
+  }
+  file.write(stream.bytes());
+  file.commit();
+}
+
+ExrFile read_exr(const std::filesystem::path& path) {
+  start_worker_threads();
+  try {
+    Imf::InputFile input(path.c_str());
+    const Imf::Header& header = input.header();
+    const Imath::Box2i window = header.dataWindow();
+    if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", path.string());
+    ExrFile file;
+    file.width = static_cast<std::uint32_t>(std::int64_t{window.max.x} - window.min.x + 1);
+    file.height = static_cast<std::uint32_t>(std::int64_t{window.max.y} - window.min.y + 1);
+    const std::size_t pixel_count = std::size_t{file.width} * file.height;
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute())) {
+        file.attributes[attribute.name()] = text->value();
+      } else if (const auto* vector = dynamic_cast<const Imf::V3dAttribute*>(&attribute.attribute())) {
+        const Imath::V3d& v = vector->value();
+        file.vectors[attribute.name()] = {v.x, v.y, v.z};
+      }
+    }
+    Imf::FrameBuffer pixels;
+    const auto insert = [&](const char* name, Imf::PixelType type, auto& values) {
+      values.resize(pixel_count);
+      // OpenEXR addresses pixels by their absolute place: shift so that the window's corner is element 0.
+      pixels.insert(name, Imf::Slice::Make(type, values.data(), window));
+    };
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+      if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
+        throw InputError("\"{}\": channel {} is subsampled, which is not supported", path.string(), channel.name());
+      }
+      if (channel.channel().type == Imf::UINT) {
+        insert(channel.name(), Imf::UINT, file.integers[channel.name()]);
+      } else {
+        insert(channel.name(), Imf::FLOAT, file.floats[channel.name()]);
+      }
+    }
+    input.setFrameBuffer(pixels);
+    input.readPixels(window.min.y, window.max.y);
+    return file;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError("\"{}\" is no readable OpenEXR image: {}", path.string(), error.what());
+  }
+}
+
+}  // namespace penumbra

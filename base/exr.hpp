@@ -1,0 +1,52 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace penumbra {
+
+/// One channel to write: pixel i's value is values[i · stride], so that a component of interleaved data (an array of
+/// vec3) needs no copy: {"P.Y", {&p[0].y, 3 · pixels − 1}, 3}.
+struct ExrChannel {
+  std::string name;
+  std::variant<std::span<const float>, std::span<const std::uint32_t>> values;
+  std::size_t stride = 1;
+};
+
+/// What goes into an OpenEXR file. Names of channels are unique; dots make layers ("P.X").
+struct ExrImage {
+  std::uint32_t width = 0, height = 0;
+  std::vector<ExrChannel> channels;
+  std::map<std::string, std::string> attributes;  ///< header attributes of type string, by full name ("penumbra.scene")
+  std::map<std::string, glm::dvec3> vectors;      ///< header attributes of three doubles ("penumbra.origin")
+};
+
+/// The three components "<layer>.X", ".Y", ".Z" of an array of vectors, which must outlive them.
+void add_vector_channels(ExrImage& image, const std::string& layer, std::span<const glm::vec3> vectors);
+
+/// Writes scan lines of 32-bit channels with ZIP compression, whole or not at all. Nothing but the image decides the
+/// bytes: no date, no owner. A name that OpenEXR cannot hold (empty, over 255 bytes, with a zero byte) is an
+/// InputError, a file that cannot be written a ResourceError.
+void write_exr(const std::filesystem::path& path, const ExrImage& image);
+
+/// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers.
+struct ExrFile {
+  std::uint32_t width = 0, height = 0;
+  std::map<std::string, std::vector<float>> floats;
+  std::map<std::string, std::vector<std::uint32_t>> integers;
+  std::map<std::string, std::string> attributes;
+  std::map<std::string, glm::dvec3> vectors;
+};
+
+/// Reads a scan-line image. Throws InputError for what is none.
+ExrFile read_exr(const std::filesystem::path& path);
+
+}  // namespace penumbra

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra {
+
+/// One sRGB-encoded colour, red green blue: what screens and PNG files hold.
+using Color8 = std::array<std::uint8_t, 3>;
+
+/// A picture for eyes, in scan-line order from the top left. Measurements stay in floats (base/exr.hpp).
+struct Image8 {
+  std::uint32_t width = 0, height = 0;
+  std::vector<Color8> pixels;
+};
+
+/// The sRGB transfer curve (IEC 61966-2-1) of a linear value, clamped to [0, 1] and rounded; NaN is 0.
+std::uint8_t srgb_byte(float linear);
+
+/// Linear radiance, multiplied with `exposure`, as a picture. `linear` has width × height pixels.
+Image8 to_srgb(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> linear, float exposure = 1);
+
+}  // namespace penumbra

@@ -1,0 +1,77 @@
+// PNG through libpng's simplified interface: it reports errors as values, where the classic one needs setjmp, which
+// may not jump over destructors.
+#include "base/png.hpp"
+
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+
+#include <png.h>
+
+namespace penumbra {
+namespace {
+
+/// Frees what libpng may still hold, also on the way of an exception.
+struct PngImage {
+  PngImage() { image.version = PNG_IMAGE_VERSION; }
+  PngImage(const PngImage&) = delete;
+  PngImage& operator=(const PngImage&) = delete;
+  ~PngImage() { png_image_free(&image); }
+  png_image image{};
+};
+
+std::string base64(std::span<const std::byte> bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;  // 24 bits; what is missing at the end is zero
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_png(const Image8& image) {
+  if (image.pixels.empty()) throw ResourceError("cannot make a PNG of a picture without pixels");
+  static_assert(sizeof(Color8) == 3, "rows are handed to libpng as they lie");
+  PngImage png;
+  png.image.width = image.width;
+  png.image.height = image.height;
+  png.image.format = PNG_FORMAT_RGB;
+  std::vector<std::byte> bytes(PNG_IMAGE_PNG_SIZE_MAX(png.image));
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&png.image, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr) == 0) {
+    throw ResourceError("cannot make a PNG of {}x{} pixels: {}", image.width, image.height, png.image.message);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image8& image) {
+  write_file_atomically(path, encode_png(image));
+}
+
+std::string png_data_uri(const Image8& image) {
+  return "data:image/png;base64," + base64(encode_png(image));
+}
+
+Image8 decode_png(std::span<const std::byte> bytes) {
+  PngImage png;
+  if (png_image_begin_read_from_memory(&png.image, bytes.data(), bytes.size()) == 0) {
+    throw InputError("not a PNG picture: {}", png.image.message);
+  }
+  png.image.format = PNG_FORMAT_RGB;
+  Image8 image{png.image.width, png.image.height, {}};
+  image.pixels.resize(std::size_t{image.width} * image.height);
+  const png_color black{0, 0, 0};
+  if (png_image_finish_read(&png.image, &black, image.pixels.data(), 0, nullptr) == 0) {
+    throw InputError("a damaged PNG picture: {}", png.image.message);
+  }
+  return image;
+}
+
+}  // namespace penumbra

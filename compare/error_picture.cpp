@@ -1,0 +1,87 @@
+#include "compare/error_picture.hpp"
+
+#include "base/assert.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace penumbra::compare {
+namespace {
+
+// From right to wrong, evenly spaced: two arms of a diverging scale (after ColorBrewer's RdBu) that stay apart for
+// eyes that see no red or no green.
+constexpr std::array<Color8, 5> kTooBright{
+    {{255, 255, 255}, {188, 218, 236}, {90, 163, 206}, {33, 102, 172}, {5, 40, 90}}};
+constexpr std::array<Color8, 5> kTooDark{
+    {{255, 255, 255}, {253, 208, 180}, {240, 130, 95}, {190, 35, 45}, {95, 0, 25}}};
+
+void check_sizes(const visibility::ViewSamples& samples, std::span<const float> values) {
+  PENUMBRA_ASSERT(samples.size() == std::size_t{samples.width} * samples.height && samples.size() == values.size(),
+                  "{} values for {} view samples of {}x{} pixels", values.size(), samples.size(), samples.width,
+                  samples.height);
+}
+
+/// One picture, pixel by pixel, with `color_of(i)` where there is no background.
+template <typename ColorOf>
+Image8 paint(const visibility::ViewSamples& samples, ColorOf color_of) {
+  Image8 image{samples.width, samples.height, std::vector<Color8>(samples.size(), kBackgroundColor)};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.triangle[i] != visibility::ViewSamples::kBackground) image.pixels[i] = color_of(i);
+  }
+  return image;
+}
+
+}  // namespace
+
+Color8 error_color(double error, double limit) {
+  const auto& arm = error > 0 ? kTooBright : kTooDark;
+  const double depth = std::sqrt(std::min(1.0, std::abs(error) / limit)) * static_cast<double>(arm.size() - 1);
+  const std::size_t from = std::min(static_cast<std::size_t>(depth), arm.size() - 2);
+  const double share = depth - static_cast<double>(from);
+  Color8 color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    color[c] = static_cast<std::uint8_t>(std::lround(arm[from][c] * (1 - share) + arm[from + 1][c] * share));
+  }
+  return color;
+}
+
+double error_scale_limit(double largest) {
+  for (const double limit : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5}) {
+    if (largest <= limit) return limit;
+  }
+  return 1;
+}
+
+Image8 error_picture(const visibility::ViewSamples& samples, std::span<const float> visibility,
+                     std::span<const float> reference, double limit) {
+  check_sizes(samples, visibility);
+  check_sizes(samples, reference);
+  return paint(samples, [&](std::size_t i) {
+    return error_color(static_cast<double>(visibility[i]) - static_cast<double>(reference[i]), limit);
+  });
+}
+
+Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<const float> visibility) {
+  check_sizes(samples, visibility);
+  return paint(samples, [&](std::size_t i) {
+    // sRGB bytes are already spaced for the eye: V = 0.5 shall look half way.
+    const auto grey = static_cast<std::uint8_t>(std::lround(std::clamp(visibility[i], 0.0f, 1.0f) * 255.0f));
+    return Color8{grey, grey, grey};
+  });
+}
+
+float auto_exposure(std::span<const glm::vec3> linear) {
+  std::vector<float> brightness;
+  for (const glm::vec3& color : linear) {
+    const float largest = std::max({color.r, color.g, color.b});
+    if (largest > 0 && std::isfinite(largest)) brightness.push_back(largest);
+  }
+  if (brightness.empty()) return 1;
+  const auto place = brightness.begin() + static_cast<std::ptrdiff_t>((brightness.size() - 1) * 99 / 100);
+  std::nth_element(brightness.begin(), place, brightness.end());
+  return 0.9f / *place;
+}
+
+}  // namespace penumbra::compare

@@ -1,0 +1,136 @@
+#include "compare/metrics.hpp"
+
+#include "base/assert.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace penumbra::compare {
+namespace {
+
+/// The words of one pixel's masks, with what lies beyond the last sample cut off.
+struct PixelMasks {
+  const std::uint32_t* method;
+  const std::uint32_t* reference;
+};
+
+PixelMasks masks_of(const MaskPair& masks, std::uint32_t pixel) {
+  const std::size_t first = std::size_t{pixel} * masks.words_per_mask();
+  const std::size_t end = first + masks.words_per_mask();
+  PENUMBRA_ASSERT(end <= masks.method.size() && end <= masks.reference.size(), "pixel {} of {} and {} mask words",
+                  pixel, masks.method.size(), masks.reference.size());
+  return {&masks.method[first], &masks.reference[first]};
+}
+
+std::uint32_t existing_samples(const MaskPair& masks, std::uint32_t word) {
+  const std::uint32_t left = masks.sample_count - word * 32;
+  return left >= 32 ? 0xffffffffu : (1u << left) - 1;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> pixels_of_class(std::span<const visibility::PixelClass> classes,
+                                           visibility::PixelClass wanted) {
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    if (classes[i] == wanted) pixels.push_back(static_cast<std::uint32_t>(i));
+  }
+  return pixels;
+}
+
+std::vector<std::uint32_t> pixels_with_alpha(const visibility::ViewSamples& samples) {
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.triangle[i] != visibility::ViewSamples::kBackground) pixels.push_back(static_cast<std::uint32_t>(i));
+  }
+  return pixels;
+}
+
+std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
+                                                std::span<const std::uint32_t> pixels) {
+  if (pixels.empty()) return std::nullopt;
+  std::vector<double> magnitudes;
+  magnitudes.reserve(pixels.size());
+  VisibilityError error;
+  double squares = 0;
+  for (const std::uint32_t pixel : pixels) {
+    PENUMBRA_ASSERT(pixel < visibility.size() && pixel < reference.size(), "pixel {} of {} and {}", pixel,
+                    visibility.size(), reference.size());
+    const double e = static_cast<double>(visibility[pixel]) - static_cast<double>(reference[pixel]);
+    // A NaN would slip through every comparison below and call a broken method perfect.
+    PENUMBRA_ASSERT(std::isfinite(e), "V is {} and {} at pixel {}", visibility[pixel], reference[pixel], pixel);
+    const double magnitude = std::abs(e);
+    magnitudes.push_back(magnitude);
+    error.mean += magnitude;
+    error.bias += e;
+    squares += e * e;
+    if (magnitude > 0.05) error.over05 += 1;
+  }
+  const auto count = static_cast<double>(pixels.size());
+  error.mean /= count;
+  error.bias /= count;
+  error.over05 /= count;
+  error.rmse = std::sqrt(squares / count);
+  // Nearest rank ⌈0.999 n⌉, in integers: 0.999 is no double.
+  const std::size_t rank = (999 * pixels.size() + 999) / 1000;
+  const auto place = magnitudes.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+  std::nth_element(magnitudes.begin(), place, magnitudes.end());
+  error.p999 = *place;
+  error.max = *std::max_element(place, magnitudes.end());
+  return error;
+}
+
+PairCounts& PairCounts::operator+=(const PairCounts& other) {
+  all += other.all;
+  penumbra += other.penumbra;
+  differing += other.differing;
+  return *this;
+}
+
+PairCounts count_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels) {
+  PairCounts counts;
+  for (const std::uint32_t pixel : pixels) {
+    const PixelMasks pair = masks_of(masks, pixel);
+    std::uint32_t seen_by_method = 0, seen_by_reference = 0;
+    for (std::uint32_t word = 0; word < masks.words_per_mask(); ++word) {
+      const std::uint32_t existing = existing_samples(masks, word);
+      const std::uint32_t a = pair.method[word] & existing, b = pair.reference[word] & existing;
+      seen_by_method += static_cast<std::uint32_t>(std::popcount(a));
+      seen_by_reference += static_cast<std::uint32_t>(std::popcount(b));
+      counts.differing += static_cast<std::uint64_t>(std::popcount(a ^ b));
+    }
+    const auto partly = [&](std::uint32_t seen) { return seen > 0 && seen < masks.sample_count; };
+    counts.all += masks.sample_count;
+    if (partly(seen_by_method) || partly(seen_by_reference)) counts.penumbra += masks.sample_count;
+  }
+  return counts;
+}
+
+void for_each_differing_pair(const MaskPair& masks, std::span<const std::uint32_t> pixels,
+                             const std::function<void(std::uint32_t, std::uint32_t, bool)>& visit) {
+  for (const std::uint32_t pixel : pixels) {
+    const PixelMasks pair = masks_of(masks, pixel);
+    for (std::uint32_t word = 0; word < masks.words_per_mask(); ++word) {
+      std::uint32_t differing = (pair.method[word] ^ pair.reference[word]) & existing_samples(masks, word);
+      for (; differing != 0; differing &= differing - 1) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(differing));
+        visit(pixel, word * 32 + bit, (pair.method[word] >> bit & 1) != 0);
+      }
+    }
+  }
+}
+
+PairVerdicts judge_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels,
+                         const std::function<PairDecision(std::uint32_t, std::uint32_t)>& decide) {
+  PairVerdicts verdicts;
+  for_each_differing_pair(masks, pixels, [&](std::uint32_t pixel, std::uint32_t sample, bool method_says_visible) {
+    const PairDecision truth = decide(pixel, sample);
+    ++verdicts.decided;
+    ++(truth.visible == method_says_visible ? verdicts.method_right : verdicts.reference_right);
+    if (truth.zero_predicate) ++verdicts.zero_predicate;
+  });
+  return verdicts;
+}
+
+}  // namespace penumbra::compare

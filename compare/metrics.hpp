@@ -1,0 +1,82 @@
+#pragma once
+
+#include "visibility/view_samples.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace penumbra::compare {
+
+/// The pixels of one class, in order.
+std::vector<std::uint32_t> pixels_of_class(std::span<const visibility::PixelClass> classes,
+                                           visibility::PixelClass wanted);
+
+/// The pixels that are no background (A = 1), in order.
+std::vector<std::uint32_t> pixels_with_alpha(const visibility::ViewSamples& samples);
+
+/// How far V is off over a set of pixels. With e = V − V of the reference:
+struct VisibilityError {
+  double mean = 0;    ///< of |e|
+  double rmse = 0;    ///< √ of the mean of e²
+  double p999 = 0;    ///< the smallest |e| that at least 99.9 % of the pixels do not exceed
+  double max = 0;     ///< of |e|
+  double over05 = 0;  ///< the share of pixels with |e| > 0.05
+  double bias = 0;    ///< mean of e; positive: too bright
+
+  bool operator==(const VisibilityError&) const = default;
+};
+
+/// Over the given pixels (indices into both spans); nothing if there are none. Which pixels is the caller's choice:
+/// for `error` in metrics.json those of PixelClass::judged (among the sampled ones), for the horizon's row
+/// PixelClass::horizon.
+std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
+                                                std::span<const std::uint32_t> pixels);
+
+/// Masks of one method and of its reference on the same light samples, words_per_mask words a pixel.
+struct MaskPair {
+  std::span<const std::uint32_t> method, reference;
+  std::uint32_t sample_count = 0;
+
+  [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count + 31) / 32; }
+};
+
+/// (View sample, light point) pairs.
+struct PairCounts {
+  std::uint64_t all = 0;        ///< `pairsAll`: of all given pixels
+  std::uint64_t penumbra = 0;   ///< `pairs`: of the pixels where 0 < V < 1 in either
+  std::uint64_t differing = 0;  ///< `pairsDiffering`: visible in one, hidden in the other
+
+  PairCounts& operator+=(const PairCounts& other);
+  bool operator==(const PairCounts&) const = default;
+};
+
+PairCounts count_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels);
+
+/// Calls `visit(pixel, light sample, visible for the method)` for every differing pair, by pixel, then by sample.
+void for_each_differing_pair(const MaskPair& masks, std::span<const std::uint32_t> pixels,
+                             const std::function<void(std::uint32_t, std::uint32_t, bool)>& visit);
+
+/// What an exact decision says about one pair.
+struct PairDecision {
+  bool visible = false;
+  bool zero_predicate = false;  ///< some exact predicate was zero, and read as the definition says
+};
+
+/// Who was right on the differing pairs. Each pair makes exactly one of the two right.
+struct PairVerdicts {
+  std::uint64_t decided = 0;
+  std::uint64_t method_right = 0;
+  std::uint64_t reference_right = 0;
+  std::uint64_t zero_predicate = 0;  ///< `pairsZeroPredicate`: of those decided
+
+  bool operator==(const PairVerdicts&) const = default;
+};
+
+/// Has every differing pair decided by `decide(pixel, light sample)`, typically visibility::decide_pair.
+PairVerdicts judge_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels,
+                         const std::function<PairDecision(std::uint32_t, std::uint32_t)>& decide);
+
+}  // namespace penumbra::compare

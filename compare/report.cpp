@@ -1,0 +1,380 @@
+#include "compare/report.hpp"
+
+#include "base/assert.hpp"
+#include "base/atomic_file.hpp"
+#include "compare/report_parts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace penumbra::compare {
+namespace {
+
+std::string options_text(const visibility::MethodOptions& options) {
+  std::string text;
+  for (const auto& [key, value] : options) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", key, value);
+  return text;
+}
+
+/// The label of the method in tables and captions; `small` is a second, paler line.
+std::string label_html(const std::string& name, const std::string& small) {
+  return escape_html(name) + (small.empty() ? "" : "<small>" + escape_html(small) + "</small>");
+}
+
+std::string facts_html(const std::vector<ReportFact>& facts) {
+  std::string html = "<div class=\"scroll\"><table class=\"facts\"><tbody>\n";
+  for (const ReportFact& fact : facts) {
+    html +=
+        fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape_html(fact.name), escape_html(fact.value));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+/// The entry for which `value_of` (an optional number) is smallest.
+template <typename ValueOf>
+const MethodResult* smallest(const std::vector<MethodResult>& results, ValueOf value_of) {
+  const MethodResult* best = nullptr;
+  for (const MethodResult& result : results) {
+    if (value_of(result) && (best == nullptr || *value_of(result) < *value_of(*best))) best = &result;
+  }
+  return best;
+}
+
+std::optional<double> rmse_of(const MethodResult& result) {
+  return result.error ? std::optional(result.error->rmse) : std::nullopt;
+}
+std::optional<double> shadow_of(const MethodResult& result) {
+  return result.stats.seconds.shadow();
+}
+
+std::string glance_html(const ReportInput& in) {
+  const auto card = [](std::string_view title, const std::string& name, const std::string& text) {
+    return fmt::format("<div><dt>{}</dt><dd><b>{}</b><br>{}</dd></div>\n", title, escape_html(name), text);
+  };
+  const Stats& reference = in.metrics.reference;
+  std::string html = "<dl class=\"glance\">\n";
+  if (const MethodResult* best = smallest(in.metrics.methods, rmse_of)) {
+    html += card("Closest to the reference", best->entry,
+                 fmt::format("V is off by {} on average (RMSE {})", error_text(best->error->mean),
+                             error_text(best->error->rmse)));
+  }
+  if (const MethodResult* best = smallest(in.metrics.methods, shadow_of)) {
+    const std::string speed = speed_text(shadow_of(*best), reference.seconds.shadow());
+    html +=
+        card("Fastest", best->entry,
+             fmt::format(
+                 "{} for the shadow{}", seconds_text(shadow_of(*best)),
+                 speed == "–" ? "" : fmt::format(", {} {} the reference", speed, speed == "as fast" ? "as" : "than")));
+  }
+  html +=
+      card("Judged by", reference.method,
+           fmt::format("{} light samples{}, {} for the shadow", reference.light_samples,
+                       in.same_samples ? ", the same as the methods’" : "", seconds_text(reference.seconds.shadow())));
+  html += card("Compared on", in.metrics.reference.scene,
+               fmt::format("{} × {} pixels, {} of them judged", reference.width, reference.height,
+                           count_text(in.metrics.judged_pixels)));
+  return html + "</dl>\n";
+}
+
+std::string question_html(const ReportInput& in) {
+  const std::uint32_t samples = in.metrics.methods.empty() ? 0 : in.metrics.methods.front().stats.light_samples;
+  std::string html = R"(<section id="question"><h2>What is asked</h2><div class="two"><div>
+<p>A lamp with a size casts soft shadows: a point behind an object sees none of the lamp, a point beside it sees all,
+and between the two lies a band that sees a part. So the question, asked at every point that the picture shows, is:
+<strong>how much of the light does it see?</strong> The answer is a number <var>V</var> between 0 (nothing) and 1 (all
+of it). Get <var>V</var> right, and the shadow is right.</p>
+)";
+  html += fmt::format(
+      "<p>Each pixel of the picture became one point of the scene, and every method below was asked about the very "
+      "same points. Those that look for points of the light (not every method does) looked for the very same {}. The "
+      "methods differ in how they find out what stands between, and so in speed and in the mistakes they make. "
+      "<strong>{}</strong> served as the reference; the light in question is “{}”.</p>\n",
+      count_text(samples), escape_html(in.metrics.reference.method), escape_html(in.light));
+  if (in.same_samples) {
+    html +=
+        "<p>The reference looked for the same points of the light, so that every single answer can be compared, not "
+        "only "
+        "their sums.</p>\n";
+  } else {
+    html += fmt::format(
+        "<p>The reference looked for {} points of the light. Its own V is an estimate too, in steps of 1/{}: errors "
+        "of about that size belong to both sides.</p>\n",
+        count_text(in.metrics.reference.light_samples), in.metrics.reference.light_samples);
+  }
+  return html + "</div><div>" + shadow_drawing_html() + "</div></div></section>\n";
+}
+
+std::string scene_html(const ReportInput& in) {
+  std::string html =
+      "<section id=\"scene\"><h2>The scene</h2><div class=\"two\"><div>" + facts_html(in.scene) + "</div><div>";
+  if (in.reference.beauty) {
+    html += figure_html(*in.reference.beauty, "The scene " + in.metrics.reference.scene + " as the reference shades it",
+                        "<b>" + escape_html(in.metrics.reference.scene) + "</b><span>shaded by the reference, " +
+                            escape_html(in.metrics.reference.method) + "</span>");
+  }
+  return html + "</div></div></section>\n";
+}
+
+std::string gallery_html(const ReportInput& in) {
+  const std::string& reference = in.metrics.reference.method;
+  std::string beauties, visibilities, errors;
+  if (in.reference.beauty) {
+    beauties += figure_html(*in.reference.beauty, "Beauty by the reference " + reference,
+                            "<b>" + escape_html(reference) + "</b><span>the reference</span>");
+  }
+  if (in.reference.visibility) {
+    visibilities += figure_html(*in.reference.visibility, "V by the reference " + reference,
+                                "<b>" + escape_html(reference) + "</b><span>the reference</span>");
+  }
+  for (std::size_t i = 0; i < in.methods.size(); ++i) {
+    const MethodResult& result = in.metrics.methods[i];
+    const ReportEntry& entry = in.methods[i];
+    const std::string name = "<b>" + escape_html(result.entry) + "</b>";
+    if (entry.beauty) {
+      beauties += figure_html(*entry.beauty, "Beauty by " + result.entry,
+                              fmt::format("{}<span>{}, {}</span>", name, visibility::name_of(entry.description.family),
+                                          seconds_text(shadow_of(result))));
+    }
+    if (entry.visibility) visibilities += figure_html(*entry.visibility, "V by " + result.entry, name);
+    if (entry.error) {
+      const std::string caption = result.error ? fmt::format("RMSE {}, largest {}", error_text(result.error->rmse),
+                                                             error_text(result.error->max))
+                                               : "no judged pixel";
+      errors += figure_html(*entry.error, "Signed error of V by " + result.entry + ": " + caption,
+                            name + "<span>" + caption + "</span>");
+    }
+  }
+  std::string html =
+      "<section id=\"pictures\"><h2>The pictures</h2>\n<p class=\"note\">Click a picture to enlarge it, click again to "
+      "go back.</p>\n";
+  if (!beauties.empty()) {
+    html += fmt::format(
+        "<h3>Beauty</h3>\n<p>The shaded picture, by each method. All are exposed alike (linear colours × {:.3g}).</p>\n"
+        "<div class=\"gallery\">{}</div>\n",
+        in.exposure, beauties);
+  }
+  if (!visibilities.empty()) {
+    html += "<h3>V: how much of the light is seen</h3>\n" + visibility_legend_html() + "<div class=\"gallery\">" +
+            visibilities + "</div>\n";
+  }
+  if (!errors.empty()) {
+    html += "<h3>Where each method is wrong</h3>\n" + error_legend_html(in.error_limit) + "<div class=\"gallery\">" +
+            errors + "</div>\n";
+  }
+  return html + "</section>\n";
+}
+
+std::vector<std::string> error_cells(const std::optional<VisibilityError>& error) {
+  if (!error) return std::vector<std::string>(6, "–");
+  return {error_text(error->mean), error_text(error->rmse),     error_text(error->p999),
+          error_text(error->max),  percent_text(error->over05), signed_text(error->bias)};
+}
+
+std::string errors_html(const ReportInput& in) {
+  const std::string judged = count_text(in.metrics.judged_pixels), horizon = count_text(in.metrics.horizon_pixels);
+  ReportTable table{"Error of V against " + escape_html(in.metrics.reference.method) + ". 0 would be perfect. " +
+                        judged + " judged pixels, " + horizon + " horizon pixels.",
+                    {"Method", "Pixels", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias"},
+                    {}};
+  const MethodResult* best = smallest(in.metrics.methods, rmse_of);
+  for (const MethodResult& result : in.metrics.methods) {
+    std::vector<std::string> cells = error_cells(result.error);
+    if (&result == best) cells[1] = "<span class=\"best\">" + cells[1] + "</span>";
+    cells.insert(cells.begin(), {escape_html(result.entry), "judged"});
+    table.rows.push_back(cells);
+    if (result.horizon_error) {
+      cells = error_cells(result.horizon_error);
+      cells.insert(cells.begin(), {label_html(result.entry, "horizon pixels"), "horizon"});
+      table.rows.push_back(cells);
+    }
+  }
+  return table_html(table);
+}
+
+std::string pairs_html(const ReportInput& in) {
+  ReportTable table{"Pair by pair: on how many (view sample, light sample) pairs does a method answer other than " +
+                        escape_html(in.metrics.reference.method) + "?",
+                    {"Method", "Differing pairs", "of all pairs", "share", "of pairs in penumbrae", "share"},
+                    {}};
+  ReportTable verdicts{"Who is right where they differ? Decided by exact arithmetic, which does not round.",
+                       {"Method", "Pairs decided", "Method right", "Reference right", "Ties read by rule"},
+                       {}};
+  const auto share = [](std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? std::string("–")
+                      : fmt::format("{:.2g}", static_cast<double>(part) / static_cast<double>(whole));
+  };
+  for (const MethodResult& result : in.metrics.methods) {
+    if (result.pairs) {
+      const PairCounts& pairs = *result.pairs;
+      table.rows.push_back({escape_html(result.entry), count_text(pairs.differing), count_text(pairs.all),
+                            share(pairs.differing, pairs.all), count_text(pairs.penumbra),
+                            share(pairs.differing, pairs.penumbra)});
+    }
+    if (result.verdicts) {
+      const PairVerdicts& v = *result.verdicts;
+      verdicts.rows.push_back({escape_html(result.entry), count_text(v.decided), count_text(v.method_right),
+                               count_text(v.reference_right), count_text(v.zero_predicate)});
+    }
+  }
+  std::string html;
+  if (!table.rows.empty()) html += table_html(table);
+  if (!verdicts.rows.empty()) {
+    html += table_html(verdicts) +
+            "<p class=\"note\">A tie: the line of sight meets an edge or a corner exactly; the "
+            "definition of visibility says how to read it.</p>\n";
+  }
+  return html;
+}
+
+std::string seconds_html(const ReportInput& in) {
+  const Stats& reference = in.metrics.reference;
+  ReportTable table{
+      "Seconds: medians of repeated runs on the machine below. Shadow = light + evaluate.",
+      {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory"},
+      {}};
+  const auto row = [&](const std::string& label, const Stats& stats, bool is_best, const std::string& speed) {
+    const std::string shadow = seconds_text(stats.seconds.shadow());
+    table.rows.push_back({label, is_best ? "<span class=\"best\">" + shadow + "</span>" : shadow, speed,
+                          seconds_text(stats.seconds.light), seconds_text(stats.seconds.evaluate),
+                          seconds_text(stats.seconds.mesh), seconds_text(stats.seconds.warmup),
+                          bytes_text(stats.peak_memory_bytes)});
+  };
+  row(label_html(reference.method, fmt::format("the reference, {} light samples", reference.light_samples)), reference,
+      false, "–");
+  const MethodResult* best = smallest(in.metrics.methods, shadow_of);
+  for (const MethodResult& result : in.metrics.methods) {
+    row(label_html(result.entry, fmt::format("{} light samples, {}", result.stats.light_samples, result.stats.device)),
+        result.stats, &result == best, speed_text(shadow_of(result), reference.seconds.shadow()));
+  }
+  return table_html(table);
+}
+
+std::string details_html(const ReportInput& in) {
+  std::string html;
+  for (const MethodResult& result : in.metrics.methods) {
+    const Stats& stats = result.stats;
+    if (stats.passes.empty() && stats.counters.empty()) continue;
+    html += "<details><summary>Passes and counters of " + escape_html(result.entry) + "</summary>\n";
+    if (!stats.passes.empty()) {
+      ReportTable table{"Where the time goes", {"Pass", "Time"}, {}};
+      for (const visibility::PassTime& pass : stats.passes) {
+        table.rows.push_back({escape_html(pass.name), seconds_text(pass.milliseconds / 1000)});
+      }
+      html += table_html(table);
+    }
+    if (!stats.counters.empty()) {
+      ReportTable table{"What was counted", {"Counter", "Count"}, {}};
+      for (const auto& [name, count] : stats.counters) table.rows.push_back({escape_html(name), count_text(count)});
+      html += table_html(table);
+    }
+    html += "</details>\n";
+  }
+  return html;
+}
+
+std::string methods_html(const ReportInput& in) {
+  ReportTable table{"What each method is", {"Method", "Family", "Answers with", "Exact for", "After", "Options"}, {}};
+  const auto row = [&](const std::string& label, const visibility::MethodDescription& d,
+                       const visibility::MethodOptions& options) {
+    const std::string chosen = options_text(options);
+    table.rows.push_back({label, visibility::name_of(d.family), visibility::name_of(d.output), escape_html(d.exact_for),
+                          escape_html(d.paper), chosen.empty() ? "defaults" : escape_html(chosen)});
+  };
+  row(label_html(in.metrics.reference.method, "the reference"), in.reference.description, in.metrics.reference.options);
+  for (std::size_t i = 0; i < in.methods.size(); ++i) {
+    row(escape_html(in.metrics.methods[i].entry), in.methods[i].description, in.metrics.methods[i].stats.options);
+  }
+  return "<section id=\"methods\"><h2>The methods</h2>\n" + table_html(table) +
+         "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V has the "
+         "unshadowed "
+         "light multiplied by V.</p></section>\n";
+}
+
+std::string machine_html(const ReportInput& in) {
+  const Stats& first = in.metrics.methods.empty() ? in.metrics.reference : in.metrics.methods.front().stats;
+  const Machine& machine = in.machine;
+  std::vector<ReportFact> facts;
+  if (!machine.processor.empty()) facts.push_back({"Processor", machine.processor});
+  if (machine.threads != 0) facts.push_back({"Hardware threads", std::to_string(machine.threads)});
+  if (machine.memory_bytes != 0) facts.push_back({"Memory", bytes_text(machine.memory_bytes)});
+  facts.push_back({"Device", first.device});
+  if (!machine.operating_system.empty()) facts.push_back({"System", machine.operating_system});
+  facts.push_back({"Program", "penumbra " + in.version});
+  facts.push_back({"Light samples", fmt::format("{}, pattern {}", first.light_samples, first.sample_pattern)});
+  facts.push_back({"Reference", fmt::format("{}, {} light samples{}", in.metrics.reference.method,
+                                            in.metrics.reference.light_samples, in.same_samples ? " (the same)" : "")});
+  if (in.sampled_pixels != 0)
+    facts.push_back({"Compared pixels", fmt::format("{} chosen ones", count_text(in.sampled_pixels))});
+  facts.push_back({"Reading the scene", seconds_text(first.seconds.load)});
+  facts.push_back({"View samples", seconds_text(first.seconds.view)});
+  return "<section id=\"machine\"><h2>Machine and options</h2>\n" + facts_html(facts) + "</section>\n";
+}
+
+std::string warnings_html(const ReportInput& in) {
+  std::vector<std::string> warnings = in.warnings;
+  const auto add = [&](const Stats& stats) {
+    warnings.insert(warnings.end(), stats.warnings.begin(), stats.warnings.end());
+  };
+  add(in.metrics.reference);
+  for (const MethodResult& result : in.metrics.methods) add(result.stats);
+  // The same remark on the scene comes with every method: say it once, in the order of first mention.
+  std::vector<std::string> once;
+  for (const std::string& warning : warnings) {
+    if (std::find(once.begin(), once.end(), warning) == once.end()) once.push_back(warning);
+  }
+  if (once.empty()) return {};
+  std::string html = "<section id=\"warnings\"><h2>Warnings</h2><div class=\"warnings\"><ul>\n";
+  for (const std::string& warning : once) html += "<li>" + escape_html(warning) + "</li>\n";
+  return html + "</ul></div></section>\n";
+}
+
+}  // namespace
+
+std::string report_html(const ReportInput& in) {
+  PENUMBRA_ASSERT(in.methods.size() == in.metrics.methods.size(), "{} entries for {} results", in.methods.size(),
+                  in.metrics.methods.size());
+  const std::string scene = escape_html(in.metrics.reference.scene);
+  const std::size_t count = in.methods.size();
+  const std::string warnings = warnings_html(in);
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  html += fmt::format("<title>Soft shadows of {}: {} method{} compared</title>\n<style>", scene, count,
+                      count == 1 ? "" : "s");
+  html += kReportStyle;
+  html += fmt::format(
+      "</style>\n</head>\n<body>\n<header>\n<h1>Soft shadows of {}</h1>\n"
+      "<p class=\"lead\">How much of the light does each point see? {} method{} answered; {} judged {}.</p>\n",
+      scene, count, count == 1 ? "" : "s", escape_html(in.metrics.reference.method), count == 1 ? "it" : "them");
+  html += glance_html(in);
+  html +=
+      "<nav aria-label=\"Sections\"><a href=\"#question\">What is asked</a><a href=\"#scene\">The scene</a>"
+      "<a href=\"#pictures\">Pictures</a><a href=\"#numbers\">Numbers</a><a href=\"#methods\">Methods</a>"
+      "<a href=\"#machine\">Machine and options</a>";
+  if (!warnings.empty()) html += "<a href=\"#warnings\">Warnings</a>";
+  html += "<a href=\"#words\">Words</a><a href=\"#again\">Do it again</a></nav>\n</header>\n<main>\n";
+  html += question_html(in) + scene_html(in) + gallery_html(in);
+  html += "<section id=\"numbers\"><h2>The numbers</h2>\n" + errors_html(in) + pairs_html(in) + seconds_html(in) +
+          details_html(in) + "</section>\n";
+  html += methods_html(in) + machine_html(in) + warnings;
+  html += "<section id=\"words\"><h2>Words</h2>\n" + std::string(kReportGlossary) + "</section>\n";
+  html +=
+      "<section id=\"again\"><h2>Do it again</h2>\n<p>In a clone of Penumbra on Debian 12; the first call installs "
+      "what is "
+      "missing and builds:</p>\n<pre>./run.sh " +
+      escape_html(shell_text(in.arguments)) +
+      "</pre>\n<p>All numbers of this page, and more, are in <code>metrics.json</code> beside it; the pictures with "
+      "all "
+      "their channels in the <code>.exr</code> files.</p></section>\n";
+  html += "</main>\n<footer>Written by penumbra " + escape_html(in.version) + ".</footer>\n</body>\n</html>\n";
+  return html;
+}
+
+void write_report(const std::filesystem::path& path, const ReportInput& input) {
+  write_file_atomically(path, report_html(input));
+}
+
+}  // namespace penumbra::compare

@@ -1,0 +1,55 @@
+// The scene in words.
+#include "compare/report.hpp"
+#include "compare/report_parts.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <variant>
+
+namespace penumbra::compare {
+namespace {
+
+std::string text_of(const glm::dvec3& v) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x, v.y, v.z);
+}
+
+struct ShapeText {
+  std::string operator()(const scenes::Rectangle& r) const {
+    return fmt::format("a rectangle of {:.4g} × {:.4g} at {}", 2 * glm::length(r.half_u), 2 * glm::length(r.half_v),
+                       text_of(r.center));
+  }
+  std::string operator()(const scenes::Disk& d) const {
+    return fmt::format("a disk of radius {:.4g} at {}", d.radius, text_of(d.center));
+  }
+  std::string operator()(const scenes::Polygon& p) const {
+    return fmt::format("a polygon of {} corners", p.vertices.size());
+  }
+  std::string operator()(const scenes::Sphere& s) const {
+    return fmt::format("a sphere of radius {:.4g} at {}", s.radius, text_of(s.center));
+  }
+};
+
+}  // namespace
+
+std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera) {
+  constexpr std::size_t kNamed = 8;  // objects named before the rest is only counted
+  std::string objects;
+  for (std::size_t i = 0; i < scene.objects.size() && i < kNamed; ++i)
+    objects += (i == 0 ? "" : ", ") + scene.objects[i].name;
+  if (scene.objects.size() > kNamed) objects += fmt::format(" and {} more", scene.objects.size() - kNamed);
+  std::vector<ReportFact> facts{
+      {"Scene", scene.name}, {"Triangles", count_text(scene.soup.triangles.size())}, {"Objects", objects}};
+  for (const scenes::AreaLight& light : scene.lights) {
+    facts.push_back({fmt::format("Light “{}”", light.name),
+                     fmt::format("{}, radiance {}{}", std::visit(ShapeText{}, light.shape), text_of(light.radiance),
+                                 light.two_sided ? ", from both sides" : "")});
+  }
+  const scenes::Camera& c = scene.cameras.at(camera);
+  facts.push_back(
+      {"Camera", fmt::format("at {}, looking at {}, {:.4g}° high", text_of(c.eye), text_of(c.target), c.vertical_fov)});
+  facts.push_back({"Picture", fmt::format("{} × {} pixels", scene.width, scene.height)});
+  return facts;
+}
+
+}  // namespace penumbra::compare

@@ -1,0 +1,86 @@
+#include "compare/stats.hpp"
+
+namespace penumbra::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json to_json(const Seconds& seconds) {
+  return {{"load", or_null(seconds.load)},         {"mesh", or_null(seconds.mesh)},
+          {"view", or_null(seconds.view)},         {"light", or_null(seconds.light)},
+          {"evaluate", or_null(seconds.evaluate)}, {"shadow", or_null(seconds.shadow())},
+          {"warmup", or_null(seconds.warmup)},     {"total", or_null(seconds.total)}};
+}
+
+Json to_json(const std::optional<VisibilityError>& error) {
+  if (!error) return nullptr;
+  return {{"mean", error->mean}, {"rmse", error->rmse},     {"p999", error->p999},
+          {"max", error->max},   {"over05", error->over05}, {"bias", error->bias}};
+}
+
+Json to_json(const MethodResult& result) {
+  Json json = compare::to_json(result.stats);
+  json["entry"] = result.entry;
+  json["error"] = to_json(result.error);
+  json["horizonError"] = to_json(result.horizon_error);
+  const auto& pairs = result.pairs;
+  json["pairs"] = pairs ? Json(pairs->penumbra) : Json();
+  json["pairsAll"] = pairs ? Json(pairs->all) : Json();
+  json["pairsDiffering"] = pairs ? Json(pairs->differing) : Json();
+  const auto& verdicts = result.verdicts;
+  json["pairsZeroPredicate"] = verdicts ? Json(verdicts->zero_predicate) : Json();
+  json["pairsMethodRight"] = verdicts ? Json(verdicts->method_right) : Json();
+  json["pairsReferenceRight"] = verdicts ? Json(verdicts->reference_right) : Json();
+  return json;
+}
+
+}  // namespace
+
+std::optional<double> Seconds::shadow() const {
+  if (!light || !evaluate) return std::nullopt;
+  return *light + *evaluate;
+}
+
+Json to_json(const Stats& stats) {
+  Json passes = Json::array();
+  for (const visibility::PassTime& pass : stats.passes) {
+    passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}});
+  }
+  // Json::object() for the maps: an empty one would become null otherwise.
+  Json options = Json::object(), counters = Json::object();
+  for (const auto& [key, value] : stats.options) options[key] = value;
+  for (const auto& [name, count] : stats.counters) counters[name] = count;
+  return {{"scene", stats.scene},
+          {"size", Json::array({stats.width, stats.height})},
+          {"device", stats.device},
+          {"triangles", stats.triangles},
+          {"method", stats.method},
+          {"options", options},
+          {"lightSamples", stats.light_samples},
+          {"samplePattern", stats.sample_pattern},
+          {"seconds", to_json(stats.seconds)},
+          {"passes", passes},
+          {"peakMemoryBytes", stats.peak_memory_bytes},
+          {"counters", counters},
+          {"warnings", stats.warnings}};
+}
+
+Json to_json(const Metrics& metrics) {
+  Json methods = Json::array();
+  for (const MethodResult& result : metrics.methods) methods.push_back(to_json(result));
+  return {{"reference", to_json(metrics.reference)},
+          {"judgedPixels", metrics.judged_pixels},
+          {"horizonPixels", metrics.horizon_pixels},
+          {"methods", methods}};
+}
+
+std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace penumbra::compare

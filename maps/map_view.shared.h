@@ -1,0 +1,62 @@
+// One struct, two languages: how the maps of one light point cover what they cover. README.md has the picture.
+#ifdef __cplusplus
+#pragma once
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+namespace penumbra::maps::gpu {
+using glm::vec2;
+using glm::vec3;
+using uint = std::uint32_t;
+#endif
+
+// One side of the light's plane as a light point sees it. With d = (x, y, z) in the light's frame, z > 0 on this side:
+// one face holds the directions (x/z, y/z) in a window; five (a hemicube) hold every direction.
+struct SideView {
+  vec2 lower, upper;          // window of (x/z, y/z); one face only
+  uint first_face;            // among the faces of its light point
+  uint face_count;            // 0: no receiver on this side; 1: a window; 5: a hemicube
+};
+
+struct LightView {
+  vec3 point;                 // the light point, in scene floats
+  float far;                  // beyond every receiver and caster; maps hold (distance along the face's axis) / far
+  SideView side[2];           // 0: where the light's normal points, 1: behind
+};
+
+// The light's frame, orthonormal; n points to the emitting side.
+struct Frame {
+  vec3 u, v, n;
+};
+
+// A view sample as the look-ups take it. n is zero where nothing is shadowed: background, emitters, receivesShadow false.
+struct Receiver {
+  vec3 p, n;
+};
+
+// caster.vert, caster.frag: one face.
+struct CasterPush {
+  vec3 point;
+  float near;
+  vec3 row_x;                 // clip.x = dot(row_x, corner - point), likewise y and w
+  float far;
+  vec3 row_y;
+  uint first_vertex;
+  vec3 row_w;
+};
+
+// What every look-up needs.
+struct LookupPush {
+  Frame frame;
+  float bias;                 // in texels
+  uint size;                  // of a face, texels on a side
+  uint two_sided;
+  uint first_receiver;        // in the receivers' buffer
+  uint receiver_count;
+  uint first_result;          // where the results of the first receiver go, counted in receivers
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::maps::gpu
+#endif

@@ -1,0 +1,17 @@
+// One struct, two languages: pcss.comp's.
+#include "maps/map_view.shared.h"
+#ifdef __cplusplus
+#pragma once
+namespace penumbra::maps::gpu {
+#endif
+
+struct PcssPush {
+  LookupPush lookup;
+  uint blocker_samples;       // the first of the pattern's points
+  uint filter_samples;        // those that follow
+  float smallest_near;        // no near plane is put nearer to the light than this
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::maps::gpu
+#endif

@@ -1,0 +1,24 @@
+#include "mesh/import.hpp"
+
+#include "base/error.hpp"
+#include "mesh/import_helper.hpp"
+#include "mesh/import_wire.hpp"
+
+namespace penumbra::mesh {
+
+ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits) {
+  require_regular_file(file);
+  const std::vector<std::byte> answer = run_import_helper({"mesh", file, {}}, limits);
+  try {
+    WireReader from(answer);
+    ImportedMesh mesh = get_mesh(from);
+    from.expect_end();
+    if (mesh.soup.triangles.empty()) throw WireError("it holds no triangles");
+    return mesh;
+  } catch (const WireError& error) {
+    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file.string(),
+                     error.what());
+  }
+}
+
+}  // namespace penumbra::mesh

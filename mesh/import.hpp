@@ -1,0 +1,36 @@
+#pragma once
+
+#include "mesh/triangle_soup.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace penumbra::mesh {
+
+struct ImportedMesh {
+  TriangleSoup soup;               ///< one object (number 0), node transforms applied; never empty
+  std::vector<std::string> notes;  ///< what was skipped or changed on the way, each with its count
+};
+
+/// What a foreign file may cost before it is refused.
+struct ImportLimits {
+  std::chrono::milliseconds time{20000};
+  std::uint64_t memory_bytes = 4ull << 30;
+  std::uint64_t output_bytes = 4ull << 30;
+};
+
+/// Reads OBJ, PLY, OFF, STL, 3DS, glTF/GLB and whatever else Assimp reads.
+///
+/// The soup drops no face with an area or without: duplicates and degenerate triangles stay. Polygons become triangles
+/// (a fan if convex, ear clipping otherwise); lines, points and faces with fewer than three corners are skipped and
+/// counted in `notes`, as is everything else that is not geometry.
+///
+/// The file is parsed in a child process (`penumbra-import`) under `limits`: a file that crashes, hangs or eats memory
+/// costs an InputError that says so. InputError also for: no such file, no triangles, an index out of range, a vertex
+/// that is not finite, a file shorter than its header promises.
+ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits = {});
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,308 @@
+#include "mesh/import_helper.hpp"
+
+#include "base/error.hpp"
+#include "mesh/import_wire.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <span>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace penumbra::mesh {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::string reason(int error) {
+  return std::generic_category().message(error);
+}
+
+/// Owns an open file descriptor, or nothing (-1).
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~Descriptor() { close(); }
+  void close() {
+    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  }
+  [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+
+ private:
+  int fd_ = -1;
+};
+
+struct Pipe {
+  Descriptor read, write;
+};
+
+Pipe make_pipe() {
+  std::array<int, 2> fds{};
+  if (::pipe2(fds.data(), O_CLOEXEC) != 0) throw ResourceError("cannot make a pipe: {}", reason(errno));
+  Pipe pipe{Descriptor(fds[0]), Descriptor(fds[1])};
+  // If this program was started without standard streams, the ends may have got the numbers 0 to 2, which the child's
+  // own redirections are about to overwrite one after the other: move them out of the way.
+  for (Descriptor* end : {&pipe.read, &pipe.write}) {
+    if (end->get() > 2) continue;
+    const int moved = ::fcntl(end->get(), F_DUPFD_CLOEXEC, 3);
+    if (moved < 0) throw ResourceError("cannot duplicate a file descriptor: {}", reason(errno));
+    *end = Descriptor(moved);
+  }
+  return pipe;
+}
+
+/// Owns a child process: it never outlives this object, and never stays behind as a zombie.
+class Child {
+ public:
+  explicit Child(pid_t pid) : pid_(pid) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() {
+    kill();
+    wait();
+  }
+  void kill() const {
+    if (!ended_) ::kill(pid_, SIGKILL);  // not reaped yet, so the number is still its own
+  }
+  bool has_ended() {
+    reap(WNOHANG);
+    return ended_;
+  }
+  /// The exit status as waitpid gives it.
+  int wait() {
+    reap(0);
+    return status_;
+  }
+
+ private:
+  void reap(int options) {
+    while (!ended_) {
+      const pid_t result = ::waitpid(pid_, &status_, options);
+      if (result == 0) return;
+      // ECHILD: somebody ignores SIGCHLD, so the kernel reaped it; the answer's own length says whether it is whole.
+      ended_ = result == pid_ || errno != EINTR;
+    }
+  }
+  pid_t pid_;
+  bool ended_ = false;
+  int status_ = 0;
+};
+
+std::filesystem::path find_helper() {
+  if (const char* named = std::getenv("PENUMBRA_IMPORT_HELPER"); named != nullptr && *named != '\0') return named;
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) throw ResourceError("cannot find the running program's folder: {}", error.message());
+  return self.parent_path() / "penumbra-import";
+}
+
+/// posix_spawn's two argument objects, set so that the child sees the given streams and nothing else of ours.
+class SpawnSettings {
+ public:
+  SpawnSettings(int output, int errors) {
+    ::posix_spawn_file_actions_init(&actions_);
+    ::posix_spawnattr_init(&attributes_);
+    ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    ::posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
+    // Libraries of this program may have opened files without O_CLOEXEC (GPU drivers do).
+    ::posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+    // The child starts with default signal handling whatever this program blocks or ignores.
+    sigset_t none, all;
+    ::sigemptyset(&none);
+    ::sigfillset(&all);
+    ::posix_spawnattr_setsigmask(&attributes_, &none);
+    ::posix_spawnattr_setsigdefault(&attributes_, &all);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  ~SpawnSettings() {
+    ::posix_spawn_file_actions_destroy(&actions_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  [[nodiscard]] const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  [[nodiscard]] const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
+};
+
+pid_t spawn(std::vector<std::string> arguments, const Descriptor& output, const Descriptor& errors) {
+  std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const SpawnSettings settings(output.get(), errors.get());
+  pid_t pid = -1;
+  const int error = ::posix_spawn(&pid, argv[0], settings.actions(), settings.attributes(), argv.data(), ::environ);
+  if (error != 0) {
+    throw ResourceError(
+        "cannot start the import helper {}: {}; it is built beside the program, or is named by the "
+        "environment variable PENUMBRA_IMPORT_HELPER",
+        arguments[0], reason(error));
+  }
+  return pid;
+}
+
+enum class Ending { by_itself, out_of_time, too_much_output };
+
+struct Outcome {
+  Ending ending = Ending::by_itself;
+  int status = 0;  ///< as waitpid gives it
+  std::vector<std::byte> output;
+  std::string errors;  ///< the first few KiB of what it wrote to stderr
+};
+
+/// Reads once from a pipe that poll called ready; closes it at its end. `take(bytes)` gets what was read.
+template <typename Take>
+void drain(Descriptor& from, std::span<std::byte> buffer, Take take) {
+  const ssize_t count = ::read(from.get(), buffer.data(), buffer.size());
+  if (count > 0) {
+    take(buffer.first(static_cast<std::size_t>(count)));
+  } else if (count == 0 || (errno != EINTR && errno != EAGAIN)) {
+    from.close();
+  }
+}
+
+/// Collects the child's output until it ends, or until it has cost too much, and then ends it.
+Outcome supervise(Child& child, Pipe output, Pipe errors, const ImportLimits& limits) {
+  constexpr std::size_t kKeptErrors = 4096;
+  const Clock::time_point deadline = Clock::now() + limits.time;
+  output.write.close();  // or the pipes would never end
+  errors.write.close();
+  Outcome outcome;
+  std::vector<std::byte> buffer(std::size_t{1} << 18);
+  const auto remaining = [&] { return std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count(); };
+
+  while (outcome.ending == Ending::by_itself && (output.read.is_open() || errors.read.is_open())) {
+    if (remaining() <= 0) {
+      outcome.ending = Ending::out_of_time;
+      break;
+    }
+    std::array<pollfd, 2> waiting{{{output.read.get(), POLLIN, 0}, {errors.read.get(), POLLIN, 0}}};  // -1 is skipped
+    const int timeout = static_cast<int>(std::min<std::int64_t>(remaining(), 1000));
+    if (::poll(waiting.data(), waiting.size(), timeout) <= 0) continue;  // time passed, or a signal came
+    if (waiting[0].revents != 0) {
+      drain(output.read, buffer, [&](std::span<const std::byte> bytes) {
+        if (bytes.size() > limits.output_bytes - outcome.output.size())
+          outcome.ending = Ending::too_much_output;
+        else
+          outcome.output.insert(outcome.output.end(), bytes.begin(), bytes.end());
+      });
+    }
+    if (waiting[1].revents != 0) {
+      drain(errors.read, buffer, [&](std::span<const std::byte> bytes) {  // what is too much is read and forgotten
+        const auto kept = bytes.first(std::min(bytes.size(), kKeptErrors - outcome.errors.size()));
+        outcome.errors.append(reinterpret_cast<const char*>(kept.data()), kept.size());
+      });
+    }
+  }
+  // Closing its streams is not ending: it has until the deadline for that as well.
+  while (outcome.ending == Ending::by_itself && !child.has_ended()) {
+    if (remaining() <= 0)
+      outcome.ending = Ending::out_of_time;
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  child.kill();
+  outcome.status = child.wait();
+  return outcome;
+}
+
+std::string in_seconds(std::chrono::milliseconds time) {
+  return fmt::format("{:g} s", static_cast<double>(time.count()) / 1000.0);
+}
+
+std::string in_bytes(std::uint64_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  if (bytes >= 1ull << 30) return fmt::format("{:.3g} GiB", value / static_cast<double>(1ull << 30));
+  return fmt::format("{:.3g} MiB", value / static_cast<double>(1ull << 20));
+}
+
+/// Throws what the outcome means for the user, unless the child ended as it should.
+void require_good_ending(const Outcome& outcome, const std::string& file, const ImportLimits& limits) {
+  const bool cpu_limit = WIFSIGNALED(outcome.status) && WTERMSIG(outcome.status) == SIGXCPU;
+  if (outcome.ending == Ending::out_of_time || cpu_limit) {
+    throw InputError("{}: reading it took longer than {} and was stopped; the file is damaged or too large", file,
+                     in_seconds(limits.time));
+  }
+  if (outcome.ending == Ending::too_much_output) {
+    throw InputError("{}: it holds more than {} of triangles; make it smaller", file, in_bytes(limits.output_bytes));
+  }
+  // Only the first line: what follows is a library's stack trace at best.
+  std::string said = printable(std::string_view(outcome.errors).substr(0, outcome.errors.find('\n')));
+  if (!said.empty()) said = fmt::format("; it said: {}", said);
+  if (WIFSIGNALED(outcome.status)) {
+    throw InputError("{}: reading it crashed the importer (signal {}); the file is probably damaged{}", file,
+                     WTERMSIG(outcome.status), said);
+  }
+  if (WEXITSTATUS(outcome.status) != 0) {
+    throw InputError("{}: the importer gave up (exit code {}); the file is probably damaged{}", file,
+                     WEXITSTATUS(outcome.status), said);
+  }
+}
+
+}  // namespace
+
+void require_regular_file(const std::filesystem::path& file) {
+  struct stat info {};
+  if (::stat(file.c_str(), &info) != 0) throw InputError("{}: {}", file.string(), reason(errno));
+  if (S_ISDIR(info.st_mode)) throw InputError("{}: it is a folder, not a file", file.string());
+  if (!S_ISREG(info.st_mode)) throw InputError("{}: it is not a regular file", file.string());
+  if (info.st_size == 0) throw InputError("{}: the file is empty (0 bytes)", file.string());
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!opened.is_open()) throw InputError("{}: {}", file.string(), reason(errno));
+}
+
+std::vector<std::byte> run_import_helper(const HelperJob& job, const ImportLimits& limits) {
+  const std::string file = job.file.string();
+  std::vector<std::string> arguments{find_helper().string(), job.kind, std::to_string(limits.time.count()),
+                                     std::to_string(limits.memory_bytes), file};
+  arguments.insert(arguments.end(), job.flags.begin(), job.flags.end());
+  Pipe output = make_pipe(), errors = make_pipe();
+  Child child(spawn(std::move(arguments), output.write, errors.write));
+  Outcome outcome = supervise(child, std::move(output), std::move(errors), limits);
+  require_good_ending(outcome, file, limits);
+
+  try {
+    WireReader from(outcome.output);
+    for (const char expected : kHelperMagic) {
+      if (from.get<char>() != expected) throw WireError("it does not start as an answer does");
+    }
+    const auto status = static_cast<HelperStatus>(from.get<std::uint8_t>());
+    if (status == HelperStatus::out_of_memory) {
+      throw InputError("{}: reading it needs more than {} of memory; the file is damaged or too large", file,
+                       in_bytes(limits.memory_bytes));
+    }
+    if (status == HelperStatus::bad_input) throw InputError("{}", from.get_string());
+    if (status != HelperStatus::done) throw WireError("its status is unknown");
+  } catch (const WireError& error) {
+    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file, error.what());
+  }
+  constexpr auto kHeader = static_cast<std::ptrdiff_t>(sizeof(kHelperMagic) + 1);
+  outcome.output.erase(outcome.output.begin(), outcome.output.begin() + kHeader);
+  return std::move(outcome.output);
+}
+
+}  // namespace penumbra::mesh

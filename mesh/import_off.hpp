@@ -1,0 +1,14 @@
+#pragma once
+
+#include "mesh/import.hpp"
+
+#include <filesystem>
+
+namespace penumbra::mesh {
+
+/// Reads a Geomview OFF file (ASCII: OFF, COFF, NOFF, STOFF, 4OFF and their combinations) in double precision. Not
+/// through Assimp, because its reader turns an index that is out of range into the last vertex, drops faces with more
+/// than nine corners, leaves missing vertices at the origin, and wants each vertex on a line of its own.
+ImportedMesh read_off_file(const std::filesystem::path& file);
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+/// The format in which the import helper answers. Both ends are one build on one machine, so numbers travel in their
+/// memory representation; but the sender may have been taken over by a hostile file, so the reader believes nothing.
+namespace penumbra::mesh {
+
+struct ImportedMesh;
+struct TriangleSoup;
+
+class WireWriter {
+ public:
+  template <typename T>
+  void put(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    append(&value, sizeof(T));
+  }
+  template <typename T>
+  void put_array(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    put<std::uint64_t>(values.size());
+    append(values.data(), values.size_bytes());
+  }
+  void put_string(std::string_view text) { put_array(std::span<const char>(text)); }
+  void put_strings(std::span<const std::string> texts) {
+    put<std::uint64_t>(texts.size());
+    for (const std::string& text : texts) put_string(text);
+  }
+  [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
+
+ private:
+  void append(const void* data, std::size_t size) {
+    if (size == 0) return;
+    const auto* first = static_cast<const std::byte*>(data);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+  std::vector<std::byte> bytes_;
+};
+
+/// The answer is not what a healthy helper sends.
+struct WireError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads in the order in which WireWriter wrote. Never reads past the end, and never allocates more than what is left
+/// to read: a count is compared with the remaining bytes before anything is reserved for it.
+class WireReader {
+ public:
+  explicit WireReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  template <typename T>
+  T get() {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_same_v<T, bool>);
+    T value;
+    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
+    return value;
+  }
+  bool get_bool() {
+    const auto value = get<std::uint8_t>();
+    if (value > 1) throw WireError("a flag is neither 0 nor 1");
+    return value == 1;
+  }
+  template <typename T>
+  std::vector<T> get_array() {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto count = get<std::uint64_t>();
+    if (count > rest_.size() / sizeof(T)) throw WireError("an array is longer than the answer");
+    std::vector<T> values(count);
+    const auto source = take(count * sizeof(T));
+    if (count > 0) std::memcpy(values.data(), source.data(), source.size());
+    return values;
+  }
+  std::string get_string();  ///< made printable: see printable()
+  std::vector<std::string> get_strings();
+  void expect_end() const {
+    if (!rest_.empty()) throw WireError("there is more than expected");
+  }
+
+ private:
+  std::span<const std::byte> take(std::size_t size) {
+    if (size > rest_.size()) throw WireError("it ends too early");
+    const auto front = rest_.first(size);
+    rest_ = rest_.subspan(size);
+    return front;
+  }
+  std::span<const std::byte> rest_;
+};
+
+/// `text` with control characters (a hostile file must not steer the terminal) and ill-formed UTF-8 (JSON writers
+/// throw on it) replaced by '?'.
+std::string printable(std::string_view text);
+
+void put_mesh(WireWriter& to, const ImportedMesh& mesh);
+/// Checks that every index is in range, every position finite and the arrays of one length; throws WireError.
+ImportedMesh get_mesh(WireReader& from);
+
+/// Throws WireError unless `soup` keeps what TriangleSoup promises.
+void check_soup(const TriangleSoup& soup);
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,50 @@
+#pragma once
+
+// Internal to this room: Embree's shadow rays one, four, eight or sixteen at a time behind one name.
+
+#include <embree3/rtcore.h>
+
+#include <limits>
+#include <type_traits>
+
+namespace penumbra::reference {
+
+template <int kWidth>
+struct Packet;
+template <>
+struct Packet<1> {
+  using Rays = RTCRay;
+  static void occluded(const int* /*valid*/, RTCScene scene, RTCIntersectContext* context, Rays* rays) {
+    rtcOccluded1(scene, context, rays);
+  }
+};
+template <>
+struct Packet<4> {
+  using Rays = RTCRay4;
+  static constexpr auto occluded = rtcOccluded4;
+};
+template <>
+struct Packet<8> {
+  using Rays = RTCRay8;
+  static constexpr auto occluded = rtcOccluded8;
+};
+template <>
+struct Packet<16> {
+  using Rays = RTCRay16;
+  static constexpr auto occluded = rtcOccluded16;
+};
+
+/// The lanes of a packet's field, which is an array, or of a single ray's, which is not.
+template <typename Field>
+auto* lanes(Field& field) {
+  if constexpr (std::is_array_v<Field>) {
+    return &field[0];
+  } else {
+    return &field;
+  }
+}
+
+/// What Embree writes to tfar of a ray that hit something.
+inline constexpr float kOccluded = -std::numeric_limits<float>::infinity();
+
+}  // namespace penumbra::reference

@@ -1,0 +1,109 @@
+#include "reference/embree_scene.hpp"
+
+#include "base/error.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <string>
+#include <utility>
+
+namespace penumbra::reference {
+
+struct EmbreeScene::Parts {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<std::uint32_t> triangles;
+  std::atomic<std::int64_t> bytes = 0, peak_bytes = 0;
+
+  Parts() = default;
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+  ~Parts() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  static bool count_memory(void* self, ssize_t change, bool /*after*/) {
+    auto& parts = *static_cast<Parts*>(self);
+    const std::int64_t now = parts.bytes += change;
+    std::int64_t peak = parts.peak_bytes;
+    while (now > peak && !parts.peak_bytes.compare_exchange_weak(peak, now)) {
+    }
+    return true;  // false would make Embree stop with an out-of-memory error
+  }
+
+  void check(RTCDevice from) const {
+    const RTCError error = rtcGetDeviceError(from);
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) {
+      throw ResourceError("Embree ran out of memory at {} MiB for {} triangles; free memory or simplify the scene",
+                          bytes >> 20, triangles.size());
+    }
+    throw ResourceError("Embree failed with error {}{}; check that libembree3 and this processor fit",
+                        static_cast<int>(error), error == RTC_ERROR_UNSUPPORTED_CPU ? " (unsupported processor)" : "");
+  }
+};
+
+EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter)
+    : parts_(std::make_unique<Parts>()) {
+  Parts& parts = *parts_;
+  parts.triangles = std::move(chosen);
+  parts.device = rtcNewDevice(nullptr);
+  if (parts.device == nullptr) {
+    parts.check(nullptr);
+    throw ResourceError("Embree gives no device; check that libembree3 and this processor fit");
+  }
+  rtcSetDeviceMemoryMonitorFunction(parts.device, Parts::count_memory, parts_.get());
+  parts.scene = rtcNewScene(parts.device);
+  parts.check(parts.device);
+  const int flags = RTC_SCENE_FLAG_ROBUST | (filter == Filter::by_context ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0);
+  rtcSetSceneFlags(parts.scene, static_cast<RTCSceneFlags>(flags));
+  rtcSetSceneBuildQuality(parts.scene, RTC_BUILD_QUALITY_HIGH);
+
+  if (!parts.triangles.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.positions.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), parts.triangles.size()));
+    if (positions != nullptr && indices != nullptr) {
+      for (const glm::vec3& position : scene.positions) {
+        for (int axis = 0; axis < 3; ++axis) *positions++ = position[axis];
+      }
+      for (const std::uint32_t triangle : parts.triangles) {
+        for (const std::uint32_t vertex : scene.triangles[triangle]) *indices++ = vertex;
+      }
+      rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometry(parts.scene, geometry);
+    }
+    rtcReleaseGeometry(geometry);
+    parts.check(parts.device);
+  }
+  rtcCommitScene(parts.scene);
+  parts.check(parts.device);
+}
+
+EmbreeScene::~EmbreeScene() = default;
+EmbreeScene::EmbreeScene(EmbreeScene&& other) noexcept = default;
+EmbreeScene& EmbreeScene::operator=(EmbreeScene&& other) noexcept = default;
+
+RTCSceneTy* EmbreeScene::handle() const {
+  return parts_->scene;
+}
+const std::vector<std::uint32_t>& EmbreeScene::triangles() const {
+  return parts_->triangles;
+}
+int EmbreeScene::native_width() const {
+  if (rtcGetDeviceProperty(parts_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) return 16;
+  return rtcGetDeviceProperty(parts_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0 ? 8 : 4;
+}
+std::uint64_t EmbreeScene::peak_bytes() const {
+  return static_cast<std::uint64_t>(parts_->peak_bytes.load());
+}
+void EmbreeScene::check() const {
+  parts_->check(parts_->device);
+}
+
+}  // namespace penumbra::reference

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "visibility/scene_floats.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+struct RTCSceneTy;
+
+namespace penumbra::reference {
+
+/// The triangles `chosen` (indices into SceneFloats::triangles) in an Embree scene of one geometry, robust mode, best
+/// build quality. Primitive i is triangle chosen[i]. Errors, out of memory among them, are thrown as ResourceError.
+class EmbreeScene {
+ public:
+  enum class Filter { none, by_context };  ///< may a ray's context carry a filter function?
+
+  EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter);
+  ~EmbreeScene();
+  EmbreeScene(EmbreeScene&& other) noexcept;
+  EmbreeScene& operator=(EmbreeScene&& other) noexcept;
+
+  [[nodiscard]] RTCSceneTy* handle() const;
+  [[nodiscard]] const std::vector<std::uint32_t>& triangles() const;
+  /// The most rays that this processor traces at once: 16 (AVX-512), 8 (AVX) or 4.
+  [[nodiscard]] int native_width() const;
+  [[nodiscard]] std::uint64_t peak_bytes() const;
+  /// Throws ResourceError if any call since the last check failed.
+  void check() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace penumbra::reference

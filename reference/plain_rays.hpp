@@ -1,0 +1,61 @@
+#pragma once
+
+#include "reference/embree_scene.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+struct RTCIntersectContext;
+
+namespace penumbra::reference {
+
+/// The speed peer: the fastest plain Embree in robust mode that we know how to write, for benchmarks only. What a
+/// renderer does in practice: no filter function, the ray's origin moved off the surface, packets of neighbouring rays,
+/// all cores. (Embree's ray streams, rtcOccludedNp and rtcOccluded1M, were two to four times slower.) It is no oracle:
+/// the moved origin loses contact shadows below its offset.
+class PlainRays {
+ public:
+  struct Options {
+    int width = 0;           ///< rays traced together: 1, 4, 8 or 16; 0: as many as this processor does at once
+    bool coherent = true;    ///< Embree's hint for packets
+    bool neighbours = true;  ///< packets of neighbours on the light rather than in the order of the light samples
+  };
+  explicit PlainRays(const Options& options);
+
+  /// Once a mesh.
+  void prepare_mesh(const visibility::SceneFloats& scene);
+  /// Once a light; rebuilds without the light's own body if it has one.
+  void prepare_light(const visibility::Light& light);
+  /// V of each pixel; background, emitters and what receives no shadow have 1. Both must outlive the call.
+  void evaluate(const visibility::ViewSamples& samples, std::span<float> visibility) const;
+
+ private:
+  /// The light points in the order of tracing, by axis, padded to whole packets.
+  struct PointArrays {
+    std::vector<float> x, y, z;
+    void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order);
+  };
+
+  template <int kWidth>
+  [[nodiscard]] int trace_pixel(const glm::vec3& p, const glm::vec3& n, const PointArrays& points,
+                                RTCIntersectContext& context) const;
+  template <int kWidth>
+  void evaluate_pixels(const visibility::ViewSamples& samples, std::span<float> visibility) const;
+  void build(std::int32_t without_light);
+
+  Options options_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::Light* light_ = nullptr;
+  std::optional<EmbreeScene> embree_;
+  std::int32_t built_without_ = -1;
+  std::vector<std::uint32_t> order_;
+  PointArrays points_;  // of a light that is no sphere
+  float offset_ = 0;
+};
+
+}  // namespace penumbra::reference

@@ -1,0 +1,287 @@
+// One shadow ray a light sample: the first oracle.
+//
+// Conditions (1) and (2) of the truth of a pair (horizon, emitting side) are decided exactly; (3) is Embree's. The open
+// segment p→l is the ray p + t (l − p), 0 < t < 1: Embree reports t > tnear = 0 and t ≤ tfar, so tfar is the largest
+// float below 1. A filter function turns away hits on the carrying triangle and on what is exactly coplanar with it,
+// and on the light's own body: an offset origin would lose contact shadows. Triangles that cast none are not in the
+// scene.
+
+#include "reference/ray_traced.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "reference/embree_packets.hpp"
+#include "reference/embree_scene.hpp"
+#include "reference/tracing_order.hpp"
+#include "visibility/horizon.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <glm/common.hpp>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+namespace penumbra::reference {
+namespace {
+
+using visibility::Light;
+using visibility::LightKind;
+using visibility::SceneFloats;
+using visibility::Tile;
+using visibility::ViewSamples;
+
+constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{256} << 20;  // of one tile
+constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;         // plane number of the light's own body
+
+/// What the filter function needs to know of the ray's pixel; Embree hands back the address of the first member.
+struct PixelContext {
+  RTCIntersectContext embree;
+  const std::uint32_t* plane_of_primitive;
+  std::uint32_t carrier_plane;
+};
+
+void ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
+  const auto& context = *reinterpret_cast<const PixelContext*>(hits->context);
+  for (unsigned i = 0; i < hits->N; ++i) {
+    if (hits->valid[i] == 0) continue;
+    const std::uint32_t plane = context.plane_of_primitive[RTCHitN_primID(hits->hit, hits->N, i)];
+    if (plane == context.carrier_plane || plane == kNeverMet) hits->valid[i] = 0;
+  }
+}
+
+struct Counts {
+  std::atomic<std::uint64_t> rays = 0, horizon_pairs = 0;
+};
+
+class RayTraced final : public visibility::Method {
+ public:
+  explicit RayTraced(const visibility::MethodOptions& options);
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void prepare_mesh(const SceneFloats& scene) override;
+  void prepare_light(const Light& light) override;
+  void prepare_view(const ViewSamples& samples) override { samples_ = &samples; }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override;
+  void evaluate(const Tile& tile) override;
+  void read_masks(std::span<std::uint32_t> masks) override;
+  void read_visibility(std::span<float> visibility) override;
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
+    return {{"rays", counts_.rays}, {"horizonPairs", counts_.horizon_pairs}};
+  }
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    return (embree_ ? embree_->peak_bytes() : 0) + masks_.capacity() * sizeof(std::uint32_t);
+  }
+
+ private:
+  /// Room for one thread's work on one pixel.
+  struct Workspace {
+    std::vector<glm::vec3> points;
+    std::vector<std::uint32_t> above;
+  };
+
+  template <int kWidth>
+  void trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible);
+  template <int kWidth>
+  void trace_tile(const Tile& tile);
+
+  visibility::MethodDescription description_;
+  int width_ = 0;  // 0: the processor's
+  const SceneFloats* scene_ = nullptr;
+  const Light* light_ = nullptr;
+  const ViewSamples* samples_ = nullptr;
+  std::optional<EmbreeScene> embree_;
+  std::vector<std::uint32_t> plane_of_primitive_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> full_mask_;
+  glm::vec3 lower_{0}, upper_{0};     // bounds of all light points
+  std::vector<std::uint32_t> masks_;  // of the tile last evaluated
+  Counts counts_;
+};
+
+RayTraced::RayTraced(const visibility::MethodOptions& options) {
+  description_.name = "raytrace";
+  description_.family = visibility::Family::reference;
+  description_.paper =
+      "Wald et al., Embree: a kernel framework for efficient CPU ray tracing (2014); watertight edges after Woop et "
+      "al. "
+      "(2013)";
+  description_.output = visibility::Output::mask;
+  description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
+  description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
+  description_.options = {
+      {"packet", "auto|1|4|8|16", "auto", "shadow rays traced together; auto: as the processor does"}};
+  visibility::check_options(description_, options);
+  if (const auto packet = options.find("packet"); packet != options.end()) {
+    const std::string& value = packet->second;
+    if (value == "auto") return;
+    if (value != "1" && value != "4" && value != "8" && value != "16") {
+      throw UsageError("method raytrace: option packet is \"{}\"; it must be auto, 1, 4, 8 or 16", value);
+    }
+    width_ = std::stoi(value);
+  }
+}
+
+void RayTraced::prepare_mesh(const SceneFloats& scene) {
+  scene_ = &scene;
+  light_ = nullptr;
+  std::vector<std::uint32_t> casting;
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (scene.casts_shadow[i] != 0) casting.push_back(i);
+  }
+  embree_.reset();  // never two scenes in memory
+  embree_.emplace(scene, std::move(casting), EmbreeScene::Filter::by_context);
+}
+
+void RayTraced::prepare_light(const Light& light) {
+  PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first");
+  visibility::check_light(description_, light);
+  light_ = &light;
+  plane_of_primitive_.clear();
+  for (const std::uint32_t triangle : embree_->triangles()) {
+    plane_of_primitive_.push_back(scene_->emits[triangle] == light.index ? kNeverMet : scene_->plane[triangle]);
+  }
+  order_ = tracing_order(light);
+  full_mask_.assign(light.words_per_mask(), 0xffffffffu);
+  if (light.sample_count() % 32 != 0) full_mask_.back() = (1u << (light.sample_count() % 32)) - 1;
+
+  if (light.kind == LightKind::sphere) {
+    const float reach =
+        std::nextafter(static_cast<float>(light.radius) * 1.0001f, std::numeric_limits<float>::infinity());
+    lower_ = light.center - reach;
+    upper_ = light.center + reach;
+  } else {
+    lower_ = upper_ = light.points.front();
+    for (const glm::vec3& point : light.points) {
+      lower_ = glm::min(lower_, point);
+      upper_ = glm::max(upper_, point);
+    }
+  }
+  counts_.rays = counts_.horizon_pairs = 0;
+}
+
+std::uint32_t RayTraced::max_tile_rows() const {
+  if (samples_ == nullptr || light_ == nullptr) return 1;
+  const std::uint64_t row_bytes = std::uint64_t{samples_->width} * light_->words_per_mask() * sizeof(std::uint32_t);
+  const std::uint64_t rows = std::max<std::uint64_t>(1, kMaxMaskBytes / std::max<std::uint64_t>(1, row_bytes));
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, std::max(1u, samples_->height)));
+}
+
+template <int kWidth>
+void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible) {
+  const std::int32_t triangle = samples_->triangle[pixel];
+  const auto carrier = static_cast<std::uint32_t>(triangle);
+  if (triangle == ViewSamples::kBackground || scene_->emits[carrier] >= 0 || scene_->receives_shadow[carrier] == 0) {
+    std::copy(full_mask_.begin(), full_mask_.end(), visible.begin());
+    return;
+  }
+  const glm::vec3 p = samples_->p[pixel];
+  if (light_->kind == LightKind::sphere) light_points_for(*light_, p, work.points.data());
+  const std::vector<glm::vec3>& points = light_->kind == LightKind::sphere ? work.points : light_->points;
+  const visibility::HorizonTest horizon(scene_->corners(carrier), samples_->facing[pixel], lower_, upper_);
+  horizon.mask(points, work.above);
+  std::uint64_t above_count = 0;
+  for (const std::uint32_t word : work.above) above_count += static_cast<std::uint64_t>(std::popcount(word));
+  counts_.horizon_pairs.fetch_add(points.size() - above_count, std::memory_order_relaxed);
+  if (above_count == 0 || !in_front_of_light(*light_, p)) return;
+  counts_.rays.fetch_add(above_count, std::memory_order_relaxed);
+
+  PixelContext context{};
+  rtcInitIntersectContext(&context.embree);
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.embree.filter = ignore_own_plane;
+  context.plane_of_primitive = plane_of_primitive_.data();
+  context.carrier_plane = scene_->plane[carrier];
+  typename Packet<kWidth>::Rays rays{};
+  alignas(64) int valid[kWidth];
+  for (std::size_t lane = 0; lane < kWidth; ++lane) {
+    lanes(rays.org_x)[lane] = p.x;
+    lanes(rays.org_y)[lane] = p.y;
+    lanes(rays.org_z)[lane] = p.z;
+    lanes(rays.mask)[lane] = 0xffffffffu;
+  }
+  for (std::size_t first = 0; first < points.size(); first += kWidth) {
+    int alive = 0;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      const std::uint32_t sample = order_[std::min(first + lane, points.size() - 1)];
+      const bool traced = first + lane < points.size() && ((work.above[sample / 32] >> (sample % 32)) & 1u) != 0;
+      valid[lane] = traced ? -1 : 0;
+      alive |= valid[lane];
+      const glm::vec3 direction = points[sample] - p;
+      lanes(rays.dir_x)[lane] = direction.x;
+      lanes(rays.dir_y)[lane] = direction.y;
+      lanes(rays.dir_z)[lane] = direction.z;
+      lanes(rays.tfar)[lane] = 0x1.fffffep-1f;  // the largest float below 1
+    }
+    if (alive == 0) continue;
+    Packet<kWidth>::occluded(valid, embree_->handle(), &context.embree, &rays);
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      if (valid[lane] == 0 || lanes(rays.tfar)[lane] == kOccluded) continue;
+      const std::uint32_t sample = order_[first + lane];
+      visible[sample / 32] |= 1u << (sample % 32);
+    }
+  }
+}
+
+template <int kWidth>
+void RayTraced::trace_tile(const Tile& tile) {
+  const std::size_t words = light_->words_per_mask();
+  const tbb::blocked_range2d<std::size_t> pixels(0, tile.row_count, 8, 0, samples_->width, 32);
+  tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::size_t>& block) {
+    Workspace work{std::vector<glm::vec3>(light_->sample_count()), std::vector<std::uint32_t>(words)};
+    for (std::size_t row = block.rows().begin(); row != block.rows().end(); ++row) {
+      for (std::size_t x = block.cols().begin(); x != block.cols().end(); ++x) {
+        const std::size_t in_tile = row * samples_->width + x;
+        trace_pixel<kWidth>(std::size_t{tile.first_row} * samples_->width + in_tile, work,
+                            std::span(masks_).subspan(in_tile * words, words));
+      }
+    }
+  });
+  embree_->check();
+}
+
+void RayTraced::evaluate(const Tile& tile) {
+  PENUMBRA_ASSERT(light_ != nullptr && samples_ != nullptr, "prepare_light and prepare_view come first");
+  PENUMBRA_ASSERT(tile.row_count <= max_tile_rows() && tile.first_row + tile.row_count <= samples_->height,
+                  "rows {} + {} of {}", tile.first_row, tile.row_count, samples_->height);
+  masks_.assign(std::size_t{tile.row_count} * samples_->width * light_->words_per_mask(), 0u);
+  switch (width_ != 0 ? width_ : embree_->native_width()) {
+    case 1:
+      return trace_tile<1>(tile);
+    case 4:
+      return trace_tile<4>(tile);
+    case 16:
+      return trace_tile<16>(tile);
+    default:
+      return trace_tile<8>(tile);
+  }
+}
+
+void RayTraced::read_masks(std::span<std::uint32_t> masks) {
+  PENUMBRA_ASSERT(masks.size() == masks_.size(), "{} words asked for, {} evaluated", masks.size(), masks_.size());
+  std::copy(masks_.begin(), masks_.end(), masks.begin());
+}
+
+void RayTraced::read_visibility(std::span<float> visibility) {
+  const std::size_t words = light_->words_per_mask();
+  PENUMBRA_ASSERT(visibility.size() * words == masks_.size(), "{} pixels asked for, {} words evaluated",
+                  visibility.size(), masks_.size());
+  for (std::size_t pixel = 0; pixel < visibility.size(); ++pixel) {
+    int visible = 0;
+    for (std::size_t word = 0; word < words; ++word) visible += std::popcount(masks_[pixel * words + word]);
+    visibility[pixel] = static_cast<float>(visible) / static_cast<float>(light_->sample_count());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<visibility::Method> make_ray_traced(const visibility::MethodOptions& options) {
+  return std::make_unique<RayTraced>(options);
+}
+
+}  // namespace penumbra::reference

@@ -1,0 +1,68 @@
+#include "render/bindings.hpp"
+
+#include "base/assert.hpp"
+
+namespace penumbra::render {
+
+Bindings::Bindings(Device::State& device, std::string name, const ShaderInterface& shader, vk::ShaderStageFlags stages)
+    : device_(&device), name_(std::move(name)), shader_(shader), stages_(stages) {
+  const vk::raii::Device& d = device.device;
+  std::vector<vk::DescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < shader.bindings.size(); ++i) bindings.emplace_back(i, shader.bindings[i], 1, stages);
+  set_layout_ = vk::raii::DescriptorSetLayout(d, vk::DescriptorSetLayoutCreateInfo({}, bindings));
+  const vk::PushConstantRange range(stages, 0, shader.push_bytes);
+  vk::PipelineLayoutCreateInfo layout({}, *set_layout_);
+  if (shader.push_bytes > 0) layout.setPushConstantRanges(range);
+  layout_ = vk::raii::PipelineLayout(d, layout);
+}
+
+void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std::span<const std::byte> push,
+                    std::initializer_list<std::reference_wrapper<const Buffer>> buffers) const {
+  PENUMBRA_ASSERT(buffers.size() == shader_.bindings.size(), "{}: {} buffers for {} bindings", name_, buffers.size(),
+                  shader_.bindings.size());
+  PENUMBRA_ASSERT(push.size() == shader_.push_bytes, "{}: {} bytes of push constants for {}", name_, push.size(),
+                  shader_.push_bytes);
+  const vk::raii::Device& d = device_->device;
+  if (buffers.size() > 0) {
+    const auto count = static_cast<std::uint32_t>(buffers.size());
+    const std::array sizes{vk::DescriptorPoolSize(vk::DescriptorType::eStorageBuffer, count),
+                           vk::DescriptorPoolSize(vk::DescriptorType::eUniformTexelBuffer, count)};
+    commands.pools.emplace_back(d, vk::DescriptorPoolCreateInfo({}, 1, sizes));
+    const vk::DescriptorSetAllocateInfo info(*commands.pools.back(), *set_layout_);
+    // The set goes with its pool; it is not freed by itself.
+    const vk::DescriptorSet set = (*d).allocateDescriptorSets(info, *d.getDispatcher()).front();
+    std::vector<vk::DescriptorBufferInfo> infos;
+    std::vector<vk::BufferView> views;
+    infos.reserve(count);
+    views.reserve(count);
+    std::vector<vk::WriteDescriptorSet> writes;
+    for (std::uint32_t binding = 0; const Buffer& buffer : buffers) {
+      const auto type = shader_.bindings[binding];
+      vk::WriteDescriptorSet write(set, binding++, 0, 1, type);
+      if (type == vk::DescriptorType::eUniformTexelBuffer) {
+        PENUMBRA_ASSERT(*buffer.state().view, "{}: {} is bound as texels but was not made for them", name_, buffer.name());
+        views.push_back(*buffer.state().view);
+        write.setPTexelBufferView(&views.back());
+      } else {
+        infos.emplace_back(*buffer.state().buffer, 0, VK_WHOLE_SIZE);
+        write.setPBufferInfo(&infos.back());
+      }
+      writes.push_back(write);
+    }
+    d.updateDescriptorSets(writes, {});
+    commands.commands.bindDescriptorSets(point, *layout_, 0, set, {});
+  }
+  if (!push.empty()) {
+    commands.commands.pushConstants<std::byte>(
+        *layout_, stages_, 0, vk::ArrayProxy<const std::byte>(static_cast<std::uint32_t>(push.size()), push.data()));
+  }
+}
+
+SpecializationConstants::SpecializationConstants(std::span<const std::uint32_t> values) {
+  for (std::uint32_t i = 0; i < values.size(); ++i) {
+    entries_.emplace_back(i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t));
+  }
+  info_ = vk::SpecializationInfo(static_cast<std::uint32_t>(entries_.size()), entries_.data(), values.size_bytes(), values.data());
+}
+
+}  // namespace penumbra::render

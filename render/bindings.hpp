@@ -1,0 +1,48 @@
+#pragma once
+// Inside render/ only.
+
+#include "render/vulkan.hpp"
+
+#include <functional>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::render {
+
+/// The descriptor set and push constants of one pipeline, as its shaders declare them. Whatever is bound is checked
+/// against that.
+class Bindings {
+ public:
+  Bindings() = default;
+  Bindings(Device::State& device, std::string name, const ShaderInterface& shader, vk::ShaderStageFlags stages);
+
+  /// Binds buffers (in binding order) and push constants for what is recorded next.
+  void bind(Commands::State& commands, vk::PipelineBindPoint point, std::span<const std::byte> push,
+            std::initializer_list<std::reference_wrapper<const Buffer>> buffers) const;
+  [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
+
+ private:
+  Device::State* device_ = nullptr;
+  std::string name_;
+  ShaderInterface shader_;
+  vk::ShaderStageFlags stages_;
+  vk::raii::DescriptorSetLayout set_layout_{nullptr};
+  vk::raii::PipelineLayout layout_{nullptr};
+};
+
+/// Constants 0, 1, 2 … as Vulkan wants them; `values` must outlive it.
+class SpecializationConstants {
+ public:
+  explicit SpecializationConstants(std::span<const std::uint32_t> values);
+  SpecializationConstants(const SpecializationConstants&) = delete;
+  SpecializationConstants& operator=(const SpecializationConstants&) = delete;
+  [[nodiscard]] const vk::SpecializationInfo* get() const { return &info_; }
+
+ private:
+  std::vector<vk::SpecializationMapEntry> entries_;
+  vk::SpecializationInfo info_;
+};
+
+}  // namespace penumbra::render

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "render/buffer.hpp"
+#include "render/device.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace penumbra::render {
+
+struct PassMilliseconds {
+  std::string name;
+  double milliseconds = 0;
+};
+
+/// One command buffer: passes record into it, submit() runs it to its end. Between any two recorded passes stands a full
+/// memory barrier: simple, and right; what matters for speed happens inside passes.
+class Commands {
+ public:
+  explicit Commands(const Device& device);
+  ~Commands();
+  Commands(Commands&&) noexcept;
+  Commands& operator=(Commands&&) noexcept;
+
+  void fill(const Buffer& buffer, std::uint32_t value);  ///< every word of the buffer
+  void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes);
+  void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes);
+
+  /// Submits, waits, and returns the time of each pass in order (empty where the queue has no timestamps).
+  /// Throws ResourceError when the device is lost. The object can be recorded into again.
+  std::vector<PassMilliseconds> submit();
+
+  struct State;
+  [[nodiscard]] State& state() const { return *state_; }  ///< for render/*.cpp only
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace penumbra::render

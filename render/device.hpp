@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace penumbra::render {
+
+/// What one Vulkan device is, and why it cannot be used if it cannot.
+struct DeviceInfo {
+  std::uint32_t index = 0;                 ///< as `--device INDEX` takes it
+  std::string name;
+  std::string kind;                        ///< "discrete", "integrated", "virtual", "cpu", "other"
+  std::string driver;                      ///< driver name and version
+  std::string api_version;
+  std::vector<std::string> refusals;       ///< why it cannot run Penumbra; empty: it can
+  std::uint64_t max_storage_buffer_range = 0;
+  std::uint32_t subgroup_size = 0;
+  std::uint64_t memory_bytes = 0;          ///< its largest device-local heap
+
+  [[nodiscard]] bool usable() const { return refusals.empty(); }
+};
+
+/// All Vulkan devices on this machine; empty when there is no loader, driver or device.
+std::vector<DeviceInfo> list_devices();
+
+struct DeviceOptions {
+  std::string wanted;        ///< a part of its name (case ignored), its index, "cpu", or empty: the best one
+  bool validation = false;   ///< validation layer with synchronization validation; see Device::take_validation_messages
+};
+
+/// Limits that code here depends on.
+struct Limits {
+  std::uint64_t max_storage_buffer_range = 0;
+  std::uint32_t subgroup_size = 0;
+  std::uint32_t max_shared_memory = 0;
+  std::uint32_t max_workgroup_count = 0;   ///< in x
+  std::uint32_t max_image_size = 0;
+  std::uint32_t max_texel_buffer_elements = 0;
+  double timestamp_period = 0;             ///< nanoseconds a tick; 0: no timestamps
+};
+
+/// A Vulkan device with one queue for graphics, compute and transfer. Move-only; must outlive everything made from it.
+/// Holds the on-disk pipeline cache ($XDG_CACHE_HOME/penumbra or ~/.cache/penumbra), written when it is destroyed.
+class Device {
+ public:
+  /// Throws ResourceError that carries the reason why each device was refused.
+  explicit Device(const DeviceOptions& options = {});
+  ~Device();
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) noexcept;
+
+  [[nodiscard]] const DeviceInfo& info() const;
+  [[nodiscard]] const Limits& limits() const;
+  /// Bytes of buffers and images alive now, and at their peak since the device was made.
+  [[nodiscard]] std::uint64_t allocated_bytes() const;
+  [[nodiscard]] std::uint64_t peak_bytes() const;
+  /// What the validation layer said since the last call (errors and warnings); always empty without validation.
+  std::vector<std::string> take_validation_messages() const;
+
+  struct State;
+  [[nodiscard]] State& state() const { return *state_; }  ///< for render/*.cpp only
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace penumbra::render

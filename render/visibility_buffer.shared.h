@@ -1,0 +1,25 @@
+// One struct, two languages: the camera of the visibility buffer, in double, relative to the scene's origin.
+#ifdef __cplusplus
+#pragma once
+#include <cstdint>
+namespace penumbra::render::gpu {
+using uint = std::uint32_t;
+#define DOUBLE3(name) double name[3]
+#else
+#define DOUBLE3(name) f64vec3 name
+#endif
+
+struct VisibilityBufferPush {
+  DOUBLE3(eye);
+  DOUBLE3(right);
+  DOUBLE3(up);
+  DOUBLE3(forward);
+  double tan_half_fov;
+  uint width, height;         // of the whole picture
+  uint first_row, row_count;  // the band that the buffers hold
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::render::gpu
+#endif
+#undef DOUBLE3

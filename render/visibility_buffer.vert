@@ -1,0 +1,49 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
+#include "render/visibility_buffer.shared.h"
+
+// Proposes pixels for one triangle (an instance): its box on the screen, a pixel larger on every side, as a strip of four
+// vertices. Conservative without conservative rasterisation; the fragment shader decides.
+
+layout(scalar, binding = 0) readonly buffer Corners { vec3 corners[]; };  // three a triangle, sorted
+layout(scalar, push_constant) uniform Push { VisibilityBufferPush camera; };
+
+layout(location = 0) flat out uint triangle;
+
+void main() {
+  triangle = gl_InstanceIndex;
+  const dvec2 size = dvec2(camera.width, camera.height);
+  const double tan_x = camera.tan_half_fov * size.x / size.y;
+  dvec2 lower = size, upper = dvec2(0.0);
+  bool any_in_front = false, any_behind = false;
+  for (int i = 0; i < 3; ++i) {
+    const dvec3 d = dvec3(corners[3 * triangle + i]) - camera.eye;
+    const double z = dot(d, camera.forward);
+    const double reach = abs(d.x) + abs(d.y) + abs(d.z);
+    any_in_front = any_in_front || z > 0.0;
+    // Below this a projection could be off by a pixel; the whole screen is then proposed.
+    if (z <= reach * 1e-9) {
+      any_behind = true;
+      continue;
+    }
+    const dvec2 at = dvec2((dot(d, camera.right) / (z * tan_x) + 1.0) * 0.5 * size.x,
+                           (1.0 - dot(d, camera.up) / (z * camera.tan_half_fov)) * 0.5 * size.y);
+    lower = min(lower, at);
+    upper = max(upper, at);
+  }
+  if (any_behind) {
+    lower = dvec2(0.0);
+    upper = size;
+  }
+  lower = max(lower - 1.0, dvec2(0.0, double(camera.first_row)));
+  upper = min(upper + 1.0, dvec2(size.x, double(camera.first_row + camera.row_count)));
+  if (!any_in_front || lower.x >= upper.x || lower.y >= upper.y) {
+    gl_Position = vec4(2.0, 2.0, 0.0, 1.0);  // all four vertices in one place, off the screen
+    return;
+  }
+  const dvec2 corner = dvec2((gl_VertexIndex & 1) == 0 ? lower.x : upper.x, (gl_VertexIndex & 2) == 0 ? lower.y : upper.y);
+  const dvec2 band = dvec2(size.x, double(camera.row_count));
+  gl_Position = vec4(vec2((corner - dvec2(0.0, double(camera.first_row))) / band * 2.0 - 1.0), 0.5, 1.0);
+}

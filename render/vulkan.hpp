@@ -1,0 +1,109 @@
+#pragma once
+// Inside render/ only: the one place that sees vulkan_raii.hpp whole.
+
+#include "render/buffer.hpp"
+#include "render/commands.hpp"
+#include "render/device.hpp"
+
+#include <vulkan/vulkan_raii.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::render {
+
+/// Collects what the validation layer says; the callback may come from any thread.
+struct ValidationLog {
+  std::mutex mutex;
+  std::vector<std::string> messages;
+};
+
+struct Device::State {
+  std::unique_ptr<ValidationLog> log;
+  vk::raii::Context context;
+  vk::raii::Instance instance{nullptr};
+  vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
+  vk::raii::PhysicalDevice physical{nullptr};
+  vk::raii::Device device{nullptr};
+  std::uint32_t queue_family = 0;
+  vk::raii::Queue queue{nullptr};
+  vk::raii::CommandPool pool{nullptr};
+  vk::raii::PipelineCache cache{nullptr};
+  std::filesystem::path cache_file;   // empty: no folder to keep it in
+  std::vector<char> cache_on_disk;    // what cache_file held when the device was made
+  vk::PhysicalDeviceMemoryProperties memory;
+  std::uint32_t timestamp_bits = 0;
+  DeviceInfo info;
+  Limits limits;
+  std::uint64_t allocated = 0, peak = 0;
+  bool debug_names = false;
+
+  void account(std::int64_t bytes) {
+    allocated = static_cast<std::uint64_t>(static_cast<std::int64_t>(allocated) + bytes);
+    peak = std::max(peak, allocated);
+  }
+  template <typename Handle>
+  void name(const Handle& handle, const std::string& text) const;
+};
+
+/// Memory of its own for one buffer or image: tens of resources, so dedicated allocations do.
+struct Allocation {
+  vk::raii::DeviceMemory memory{nullptr};
+  bool host_visible = false;
+  std::uint64_t bytes = 0;
+};
+Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, bool prefer_host, const std::string& name);
+
+struct Buffer::State {
+  Device::State* device = nullptr;
+  std::string name;
+  std::uint64_t bytes = 0;
+  vk::raii::Buffer buffer{nullptr};
+  Allocation allocation;
+  void* mapped = nullptr;             // when host-visible
+  vk::raii::BufferView view{nullptr}; // texels
+  ~State();
+};
+
+struct Commands::State {
+  Device::State* device = nullptr;
+  vk::raii::CommandBuffer commands{nullptr};
+  vk::raii::Fence fence{nullptr};
+  vk::raii::QueryPool queries{nullptr};
+  std::vector<std::string> pass_names;
+  // Descriptor pools live as long as the recording that uses their sets.
+  std::vector<vk::raii::DescriptorPool> pools;
+  bool recording = false;
+
+  void begin_if_needed();
+  /// Opens a named region: debug label and a timestamp before it; close_pass writes the second and a full barrier.
+  void open_pass(const std::string& name);
+  void close_pass();
+};
+
+/// What reflection says of one shader stage.
+struct ShaderInterface {
+  std::vector<vk::DescriptorType> bindings;  // of set 0, index = binding
+  std::uint32_t push_bytes = 0;
+};
+ShaderInterface reflect(std::span<const std::uint32_t> spirv, const std::string& name);
+
+/// Throws ResourceError with `doing` for a Vulkan failure.
+[[noreturn]] void fail(const vk::SystemError& error, const std::string& doing);
+
+template <typename Handle>
+void Device::State::name(const Handle& handle, const std::string& text) const {
+  if (!debug_names) return;
+  using C = std::remove_cvref_t<decltype(*handle)>;
+  device.setDebugUtilsObjectNameEXT(vk::DebugUtilsObjectNameInfoEXT(
+      C::objectType, reinterpret_cast<std::uint64_t>(static_cast<typename C::CType>(*handle)), text.c_str()));
+}
+
+}  // namespace penumbra::render

@@ -1,0 +1,15 @@
+#!/bin/bash
+# Installs what is missing, builds, and runs penumbra with the given arguments. Paths are relative to where you stand.
+# Without arguments, the main job: compare geometry-based, image-based and reference methods on the default scene.
+set -euo pipefail
+root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
+build=$root/build
+source "$root/cmake/bootstrap.sh"
+
+install_packages
+build penumbra
+if (($# == 0)); then
+  set -- compare "$root/scenes/bunny.json" -o out
+  say "no arguments: running the main job, penumbra $*"
+fi
+exec "$build/penumbra" "$@"

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tinygltf {
+class Model;
+}
+
+namespace penumbra::scenes {
+
+/// Parses a .gltf or .glb file (told apart by its first bytes) with its buffers, but without its images. Buffers come
+/// from the file's folder and below, or from anywhere if `allow_outside`. Throws InputError.
+void load_gltf_model(const std::filesystem::path& file, bool allow_outside, tinygltf::Model& model);
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,26 @@
+#include "scenes/gltf_reader.hpp"
+
+#include "base/error.hpp"
+#include "mesh/import_helper.hpp"
+#include "mesh/import_wire.hpp"
+#include "scenes/scene_wire.hpp"
+
+namespace penumbra::scenes {
+
+Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
+  mesh::require_regular_file(file);
+  mesh::HelperJob job{"gltf", file, {}};
+  if (options.allow_outside) job.flags.emplace_back("--allow-outside");
+  const std::vector<std::byte> answer = mesh::run_import_helper(job, {});
+  try {
+    mesh::WireReader from(answer);
+    Scene scene = get_scene(from);
+    from.expect_end();
+    return scene;
+  } catch (const mesh::WireError& error) {
+    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file.string(),
+                     error.what());
+  }
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,139 @@
+// penumbra-import: reads one foreign file in a process of its own. Not for users: penumbra starts it, tells it what to
+// read and at what cost, and takes its answer from its standard output (mesh/import_helper.hpp says how).
+
+#include "base/error.hpp"
+#include "mesh/import_helper.hpp"
+#include "mesh/import_read.hpp"
+#include "mesh/import_wire.hpp"
+#include "scenes/gltf_import.hpp"
+#include "scenes/scene_wire.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdlib>
+#include <new>
+#include <string_view>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PENUMBRA_SHADOW_MEMORY 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PENUMBRA_SHADOW_MEMORY 1
+#endif
+#endif
+
+#if defined(PENUMBRA_SHADOW_MEMORY)
+// Sanitizers reserve terabytes of addresses, so that the limit must be on resident memory instead. Leaks are Assimp's
+// (on eleven of its own test files), and end with this process.
+extern "C" const char* __asan_default_options();
+extern "C" const char* __asan_default_options() {
+  return "detect_leaks=0:hard_rss_limit_mb=4096";
+}
+#endif
+
+namespace {
+
+using namespace penumbra;
+
+struct Arguments {
+  std::string_view kind;
+  std::uint64_t milliseconds = 0, bytes = 0;
+  const char* file = nullptr;
+  bool allow_outside = false;
+};
+
+bool parse(std::string_view text, std::uint64_t& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+bool parse(int argc, char** argv, Arguments& arguments) {
+  if (argc < 5) return false;
+  arguments.kind = argv[1];
+  arguments.file = argv[4];
+  for (int i = 5; i < argc; ++i) {
+    if (std::string_view(argv[i]) != "--allow-outside") return false;
+    arguments.allow_outside = true;
+  }
+  return (arguments.kind == "mesh" || arguments.kind == "gltf") && parse(argv[2], arguments.milliseconds) &&
+         parse(argv[3], arguments.bytes);
+}
+
+void limit(__rlimit_resource resource, rlim_t value) {
+  const rlimit both{value, value};
+  setrlimit(resource, &both);  // fails only where a lower limit is in force already
+}
+
+/// From here on this process can read files and answer, and not much more.
+void confine(const Arguments& arguments) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever asked is gone: nobody wants the answer
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  prctl(PR_SET_DUMPABLE, 0);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_FSIZE, 0);  // it writes to a pipe only
+  limit(RLIMIT_NOFILE, 64);
+  limit(RLIMIT_CPU, arguments.milliseconds / 1000 + 2);  // the asker's clock comes first, unless it has died
+#if !defined(PENUMBRA_SHADOW_MEMORY)
+  limit(RLIMIT_AS, arguments.bytes);
+  limit(RLIMIT_NPROC, 0);  // no threads, no children
+#endif
+}
+
+mesh::WireWriter message(mesh::HelperStatus status) {
+  mesh::WireWriter answer;
+  for (const char c : mesh::kHelperMagic) answer.put(c);
+  answer.put(static_cast<std::uint8_t>(status));
+  return answer;
+}
+
+mesh::WireWriter answer_for(const Arguments& arguments) {
+  try {
+    mesh::WireWriter answer = message(mesh::HelperStatus::done);
+    if (arguments.kind == "mesh") {
+      mesh::put_mesh(answer, mesh::read_mesh_file(arguments.file));
+    } else {
+      scenes::put_scene(answer, scenes::import_gltf(arguments.file, {.allow_outside = arguments.allow_outside}));
+    }
+    return answer;
+  } catch (const std::bad_alloc&) {
+    return message(mesh::HelperStatus::out_of_memory);
+  } catch (const std::exception& error) {
+    const bool ours = dynamic_cast<const Error*>(&error) != nullptr;
+    mesh::WireWriter answer = message(mesh::HelperStatus::bad_input);
+    answer.put_string(ours ? error.what() : fmt::format("{}: {}", arguments.file, error.what()));
+    return answer;
+  }
+}
+
+bool write_all(int to, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = write(to, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  if (!parse(argc, argv, arguments)) {
+    fmt::print(stderr, "penumbra-import reads meshes and scenes for penumbra; it is not meant to be called by hand.\n");
+    return static_cast<int>(ExitCode::usage);
+  }
+  // The answer goes where standard output went; what libraries print must not get into it.
+  const int output = dup(STDOUT_FILENO);
+  if (output < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return static_cast<int>(ExitCode::resource);
+  confine(arguments);
+  const mesh::WireWriter answer = answer_for(arguments);
+  // _exit: the libraries' own cleaning up after a hostile file is one more chance to crash.
+  _exit(write_all(output, answer.bytes()) ? 0 : static_cast<int>(ExitCode::resource));
+}

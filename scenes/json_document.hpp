@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+/// JSON with places: what the scene's JSON reader stands on. Internal to scenes/.
+namespace penumbra::scenes {
+
+/// A place in a JSON file, for messages: the file as the user named it and a JSON pointer (RFC 6901).
+struct Place {
+  std::string file, pointer;
+
+  [[nodiscard]] Place operator/(std::string_view key) const;
+  [[nodiscard]] Place operator/(std::size_t index) const;
+  /// "scene.json: /meshes/0", or "scene.json" for the whole document.
+  [[nodiscard]] std::string str() const;
+};
+
+/// Parses JSON strictly. InputError with line and column for a syntax error, and with the JSON pointer for what
+/// libraries let pass in silence: a number beyond double's range, a key that stands twice, absurd nesting.
+nlohmann::json parse_json(std::string_view text, const std::string& file);
+
+/// The whole text file; InputError if it is missing, a folder, a device, or cannot be read.
+std::string read_text_file(const std::filesystem::path& file);
+
+/// What a value is, in words: `a string "x"`, `the number 5`, `an array of 2 values`.
+std::string describe_value(const nlohmann::json& value);
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "mesh/triangle_soup.hpp"
+#include "scenes/json_document.hpp"
+#include "scenes/reader.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+/// What the JSON reader does with one entry of "meshes" or a value in it. All take values that the schema has passed.
+/// Internal to scenes/.
+namespace penumbra::scenes {
+
+glm::dvec3 read_vector(const nlohmann::json& value);
+
+/// Reads, generates or lists the mesh, and brings it into world space. What was changed on the way goes to `warnings`.
+mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options,
+                             std::vector<std::string>& warnings);
+
+/// Generates the mesh of a "shape".
+mesh::TriangleSoup read_shape(const nlohmann::json& shape);
+
+/// Applies "transform" (an object or a row-major matrix) to every position.
+void apply_transform(const nlohmann::json& transform, const Place& place, mesh::TriangleSoup& soup);
+
+/// Applies "fit" to every position.
+void apply_fit(const nlohmann::json& fit, const Place& place, mesh::TriangleSoup& soup);
+
+}  // namespace penumbra::scenes

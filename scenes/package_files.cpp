@@ -1,0 +1,66 @@
+#include "scenes/package_files.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace penumbra::scenes {
+namespace {
+
+/// Debian policy 5.6.1. Also keeps slashes out of the path that the name becomes part of.
+bool is_package_name(std::string_view name) {
+  const auto is_lower_or_digit = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+  return name.size() >= 2 && is_lower_or_digit(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+           return is_lower_or_digit(c) || c == '+' || c == '-' || c == '.';
+         });
+}
+
+/// <package>.list, or <package>:<architecture>.list for packages that may be installed for several.
+std::vector<std::filesystem::path> package_lists(std::string_view package, const std::filesystem::path& dpkg_info) {
+  std::vector<std::filesystem::path> lists;
+  const std::string prefix = std::string(package) + ":";
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(dpkg_info, error)) {
+    const std::filesystem::path& path = entry.path();
+    if (path.extension() != ".list") continue;
+    const std::string stem = path.stem().string();
+    if (stem == package || stem.starts_with(prefix)) lists.push_back(path);
+  }
+  std::sort(lists.begin(), lists.end());
+  return lists;
+}
+
+}  // namespace
+
+std::filesystem::path find_package_file(std::string_view package, std::string_view file,
+                                        const std::filesystem::path& dpkg_info) {
+  if (!is_package_name(package)) {
+    throw InputError("\"{}\" is not the name of a Debian package; expected lower-case letters, digits, +, - and .",
+                     package);
+  }
+  const std::vector<std::filesystem::path> lists = package_lists(package, dpkg_info);
+  if (lists.empty()) {
+    throw InputError("the Debian package \"{0}\" is not installed; install it with: apt-get install {0}", package);
+  }
+  const std::string ending = "/" + std::string(file);
+  std::vector<std::string> found;
+  for (const std::filesystem::path& list : lists) {
+    std::ifstream lines(list);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.ends_with(ending) && std::find(found.begin(), found.end(), line) == found.end()) found.push_back(line);
+    }
+  }
+  if (found.empty()) {
+    throw InputError("the package \"{0}\" has no file that ends with \"{1}\"; see: dpkg -L {0}", package, ending);
+  }
+  if (found.size() > 1) {
+    throw InputError("the package \"{}\" has several files that end with \"{}\" ({}, {}); give more of the path",
+                     package, ending, found[0], found[1]);
+  }
+  return found[0];
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "base/atomic_file.hpp"
+#include "scenes/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// What the writers of the three formats share. Internal to scenes/.
+namespace penumbra::scenes {
+
+using Notes = std::vector<std::string>;
+
+void write_json(const Scene& scene, AtomicFile& file, Notes& notes);
+void write_glb(const Scene& scene, AtomicFile& file, Notes& notes);
+void write_obj(const Scene& scene, AtomicFile& file, Notes& notes);
+
+/// Triangles first … first + count − 1 of the soup belong to `object`.
+struct ObjectRange {
+  std::uint32_t object = 0;
+  std::size_t first = 0, count = 0;
+};
+
+/// The objects' runs of triangles, in the soup's order. An object whose triangles do not stand together has several.
+std::vector<ObjectRange> object_ranges(const mesh::TriangleSoup& soup);
+
+/// The shortest digits that read back as the same double, in a form that JSON readers keep a double ("-0.0").
+void append_number(fmt::memory_buffer& text, double value);
+
+/// Collects text and hands it to the file in large pieces, so that a big scene is never in memory twice.
+class TextStream {
+ public:
+  explicit TextStream(AtomicFile& file) : file_(file) {}
+
+  template <typename... Args>
+  TextStream& print(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(buffer_), format, std::forward<Args>(args)...);
+    if (buffer_.size() > kPiece) flush();
+    return *this;
+  }
+  TextStream& number(double value);
+  TextStream& numbers(const glm::dvec3& v, std::string_view separator);
+  /// "[x, y, z]"
+  TextStream& array(const glm::dvec3& v);
+  void flush();
+
+ private:
+  static constexpr std::size_t kPiece = std::size_t{1} << 20;
+  AtomicFile& file_;
+  fmt::memory_buffer buffer_;
+};
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,13 @@
+#!/bin/bash
+# Installs what is missing, builds, and runs the tests with ctest: label `quick`, or what the arguments say
+# (./test.sh -L full, ./test.sh -R layering).
+set -euo pipefail
+root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
+build=$root/build
+source "$root/cmake/bootstrap.sh"
+
+install_packages
+build all
+if (($# == 0)); then set -- -L quick; fi
+# GPU tests on the processor already use all cores: more than two at once only make each slower.
+exec ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel 2 "$@"

@@ -1,0 +1,160 @@
+// `compare`: the files it writes, the numbers it claims, the answers it gives by its exit code.
+#include "tests/cli/program.hpp"
+
+#include "base/exr.hpp"
+#include "visibility/bits_file.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <bit>
+#include <cmath>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Compare : public ProgramTest {
+ protected:
+  Outcome compare(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"compare", tiny_scene(), "-o", path("dir"), "--runs", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] json metrics() const { return json::parse(read("dir/metrics.json")); }
+};
+
+TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
+  const Outcome outcome =
+      compare({"--methods", "view-sample", "--reference-samples", "same", "--bits", "--png", "--light-samples", "64"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("view-sample"));
+  for (const char* name : {"metrics.json", "report.html", "view-sample.exr", "view-sample-error.png",
+                           "view-sample.bits", "view-sample.png", "reference.exr", "reference.bits"}) {
+    EXPECT_TRUE(std::filesystem::exists(path("dir") + "/" + name)) << name;
+  }
+  const json result = metrics();
+  EXPECT_EQ(result.at("reference").at("method"), "raytrace");
+  ASSERT_EQ(result.at("methods").size(), 1u);
+  const json& method = result["methods"][0];
+  for (const char* key : {"mean", "rmse", "p999", "max", "over05", "bias"})
+    EXPECT_TRUE(method.at("error").contains(key)) << key;
+  EXPECT_TRUE(method.at("seconds").at("warmup").is_number());
+
+  // Counted again, from the files.
+  const auto mine = visibility::read_bits(path("dir/view-sample.bits")),
+             other = visibility::read_bits(path("dir/reference.bits"));
+  std::uint64_t all = 0, penumbra = 0, differing = 0;
+  for (std::size_t i = 0; i < mine.p.size(); ++i) {
+    if (mine.triangle[i] < 0) continue;
+    std::uint32_t a = 0, b = 0, ab = 0;
+    for (std::size_t word = 2 * i; word < 2 * i + 2; ++word) {
+      a += static_cast<std::uint32_t>(std::popcount(mine.masks[word]));
+      b += static_cast<std::uint32_t>(std::popcount(other.masks[word]));
+      ab += static_cast<std::uint32_t>(std::popcount(mine.masks[word] ^ other.masks[word]));
+    }
+    all += 64;
+    if ((a > 0 && a < 64) || (b > 0 && b < 64)) penumbra += 64;
+    differing += ab;
+  }
+  EXPECT_EQ(method.at("pairsAll"), all);
+  EXPECT_EQ(method.at("pairs"), penumbra);
+  EXPECT_EQ(method.at("pairsDiffering"), differing);
+  EXPECT_GT(penumbra, 0u);
+  EXPECT_EQ(method.at("counters").at("exactDecided"), differing);
+  EXPECT_EQ(method["counters"].at("methodRight").get<std::uint64_t>() +
+                method["counters"].at("referenceRight").get<std::uint64_t>(),
+            differing);
+}
+
+TEST_F(Compare, ErrorsCanBeRecomputedFromTheImages) {
+  const Outcome outcome = compare({"--methods", "raytrace", "--reference-samples", "1024", "--light-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json result = metrics();
+  const json& method = result.at("methods").at(0);
+  EXPECT_TRUE(method.at("pairsDiffering").is_null()) << "not the same samples";
+  EXPECT_EQ(result["reference"]["lightSamples"], 1024);
+  const ExrFile mine = read_exr(path("dir/raytrace.exr")), other = read_exr(path("dir/reference.exr"));
+  // Nothing of this scene is an emitter; horizon pixels are some of the wedge's, so leave out the wedge.
+  double largest = 0;
+  for (std::size_t i = 0; i < mine.floats.at("V").size(); ++i) {
+    if (mine.integers.at("id")[i] > 1) continue;
+    largest = std::max(largest, std::abs(double{mine.floats.at("V")[i]} - double{other.floats.at("V")[i]}));
+  }
+  EXPECT_GT(largest, 0.005);
+  EXPECT_GE(method.at("error").at("max").get<double>(), largest - 1e-6);
+  EXPECT_LT(method["error"]["rmse"].get<double>(), 0.06);
+  EXPECT_GT(method["error"]["rmse"].get<double>(), 0);
+}
+
+TEST_F(Compare, MaxRmseDecidesTheExitCode) {
+  EXPECT_EQ(compare({"--methods", "raytrace", "--light-samples", "16", "--max-rmse", "0.5"}).code, 0);
+  const Outcome strict = compare({"--methods", "raytrace", "--light-samples", "16", "--max-rmse", "0.0000001"});
+  EXPECT_EQ(strict.code, 1);
+  EXPECT_THAT(strict.err, HasSubstr("--max-rmse"));
+  EXPECT_TRUE(std::filesystem::exists(path("dir/report.html"))) << "the job ran; only its answer is no";
+}
+
+TEST_F(Compare, OneMethodMayAppearSeveralTimes) {
+  ASSERT_EQ(compare({"--methods", "raytrace,raytrace", "--light-samples", "4", "--reference-samples", "same"}).code, 0);
+  const json result = metrics();
+  ASSERT_EQ(result.at("methods").size(), 2u);
+  EXPECT_NE(result["methods"][0].at("entry"), result["methods"][1].at("entry"));
+  EXPECT_TRUE(std::filesystem::exists(path("dir/raytrace-2.exr")));
+  for (const json& method : result["methods"]) EXPECT_EQ(method.at("pairsDiffering"), 0);
+}
+
+TEST_F(Compare, ErrorsOverChosenPixels) {
+  ASSERT_EQ(compare({"--methods", "raytrace", "--light-samples", "4", "--sample-pixels", "5"}).code, 0);
+  EXPECT_EQ(metrics().at("judgedPixels"), 5);
+  ASSERT_EQ(compare({"--methods", "raytrace", "--light-samples", "4", "--sample-pixels", "0,0"}).code, 0);
+  EXPECT_EQ(metrics().at("judgedPixels"), 0) << "the top left corner is background";
+  EXPECT_TRUE(metrics().at("methods").at(0).at("error").is_null());
+}
+
+TEST_F(Compare, DefaultIsEveryGeometryAndImageMethod) {
+  const Outcome outcome = compare({"--light-samples", "16", "--reference-samples", "64"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::vector<std::string> names;
+  const json result = metrics();
+  for (const json& method : result.at("methods")) names.push_back(method.at("method"));
+  EXPECT_THAT(names, testing::ElementsAre("view-sample", "pcss", "accumulate", "shadow-map"));
+}
+
+TEST_F(Compare, OptionsReachTheMethodsThatHaveThem) {
+  const Outcome outcome =
+      compare({"--methods", "raytrace,pcss:size=64,pcss", "--method-option", "size=128", "--light-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json methods = metrics().at("methods");
+  ASSERT_EQ(methods.size(), 3u);
+  EXPECT_TRUE(methods[0].at("options").empty());
+  EXPECT_EQ(methods[1].at("options").at("size"), "64");
+  EXPECT_EQ(methods[2].at("options").at("size"), "128");
+  EXPECT_TRUE(std::filesystem::exists(path("dir/pcss:size=64.exr")));
+}
+
+TEST_F(Compare, ReportIsOneFileWithoutNetwork) {
+  ASSERT_EQ(compare({"--methods", "raytrace", "--light-samples", "4"}).code, 0);
+  const std::string html = read("dir/report.html");
+  EXPECT_THAT(html, HasSubstr("data:image/png;base64,"));
+  EXPECT_THAT(html, testing::Not(HasSubstr("src=\"http")));
+  EXPECT_THAT(html, testing::Not(HasSubstr("<script")));
+}
+
+TEST_F(Compare, GroupsLeaveOutWhatCannotDoTheLight) {
+  write("bulb.json",
+        scene_text_with("/lights/0", R"({"name": "bulb", "sphere": {"center": [0, 4, 0], "radius": 0.3}})"));
+  const Outcome all = run(
+      {"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "all", "--light-samples", "16"});
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_THAT(all.err, HasSubstr("view-sample is left out"));
+  const Outcome named =
+      run({"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "view-sample"});
+  EXPECT_EQ(named.code, 3);
+  EXPECT_THAT(named.err, HasSubstr("bulb"));
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,167 @@
+#include "tests/cli/program.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace penumbra::tests {
+namespace {
+
+constexpr const char* kTinyScene = R"({
+  "format": "penumbra-scene/1",
+  "size": [48, 32],
+  "camera": {"eye": [2, 3, 6], "target": [0, 0.5, 0], "up": [0, 1, 0], "verticalFov": 45},
+  "meshes": [
+    {"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [4, 0, 0], "halfV": [0, 0, -4]}, "color": [0.5, 0.5, 0.5]},
+    {"name": "wedge", "triangles": [[-1,1,-1, 1,1,-1, 0,1.5,1], [-1,1,-1, 0,1.5,1, -1,0.2,1]]}
+  ],
+  "lights": [
+    {"name": "key", "rectangle": {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10]}
+  ]
+})";
+
+/// argv or envp: pointers into strings that outlive it.
+std::vector<char*> pointers(std::vector<std::string>& strings) {
+  std::vector<char*> result;
+  for (std::string& string : strings) result.push_back(string.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+std::vector<std::string> child_environment(const Invocation& invocation) {
+  std::map<std::string, std::string> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    const auto equals = text.find('=');
+    variables[text.substr(0, equals)] = equals == std::string::npos ? "" : text.substr(equals + 1);
+  }
+  variables["PENUMBRA_VALIDATION"] = "1";  // a validation message fails the test that caused it
+  for (const auto& [name, value] : invocation.environment) variables[name] = value;
+  std::vector<std::string> result;
+  for (const auto& [name, value] : variables) result.push_back(name + "=" + value);
+  return result;
+}
+
+/// Reads both pipes until the child closes them; sends the signals when their time has come.
+void collect(pid_t child, int out, int err, const Invocation& invocation, Outcome& outcome) {
+  const auto start = std::chrono::steady_clock::now();
+  bool interrupted = false;
+  std::array<pollfd, 2> pipes = {{{out, POLLIN, 0}, {err, POLLIN, 0}}};
+  std::array<std::string*, 2> texts = {&outcome.out, &outcome.err};
+  while (pipes[0].fd >= 0 || pipes[1].fd >= 0) {
+    ::poll(pipes.data(), pipes.size(), 10);
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (invocation.interrupt_after && !interrupted && elapsed >= *invocation.interrupt_after) {
+      ::kill(child, SIGINT);
+      interrupted = true;
+    }
+    if (elapsed > invocation.timeout) ::kill(child, SIGKILL);
+    for (std::size_t i = 0; i < pipes.size(); ++i) {
+      if (pipes[i].fd < 0 || pipes[i].revents == 0) continue;
+      std::array<char, 4096> buffer{};
+      const ssize_t count = ::read(pipes[i].fd, buffer.data(), buffer.size());
+      if (count > 0) {
+        texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
+      } else if (count == 0 || errno != EINTR) {
+        pipes[i].fd = -1;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Outcome run_program(const Invocation& invocation) {
+  std::vector<std::string> arguments = invocation.arguments;
+  arguments.insert(arguments.begin(), PENUMBRA_PROGRAM);
+  std::vector<std::string> environment = child_environment(invocation);
+  const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
+
+  std::array<int, 2> out{}, err{};
+  if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe");
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("fork");
+  if (child == 0) {
+    ::dup2(out[1], STDOUT_FILENO);
+    ::dup2(err[1], STDERR_FILENO);
+    ::signal(SIGINT, SIG_DFL);  // a shell in the background has it ignored, and children inherit that
+    ::execve(PENUMBRA_PROGRAM, argv.data(), envp.data());
+    ::_exit(126);
+  }
+  ::close(out[1]);
+  ::close(err[1]);
+  Outcome outcome;
+  collect(child, out[0], err[0], invocation, outcome);
+  ::close(out[0]);
+  ::close(err[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+ProgramTest::ProgramTest() {
+  std::string name = (std::filesystem::temp_directory_path() / "penumbra-test-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": " + std::strerror(errno));
+  folder_ = name;
+}
+
+ProgramTest::~ProgramTest() {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+std::filesystem::path ProgramTest::write(const std::string& name, const std::string& text) const {
+  std::filesystem::create_directories((folder_ / name).parent_path());
+  std::ofstream(folder_ / name, std::ios::binary) << text;
+  return folder_ / name;
+}
+
+std::vector<std::string> ProgramTest::files() const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+    if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(folder_).string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+std::string ProgramTest::read(const std::string& name) const {
+  std::ifstream file(folder_ / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string ProgramTest::tiny_scene() const {
+  return write("scene.json", kTinyScene).string();
+}
+
+Outcome ProgramTest::run(std::vector<std::string> arguments, std::map<std::string, std::string> environment) const {
+  return run_program({.arguments = std::move(arguments), .environment = std::move(environment), .interrupt_after = {}});
+}
+
+std::string scene_text_with(const std::string& pointer, const std::string& json) {
+  // A number that no double can hold would not survive the library, so the text is put in place of a mark.
+  constexpr const char* kMark = "@@";
+  nlohmann::ordered_json scene = nlohmann::ordered_json::parse(kTinyScene);
+  scene[nlohmann::ordered_json::json_pointer(pointer)] = kMark;
+  std::string text = scene.dump();
+  const std::string quoted = '"' + std::string(kMark) + '"';
+  return text.replace(text.find(quoted), quoted.size(), json);
+}
+
+}  // namespace penumbra::tests

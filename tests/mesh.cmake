@@ -1,0 +1,21 @@
+# Foreign files: meshes, glTF scenes, and the helper process that reads them.
+find_package(GTest REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_library(RAPIDCHECK rapidcheck REQUIRED)
+
+add_executable(mesh_import_test unit/mesh_import_test.cpp unit/import_helper_test.cpp)
+target_link_libraries(mesh_import_test PRIVATE penumbra_mesh penumbra_warnings GTest::gmock GTest::gtest_main)
+gtest_discover_tests(mesh_import_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+
+add_executable(polygon_property_test property/polygon_property_test.cpp)
+target_link_libraries(polygon_property_test PRIVATE penumbra_mesh_reader penumbra_warnings ${RAPIDCHECK} GTest::gtest_main)
+gtest_discover_tests(polygon_property_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+
+add_executable(gltf_reader_test unit/gltf_reader_test.cpp unit/flat_light_test.cpp)
+target_link_libraries(gltf_reader_test PRIVATE
+  penumbra_scenes penumbra_gltf_import penumbra_warnings nlohmann_json::nlohmann_json GTest::gmock GTest::gtest_main)
+gtest_discover_tests(gltf_reader_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+
+add_executable(import_corpus_test full/import_corpus_test.cpp)
+target_link_libraries(import_corpus_test PRIVATE penumbra_scenes penumbra_warnings GTest::gtest_main)
+gtest_discover_tests(import_corpus_test PROPERTIES LABELS full DISCOVERY_TIMEOUT 120 TIMEOUT 3600)

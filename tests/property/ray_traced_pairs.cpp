@@ -1,0 +1,71 @@
+// Every pair of a small picture, ray caster against the exact decision: away from exact zeros Embree's robust mode is
+// off by rounding alone.
+
+#include "tests/unit/ray_traced_masks.hpp"
+#include "tests/unit/visibility_scenes.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace penumbra::reference {
+namespace {
+
+using tests::Stage;
+using visibility::PairOutcome;
+using visibility::SamplePattern;
+using visibility::ViewSamples;
+
+scenes::Scene soup_over_floor(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> real(-1, 1);
+  const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, -1.37, 0}, {3.1, 0.1, 0}, {0, 0.2, -2.9}));
+  std::vector<tests::Corners> soup;
+  for (int i = 0; i < 60; ++i) {
+    const glm::dvec3 center = point(1);
+    soup.push_back({center + point(0.5), center + point(0.5), center + point(0.5)});
+  }
+  tests::add_object(scene, "soup", soup);
+  const glm::dvec3 center(real(random), 3, real(random));
+  scene.lights.push_back(tests::rectangle_light(center, {0.6, 0.1, 0.03}, {0.05, 0.1, 0.7}));
+  if (seed % 4 == 1) scene.lights[0].shape = scenes::Disk{center, {0.1, -1, 0.2}, 0.7};
+  if (seed % 4 == 2) scene.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.5}, {0.7, 3, -0.4}, {0.1, 3, 0.8}}};
+  if (seed % 4 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.6};
+  scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));
+  return scene;
+}
+
+class RayTracedPairs : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(RayTracedPairs, AgreeWithTheExactDecision) {
+  const Stage setup(soup_over_floor(GetParam()), 48, 48, {32, 0, 0, SamplePattern::jittered, GetParam()});
+  const tests::Masks masks = tests::trace(setup);
+  std::size_t pairs = 0, differing = 0, blocked = 0, horizon = 0, zeros = 0;
+  for (std::size_t pixel = 0; pixel < setup.samples.size(); ++pixel) {
+    if (setup.samples.triangle[pixel] == ViewSamples::kBackground) continue;
+    for (std::uint32_t j = 0; j < setup.light.sample_count(); ++j) {
+      const auto truth = visibility::decide_pair(setup.floats, setup.samples, pixel, setup.light, j);
+      ++pairs;
+      blocked += truth.outcome == PairOutcome::blocked ? 1 : 0;
+      horizon += truth.outcome == PairOutcome::horizon ? 1 : 0;
+      zeros += truth.zero_predicate ? 1 : 0;
+      const bool differs = (truth.outcome == PairOutcome::visible) != masks.visible(pixel, j);
+      differing += differs ? 1 : 0;
+      EXPECT_FALSE(differs && truth.outcome == PairOutcome::horizon) << "the horizon is decided exactly";
+    }
+  }
+  RecordProperty("pairs", static_cast<int>(pairs));
+  RecordProperty("differing", static_cast<int>(differing));
+  EXPECT_GT(pairs, 20000u);
+  EXPECT_GT(blocked, 2000u);
+  EXPECT_GT(horizon, 200u);
+  EXPECT_LE(differing, pairs / 10000) << differing << " of " << pairs << ", " << zeros << " with a zero";
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RayTracedPairs, testing::Range(0u, 12u));
+
+}  // namespace
+}  // namespace penumbra::reference

@@ -1,0 +1,202 @@
+#include "compare/beauty.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace penumbra::compare {
+namespace {
+
+using visibility::Light;
+using visibility::LightKind;
+using visibility::SceneFloats;
+using visibility::ViewSamples;
+
+constexpr double kPi = std::numbers::pi;
+
+/// One pixel a triangle of object 0 at the given points, facing up, with colour (0.5, 0.25, 1).
+struct Floor {
+  SceneFloats scene;
+  ViewSamples samples;
+  std::vector<glm::dvec3> colors{{0.5, 0.25, 1}};
+  std::vector<Light> lights;
+
+  explicit Floor(const std::vector<glm::vec3>& points) {
+    samples.width = static_cast<std::uint32_t>(points.size());
+    samples.height = 1;
+    samples.p = points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      samples.triangle.push_back(static_cast<std::int32_t>(i));
+      samples.n.emplace_back(0, 1, 0);
+      scene.object.push_back(0);
+      scene.receives_shadow.push_back(1);
+      scene.emits.push_back(-1);
+    }
+  }
+  [[nodiscard]] std::vector<glm::vec3> shade(std::vector<LightVisibility> seen) const {
+    return integrate_beauty({scene, samples, colors, lights}, seen);
+  }
+};
+
+/// A horizontal rectangle at height y with half sides a along x and b along z, emitting down (or up), with rows ×
+/// columns cell-centred samples.
+Light rectangle(float y, float a, float b, int rows, int columns, bool down = true) {
+  Light light;
+  light.area = 4.0 * static_cast<double>(a) * static_cast<double>(b);
+  light.radiance = {10, 20, 30};
+  light.center = {0, y, 0};
+  light.center_u = {a, y, 0};
+  light.center_v = {0, y, down ? b : -b};  // x × z points down
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const double u = (2 * c + 1.0) / columns - 1, v = (2 * r + 1.0) / rows - 1;
+      light.coordinates.emplace_back(u, v);
+      light.points.emplace_back(static_cast<float>(u) * a, y, static_cast<float>(v) * light.center_v.z);
+    }
+  }
+  return light;
+}
+
+/// Form factor of a surface element and a parallel rectangle a × b at distance c, one corner on the element's normal
+/// (Siegel and Howell, configuration 3).
+double corner_form_factor(double a, double b, double c) {
+  const double x = a / c, y = b / c, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+  return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
+}
+
+TEST(Beauty, OneSampleStraightAbove) {
+  Floor floor({{0, 0, 0}});
+  floor.lights = {rectangle(2, 1, 1, 1, 1)};
+  const std::vector<std::uint32_t> seen{1}, hidden{0};
+  // colour / π · area 4 / 1 sample · radiance 10 · 1 · 1 / 2²
+  const glm::vec3 color = floor.shade({{seen, {}}})[0];
+  EXPECT_FLOAT_EQ(color.r, static_cast<float>(0.5 * 10 / kPi));
+  EXPECT_FLOAT_EQ(color.g, static_cast<float>(0.25 * 20 / kPi));
+  EXPECT_FLOAT_EQ(color.b, static_cast<float>(1 * 30 / kPi));
+  EXPECT_EQ(floor.shade({{hidden, {}}})[0], glm::vec3(0));
+}
+
+TEST(Beauty, ASlantedSampleHasBothCosines) {
+  Floor floor({{3, 0, 0}});
+  floor.lights = {rectangle(4, 1, 1, 1, 1)};
+  const std::vector<std::uint32_t> seen{1};
+  // d = (−3, 4, 0), |d| = 5, both cosines 4/5: 0.5 / π · 4 · 10 · 0.64 / 25
+  EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 / kPi * 4 * 10 * 0.64 / 25));
+}
+
+TEST(Beauty, ConvergesToTheRectanglesFormFactor) {
+  // Under the middle, and under the corner (±2, ±1): E = π · radiance · F, beauty = colour · radiance · F.
+  Floor floor({{0, 0, 0}, {2, 0, 1}});
+  floor.lights = {rectangle(3, 2, 1, 64, 64)};
+  const std::vector<std::uint32_t> seen(2 * 128, 0xffffffffu);
+  const auto colors = floor.shade({{seen, {}}});
+  EXPECT_NEAR(colors[0].r, 0.5 * 10 * 4 * corner_form_factor(2, 1, 3), 2e-4);
+  EXPECT_NEAR(colors[1].r, 0.5 * 10 * corner_form_factor(4, 2, 3), 2e-4);
+}
+
+TEST(Beauty, AMaskCountsItsOwnSamplesOnly) {
+  // Two samples at x = ∓1 of a light 4 × 2 at height 2, seen from x = 1: d = (−2, 2, 0), weight 4 · / 8² · 4 and
+  // d = (0, 2, 0), weight 1/4. cos · cos / d²: (½) / 8 = 1/16, and 1/4.
+  Floor floor({{1, 0, 0}});
+  floor.lights = {rectangle(2, 2, 1, 1, 2)};
+  const double scale = 0.5 / kPi * 10 * 8 / 2;
+  const std::vector<std::uint32_t> first{1}, second{2}, both{3}, beyond{0xfffffffcu};
+  EXPECT_FLOAT_EQ(floor.shade({{first, {}}})[0].r, static_cast<float>(scale / 16));
+  EXPECT_FLOAT_EQ(floor.shade({{second, {}}})[0].r, static_cast<float>(scale / 4));
+  EXPECT_FLOAT_EQ(floor.shade({{both, {}}})[0].r, static_cast<float>(scale * 5 / 16));
+  EXPECT_EQ(floor.shade({{beyond, {}}})[0].r, 0) << "bits beyond the last sample are no samples";
+}
+
+TEST(Beauty, VMultipliesTheUnshadowedIntegral) {
+  Floor floor({{1, 0, 0}});
+  floor.lights = {rectangle(2, 2, 1, 3, 11)};
+  const std::vector<std::uint32_t> all{0xffffffffu, 1};
+  const std::vector<float> quarter{0.25f};
+  const float unshadowed = floor.shade({{all, {}}})[0].r;
+  EXPECT_GT(unshadowed, 0);
+  EXPECT_FLOAT_EQ(floor.shade({{{}, quarter}})[0].r, unshadowed / 4);
+}
+
+TEST(Beauty, OnlyTheEmittingSideShines) {
+  Floor floor({{0, 0, 0}});
+  const std::vector<std::uint32_t> seen{1};
+  floor.lights = {rectangle(2, 1, 1, 1, 1, false)};
+  EXPECT_EQ(floor.shade({{seen, {}}})[0].r, 0);
+  floor.lights[0].two_sided = true;
+  EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 / kPi));
+  floor.lights = {rectangle(-2, 1, 1, 1, 1, false)};  // below the floor, emitting up
+  EXPECT_EQ(floor.shade({{seen, {}}})[0].r, 0);
+}
+
+TEST(Beauty, ALightPointOnTheSurfaceAddsNothing) {
+  Floor floor({{0, 0, 0}});
+  floor.lights = {rectangle(0, 1, 1, 1, 1)};
+  const std::vector<std::uint32_t> seen{1};
+  EXPECT_EQ(floor.shade({{seen, {}}})[0], glm::vec3(0));
+}
+
+TEST(Beauty, ASphereIsTheDiskThatFacesThePoint) {
+  Floor floor({{0, 0, 0}, {30, 0, 0}});
+  Light light;
+  light.kind = LightKind::sphere;
+  light.center = {0, 40, 0};
+  light.radius = 1;
+  light.area = kPi;
+  light.radiance = {10, 20, 30};
+  light.coordinates = {{0.5, 0}, {-0.5, 0}, {0, 0.5}, {0, -0.5}};
+  floor.lights = {light};
+  const std::vector<std::uint32_t> seen{15, 15};
+  const auto colors = floor.shade({{seen, {}}});
+  // Nearly a point: colour / π · π r² · radiance · cos θp / d²; cosines at the disk are nearly 1.
+  EXPECT_NEAR(colors[0].r, 0.5 * 10 / 1600, 0.5 * 10 / 1600 * 1e-3);
+  EXPECT_NEAR(colors[1].r, 0.5 * 10 * 0.8 / 2500, 0.5 * 10 * 0.8 / 2500 * 1e-3);
+}
+
+TEST(Beauty, LightsAddUp) {
+  Floor floor({{0.5f, 0, 0}});
+  const std::vector<std::uint32_t> one{1}, four{15};
+  const std::vector<float> half{0.5f};
+  floor.lights = {rectangle(2, 1, 1, 1, 1)};
+  const float a = floor.shade({{one, {}}})[0].r;
+  floor.lights = {rectangle(3, 1, 2, 2, 2)};
+  const float b = floor.shade({{{}, half}})[0].r;
+  floor.lights = {rectangle(2, 1, 1, 1, 1), rectangle(3, 1, 2, 2, 2)};
+  EXPECT_FLOAT_EQ(floor.shade({{one, {}}, {{}, half}})[0].r, a + b);
+}
+
+TEST(Beauty, BackgroundEmittersAndReceiversOfNoShadow) {
+  Floor floor({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  floor.lights = {rectangle(2, 1, 1, 1, 1)};
+  floor.lights[0].index = 5;
+  floor.samples.triangle[0] = ViewSamples::kBackground;
+  floor.scene.emits[1] = 5;
+  floor.scene.emits[2] = 4;  // the body of a light that is not on
+  floor.scene.receives_shadow[3] = 0;
+  const std::vector<std::uint32_t> hidden(4, 0);
+  const auto colors = floor.shade({{hidden, {}}});
+  EXPECT_EQ(colors[0], glm::vec3(0));
+  EXPECT_EQ(colors[1], glm::vec3(10, 20, 30));
+  EXPECT_EQ(colors[2], glm::vec3(0));
+  EXPECT_FLOAT_EQ(colors[3].r, static_cast<float>(0.5 * 10 / kPi));
+}
+
+TEST(Beauty, DoesNotDependOnTheNumberOfThreads) {
+  std::vector<glm::vec3> points;
+  for (int i = 0; i < 5000; ++i)
+    points.emplace_back(0.01f * static_cast<float>(i % 71), 0.0f, 0.01f * static_cast<float>(i % 97));
+  Floor floor(points);
+  floor.lights = {rectangle(2, 1, 1, 5, 13)};
+  std::vector<std::uint32_t> masks(3 * points.size());
+  std::uint32_t state = 1;
+  for (std::uint32_t& word : masks) word = state = state * 1664525u + 1013904223u;
+  const auto many = floor.shade({{masks, {}}});
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const auto one = floor.shade({{masks, {}}});
+  EXPECT_EQ(std::memcmp(many.data(), one.data(), many.size() * sizeof many[0]), 0);
+}
+
+}  // namespace
+}  // namespace penumbra::compare

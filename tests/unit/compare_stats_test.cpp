@@ -1,0 +1,106 @@
+#include "compare/machine.hpp"
+#include "compare/stats.hpp"
+
+#include <gtest/gtest.h>
+
+namespace penumbra::compare {
+namespace {
+
+std::vector<std::string> keys_of(const nlohmann::ordered_json& json) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  return keys;
+}
+
+Stats some_stats() {
+  Stats stats;
+  stats.scene = "bunny.json";
+  stats.width = 640;
+  stats.height = 480;
+  stats.device = "llvmpipe";
+  stats.triangles = 69666;
+  stats.method = "pcss";
+  stats.options = {{"search", "16"}, {"bias", "auto"}};
+  stats.light_samples = 256;
+  stats.sample_pattern = "rows";
+  stats.seconds = {.load = 0.5, .mesh = 0.25, .view = {}, .light = 0.125, .evaluate = 1.0, .warmup = {}, .total = 3.0};
+  stats.passes = {{"filter", 12.5}, {"blockers", 3.0}};
+  stats.peak_memory_bytes = 1ull << 40;
+  stats.counters = {{"texels", 1234567890123ull}};
+  stats.warnings = {"a \"warning\""};
+  return stats;
+}
+
+TEST(StatsJson, HasTheNamesOfTheInterface) {
+  const auto json = to_json(some_stats());
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"scene", "size", "device", "triangles", "method", "options",
+                                                     "lightSamples", "samplePattern", "seconds", "passes",
+                                                     "peakMemoryBytes", "counters", "warnings"}));
+  EXPECT_EQ(json["size"], nlohmann::ordered_json::array({640, 480}));
+  EXPECT_EQ(json["options"]["search"], "16");
+  EXPECT_EQ(keys_of(json["seconds"]),
+            (std::vector<std::string>{"load", "mesh", "view", "light", "evaluate", "shadow", "warmup", "total"}));
+  EXPECT_EQ(json["seconds"]["shadow"], 1.125);
+  EXPECT_TRUE(json["seconds"]["view"].is_null());
+  EXPECT_EQ(json["passes"][0]["name"], "filter");
+  EXPECT_EQ(json["passes"][1]["milliseconds"], 3.0);
+  EXPECT_EQ(json["peakMemoryBytes"], 1099511627776ull);
+  EXPECT_EQ(json["counters"]["texels"], 1234567890123ull);
+  EXPECT_EQ(json["warnings"][0], "a \"warning\"");
+}
+
+TEST(StatsJson, EmptyIsEmptyNotNull) {
+  const auto json = to_json(Stats{});
+  EXPECT_EQ(json["options"].dump(), "{}");
+  EXPECT_EQ(json["counters"].dump(), "{}");
+  EXPECT_EQ(json["passes"].dump(), "[]");
+  EXPECT_EQ(json["warnings"].dump(), "[]");
+  EXPECT_TRUE(json["seconds"]["shadow"].is_null());
+}
+
+TEST(MetricsJson, HasTheNamesOfTheInterface) {
+  Metrics metrics;
+  metrics.reference = some_stats();
+  metrics.judged_pixels = 1000;
+  metrics.horizon_pixels = 7;
+  MethodResult result;
+  result.entry = "pcss:search=16";
+  result.stats = some_stats();
+  result.error = VisibilityError{0.1, 0.2, 0.3, 0.4, 0.5, -0.6};
+  result.pairs = PairCounts{400, 300, 2};
+  metrics.methods = {result, MethodResult{}};
+  const auto json = to_json(metrics);
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "methods"}));
+  EXPECT_EQ(json["reference"]["method"], "pcss");
+  const auto& first = json["methods"][0];
+  EXPECT_EQ(first["method"], "pcss");
+  EXPECT_EQ(first["seconds"]["evaluate"], 1.0);
+  EXPECT_EQ(keys_of(first["error"]), (std::vector<std::string>{"mean", "rmse", "p999", "max", "over05", "bias"}));
+  EXPECT_EQ(first["error"]["bias"], -0.6);
+  EXPECT_EQ(first["pairs"], 300);
+  EXPECT_EQ(first["pairsAll"], 400);
+  EXPECT_EQ(first["pairsDiffering"], 2);
+  EXPECT_TRUE(first["pairsZeroPredicate"].is_null()) << "nothing was decided exactly";
+  const auto& second = json["methods"][1];
+  for (const char* key : {"error", "pairs", "pairsAll", "pairsDiffering", "pairsZeroPredicate"}) {
+    EXPECT_TRUE(second.contains(key) && second[key].is_null()) << key;
+  }
+}
+
+TEST(JsonText, SurvivesBytesThatAreNoUtf8) {
+  Stats stats;
+  stats.scene = "bad\xff.json";
+  const std::string text = json_text(to_json(stats));
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_EQ(nlohmann::json::parse(text)["scene"], "bad\xef\xbf\xbd.json");
+}
+
+TEST(MachineTest, KnowsWhereItRuns) {
+  const Machine machine = this_machine();
+  EXPECT_GE(machine.threads, 1u);
+  EXPECT_GT(machine.memory_bytes, 1u << 20);
+  EXPECT_NE(machine.operating_system.find("Linux"), std::string::npos) << machine.operating_system;
+}
+
+}  // namespace
+}  // namespace penumbra::compare

@@ -1,0 +1,173 @@
+#include "base/error.hpp"
+#include "base/exr.hpp"
+
+#include <gtest/gtest.h>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTestFile.h>
+#include <OpenEXR/ImfVecAttribute.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace penumbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test, gone afterwards.
+class Exr : public testing::Test {
+ protected:
+  Exr() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("penumbra_exr_") + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Exr() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] fs::path file(const std::string& name = "out.exr") const { return folder_ / name; }
+  [[nodiscard]] std::size_t file_count() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+};
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// 37 × 21 (no multiple of ZIP's 16 lines) with values that a lossy or half-precision writer would change.
+struct Sample {
+  static constexpr std::uint32_t kWidth = 37, kHeight = 21;
+  std::vector<float> v;
+  std::vector<glm::vec3> p;
+  std::vector<std::uint32_t> id;
+  ExrImage image;
+
+  Sample() {
+    for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+      v.push_back(1.0f / static_cast<float>(i + 1));
+      p.emplace_back(static_cast<float>(i) * 1e-3f, -1e30f, std::nextafter(1.0f, 2.0f));
+      id.push_back(0xffffffffu - i);
+    }
+    v[3] = std::numeric_limits<float>::infinity();
+    v[4] = -0.0f;
+    v[5] = std::numeric_limits<float>::denorm_min();
+    image.width = kWidth;
+    image.height = kHeight;
+    image.channels = {{"V.a light with spaces", std::span<const float>(v)}, {"id", std::span<const std::uint32_t>(id)}};
+    add_vector_channels(image, "P", p);
+    image.attributes = {
+        {"penumbra.method", "view-sample"}, {"penumbra.scene", "b\xc3\xbcnny.json"}, {"penumbra.options", ""}};
+    image.vectors = {{"penumbra.origin", {0.1, -1e100, 1.0 / 3}}};
+  }
+};
+
+TEST_F(Exr, KeepsEveryBit) {
+  const Sample sample;
+  write_exr(file(), sample.image);
+  EXPECT_EQ(file_count(), 1u);
+  const ExrFile back = read_exr(file());
+  EXPECT_EQ(back.width, Sample::kWidth);
+  EXPECT_EQ(back.height, Sample::kHeight);
+  ASSERT_EQ(back.floats.size(), 4u);
+  ASSERT_EQ(back.integers.size(), 1u);
+  EXPECT_EQ(back.integers.at("id"), sample.id);
+  for (std::size_t i = 0; i < sample.v.size(); ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(back.floats.at("V.a light with spaces")[i]),
+              std::bit_cast<std::uint32_t>(sample.v[i]));
+    ASSERT_EQ(back.floats.at("P.X")[i], sample.p[i].x);
+    ASSERT_EQ(back.floats.at("P.Y")[i], sample.p[i].y);
+    ASSERT_EQ(back.floats.at("P.Z")[i], sample.p[i].z);
+  }
+  EXPECT_EQ(back.attributes, sample.image.attributes);
+  EXPECT_EQ(back.vectors, sample.image.vectors);
+}
+
+TEST_F(Exr, IsAPlainScanLineZipImageForOthers) {
+  const Sample sample;
+  write_exr(file(), sample.image);
+  bool tiled = true, deep = true, multi_part = true;
+  ASSERT_TRUE(Imf::isOpenExrFile(file().c_str(), tiled, deep, multi_part));
+  EXPECT_FALSE(tiled || deep || multi_part);
+  const Imf::InputFile input(file().c_str());
+  const Imf::Header& header = input.header();
+  EXPECT_EQ(header.compression(), Imf::ZIP_COMPRESSION);
+  EXPECT_EQ(header.dataWindow(), header.displayWindow());
+  EXPECT_EQ(header.dataWindow().max, Imath::V2i(36, 20));
+  ASSERT_NE(header.channels().findChannel("id"), nullptr);
+  EXPECT_EQ(header.channels().findChannel("id")->type, Imf::UINT);
+  EXPECT_EQ(header.channels().findChannel("P.Y")->type, Imf::FLOAT);
+  EXPECT_EQ(header.typedAttribute<Imf::StringAttribute>("penumbra.method").value(), "view-sample");
+  EXPECT_EQ(header.typedAttribute<Imf::V3dAttribute>("penumbra.origin").value().y, -1e100);
+}
+
+TEST_F(Exr, SameImageGivesSameBytes) {
+  const Sample sample;
+  write_exr(file("a.exr"), sample.image);
+  ExrImage shuffled = sample.image;  // the order in which channels were added must not show either
+  std::swap(shuffled.channels.front(), shuffled.channels.back());
+  write_exr(file("b.exr"), shuffled);
+  EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));
+}
+
+TEST_F(Exr, FullDiskLeavesTheOldFileAndNoRest) {
+  const Sample sample;
+  write_exr(file(), sample.image);
+  const std::string before = bytes_of(file());
+  for (const std::size_t quota : {std::size_t{0}, std::size_t{100}, before.size() - 1}) {
+    ::setenv("PENUMBRA_TEST_DISK_QUOTA", std::to_string(quota).c_str(), 1);
+    EXPECT_THROW(write_exr(file(), sample.image), ResourceError);
+    ::unsetenv("PENUMBRA_TEST_DISK_QUOTA");
+    EXPECT_EQ(bytes_of(file()), before);
+    EXPECT_EQ(file_count(), 1u);
+  }
+}
+
+TEST_F(Exr, PlacesThatCannotBeWrittenAreResourceErrors) {
+  const Sample sample;
+  EXPECT_THROW(write_exr(file("missing") / "out.exr", sample.image), ResourceError);
+  EXPECT_THROW(write_exr(folder_, sample.image), ResourceError);
+  EXPECT_THROW(write_exr("/dev/null", sample.image), ResourceError);
+  EXPECT_EQ(file_count(), 0u);
+}
+
+TEST_F(Exr, NamesAndSizesThatTheFormatCannotHoldAreRefused) {
+  Sample sample;
+  for (const std::string& name : {std::string(), std::string(256, 'x'), std::string("a\0b", 3)}) {
+    sample.image.channels[0].name = name;
+    EXPECT_THROW(write_exr(file(), sample.image), InputError);
+  }
+  sample.image.channels[0].name = std::string(255, 'x');
+  EXPECT_NO_THROW(write_exr(file(), sample.image));
+  ExrImage empty;
+  EXPECT_THROW(write_exr(file(), empty), ResourceError);
+}
+
+TEST_F(Exr, ReadingRefusesWhatIsNone) {
+  EXPECT_THROW(read_exr(file("missing.exr")), InputError);
+  std::ofstream(file()) << "not an image";
+  EXPECT_THROW(read_exr(file()), InputError);
+  write_exr(file("whole.exr"), Sample().image);
+  const std::string bytes = bytes_of(file("whole.exr"));
+  for (const std::size_t size : {std::size_t{3}, std::size_t{300}, bytes.size() - 50}) {
+    std::ofstream(file("cut.exr"), std::ios::binary) << bytes.substr(0, size);
+    EXPECT_THROW(read_exr(file("cut.exr")), InputError) << size << " bytes";
+  }
+}
+
+}  // namespace
+}  // namespace penumbra

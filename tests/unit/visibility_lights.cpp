@@ -1,0 +1,160 @@
+#include "visibility/light_samples.hpp"
+
+#include "base/error.hpp"
+#include "tests/unit/visibility_scenes.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace penumbra::visibility {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+template <typename Shape>
+Light light_of(const Shape& shape, const SampleRequest& request = {}, const glm::dvec3& origin = glm::dvec3(0)) {
+  scenes::Scene scene;
+  scene.lights.emplace_back();
+  scene.lights.back().name = "key";
+  scene.lights.back().shape = shape;
+  return make_light(scene, 0, origin, request);
+}
+
+std::string refusal(const auto& shape) {
+  try {
+    light_of(shape);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Lights, RectanglePointsAreWorldMinusOriginRoundedOnce) {
+  const scenes::Rectangle shape{{1000.1, 5, -3}, {0.3, 0, 0.1}, {0, 0.2, 0.7}};
+  const glm::dvec3 origin(999.7, 1, 0.2);
+  const Light light = light_of(shape, {35, 0, 0, SamplePattern::rows, 0}, origin);
+  EXPECT_EQ(light.rows, 6u);
+  EXPECT_EQ(light.columns, 6u);
+  EXPECT_EQ(light.row_shift.size(), 6u);
+  ASSERT_EQ(light.sample_count(), 36u);
+  EXPECT_EQ(light.words_per_mask(), 2u);
+  const auto unit = unit_square_samples({35, 0, 0, SamplePattern::rows, 0});
+  for (std::size_t j = 0; j < 36; ++j) {
+    EXPECT_EQ(light.coordinates[j], 2.0 * unit[j] - 1.0);
+    const glm::dvec3 world =
+        shape.center + light.coordinates[j].x * shape.half_u + light.coordinates[j].y * shape.half_v;
+    EXPECT_EQ(light.points[j], glm::vec3(world - origin));
+  }
+  EXPECT_NEAR(light.area, 4 * glm::length(glm::cross(shape.half_u, shape.half_v)), 1e-12);
+  EXPECT_EQ(light.outline.size(), 4u);
+  EXPECT_EQ(light.center_u, glm::vec3(shape.center + shape.half_u - origin));
+}
+
+TEST(Lights, RoundingTheCountIsSaid) {
+  scenes::Scene scene;
+  scene.lights.push_back(tests::ceiling_light(5, 1));
+  std::vector<std::string> notes;
+  make_light(scene, 0, glm::dvec3(0), {35, 0, 0, SamplePattern::rows, 0}, &notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "light samples: 35 rounded up to 6 rows of 6 = 36 by pattern rows");
+  notes.clear();
+  make_light(scene, 0, glm::dvec3(0), {35, 0, 0, SamplePattern::sobol, 0}, &notes);
+  make_light(scene, 0, glm::dvec3(0), {36, 0, 0, SamplePattern::grid, 0}, &notes);
+  make_light(scene, 0, glm::dvec3(0), {0, 5, 7, SamplePattern::rows, 0}, &notes);
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(Lights, EachEmitsToTheSideItsShapeSays) {
+  const glm::vec3 above(0.2f, 9, 0.1f), below(0.2f, 1, 0.1f);
+  const auto check = [&](const Light& light) {
+    EXPECT_TRUE(in_front_of_light(light, below));
+    EXPECT_FALSE(in_front_of_light(light, above));
+    EXPECT_FALSE(in_front_of_light(light, light.center)) << "on its plane is not strictly in front";
+  };
+  check(light_of(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}}));
+  check(light_of(scenes::Disk{{0, 5, 0}, {0, -3, 0}, 0.5}));
+  check(light_of(scenes::Polygon{{{0, 5, 0}, {1, 5, 0}, {2, 5, 0}, {0, 5, 1}}}));
+  Light both = light_of(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}});
+  both.two_sided = true;
+  EXPECT_TRUE(in_front_of_light(both, above) && in_front_of_light(both, below));
+  EXPECT_FALSE(in_front_of_light(both, {7, 5, 3}));
+}
+
+TEST(Lights, DiskSamplesKeepAreas) {
+  for (const glm::dvec3 normal : {glm::dvec3(0, -1, 0), glm::dvec3(0, 0, -1), glm::dvec3(1, 2, -3)}) {
+    const Light light = light_of(scenes::Disk{{1, 2, 3}, normal, 2}, {4096, 0, 0, SamplePattern::grid, 0});
+    EXPECT_NEAR(light.area, 4 * kPi, 1e-12);
+    std::size_t inner = 0;
+    for (std::size_t j = 0; j < light.points.size(); ++j) {
+      const glm::dvec3 d = glm::dvec3(light.points[j]) - glm::dvec3(1, 2, 3);
+      EXPECT_LE(glm::length(d), 2 + 1e-6);
+      EXPECT_NEAR(glm::dot(d, glm::normalize(normal)), 0, 1e-5);
+      inner += glm::length(light.coordinates[j]) < std::sqrt(0.5) ? 1 : 0;  // half of the area
+    }
+    EXPECT_NEAR(static_cast<double>(inner) / 4096, 0.5, 4.0 / 64);
+    const glm::vec3 frame = glm::cross(light.center_u - light.center, light.center_v - light.center);
+    EXPECT_GT(glm::dot(glm::dvec3(frame), normal), 0);
+  }
+}
+
+TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
+  const scenes::Polygon house{{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 4, 0}, {0, 2, 0}}};  // area 8 + 4
+  const Light light = light_of(house, {4096, 0, 0, SamplePattern::sobol, 1});
+  EXPECT_NEAR(light.area, 12, 1e-12);
+  EXPECT_EQ(light.outline.size(), 5u);
+  std::size_t roof = 0, left = 0;
+  for (std::size_t j = 0; j < light.points.size(); ++j) {
+    const glm::vec3 q = light.points[j];
+    EXPECT_TRUE(q.x >= 0 && q.x <= 4 && q.y >= 0 && q.y <= 4 && q.x + q.y <= 6.00001f && q.y - q.x <= 2.00001f);
+    EXPECT_TRUE(std::abs(light.coordinates[j].x) <= 1 && std::abs(light.coordinates[j].y) <= 1);
+    roof += q.y > 2 ? 1 : 0;
+    left += q.x < 2 ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(roof) / 4096, 4.0 / 12, 0.005);
+  EXPECT_NEAR(static_cast<double>(left) / 4096, 0.5, 0.005);
+}
+
+TEST(Lights, SphereShowsEachPointADiskThroughItsCentre) {
+  const Light light = light_of(scenes::Sphere{{0, 4, 2}, 0.5}, {64, 0, 0, SamplePattern::grid, 0});
+  EXPECT_TRUE(light.points.empty());
+  ASSERT_EQ(light.sample_count(), 64u);
+  std::vector<glm::vec3> points(64), again(64);
+  for (const glm::vec3 p : {glm::vec3(0), glm::vec3(3, -1, 2), glm::vec3(0, 4, 7), light.center}) {
+    light_points_for(light, p, points.data());
+    light_points_for(light, p, again.data());
+    EXPECT_EQ(points, again);
+    for (const glm::vec3& l : points) {
+      EXPECT_LE(glm::length(l - light.center), 0.5f + 1e-6f);
+      EXPECT_NEAR(glm::dot(l - light.center, p - light.center), 0, 1e-5);
+    }
+    const LightAxes axes = light_axes(light, p);
+    EXPECT_GE(glm::dot(glm::cross(axes.u, axes.v), glm::dvec3(p - light.center)), 0);
+    EXPECT_TRUE(in_front_of_light(light, p));
+  }
+}
+
+TEST(Lights, RefusesWhatHasNoAreaOrIsNotFinite) {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {2, 0, 0}}).find("light \"key\": its area is zero"),
+            std::string::npos);
+  EXPECT_NE(refusal(scenes::Rectangle{{1e9, 5, 0}, {1, 0, 0}, {0, 0, 1}}).find("in float32"), std::string::npos);
+  EXPECT_NE(refusal(scenes::Disk{{0, 0, 0}, {0, 1, 0}, 0}).find("radius"), std::string::npos);
+  EXPECT_NE(refusal(scenes::Disk{{0, 0, 0}, {0, 0, 0}, 1}).find("normal"), std::string::npos);
+  EXPECT_NE(refusal(scenes::Polygon{{{0, 0, 0}, {1, 0, 0}}}).find("three corners"), std::string::npos);
+  EXPECT_NE(refusal(scenes::Polygon{{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}}).find("on a line"), std::string::npos);
+  EXPECT_NE(refusal(scenes::Sphere{{0, 0, 0}, -1}).find("radius"), std::string::npos);
+  for (const double bad : {inf, nan, 1e200}) {
+    EXPECT_NE(refusal(scenes::Rectangle{{bad, 5, 0}, {1, 0, 0}, {0, 0, 1}}), "") << bad;
+    EXPECT_NE(refusal(scenes::Disk{{0, bad, 0}, {0, 1, 0}, 1}), "") << bad;
+    EXPECT_NE(refusal(scenes::Polygon{{{0, 0, 0}, {bad, 0, 0}, {0, 1, 0}}}), "") << bad;
+    EXPECT_NE(refusal(scenes::Sphere{{0, 0, bad}, 1}), "") << bad;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::visibility

@@ -1,0 +1,118 @@
+#include "visibility/sample_patterns.hpp"
+
+#include "base/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace penumbra::visibility {
+namespace {
+
+std::vector<glm::dvec2> samples(std::uint32_t count, SamplePattern pattern, std::uint32_t seed = 0) {
+  return unit_square_samples({count, 0, 0, pattern, seed});
+}
+
+/// How many of columns × rows equal cells hold exactly one point.
+std::size_t cells_with_one(const std::vector<glm::dvec2>& points, std::uint32_t columns, std::uint32_t rows) {
+  std::vector<int> hits(std::size_t{columns} * rows, 0);
+  for (const glm::dvec2& q : points) {
+    ++hits[static_cast<std::size_t>(q.y * rows) * columns + static_cast<std::size_t>(q.x * columns)];
+  }
+  std::size_t ones = 0;
+  for (const int hit : hits) ones += hit == 1 ? 1 : 0;
+  return ones;
+}
+
+TEST(SamplePatterns, EveryCountGivesItsNumberOfPointsInTheUnitSquare) {
+  for (const SamplePattern pattern :
+       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+    for (std::uint32_t count = 1; count <= kMaxLightSamples; count = count < 40 ? count + 1 : count * 2 - 7) {
+      const auto points = samples(count, pattern, 3);
+      const bool rounds = pattern == SamplePattern::rows || pattern == SamplePattern::grid;
+      const auto rows = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));
+      EXPECT_EQ(points.size(), rounds ? rows * ((count + rows - 1) / rows) : count) << name_of(pattern) << ' ' << count;
+      for (const glm::dvec2& q : points) {
+        EXPECT_TRUE(q.x >= 0 && q.x < 1 && q.y >= 0 && q.y < 1) << name_of(pattern) << ' ' << count;
+      }
+    }
+  }
+}
+
+TEST(SamplePatterns, GridIsCellCentredAndRowMajor) {
+  const auto points = samples(6, SamplePattern::grid);  // round(√6) = 2 rows of 3
+  ASSERT_EQ(points.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_DOUBLE_EQ(points[i].x, (static_cast<double>(i % 3) + 0.5) / 3);
+    EXPECT_DOUBLE_EQ(points[i].y, (static_cast<double>(i / 3) + 0.5) / 2);
+  }
+}
+
+TEST(SamplePatterns, RowsShiftEachRowByItsOwnFraction) {
+  const auto points = samples(4096, SamplePattern::rows);
+  EXPECT_EQ(cells_with_one(points, 64, 64), 4096u);
+  std::set<double> shifts;
+  for (std::uint32_t row = 0; row < 64; ++row) {
+    const double shift = row_shift_of(row);
+    EXPECT_GT(shift, -0.5);
+    EXPECT_LT(shift, 0.5);
+    EXPECT_EQ(shift, static_cast<double>(static_cast<float>(shift)));
+    shifts.insert(shift);
+    for (std::uint32_t column = 0; column < 64; ++column) {
+      EXPECT_EQ(points[row * 64 + column].x, (column + 0.5 + shift) / 64);
+    }
+  }
+  EXPECT_EQ(shifts.size(), 64u);
+  EXPECT_EQ(row_shift_of(0), 0.0) << "a single sample is the light's centre";
+  double gap = 0, previous = -0.5;  // sorted by the set: the golden ratio leaves no gap above 3 / 64 of a cell
+  for (const double shift : shifts) gap = std::max(gap, shift - std::exchange(previous, shift));
+  EXPECT_LT(gap, 3.0 / 64);
+}
+
+TEST(SamplePatterns, SobolIsANetInBase2WhateverTheSeed) {
+  // A (0, m, 2)-net: every elementary interval of 2^a × 2^(m − a) cells holds exactly one of the 2^m points. Owen
+  // scrambling keeps it.
+  for (const std::uint32_t seed : {0u, 1u, 77u, 0xffffffffu}) {
+    for (std::uint32_t m = 0; m <= 12; ++m) {
+      const auto points = samples(1u << m, SamplePattern::sobol, seed);
+      for (std::uint32_t a = 0; a <= m; ++a) {
+        EXPECT_EQ(cells_with_one(points, 1u << a, 1u << (m - a)), std::size_t{1} << m) << seed << ' ' << m << ' ' << a;
+      }
+    }
+  }
+}
+
+TEST(SamplePatterns, JitteredHasOnePointInEachStratum) {
+  EXPECT_EQ(cells_with_one(samples(256, SamplePattern::jittered, 5), 16, 16), 256u);
+  EXPECT_EQ(cells_with_one(unit_square_samples({0, 3, 7, SamplePattern::jittered, 5}), 7, 3), 21u);
+  const auto prime = samples(7, SamplePattern::jittered, 5);  // 3 rows of 2, 2, 3: as tall as their share
+  for (std::size_t i = 0; i < 7; ++i) {
+    const double below = i < 2 ? 0 : i < 4 ? 2 : 4, above = i < 2 ? 2 : i < 4 ? 4 : 7;
+    EXPECT_GE(prime[i].y, below / 7);
+    EXPECT_LT(prime[i].y, above / 7);
+  }
+}
+
+TEST(SamplePatterns, SeedsDecideAndRepeat) {
+  for (const SamplePattern pattern : {SamplePattern::sobol, SamplePattern::jittered}) {
+    EXPECT_EQ(samples(100, pattern, 4), samples(100, pattern, 4));
+    EXPECT_NE(samples(100, pattern, 4), samples(100, pattern, 5));
+  }
+}
+
+TEST(SamplePatterns, RefusesCountsItCannotDo) {
+  EXPECT_THROW(samples(0, SamplePattern::rows), UsageError);
+  EXPECT_THROW(samples(4097, SamplePattern::sobol), UsageError);
+  EXPECT_THROW(unit_square_samples({1, 65536, 65537, SamplePattern::grid, 0}), UsageError);
+  EXPECT_THROW(unit_square_samples({1, 0, 4, SamplePattern::grid, 0}), UsageError);
+  try {
+    samples(0, SamplePattern::rows);
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "light samples: 0 asked for; 1 to 4096 can be done");
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::visibility

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "base/atomic_file.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace penumbra::visibility {
+
+// A file of `--bits`, format penumbra-bits/1, little-endian: every pair's answer, for outside judges.
+//
+//   ASCII          "penumbra-bits/1 W H N\n"
+//   3 double       origin of the scene floats
+//   N × 3 float    light samples, relative to the origin
+//   W·H times, in scan-line order:
+//     3 float      view sample, relative to the origin (0 for background)
+//     1 int32      carrying triangle, −1 background
+//     ⌈N/32⌉ uint32  bit j mod 32 of word ⌊j/32⌋ is set iff light sample j is visible
+
+/// Writes such a file in bands of rows, as tiles come; it appears whole with commit() or not at all. `samples` must
+/// outlive the writer.
+class BitsWriter {
+ public:
+  /// Throws UsageError for a sphere light: its points differ from pixel to pixel.
+  BitsWriter(const std::filesystem::path& path, const glm::dvec3& origin, const ViewSamples& samples,
+             const Light& light);
+
+  /// The masks of the next pixels in scan-line order, words_per_mask() words each.
+  void append(std::span<const std::uint32_t> masks);
+
+  /// After the last pixel.
+  void commit();
+
+ private:
+  const ViewSamples& samples_;
+  std::uint32_t words_per_mask_;
+  std::size_t next_pixel_ = 0;
+  AtomicFile file_;
+};
+
+/// The whole file at once.
+void write_bits(const std::filesystem::path& path, const glm::dvec3& origin, const ViewSamples& samples,
+                const Light& light, std::span<const std::uint32_t> masks);
+
+struct BitsFile {
+  std::uint32_t width = 0, height = 0, sample_count = 0;
+  glm::dvec3 origin{0};
+  std::vector<glm::vec3> light_points;
+  std::vector<glm::vec3> p;  ///< one a pixel, like the next
+  std::vector<std::int32_t> triangle;
+  std::vector<std::uint32_t> masks;  ///< words_per_mask() a pixel
+
+  [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count + 31) / 32; }
+};
+
+/// Throws InputError for what is no such file, or one that is too short or too long.
+BitsFile read_bits(const std::filesystem::path& path);
+
+}  // namespace penumbra::visibility

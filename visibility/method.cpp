@@ -1,0 +1,62 @@
+#include "visibility/method.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+
+namespace penumbra::visibility {
+
+const char* name_of(Family family) {
+  switch (family) {
+    case Family::reference:
+      return "reference";
+    case Family::geometry:
+      return "geometry";
+    case Family::image:
+      return "image";
+  }
+  return "?";
+}
+
+const char* name_of(Output output) {
+  switch (output) {
+    case Output::mask:
+      return "mask";
+    case Output::scalar:
+      return "scalar";
+  }
+  return "?";
+}
+
+void Method::read_masks(std::span<std::uint32_t> masks) {
+  throw UsageError(
+      "method {} gives V alone, not one bit a light sample ({} words asked for); take a method whose output "
+      "is a mask (see `penumbra methods`)",
+      description().name, masks.size());
+}
+
+void check_light(const MethodDescription& description, const Light& light) {
+  const std::vector<LightKind>& can = description.lights;
+  if (std::find(can.begin(), can.end(), light.kind) != can.end()) return;
+  std::string kinds;
+  for (const LightKind kind : can) kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
+  throw InputError(
+      "light \"{}\" is a {}; method {} can do: {}. Take another light (--light) or method (--method; raytrace "
+      "does every kind)",
+      light.name, name_of(light.kind), description.name, kinds);
+}
+
+void check_options(const MethodDescription& description, const MethodOptions& options) {
+  for (const auto& [key, value] : options) {
+    const auto matches = [&key = key](const OptionDescription& option) { return option.name == key; };
+    if (std::any_of(description.options.begin(), description.options.end(), matches)) continue;
+    std::string known;
+    for (const OptionDescription& option : description.options) {
+      known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", option.name, option.values);
+    }
+    throw UsageError("method {} has no option \"{}\"; it has {}", description.name, key,
+                     known.empty() ? "none" : known);
+  }
+}
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,165 @@
+// The contract's "Truth of a pair", decided exactly: CGAL's filtered kernel takes the floats as they are (a float is a
+// double is a number) and falls back to exact arithmetic where rounding could matter.
+
+#include "visibility/pair_truth.hpp"
+
+#include "base/assert.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/MP_Float.h>
+#include <glm/common.hpp>
+
+#include <vector>
+
+namespace penumbra::visibility {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Exact = CGAL::MP_Float;  // every sum, difference and product of doubles, without rounding
+
+Kernel::Point_3 point(const glm::vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+int orientation(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
+  return static_cast<int>(CGAL::orientation(point(a), point(b), point(c), point(d)));
+}
+
+struct ExactVector {
+  Exact x, y, z;
+};
+template <typename Vector>
+ExactVector difference(const Vector& to, const Vector& from) {
+  const auto one = [](double a, double b) { return Exact(a) - Exact(b); };
+  return {one(to.x, from.x), one(to.y, from.y), one(to.z, from.z)};
+}
+
+int sign_of_determinant(const ExactVector& a, const ExactVector& b, const ExactVector& c) {
+  const Exact value = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  return static_cast<int>(CGAL::sign(value));
+}
+
+struct EdgeSign {
+  int sign = 0;
+  bool was_zero = false;
+};
+
+/// The sign of (p, l; a b): on which side of the line p→l the edge a→b passes. It is the sign of
+/// det(l − p, a − p, b − p), affine in l; so at l + ε·u + ε²·v it is, where it vanishes at l, the sign of
+/// det(u, a − p, b − p), and where that vanishes too, of det(v, a − p, b − p). Antisymmetric in a and b: neighbouring
+/// triangles agree about their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane,
+/// and it is not met anyway) or on the light's plane (then condition (2) has already refused the pair).
+EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
+  const int sign = orientation(p, l, a, b);
+  if (sign != 0) return {sign, false};
+  const ExactVector pa = difference(a, p), pb = difference(b, p);
+  ExactVector u, v;
+  if (light.kind == LightKind::sphere) {
+    const LightAxes axes = light_axes(light, p);
+    u = difference(axes.u, glm::dvec3(0));
+    v = difference(axes.v, glm::dvec3(0));
+  } else {
+    u = difference(light.center_u, light.center);
+    v = difference(light.center_v, light.center);
+  }
+  const int along_u = sign_of_determinant(u, pa, pb);
+  return {along_u != 0 ? along_u : sign_of_determinant(v, pa, pb), true};
+}
+
+bool boxes_touch(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  for (int i = 0; i < 3; ++i) {
+    if (glm::max(a[i], glm::max(b[i], c[i])) < glm::min(p[i], l[i])) return false;
+    if (glm::min(a[i], glm::min(b[i], c[i])) > glm::max(p[i], l[i])) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p) {
+  return static_cast<Side>(orientation(a, b, c, p));
+}
+
+bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+  return CGAL::collinear(point(a), point(b), point(c));
+}
+
+bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other) {
+  for (const glm::vec3& corner : other) {
+    if (side_of_plane(carrier[0], carrier[1], carrier[2], corner) != Side::on) return false;
+  }
+  return true;
+}
+
+Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
+                               const Light& light) {
+  const auto& [a, b, c] = corners;
+  const Side side_p = side_of_plane(a, b, c, p), side_l = side_of_plane(a, b, c, l);
+  const bool plane_zero = side_p == Side::on || side_l == Side::on;
+  if (!plane_zero && side_p == side_l) return {};
+
+  // The line p→l crosses the plane, or touches it at p or l. It passes the triangle iff all three edges pass it on the
+  // same side.
+  bool some_left = false, some_right = false, edge_zero = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const EdgeSign edge = edge_sign(p, l, corners[i], corners[(i + 1) % 3], light);
+    edge_zero |= edge.was_zero;
+    if (edge.was_zero) continue;
+    some_left |= edge.sign > 0;
+    some_right |= edge.sign < 0;
+  }
+  if (some_left && some_right) return {};  // past it, whatever the zeros are read as
+  if (plane_zero) return {false, !collinear(a, b, c)};
+  if (!edge_zero) return {true, false};
+  bool all_left = true, all_right = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int sign = edge_sign(p, l, corners[i], corners[(i + 1) % 3], light).sign;
+    all_left &= sign > 0;
+    all_right &= sign < 0;
+  }
+  return {all_left || all_right, true};
+}
+
+bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l) {
+  return static_cast<int>(side_of_plane(carrier[0], carrier[1], carrier[2], l)) * facing > 0;
+}
+
+bool in_front_of_light(const Light& light, const glm::vec3& p) {
+  if (light.kind == LightKind::sphere) return true;
+  const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
+  return light.two_sided ? side != Side::on : side == Side::front;
+}
+
+PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light,
+                      std::uint32_t light_sample) {
+  PENUMBRA_ASSERT(pixel < samples.size() && samples.triangle[pixel] != ViewSamples::kBackground, "pixel {}", pixel);
+  PENUMBRA_ASSERT(light_sample < light.sample_count(), "light sample {} of {}", light_sample, light.sample_count());
+  const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
+  const glm::vec3& p = samples.p[pixel];
+  std::vector<glm::vec3> points(light.sample_count());
+  light_points_for(light, p, points.data());
+  const glm::vec3& l = points[light_sample];
+
+  const std::array<glm::vec3, 3> corners = scene.corners(carrier);
+  if (!above_horizon(corners, samples.facing[pixel], l)) {
+    return {PairOutcome::horizon, side_of_plane(corners[0], corners[1], corners[2], l) == Side::on};
+  }
+  if (!in_front_of_light(light, p)) {
+    return {PairOutcome::behind, side_of_plane(light.center, light.center_u, light.center_v, p) == Side::on};
+  }
+  // A triangle that is met without doubt settles the pair; one that is met by the reading of a zero leaves a mark.
+  PairTruth truth;
+  for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
+    if (!may_occlude(scene, light, carrier, triangle)) continue;
+    const std::array<glm::vec3, 3> occluder = scene.corners(triangle);
+    if (!boxes_touch(p, l, occluder)) continue;
+    const Meeting meeting = segment_meets_triangle(p, l, occluder, light);
+    if (meeting.meets) truth.outcome = PairOutcome::blocked;
+    if (meeting.meets && !meeting.zero_predicate) return {PairOutcome::blocked, false};
+    truth.zero_predicate |= meeting.zero_predicate;
+  }
+  return truth;
+}
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,221 @@
+// Which triangles are exactly coplanar, for a million triangles in a fraction of a second.
+//
+// A plane is the ratio n.x : n.y : n.z : n·a with n = (b − a) × (c − a). Finite floats are integers times powers of
+// two, and the ring of those numbers maps homomorphically onto the integers modulo p = 2⁶¹ − 1 (where 2⁻¹ exists). So
+// the four numbers, computed modulo p without any rounding and divided by the first that is not zero, are *equal* for
+// exactly coplanar triangles: they find all candidates. Different planes can only collide; every candidate is therefore
+// verified with an exact predicate before it gets its number. The one exception, all four zero modulo p although the
+// triangle has an area, is kept apart and compared with every plane.
+
+#include "visibility/plane_ids.hpp"
+
+#include "visibility/pair_truth.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace penumbra::visibility {
+namespace {
+
+__extension__ using Int128 = __int128;
+__extension__ using UInt128 = unsigned __int128;
+
+// ---- Arithmetic modulo the Mersenne prime p = 2⁶¹ − 1. Values are kept in [0, p).
+constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
+
+std::uint64_t reduce(UInt128 x) {  // 2⁶¹ ≡ 1: fold the high bits onto the low ones
+  std::uint64_t r = static_cast<std::uint64_t>(x & kPrime) + static_cast<std::uint64_t>(x >> 61);
+  r = (r & kPrime) + (r >> 61);
+  return r == kPrime ? 0 : r;
+}
+std::uint64_t mul(std::uint64_t a, std::uint64_t b) {
+  return reduce(static_cast<UInt128>(a) * b);
+}
+std::uint64_t add(std::uint64_t a, std::uint64_t b) {
+  return a + b >= kPrime ? a + b - kPrime : a + b;
+}
+std::uint64_t sub(std::uint64_t a, std::uint64_t b) {
+  return a >= b ? a - b : a + kPrime - b;
+}
+
+/// x⁻¹ = x^(p − 2), p − 2 = 4·(2⁵⁹ − 1) + 1; x^(2^k − 1) doubles its k by k squarings and one product.
+std::uint64_t inverse(std::uint64_t x) {
+  const auto extend = [](std::uint64_t power, std::uint64_t times, int squarings) {
+    for (int i = 0; i < squarings; ++i) power = mul(power, power);
+    return mul(power, times);
+  };
+  const std::uint64_t k2 = extend(x, x, 1), k3 = extend(k2, x, 1), k6 = extend(k3, k3, 3), k7 = extend(k6, x, 1);
+  const std::uint64_t k14 = extend(k7, k7, 7), k28 = extend(k14, k14, 14), k29 = extend(k28, x, 1);
+  const std::uint64_t k58 = extend(k29, k29, 29), k59 = extend(k58, x, 1);
+  return extend(k59, x, 2);
+}
+
+/// A float as mantissa · 2^exponent, mantissa odd or zero.
+struct Dyadic {
+  std::int64_t mantissa = 0;
+  int exponent = 0;
+};
+
+Dyadic dyadic(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const std::uint32_t fraction = bits & 0x7fffffu, biased = (bits >> 23) & 0xffu;
+  std::uint32_t mantissa = biased == 0 ? fraction : fraction | 0x800000u;
+  if (mantissa == 0) return {};
+  int exponent = (biased == 0 ? 1 : static_cast<int>(biased)) - 150;
+  const int zeros = std::countr_zero(mantissa);
+  mantissa >>= zeros;
+  exponent += zeros;
+  return {(bits >> 31) != 0 ? -static_cast<std::int64_t>(mantissa) : static_cast<std::int64_t>(mantissa), exponent};
+}
+
+std::uint64_t residue(float value) {
+  const Dyadic d = dyadic(value);
+  if (d.mantissa == 0) return 0;
+  const int shift = ((d.exponent % 61) + 61) % 61;  // 2^e ≡ 2^(e mod 61)
+  const std::uint64_t magnitude = reduce(static_cast<UInt128>(std::abs(d.mantissa)) << shift);
+  return d.mantissa < 0 && magnitude != 0 ? kPrime - magnitude : magnitude;
+}
+
+/// Equal for exactly coplanar triangles; 0 if the plane has no ratio modulo p.
+std::uint64_t plane_key(const std::array<glm::vec3, 3>& corners) {
+  std::uint64_t q[3][3];
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) q[i][axis] = residue(corners[static_cast<std::size_t>(i)][axis]);
+  }
+  std::uint64_t u[3], v[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    u[axis] = sub(q[1][axis], q[0][axis]);
+    v[axis] = sub(q[2][axis], q[0][axis]);
+  }
+  std::uint64_t plane[4] = {sub(mul(u[1], v[2]), mul(u[2], v[1])), sub(mul(u[2], v[0]), mul(u[0], v[2])),
+                            sub(mul(u[0], v[1]), mul(u[1], v[0])), 0};
+  plane[3] = add(add(mul(plane[0], q[0][0]), mul(plane[1], q[0][1])), mul(plane[2], q[0][2]));
+  const std::uint64_t* pivot = std::find_if(plane, plane + 4, [](std::uint64_t x) { return x != 0; });
+  if (pivot == plane + 4) return 0;
+  const std::uint64_t scale = inverse(*pivot);
+  std::uint64_t key = 0x9e3779b97f4a7c15ull;
+  for (const std::uint64_t x : plane) key = (key ^ (key >> 29) ^ mul(x, scale)) * 0xbf58476d1ce4e5b9ull;
+  return key == 0 ? 1 : key;
+}
+
+// ---- Verification.
+
+/// One axis of two triangles as integers in units of the axis' smallest bit; a determinant's sign does not mind units
+/// that differ by axis. False if they take more than 62 bits.
+bool to_integers(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other, int axis,
+                 std::array<std::int64_t, 6>& out) {
+  std::array<Dyadic, 6> values;
+  int lowest = 1000, highest = -1000;
+  for (std::size_t i = 0; i < 6; ++i) {
+    values[i] = dyadic(i < 3 ? carrier[i][axis] : other[i - 3][axis]);
+    if (values[i].mantissa == 0) continue;
+    lowest = std::min(lowest, values[i].exponent);
+    highest = std::max(highest, values[i].exponent + 24);
+  }
+  if (highest - lowest > 62) return false;
+  for (std::size_t i = 0; i < 6; ++i) {
+    out[i] = values[i].mantissa == 0 ? 0 : values[i].mantissa * (std::int64_t{1} << (values[i].exponent - lowest));
+  }
+  return true;
+}
+
+/// coplanar() for the usual case that it is true, where filtered predicates are slow: in 128-bit integers if they do.
+bool coplanar_quickly(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other) {
+  std::array<std::array<std::int64_t, 6>, 3> q{};
+  int bits = 3;  // a determinant is a sum of six products
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!to_integers(carrier, other, static_cast<int>(axis), q[axis])) return coplanar(carrier, other);
+    std::uint64_t widest = 0;
+    for (std::size_t i = 1; i < 6; ++i) {
+      q[axis][i] -= q[axis][0];
+      widest |= static_cast<std::uint64_t>(std::abs(q[axis][i]));
+    }
+    bits += static_cast<int>(std::bit_width(widest));
+  }
+  if (bits > 126) return coplanar(carrier, other);
+  const auto minor = [&](std::size_t i, std::size_t j) {
+    return static_cast<Int128>(q[i][1]) * q[j][2] - static_cast<Int128>(q[j][1]) * q[i][2];
+  };
+  const Int128 nx = minor(1, 2), ny = minor(2, 0), nz = minor(0, 1);
+  for (std::size_t i = 3; i < 6; ++i) {
+    if (nx * q[0][i] + ny * q[1][i] + nz * q[2][i] != 0) return false;
+  }
+  return true;
+}
+
+/// Fast where the answer is no; the products of float differences cannot over- or underflow in double.
+bool has_zero_area(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a = corners[0], u = glm::dvec3(corners[1]) - a, v = glm::dvec3(corners[2]) - a;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    // Each difference and product is off by a factor of 1 ± 2⁻⁵³, their difference by as much of itself.
+    const double left = u[i] * v[j], right = u[j] * v[i];
+    if (std::abs(left - right) > 0x1p-50 * (std::abs(left) + std::abs(right))) return false;
+  }
+  return collinear(corners[0], corners[1], corners[2]);
+}
+
+struct Candidate {
+  std::uint64_t key;
+  std::uint32_t triangle;
+  bool operator<(const Candidate& other) const {
+    return key != other.key ? key < other.key : triangle < other.triangle;
+  }
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
+  const std::size_t count = scene.triangles.size();
+  const tbb::blocked_range<std::size_t> all(0, count, 1024);
+  std::vector<std::uint32_t> plane(count, SceneFloats::kNoPlane);
+  std::vector<Candidate> order(count);
+  tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const std::array<glm::vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(i));
+      order[i] = {has_zero_area(corners) ? 0 : plane_key(corners), static_cast<std::uint32_t>(i)};
+      if (order[i].key == 0) plane[i] = has_zero_area(corners) ? SceneFloats::kNoPlane : static_cast<std::uint32_t>(i);
+    }
+  });
+  tbb::parallel_sort(order.begin(), order.end());
+
+  // Each triangle against the first one of its key.
+  tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
+    const auto by_key = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
+    auto head = std::lower_bound(order.begin(), order.end(), order[range.begin()], by_key);
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (order[i].key == 0) continue;
+      if (order[i].key != head->key) head = order.begin() + static_cast<std::ptrdiff_t>(i);
+      const std::uint32_t first = head->triangle, triangle = order[i].triangle;
+      if (first == triangle || coplanar_quickly(scene.corners(first), scene.corners(triangle))) plane[triangle] = first;
+    }
+  });
+
+  // What is left are keys that collided (about one pair in 2⁶⁴) and planes without a key (contrived): each against
+  // every plane that could be its own, in order of triangles.
+  std::vector<std::uint32_t> collided, keyless;
+  for (const Candidate& candidate : order) {
+    if (candidate.key == 0 && plane[candidate.triangle] != SceneFloats::kNoPlane) keyless.push_back(candidate.triangle);
+    if (candidate.key != 0 && plane[candidate.triangle] == SceneFloats::kNoPlane)
+      collided.push_back(candidate.triangle);
+  }
+  std::sort(collided.begin(), collided.end());
+  for (const std::vector<std::uint32_t>* leftovers : {&collided, &keyless}) {
+    for (const std::uint32_t triangle : *leftovers) plane[triangle] = SceneFloats::kNoPlane;
+    for (const std::uint32_t triangle : *leftovers) {
+      std::uint32_t first = 0;  // plane[i] == i: i gives its plane the number
+      while (first < count && (plane[first] != first || !coplanar(scene.corners(first), scene.corners(triangle)))) {
+        ++first;
+      }
+      plane[triangle] = first < count ? first : triangle;
+    }
+  }
+  return plane;
+}
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::visibility {
+
+/// How a request spreads over rows. Every pattern but sobol has rows; only rows and grid round the count.
+struct SampleLayout {
+  std::uint32_t count = 0;  ///< points the pattern will give
+  std::uint32_t rows = 0;
+  std::uint32_t columns = 0;  ///< rows and grid: points of every row
+};
+
+/// Throws UsageError for a count outside 1 … kMaxLightSamples.
+SampleLayout layout_of(const SampleRequest& request);
+
+/// rows pattern: the shift of a row in cells, in (−0.5, 0.5); row 0 is not shifted. A multiple of 2⁻¹⁶, so exact in
+/// float and double.
+double row_shift_of(std::uint32_t row);
+
+inline constexpr std::uint32_t kMaxLightSamples = 4096;
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,121 @@
+// World space in double minus the origin, rounded once to float32; triangles in an order of vertices of their own.
+
+#include "visibility/scene_floats.hpp"
+
+#include "base/error.hpp"
+#include "visibility/plane_ids.hpp"
+
+#include <glm/common.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace penumbra::visibility {
+namespace {
+
+bool lexicographically_less(const glm::vec3& a, const glm::vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+glm::dvec3 center_of_bounds(const std::vector<glm::dvec3>& positions) {
+  if (positions.empty()) return glm::dvec3(0);
+  glm::dvec3 lower = positions.front(), upper = lower;
+  for (const glm::dvec3& position : positions) {
+    lower = glm::min(lower, position);
+    upper = glm::max(upper, position);
+  }
+  return 0.5 * lower + 0.5 * upper;
+}
+
+[[noreturn]] void refuse_position(const scenes::Scene& scene, std::size_t position, const glm::dvec3& origin) {
+  const auto& triangles = scene.soup.triangles;
+  const auto user = std::find_if(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+    return t[0] == position || t[1] == position || t[2] == position;
+  });
+  std::string owner = "no triangle";
+  if (user != triangles.end()) {
+    owner = fmt::format(
+        "mesh \"{}\"", scene.objects.at(scene.soup.object.at(static_cast<std::size_t>(user - triangles.begin()))).name);
+  }
+  const glm::dvec3& at = scene.soup.positions[position];
+  throw InputError("vertex {} ({}, {}, {}) of {} is not finite in float32 relative to the scene's origin ({}, {}, {})",
+                   position, at.x, at.y, at.z, owner, origin.x, origin.y, origin.z);
+}
+
+struct Ranked {
+  std::array<float, 9> vertices;  // the triangle's sorted vertices: the key
+  std::uint32_t triangle;
+  bool operator<(const Ranked& other) const { return vertices < other.vertices; }
+};
+
+/// Each triangle's place among the distinct sorted vertex triples in lexicographic order.
+std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
+  std::vector<Ranked> order(scene.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size()),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                        const auto [a, b, c] = scene.corners(static_cast<std::uint32_t>(i));
+                        order[i] = {{a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z}, static_cast<std::uint32_t>(i)};
+                      }
+                    });
+  tbb::parallel_sort(order.begin(), order.end());
+  std::vector<std::uint32_t> rank(order.size());
+  std::uint32_t current = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && order[i - 1] < order[i]) ++current;
+    rank[order[i].triangle] = current;
+  }
+  return rank;
+}
+
+}  // namespace
+
+SceneFloats make_scene_floats(const scenes::Scene& scene) {
+  SceneFloats floats;
+  floats.origin = center_of_bounds(scene.soup.positions);
+  floats.positions.reserve(scene.soup.positions.size());
+  for (const glm::dvec3& world : scene.soup.positions) {
+    const glm::vec3 position = glm::vec3(world - floats.origin) + 0.0f;  // + 0 turns −0 into +0
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
+      refuse_position(scene, floats.positions.size(), floats.origin);
+    }
+    floats.positions.push_back(position);
+  }
+  if (!floats.positions.empty()) {
+    floats.lower = floats.upper = floats.positions.front();
+    for (const glm::vec3& position : floats.positions) {
+      floats.lower = glm::min(floats.lower, position);
+      floats.upper = glm::max(floats.upper, position);
+    }
+  }
+
+  floats.triangles = scene.soup.triangles;
+  for (Triangle& triangle : floats.triangles) {
+    // Vertices at the same place are told apart by nothing that is computed from places, so their order is free.
+    std::sort(triangle.begin(), triangle.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return lexicographically_less(floats.positions[a], floats.positions[b]);
+    });
+  }
+  floats.object = scene.soup.object;
+  floats.rank = ranks(floats);
+  floats.plane = plane_ids(floats);
+
+  const std::size_t count = floats.triangles.size();
+  floats.casts_shadow.resize(count);
+  floats.receives_shadow.resize(count);
+  floats.emits.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const scenes::Object& object = scene.objects.at(floats.object[i]);
+    floats.casts_shadow[i] = object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane;
+    floats.receives_shadow[i] = object.receives_shadow;
+    floats.emits[i] = object.emits ? static_cast<std::int32_t>(*object.emits) : -1;
+  }
+  return floats;
+}
+
+}  // namespace penumbra::visibility

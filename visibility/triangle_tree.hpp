@@ -1,0 +1,62 @@
+#pragma once
+
+#include "visibility/scene_floats.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::visibility {
+
+/// An eight-wide bounding volume hierarchy over the triangles that cast shadow, built by Embree's builder (surface area
+/// heuristic in blocks of eight). Made for one lane a child and one lane a triangle.
+struct TriangleTree {
+  static constexpr std::uint32_t kWidth = 8;
+  static constexpr std::uint32_t kNoChild = 0xffffffffu;
+  static constexpr std::uint32_t kLeafBit = 0x80000000u;
+  static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+
+  struct Child {
+    glm::vec3 lower{0}, upper{0};
+    std::uint32_t reference = kNoChild;     ///< a node, or kLeafBit | leaf, or kNoChild
+  };
+  using Node = std::array<Child, kWidth>;
+  using Leaf = std::array<std::uint32_t, kWidth>;  ///< triangles; kNoTriangle in unused slots at the end
+
+  std::vector<Node> nodes;                  ///< the root is node 0; empty when nothing casts shadow
+  std::vector<Leaf> leaves;
+  std::uint32_t depth = 0;                  ///< nodes on the longest way from root to leaf
+
+  /// Calls `visit(triangle)` for each triangle in a leaf whose box touches [lower, upper].
+  template <typename Visit>
+  void for_each_near(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const;
+};
+
+TriangleTree make_triangle_tree(const SceneFloats& scene);
+
+template <typename Visit>
+void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const {
+  std::vector<std::uint32_t> stack;
+  if (!nodes.empty()) stack.push_back(0);
+  while (!stack.empty()) {
+    const Node& node = nodes[stack.back()];
+    stack.pop_back();
+    for (const Child& child : node) {
+      if (child.reference == kNoChild) continue;
+      bool touches = true;
+      for (int axis = 0; axis < 3; ++axis) touches = touches && child.lower[axis] <= upper[axis] && child.upper[axis] >= lower[axis];
+      if (!touches) continue;
+      if ((child.reference & kLeafBit) == 0) {
+        stack.push_back(child.reference);
+        continue;
+      }
+      for (const std::uint32_t triangle : leaves[child.reference & ~kLeafBit]) {
+        if (triangle != kNoTriangle) visit(triangle);
+      }
+    }
+  }
+}
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,201 @@
+// What each pixel sees, in double arithmetic on the scene floats: the definition that a rasteriser has to agree with.
+
+#include "visibility/view_samples.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace penumbra::visibility {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// Where the pixel's ray meets the triangle's plane, computed from the sorted vertices.
+struct PlaneHit {
+  double t = 0;           // distance along the view axis
+  glm::dvec3 normal{0};   // (b − a) × (c − a)
+  double eye_height = 0;  // normal · (eye − a): positive if the normal points to the viewer's side
+};
+
+std::optional<PlaneHit> meet_plane(const PinholeCamera& camera, const glm::dvec3& direction,
+                                   const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a = corners[0], b = corners[1], c = corners[2];
+  PlaneHit hit;
+  hit.normal = glm::cross(b - a, c - a);
+  hit.eye_height = glm::dot(hit.normal, camera.eye - a);
+  const double descent = -glm::dot(hit.normal, direction);
+  if (descent == 0) return std::nullopt;
+  hit.t = hit.eye_height / descent;
+  if (!(hit.t > 0) || !std::isfinite(hit.t)) return std::nullopt;
+  return hit;
+}
+
+/// Which side of the sorted triangle's plane the eye is on: exact; if the eye is exactly on the plane (seen edge-on,
+/// covered by rounding alone), the side that rounding saw it on.
+std::int8_t facing_of(const PinholeCamera& camera, const std::array<glm::vec3, 3>& corners, double eye_height) {
+  const auto point = [](const auto& v) { return Kernel::Point_3(v.x, v.y, v.z); };
+  const auto side =
+      static_cast<int>(CGAL::orientation(point(corners[0]), point(corners[1]), point(corners[2]), point(camera.eye)));
+  if (side != 0) return static_cast<std::int8_t>(side);
+  return eye_height > 0 ? std::int8_t{1} : std::int8_t{-1};
+}
+
+/// The sphere as a whole strictly above the carrier's plane: n · (c − a) > r |n|, in double (a radius is no float32).
+bool sphere_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Light& light) {
+  const glm::dvec3 a = carrier[0];
+  const glm::dvec3 normal = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
+  return facing * glm::dot(normal, glm::dvec3(light.center) - a) > light.radius * glm::length(normal);
+}
+
+PixelClass classify(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light) {
+  if (samples.triangle[pixel] == ViewSamples::kBackground) return PixelClass::background;
+  const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
+  if (scene.emits[carrier] >= 0) return PixelClass::emitter;
+  if (scene.receives_shadow[carrier] == 0) return PixelClass::unshadowed;
+  if (!in_front_of_light(light, samples.p[pixel])) return PixelClass::behind;
+  const std::array<glm::vec3, 3> corners = scene.corners(carrier);
+  if (light.kind == LightKind::sphere) {
+    return sphere_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
+  }
+  for (const glm::vec3& corner : light.outline) {
+    if (!above_horizon(corners, samples.facing[pixel], corner)) return PixelClass::horizon;
+  }
+  return PixelClass::judged;
+}
+
+template <typename Body>
+void for_each_pixel(const ViewSamples& samples, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t pixel = range.begin(); pixel != range.end(); ++pixel) body(pixel);
+                    });
+}
+
+}  // namespace
+
+glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
+  const double aspect = static_cast<double>(width) / height;
+  const double across = (2 * (x + 0.5) / width - 1) * aspect, upward = 1 - 2 * (y + 0.5) / height;
+  return forward + (across * right + upward * up) * tan_half_fov;
+}
+
+PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width,
+                          std::uint32_t height) {
+  const glm::dvec3 view = camera.target - camera.eye;
+  const double distance = glm::length(view);
+  if (!(distance > 0) || !std::isfinite(distance)) {
+    throw InputError("camera \"{}\": eye ({}, {}, {}) and target must be two different finite points", camera.name,
+                     camera.eye.x, camera.eye.y, camera.eye.z);
+  }
+  if (!(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
+    throw InputError("camera \"{}\": vertical field of view is {} degrees; it must be between 0 and 180", camera.name,
+                     camera.vertical_fov);
+  }
+  if (width == 0 || height == 0)
+    throw InputError("camera \"{}\": an image of {}x{} has no pixels", camera.name, width, height);
+  PinholeCamera result;
+  result.eye = camera.eye - origin;
+  result.forward = view / distance;
+  const glm::dvec3 right = glm::cross(result.forward, camera.up);
+  // Each component of the product is off by at most two roundings of |up|: below that, its direction is noise.
+  constexpr double kNoise = 4 * std::numeric_limits<double>::epsilon();
+  if (!(glm::length(right) > kNoise * glm::length(camera.up))) {
+    throw InputError("camera \"{}\": up ({}, {}, {}) is zero or parallel to the view direction", camera.name,
+                     camera.up.x, camera.up.y, camera.up.z);
+  }
+  result.right = glm::normalize(right);
+  result.up = glm::cross(result.right, result.forward);
+  result.tan_half_fov = std::tan(glm::radians(camera.vertical_fov) / 2);
+  result.width = width;
+  result.height = height;
+  return result;
+}
+
+std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direction,
+                            const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a = glm::dvec3(corners[0]) - camera.eye, b = glm::dvec3(corners[1]) - camera.eye,
+                   c = glm::dvec3(corners[2]) - camera.eye;
+  // On which side of the ray each edge passes. The sorted vertices make a→b, b→c and a→c the edges' one direction,
+  // whatever triangle they belong to; going around the triangle takes a→c backwards.
+  const double ab = glm::dot(direction, glm::cross(a, b)), bc = glm::dot(direction, glm::cross(b, c)),
+               ca = -glm::dot(direction, glm::cross(a, c));
+  const bool left = ab >= 0 && bc >= 0 && ca >= 0, right = ab <= 0 && bc <= 0 && ca <= 0;
+  if (left == right) return std::nullopt;  // neither; or all zero: edge-on or without area
+  const std::optional<PlaneHit> hit = meet_plane(camera, direction, corners);
+  if (!hit) return std::nullopt;
+  return hit->t;
+}
+
+ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera& camera,
+                                  std::vector<std::int32_t> triangles) {
+  const std::size_t pixels = static_cast<std::size_t>(camera.width) * camera.height;
+  PENUMBRA_ASSERT(triangles.size() == pixels, "{} triangles for {} pixels", triangles.size(), pixels);
+  ViewSamples samples;
+  samples.width = camera.width;
+  samples.height = camera.height;
+  samples.eye = glm::vec3(camera.eye);
+  samples.triangle = std::move(triangles);
+  samples.p.assign(pixels, glm::vec3(0));
+  samples.n.assign(pixels, glm::vec3(0));
+  samples.depth.assign(pixels, 0.0f);
+  samples.facing.assign(pixels, 0);
+  for_each_pixel(samples, [&](std::size_t pixel) {
+    std::int32_t& triangle = samples.triangle[pixel];
+    if (triangle == ViewSamples::kBackground) return;
+    const std::array<glm::vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(triangle));
+    const auto x = static_cast<std::uint32_t>(pixel % camera.width),
+               y = static_cast<std::uint32_t>(pixel / camera.width);
+    const glm::dvec3 direction = camera.direction(x, y);
+    const std::optional<PlaneHit> hit = meet_plane(camera, direction, corners);
+    const glm::vec3 p = hit ? glm::vec3(camera.eye + hit->t * direction) + 0.0f : glm::vec3(0);
+    if (!hit || !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      triangle = ViewSamples::kBackground;  // a rasteriser's proposal that the ray only meets at infinity: edge-on
+      return;
+    }
+    samples.p[pixel] = p;
+    samples.facing[pixel] = facing_of(camera, corners, hit->eye_height);
+    samples.n[pixel] = glm::vec3(glm::normalize(hit->normal * static_cast<double>(samples.facing[pixel]))) + 0.0f;
+    samples.depth[pixel] = static_cast<float>(hit->t);
+  });
+  return samples;
+}
+
+ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCamera& camera) {
+  std::vector<std::int32_t> carriers(static_cast<std::size_t>(camera.width) * camera.height, ViewSamples::kBackground);
+  tbb::parallel_for(std::uint32_t{0}, camera.height, [&](std::uint32_t y) {
+    for (std::uint32_t x = 0; x < camera.width; ++x) {
+      const glm::dvec3 direction = camera.direction(x, y);
+      double nearest = std::numeric_limits<double>::infinity();
+      std::int32_t& carrier = carriers[static_cast<std::size_t>(y) * camera.width + x];
+      for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+        if (scene.plane[i] == SceneFloats::kNoPlane) continue;
+        const std::optional<double> t = cover(camera, direction, scene.corners(i));
+        if (!t || *t > nearest) continue;
+        if (*t == nearest && scene.rank[i] >= scene.rank[static_cast<std::size_t>(carrier)]) continue;
+        nearest = *t;
+        carrier = static_cast<std::int32_t>(i);
+      }
+    }
+  });
+  return complete_view_samples(scene, camera, std::move(carriers));
+}
+
+std::vector<PixelClass> classify_pixels(const SceneFloats& scene, const ViewSamples& samples, const Light& light) {
+  std::vector<PixelClass> classes(samples.size());
+  for_each_pixel(samples, [&](std::size_t pixel) { classes[pixel] = classify(scene, samples, pixel, light); });
+  return classes;
+}
+
+}  // namespace penumbra::visibility

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "vsm/view_sample.shared.h"
+
+// Blocked masks to visibility: V = 1 − popcount / N.
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Masks { uint masks[]; };
+layout(scalar, binding = 1) writeonly buffer Visibility { float visibility[]; };
+layout(scalar, push_constant) uniform Push { ResolvePush push; };
+
+void main() {
+  const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (i >= push.pixel_count) return;
+  const uint words = (push.sample_count + 31) / 32;
+  uint count = 0;
+  for (uint word = 0; word < words; ++word) count += bitCount(masks[i * words + word]);
+  visibility[i] = float(push.sample_count - count) / float(push.sample_count);
+}

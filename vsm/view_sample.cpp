@@ -1,0 +1,422 @@
+#include "vsm/view_sample.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "render/compute_pass.hpp"
+#include "visibility/triangle_tree.hpp"
+#include "vsm/find_leaves.comp.spv.hpp"
+#include "vsm/light_frame.hpp"
+#include "vsm/resolve.comp.spv.hpp"
+#include "vsm/settle.comp.spv.hpp"
+#include "vsm/settle.hpp"
+#include "vsm/test_pairs.comp.spv.hpp"
+#include "vsm/view_sample.shared.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace penumbra::vsm {
+namespace {
+
+using visibility::TriangleTree;
+
+/// One texel of the shaders' buffers: three floats and a number, kept as bits so that nothing is flushed to zero.
+struct Texel {
+  glm::vec3 value{0};
+  std::uint32_t number = 0;
+};
+static_assert(sizeof(Texel) == 16);
+
+constexpr std::uint32_t kSharedBudget = 16 * 1024;      // bytes of shared memory for row masks
+constexpr std::uint32_t kFirstQuestions = 1U << 16, kFirstChunks = 1U << 15;  // both grow
+constexpr std::uint32_t kMostChunk = 32;                // leaves that one workgroup tests
+constexpr std::uint32_t kPointCells = 256;
+
+const visibility::MethodDescription& describe() {
+  static const visibility::MethodDescription description{
+      .name = "view-sample",
+      .family = visibility::Family::geometry,
+      .paper = "Eisemann and Décoret 2007; Sintorn, Eisemann and Assarsson 2008",
+      .output = visibility::Output::mask,
+      .exact_for = "every pair of view sample and light sample, for any triangle soup",
+      .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon},
+      .options = {},
+  };
+  return description;
+}
+
+/// The power of two that brings the scene's largest coordinate into [1, 2): exact, and the float range then fits the
+/// sixth powers of lengths that the shader multiplies.
+float scale_of(const visibility::SceneFloats& scene) {
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
+  return largest > 0 ? std::ldexp(1.0F, -std::ilogb(largest)) : 1.0F;
+}
+
+/// A box as middle and half extent in float, not smaller than the box.
+std::array<Texel, 2> box_texels(const TriangleTree::Child& child, float scale) {
+  const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
+  const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
+  glm::vec3 half = glm::max(upper - middle, middle - lower);
+  for (int axis = 0; axis < 3; ++axis) half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
+  return {Texel{middle, child.reference}, Texel{half, 0}};
+}
+
+class ViewSampleMapping final : public visibility::Method {
+ public:
+  ViewSampleMapping(const render::Device& device, const visibility::MethodOptions& options)
+      : device_(&device),
+        settle_(device, {.name = "settle", .spirv = shaders::kSettleComp, .push_bytes = sizeof(std::uint32_t)}),
+        resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
+        commands_(device) {
+    visibility::check_options(describe(), options);
+  }
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return describe(); }
+
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    scene_ = &scene;
+    scale_ = scale_of(scene);
+    tree_ = visibility::make_triangle_tree(scene);
+    std::vector<Texel> nodes;
+    nodes.reserve(tree_.nodes.size() * 2 * TriangleTree::kWidth);
+    for (const TriangleTree::Node& node : tree_.nodes) {
+      for (const TriangleTree::Child& child : node) {
+        for (const Texel& texel : box_texels(child, scale_)) nodes.push_back(texel);
+      }
+    }
+    std::array<std::vector<Texel>, 3> corners;
+    for (const TriangleTree::Leaf& leaf : tree_.leaves) {
+      for (const std::uint32_t triangle : leaf) {
+        std::array<glm::vec3, 3> at{};
+        std::array<std::uint32_t, 3> numbers{TriangleTree::kNoTriangle, visibility::SceneFloats::kNoPlane, 0xffffffffU};
+        if (triangle != TriangleTree::kNoTriangle) {
+          at = scene.corners(triangle);
+          numbers = {triangle, scene.plane[triangle], static_cast<std::uint32_t>(scene.emits[triangle])};
+        }
+        for (std::size_t i = 0; i < 3; ++i) corners[i].push_back({at[i] * scale_, numbers[i]});
+      }
+    }
+    using render::BufferUse;
+    nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", nodes, BufferUse::texels));
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners_[i].emplace(render::make_buffer<Texel>(*device_, "tree corners", corners[i], BufferUse::texels));
+    }
+  }
+
+  void prepare_light(const visibility::Light& light) override {
+    visibility::check_light(describe(), light);
+    PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
+    light_ = &light;
+    frame_ = make_light_frame(light, scale_);
+    counters_.clear();
+
+    const std::uint32_t lanes = device_->limits().subgroup_size;
+    const std::uint32_t words_per_row = (light.columns + 31) / 32;
+    const bool rows = !frame_.row_starts.empty() && light.rows * words_per_row * lanes * 4 <= kSharedBudget;
+    std::vector<glm::vec2> table;
+    std::vector<std::uint32_t> first_point(kPointCells + 1, 0);
+    bit_of_.resize(light.sample_count());
+    std::iota(bit_of_.begin(), bit_of_.end(), 0U);
+    if (rows) {
+      table = frame_.row_starts;
+    } else {
+      // Sorted by t, so that a triangle looks at one stretch of them.
+      std::stable_sort(bit_of_.begin(), bit_of_.end(),
+                       [&](auto a, auto b) { return frame_.coordinates[a].y < frame_.coordinates[b].y; });
+      for (const std::uint32_t j : bit_of_) table.push_back(frame_.coordinates[j]);
+      for (std::uint32_t cell = 0; cell < kPointCells; ++cell) {
+        const float from = -1.0F + static_cast<float>(cell) / 128.0F;
+        first_point[cell] = static_cast<std::uint32_t>(
+            std::lower_bound(table.begin(), table.end(), from, [](const glm::vec2& at, float t) { return at.y < t; }) - table.begin());
+      }
+      first_point[kPointCells] = light.sample_count();
+    }
+    std::vector<std::byte> bytes(first_point.size() * sizeof(std::uint32_t) + table.size() * sizeof(glm::vec2));
+    std::copy_n(std::as_bytes(std::span(first_point)).begin(), first_point.size() * sizeof(std::uint32_t), bytes.begin());
+    std::copy_n(std::as_bytes(std::span(table)).begin(), table.size() * sizeof(glm::vec2),
+                bytes.begin() + static_cast<std::ptrdiff_t>(first_point.size() * sizeof(std::uint32_t)));
+    table_.emplace(render::make_buffer<std::byte>(*device_, "light samples", bytes));
+
+    // Some processors' drivers end loops after 65535 turns a workgroup; a triangle takes about a turn a row or point.
+    const std::uint32_t turns = TriangleTree::kWidth * ((rows ? light.rows : light.sample_count()) + 8);
+    layout_ = {.scattered = !rows,
+               .words_per_row = std::max(words_per_row, 1U),
+               .shared_words = rows ? light.rows * words_per_row : light.words_per_mask(),
+               .chunk = std::clamp(40000 / turns, 1U, kMostChunk)};
+    build_passes();
+  }
+
+  void prepare_view(const visibility::ViewSamples& samples) override {
+    samples_ = &samples;
+    std::vector<Texel> texels;
+    texels.reserve(2 * samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const std::int32_t carrier = samples.triangle[i];
+      const bool background = carrier == visibility::ViewSamples::kBackground;
+      texels.push_back({samples.p[i] * scale_, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
+      texels.push_back({samples.n[i], background ? 0U : scene_->plane[static_cast<std::size_t>(carrier)]});
+    }
+    view_texels_ = std::move(texels);
+    view_rows_ = 0;
+    if (max_tile_rows() >= samples.height) upload_rows({0, samples.height});
+  }
+
+  [[nodiscard]] std::uint32_t max_tile_rows() const override {
+    PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
+    const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * light_->words_per_mask(), 2 * sizeof(Texel));
+    const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
+    if (rows == 0) {
+      throw ResourceError("one row of {} pixels with {} light samples is more than this device's storage buffers can hold",
+                          samples_->width, light_->sample_count());
+    }
+    const auto whole = static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, samples_->height));
+    return whole >= 16 && whole < samples_->height ? whole / 16 * 16 : whole;
+  }
+
+  void evaluate(const visibility::Tile& tile) override {
+    if (tile.first_row < view_row_ || tile.first_row + tile.row_count > view_row_ + view_rows_) upload_rows(tile);
+    tile_ = tile;
+    const std::uint32_t pixels = tile.row_count * samples_->width;
+    render::grow(*device_, masks_, "masks", std::uint64_t{pixels} * light_->words_per_mask() * 4);
+    render::grow(*device_, visibility_, "visibility", std::uint64_t{pixels} * 4);
+    // Bands of rows, cut in two where the lists of one would be more than a buffer can hold.
+    std::vector<visibility::Tile> bands{{0, tile.row_count}};
+    while (!bands.empty()) {
+      const visibility::Tile band = bands.back();
+      bands.pop_back();
+      if (run_band(band)) continue;
+      if (band.row_count < 2 * block_height()) {
+        throw ResourceError("view-sample: the lists of one row of pixels are more than this device's storage buffers can hold");
+      }
+      const std::uint32_t half = band.row_count / 2 / block_height() * block_height();
+      bands.push_back({band.first_row + half, band.row_count - half});
+      bands.push_back({band.first_row, half});
+      ++counters_["splitBands"];
+    }
+    resolve_.record(commands_, gpu::ResolvePush{pixels, light_->sample_count()}, {*masks_, *visibility_}, (pixels + 63) / 64);
+    submit();
+  }
+
+  void read_masks(std::span<std::uint32_t> masks) override {
+    masks_->read(masks);
+    const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count();
+    const bool sorted = !std::is_sorted(bit_of_.begin(), bit_of_.end());
+    std::vector<std::uint32_t> blocked(words);
+    for (std::size_t first = 0; first < masks.size(); first += words) {
+      const auto mask = masks.subspan(first, words);
+      if (sorted) {
+        std::copy(mask.begin(), mask.end(), blocked.begin());
+        std::fill(mask.begin(), mask.end(), 0U);
+        for (std::uint32_t j = 0; j < count; ++j) {
+          if ((blocked[j / 32] >> (j % 32) & 1U) != 0) mask[bit_of_[j] / 32] |= 1U << (bit_of_[j] % 32);
+        }
+      }
+      for (std::uint32_t& word : mask) word = ~word;
+      if (count % 32 != 0) mask.back() &= (1U << (count % 32)) - 1;
+    }
+  }
+
+  void read_visibility(std::span<float> visibility) override { visibility_->read(visibility); }
+
+  std::vector<visibility::PassTime> take_pass_times() override { return std::exchange(pass_times_, {}); }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
+
+ private:
+  /// How the shaders are specialised for a light.
+  struct Layout {
+    bool scattered = false;
+    std::uint32_t words_per_row = 1, shared_words = 1, chunk = 1;
+    bool operator==(const Layout&) const = default;
+  };
+
+  /// Blocks as square as the subgroup allows: 4×2, 4×4, 8×4, 8×8.
+  [[nodiscard]] std::uint32_t block_width() const { return device_->limits().subgroup_size >= 32 ? 8 : 4; }
+  [[nodiscard]] std::uint32_t block_height() const { return device_->limits().subgroup_size / block_width(); }
+
+  void build_passes() {
+    const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
+    // Depth first, `teams` nodes at a time, each leaves at most seven more than it takes.
+    const std::uint32_t stack = teams * TriangleTree::kWidth * (tree_.depth + 2);
+    const std::vector<std::uint32_t> constants{lanes,          lanes,          layout_.scattered ? 1U : 0U, layout_.words_per_row,
+                                               layout_.shared_words, block_width(), layout_.chunk,                stack};
+    if (find_leaves_ && constants == constants_) return;
+    const auto make = [&](const char* name, std::span<const std::uint32_t> spirv) {
+      return render::ComputePass(*device_, {.name = name,
+                                            .spirv = spirv,
+                                            .push_bytes = sizeof(gpu::ViewSamplePush),
+                                            .constants = constants,
+                                            .full_subgroups = true});
+    };
+    find_leaves_.emplace(make("find leaves", shaders::kFindLeavesComp));
+    test_pairs_.emplace(make("test pairs", shaders::kTestPairsComp));
+    constants_ = constants;
+  }
+
+  void upload_rows(const visibility::Tile& tile) {
+    const std::span<const Texel> rows =
+        std::span<const Texel>(view_texels_).subspan(std::size_t{2} * tile.first_row * samples_->width, std::size_t{2} * tile.row_count * samples_->width);
+    render::grow(*device_, view_, "view samples", rows.size_bytes(), render::BufferUse::texels);
+    view_->write(rows);
+    view_row_ = tile.first_row;
+    view_rows_ = tile.row_count;
+  }
+
+  [[nodiscard]] gpu::ViewSamplePush push_constants() const {
+    gpu::ViewSamplePush push{};
+    float reach = 0;
+    for (int i = 0; i < 3; ++i) {
+      push.center[i] = frame_.center[i];
+      push.u[i] = frame_.u[i];
+      push.v[i] = frame_.v[i];
+      reach = std::max({reach, std::abs(frame_.center[i]) + std::abs(frame_.u[i]) + std::abs(frame_.v[i]),
+                        std::abs(scene_->lower[i]) * scale_, std::abs(scene_->upper[i]) * scale_});
+    }
+    push.deviation = frame_.deviation;
+    push.reach = reach;
+    push.two_sided = light_->two_sided ? 1 : 0;
+    push.light = light_->index;
+    push.width = samples_->width;
+    push.first_row = tile_.first_row - view_row_;
+    push.sample_count = light_->sample_count();
+    push.rows = light_->rows;
+    push.columns = light_->columns;
+    push.empty_tree = tree_.nodes.empty() ? 1 : 0;
+    return push;
+  }
+
+  /// Head of the buffer of open questions.
+  struct Counts {
+    std::uint32_t questions = 0, chunks = 0, unfinished = 0;
+  };
+
+  /// Masks of one band of the tile, the open questions answered. Lists grow until they hold all of it, and what a try
+  /// that overflowed left behind is not used. False when a list would be larger than a storage buffer.
+  bool run_band(const visibility::Tile& band) {
+    gpu::ViewSamplePush push = push_constants();
+    push.band_first = band.first_row;
+    push.band_rows = band.row_count;
+    const std::uint64_t blocks = std::uint64_t{(samples_->width + block_width() - 1) / block_width()} *
+                                 ((band.row_count + block_height() - 1) / block_height());
+    for (;;) {
+      const std::uint64_t chunk_bytes = std::uint64_t{chunk_capacity_} * (1 + layout_.chunk) * sizeof(std::uint32_t);
+      const std::uint64_t question_bytes = sizeof(Counts) + std::uint64_t{question_capacity_} * sizeof(gpu::OpenQuestion);
+      if (std::max(chunk_bytes, question_bytes) > device_->limits().max_storage_buffer_range) {
+        chunk_capacity_ = kFirstChunks;
+        question_capacity_ = kFirstQuestions;
+        return false;
+      }
+      render::grow(*device_, chunks_, "leaf lists", chunk_bytes);
+      render::grow(*device_, questions_, "open questions", question_bytes);
+      push.question_capacity = question_capacity_;
+      push.chunk_capacity = chunk_capacity_;
+      commands_.fill(*questions_, 0, 0, sizeof(Counts));
+      find_leaves_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *nodes_}, blocks);
+      submit();
+      Counts counts;
+      questions_->read(std::span(&counts, 1));
+      if ((counts.unfinished & gpu::kWalkCut) != 0) {
+        throw ResourceError("view-sample: {} cuts off loops that a tree over {} triangles needs", device_->info().name,
+                            scene_->triangles.size());
+      }
+      if (counts.chunks > chunk_capacity_) {
+        chunk_capacity_ = counts.chunks + counts.chunks / 8;
+        ++counters_["listRetries"];
+        continue;
+      }
+      push.chunk_capacity = counts.chunks;
+      test_pairs_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *corners_[0], *corners_[1], *corners_[2]},
+                          counts.chunks);
+      submit();
+      questions_->read(std::span(&counts, 1));
+      if ((counts.unfinished & gpu::kTestCut) != 0) {
+        if (layout_.chunk == 1) throw ResourceError("view-sample: {} cuts off loops over the light samples", device_->info().name);
+        layout_.chunk = std::max(layout_.chunk / 4, 1U);
+        build_passes();
+        ++counters_["loopRetries"];
+        continue;
+      }
+      if (counts.questions > question_capacity_) {
+        question_capacity_ = counts.questions + counts.questions / 8;
+        ++counters_["listRetries"];
+        continue;
+      }
+      counters_["leafChunks"] += counts.chunks;
+      answer(counts.questions);
+      return true;
+    }
+  }
+
+  void answer(std::uint32_t count) {
+    counters_["openQuestions"] += count;
+    if (count == 0) return;
+    std::vector<gpu::OpenQuestion> questions(count);
+    questions_->read(std::span(questions), sizeof(Counts));
+    apply(settle({*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_}, questions));
+  }
+
+  void apply(const std::vector<Answer>& answers) {
+    counters_["blockedByExactPredicates"] += answers.size();
+    if (answers.empty()) return;
+    render::grow(*device_, answers_, "answers", answers.size() * sizeof(Answer));
+    answers_->write(std::span<const Answer>(answers));
+    settle_.record(commands_, static_cast<std::uint32_t>(answers.size()), {*masks_, *answers_}, (answers.size() + 63) / 64);
+    submit();
+  }
+
+  void submit() {
+    for (const render::PassMilliseconds& pass : commands_.submit()) {
+      const auto same = std::find_if(pass_times_.begin(), pass_times_.end(), [&](const auto& time) { return time.name == pass.name; });
+      if (same == pass_times_.end()) {
+        pass_times_.push_back({pass.name, pass.milliseconds});
+      } else {
+        same->milliseconds += pass.milliseconds;
+      }
+    }
+  }
+
+  const render::Device* device_;
+  render::ComputePass settle_, resolve_;
+  std::optional<render::ComputePass> find_leaves_, test_pairs_;
+  Layout layout_;
+  std::vector<std::uint32_t> constants_;
+  render::Commands commands_;
+
+  const visibility::SceneFloats* scene_ = nullptr;
+  float scale_ = 1;
+  TriangleTree tree_;
+  std::optional<render::Buffer> nodes_;
+  std::array<std::optional<render::Buffer>, 3> corners_;
+
+  const visibility::Light* light_ = nullptr;
+  LightFrame frame_;
+  std::vector<std::uint32_t> bit_of_;  // the device's sample number → the light sample
+  std::optional<render::Buffer> table_;
+
+  const visibility::ViewSamples* samples_ = nullptr;
+  std::vector<Texel> view_texels_;
+  std::uint32_t view_row_ = 0, view_rows_ = 0;  // what view_ holds
+  std::unique_ptr<render::Buffer> view_, masks_, visibility_, chunks_, questions_, answers_;
+  std::uint32_t chunk_capacity_ = kFirstChunks, question_capacity_ = kFirstQuestions;
+  visibility::Tile tile_;
+
+  std::vector<visibility::PassTime> pass_times_;
+  std::map<std::string, std::uint64_t> counters_;
+};
+
+}  // namespace
+
+const visibility::MethodDescription& view_sample_description() { return describe(); }
+
+std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device, const visibility::MethodOptions& options) {
+  return std::make_unique<ViewSampleMapping>(device, options);
+}
+
+}  // namespace penumbra::vsm
