@@ -22,7 +22,7 @@ enum class ExitCode {
 /// Caught once, in main. What only we can act on is an assertion, not an Error.
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, std::string message) : std::runtime_error(std::move(message)), code_(code) {}
+  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
   [[nodiscard]] ExitCode code() const noexcept { return code_; }
 
  private:

@@ -65,7 +65,8 @@ figcaption b { display: block; font-size: 1rem; } figcaption span { color: var(-
 table { border-collapse: collapse; width: 100%; font-size: 0.92rem; font-variant-numeric: tabular-nums; }
 caption { text-align: left; padding: 0.7rem 0.9rem; color: var(--soft); font-size: 0.9rem; }
 th, td { padding: 0.45rem 0.9rem; text-align: right; vertical-align: top; border-top: 1px solid var(--line); }
-th:first-child, td.words, .facts td, .facts th { text-align: left; }
+th:first-child, .facts td, .facts th, #methods td, #methods th { text-align: left; }
+#methods tbody th { min-width: 14rem; }
 thead th { color: var(--soft); font-weight: 600; white-space: nowrap; vertical-align: bottom; }
 tbody th { font-weight: 600; overflow-wrap: anywhere; min-width: 9rem; }
 td small, th small { display: block; color: var(--soft); font-weight: 400; }

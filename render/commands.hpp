@@ -28,7 +28,8 @@ class Commands {
   void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes);
   void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes);
 
-  /// Submits, waits, and returns the time of each pass in order (empty where the queue has no timestamps).
+  /// Submits, waits, and returns the time of each pass in order (empty where the queue has no timestamps; on
+  /// processors each pass is run and timed by itself).
   /// Throws ResourceError when the device is lost. The object can be recorded into again.
   std::vector<PassMilliseconds> submit();
 

@@ -7,7 +7,7 @@
 
 #include <vulkan/vulkan_raii.hpp>
 
-#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -81,8 +81,13 @@ struct Commands::State {
   // Descriptor pools live as long as the recording that uses their sets.
   std::vector<vk::raii::DescriptorPool> pools;
   bool recording = false;
+  bool host_timed = false;
+  std::vector<PassMilliseconds> host_times;
+  std::chrono::steady_clock::time_point opened;
 
   void begin_if_needed();
+  /// Submits what is recorded and waits for it.
+  void run();
   /// Opens a named region: debug label and a timestamp before it; close_pass writes the second and a full barrier.
   void open_pass(const std::string& name);
   void close_pass();

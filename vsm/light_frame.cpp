@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace penumbra::vsm {
 namespace {
@@ -41,14 +42,22 @@ glm::vec2 coordinates_of(const LightFrame& frame, const glm::dvec3& point) {
   return glm::vec2(glm::clamp(exact, glm::dvec2(-1), glm::dvec2(1)));
 }
 
-std::vector<glm::vec2> row_starts_of(const visibility::Light& light) {
-  std::vector<glm::vec2> starts;
-  if (light.kind != visibility::LightKind::rectangle || light.rows == 0) return starts;
+constexpr std::uint32_t kShiftUnit = 65536;
+
+double shift_of(std::uint32_t row, std::uint32_t step) {
+  return (static_cast<double>((row * step + kShiftUnit / 2) % kShiftUnit) - kShiftUnit / 2) / kShiftUnit;
+}
+
+/// The step that gives the light's row shifts, if the samples form rows that have one.
+std::optional<std::uint32_t> shift_step_of(const visibility::Light& light) {
+  if (light.kind != visibility::LightKind::rectangle || light.rows == 0) return std::nullopt;
+  if (light.row_shift.size() < 2) return 0;
+  const double step = light.row_shift[1] * kShiftUnit;
+  const auto whole = static_cast<std::uint32_t>(static_cast<std::int64_t>(step)) % kShiftUnit;
   for (std::uint32_t row = 0; row < light.rows; ++row) {
-    const double shift = light.row_shift.empty() ? 0.0 : light.row_shift[row];
-    starts.emplace_back(2.0 * (0.5 + shift) / light.columns - 1.0, 2.0 * (row + 0.5) / light.rows - 1.0);
+    if (light.row_shift[row] != shift_of(row, whole)) return std::nullopt;
   }
-  return starts;
+  return whole;
 }
 
 }  // namespace
@@ -56,23 +65,26 @@ std::vector<glm::vec2> row_starts_of(const visibility::Light& light) {
 LightFrame make_light_frame(const visibility::Light& light, float scale) {
   PENUMBRA_ASSERT(light.kind != visibility::LightKind::sphere, "a sphere has no plane");
   const Span span = span_of(light);
-  LightFrame frame{glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, row_starts_of(light), {}, 0};
+  LightFrame frame{glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, false, 0, {}, 0};
+  const std::optional<std::uint32_t> step = shift_step_of(light);
+  frame.rows = step.has_value();
+  frame.shift_step = step.value_or(0);
   double deviation = 0;
   for (std::size_t j = 0; j < light.points.size(); ++j) {
     const glm::dvec3 point = glm::dvec3(light.points[j]) * static_cast<double>(scale);
-    glm::vec2 at;
-    if (frame.row_starts.empty()) {
-      at = coordinates_of(frame, point);
-    } else {
-      const glm::vec2 start = frame.row_starts[j / light.columns];
-      at = {start.x + static_cast<float>(j % light.columns) * (2.0F / static_cast<float>(light.columns)), start.y};
+    glm::vec2 at = coordinates_of(frame, point);
+    if (frame.rows) {
+      const auto row = static_cast<std::uint32_t>(j / light.columns), column = static_cast<std::uint32_t>(j % light.columns);
+      at = glm::vec2(2.0 * (column + 0.5 + shift_of(row, frame.shift_step)) / light.columns - 1.0, 2.0 * (row + 0.5) / light.rows - 1.0);
     }
     frame.coordinates.push_back(at);
     const glm::dvec3 there = glm::dvec3(frame.center) + static_cast<double>(at.x) * glm::dvec3(frame.u) +
                              static_cast<double>(at.y) * glm::dvec3(frame.v);
     deviation = std::max(deviation, glm::length(point - there));
   }
-  frame.deviation = std::nextafter(static_cast<float>(deviation * 1.0001), INFINITY);
+  // Devices compute (s, t) of rows in float: a handful of roundings of numbers up to 2.
+  deviation += 0x1p-20 * (glm::length(glm::dvec3(frame.u)) + glm::length(glm::dvec3(frame.v)));
+  frame.deviation = static_cast<float>(deviation * 1.0001);
   return frame;
 }
 

@@ -11,43 +11,123 @@ layout(binding = 5) uniform usamplerBuffer corner_a;      // per leaf slot: (a, 
 layout(binding = 6) uniform usamplerBuffer corner_b;      // (b, plane)
 layout(binding = 7) uniform usamplerBuffer corner_c;      // (c, light that it is the body of)
 
+shared uint again[kChunk * kTeam + 1];
+
+struct Corners {
+  vec3 a, b, c;
+  uint triangle, plane;
+  int light;
+};
+
+Corners fetch(uint slot) {
+  const uvec4 a = texelFetch(corner_a, int(slot)), b = texelFetch(corner_b, int(slot)), c = texelFetch(corner_c, int(slot));
+  return Corners(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w, b.w, int(c.w));
+}
+
 float orientation;                                        // ±1: makes W positive on the way to the light
 vec3 row_s, row_t, row_w;                                 // d ↦ (S, T, W): the light point (S/W, T/W) lies behind d
 float r;                                                  // R = max(|u|, |v|) · max(|c − p|, |u|, |v|)
-float volume;                                             // |(u × v)·(c − p)|
+float light_pad;                                          // what the deviation of the light samples adds to a box
+float edge_error, det_error;                              // errors of edges and of det, to be scaled by lengths
 
 vec3 to_light(vec3 d) { return vec3(dot(row_s, d), dot(row_t, d), dot(row_w, d)); }
 
-// Does this lane's view sample lose light to the triangle (a, a + e1, a + e2)? `edge` is |e1| + |e2| in the 1-norm;
-// `beyond`: the triangle is strictly on the view sample's side of the light's plane.
-void test(vec3 a, vec3 e1, vec3 e2, float edge, uint triangle, bool beyond) {
+// The triangle (a, a + e1, a + e2) as this lane's view sample sees it on the light, in homogeneous light coordinates.
+// Edges come from edge vectors, so that small triangles keep their shape.
+struct Seen {
+  vec3 A, D1, D2;
+  float far;                                              // bounds the distance of each corner
+  float error_a;                                          // of A, A + D1, A + D2, each coordinate (bound W)
+  float lowest;                                           // W of the corner nearest to p's plane
+  vec4 box;                                               // where on the light (bound box)
+};
+
+// `sizes`: lengths of e1 and e2.
+Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
+  Seen seen;
   const vec3 d = a - p;
-  // Homogeneous light coordinates of the corners; edges from edge vectors, so that small triangles keep their shape.
-  const vec3 A = to_light(d), D1 = to_light(e1), D2 = to_light(e2);
-  const vec3 B = A + D1, C = A + D2, D3 = D2 - D1;
-  const float far = size1(d) + edge, r2 = r * r;
+  seen.A = to_light(d);
+  seen.D1 = to_light(e1);
+  seen.D2 = to_light(e2);
+  const vec3 B = seen.A + seen.D1, C = seen.A + seen.D2;
+  seen.far = length(d) + sizes.x + sizes.y;
+  seen.error_a = 16.0 * kRound * r * seen.far;
+  seen.lowest = min(seen.A.z, min(B.z, C.z));
+  const vec3 w = 1.0 / vec3(seen.A.z, B.z, C.z);
+  const vec3 s = vec3(seen.A.x, B.x, C.x) * w, t = vec3(seen.A.y, B.y, C.y) * w;
+  const vec2 lower = vec2(min(s.x, min(s.y, s.z)), min(t.x, min(t.y, t.z)));
+  const vec2 upper = vec2(max(s.x, max(s.y, s.z)), max(t.x, max(t.y, t.z)));
+  const float largest = max(max(-min(lower.x, lower.y), max(upper.x, upper.y)), 1.0);
+  const float pad = (2.0 * seen.error_a * max(w.x, max(w.y, w.z)) + 8.0 * kRound) * (1.0 + largest) + light_pad;
+  const bool bounded = seen.lowest > 8.0 * seen.error_a;
+  seen.box = bounded ? vec4(lower - pad, upper + pad) : kWholeLight;
+  return seen;
+}
 
-  // (bound W) All corners strictly between p's and the light's parallel planes?
-  const float error_a = 16.0 * kRound * r * far;          // of A, B, C, each coordinate
-  const float lowest = min(A.z, min(B.z, C.z));
-  const bool between = beyond && lowest > error_a;
-  vec4 box = kWholeLight;
-  if (lowest > 8.0 * error_a) {                           // (bound box)
-    const vec3 w = 1.0 / vec3(A.z, B.z, C.z);
-    const vec3 s = vec3(A.x, B.x, C.x) * w, t = vec3(A.y, B.y, C.y) * w;
-    const vec2 lower = vec2(min(s.x, min(s.y, s.z)), min(t.x, min(t.y, t.z)));
-    const vec2 upper = vec2(max(s.x, max(s.y, s.z)), max(t.x, max(t.y, t.z)));
-    const float largest = max(max(-min(lower.x, lower.y), max(upper.x, upper.y)), 1.0);
-    const float pad = (2.0 * error_a * max(w.x, max(w.y, w.z)) + 8.0 * kRound) * (1.0 + largest) + 2.0 * push.deviation * r / volume;
-    box = vec4(lower - pad, upper + pad);
-    if (any(greaterThan(box.xy, vec2(1.0))) || any(lessThan(box.zw, vec2(-1.0)))) return;
+// Of ab, bc, ca (bound F).
+vec3 error_of_edges(Seen seen, vec2 sizes) { return edge_error * seen.far * vec3(sizes.x, sizes.x + sizes.y, sizes.y); }
+// Is p certainly off the triangle's plane? (bound det)
+bool has_side(float det, Seen seen, vec2 sizes) { return abs(det) > det_error * seen.far * sizes.x * sizes.y; }
+
+// The pairs that float arithmetic settles, which is nearly all: the triangle lies between p and the light, p is off its
+// plane, and no light sample is within the error of an edge. Returns false, having marked only what is certain, where
+// `test_carefully` must look again. Short, because some devices run all of a loop's body whatever its branches say.
+bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
+  const Seen seen = see(a, e1, e2, sizes);
+  const vec3 ab = cross(seen.A, seen.D1), bc = cross(seen.A + seen.D1, seen.D2 - seen.D1), ca = cross(seen.D2, seen.A);
+  const float det = dot(ab, seen.D2);
+  const vec3 error = error_of_edges(seen, sizes);
+  const bool missed = seen.box.x > 1.0 || seen.box.y > 1.0 || seen.box.z < -1.0 || seen.box.w < -1.0;
+  const bool clear = beyond && seen.lowest > 8.0 * seen.error_a && has_side(det, seen, sizes);
+  if (missed) return true;
+  if (!clear) return false;
+  const float sign = det < 0.0 ? -1.0 : 1.0, spacing = 2.0 / float(push.columns);
+  const vec3 x = sign * vec3(ab.x, bc.x, ca.x), y = sign * vec3(ab.y, bc.y, ca.y), z = sign * vec3(ab.z, bc.z, ca.z);
+  // As in mark_rows, for three edges.
+  const vec3 slope = x * spacing;
+  const bvec3 rising = greaterThanEqual(slope, vec3(0.0));
+  const vec3 least = error / (16.0 * float(push.columns));
+  const vec3 inverse = 1.0 / mix(min(slope, -least), max(slope, least), rising);
+  const vec3 at_0 = -z * inverse, per_t = -y * inverse, per_s = -x * inverse;
+  const vec3 slack = 1.25 * error * abs(inverse) + float(push.columns) * (8.0 * kRound);
+  const float half_rows = 0.5 * float(push.rows), last_column = float(push.columns) - 1.0;
+  const int first_row = max(int(ceil((max(seen.box.y, -1.0) + 1.0) * half_rows - 0.51)), 0);
+  const int last_row = min(int(floor((min(seen.box.w, 1.0) + 1.0) * half_rows - 0.49)), int(push.rows) - 1);
+  bool settled = true;
+  for (int row = first_row; row <= last_row; ++row) {
+    const vec2 at = row_start(row);
+    const vec3 k = at_0 + per_t * at.y + per_s * at.x;
+    const vec3 inner = mix(k - slack, k + slack, rising), outer = mix(k + slack, k - slack, rising);
+    const vec3 inner_from = mix(vec3(0.0), inner, rising), inner_to = mix(inner, vec3(last_column), rising);
+    const vec3 outer_from = mix(vec3(0.0), outer, rising), outer_to = mix(outer, vec3(last_column), rising);
+    const float sure_from = ceil(max(max(inner_from.x, inner_from.y), max(inner_from.z, 0.0)));
+    const float sure_to = floor(min(min(inner_to.x, inner_to.y), min(inner_to.z, last_column)));
+    const float from = ceil(max(max(max(outer_from.x, outer_from.y), max(outer_from.z, 0.0)), (seen.box.x - at.x) / spacing - 0.01));
+    const float to = floor(min(min(min(outer_to.x, outer_to.y), min(outer_to.z, last_column)), (seen.box.z - at.x) / spacing + 0.01));
+    const bool some = sure_from <= sure_to;
+    settled = settled && (from > to || (some && from >= sure_from && to <= sure_to));
+    if (kWordsPerRow == 1) {
+      if (some) blocked[slot_of(uint(row))] |= bits(int(sure_from), int(sure_to));
+    } else if (some) {
+      for (int word = int(sure_from) >> 5; word <= int(sure_to) >> 5; ++word) {
+        blocked[slot_of(uint(row) * kWordsPerRow + uint(word))] |= bits(max(int(sure_from) - 32 * word, 0), min(int(sure_to) - 32 * word, 31));
+      }
+    }
   }
+  return settled;
+}
 
-  const vec3 ab = cross(A, D1), bc = cross(B, D3), ca = cross(D2, A);
-  const float det = dot(ab, D2);
-  // (bound F) and (bound det)
-  const float error_f = (256.0 * kRound * r2 + 2.0 * volume * push.deviation) * far * edge;
-  const bool one_way = abs(det) > 256.0 * kRound * r2 * r * far * edge * edge;
+// Every case: triangles that reach behind p or the light, p within rounding of the triangle's plane, light samples
+// within the error of an edge.
+void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool beyond) {
+  const Seen seen = see(a, e1, e2, sizes);
+  const vec4 box = seen.box;
+  if (any(greaterThan(box.xy, vec2(1.0))) || any(lessThan(box.zw, vec2(-1.0)))) return;
+  const bool between = beyond && seen.lowest > seen.error_a;
+  const vec3 ab = cross(seen.A, seen.D1), bc = cross(seen.A + seen.D1, seen.D2 - seen.D1), ca = cross(seen.D2, seen.A);
+  const float det = dot(ab, seen.D2);
+  const vec3 error_f = error_of_edges(seen, sizes);
+  const bool one_way = has_side(det, seen, sizes);
 
   // An edge that has the whole light on its outer side, whichever way round the triangle is, ends it here.
   const vec3 middle = vec3(ab.z, bc.z, ca.z);
@@ -66,7 +146,7 @@ void test(vec3 a, vec3 e1, vec3 e2, float edge, uint triangle, bool beyond) {
     // The light point must be on the other side of the triangle's plane than p: a fourth half-plane.
     const vec3 n = cross(e1, e2), from = push.center - a;
     fourth = orientation * vec3(dot(n, push.u), dot(n, push.v), dot(n, from));
-    fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * edge * edge;
+    fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * sizes.x * sizes.y;
     if (!one_way) {                                       // p is within rounding of the triangle's plane: never certain
       fourth = vec3(0.0);
       fourth_error = 1.0;
@@ -75,7 +155,7 @@ void test(vec3 a, vec3 e1, vec3 e2, float edge, uint triangle, bool beyond) {
   for (float sign = positive ? 1.0 : -1.0; ; sign = -1.0) {
     const float other = between ? 1.0 : sign;
     mark(HalfPlanes(vec4(sign * vec3(ab.x, bc.x, ca.x), other * fourth.x), vec4(sign * vec3(ab.y, bc.y, ca.y), other * fourth.y),
-                    vec4(sign * middle, other * fourth.z), vec4(vec3(error_f), fourth_error)),
+                    vec4(sign * middle, other * fourth.z), vec4(error_f, fourth_error)),
          box, triangle);
     if (sign < 0.0 || !negative) break;
   }
@@ -101,40 +181,54 @@ void main() {
   row_w = orientation * cross(push.u, push.v);
   const float size = max(length(push.u), length(push.v));
   r = size * max(length(towards), size);
-  volume = abs(level);
+  const float volume = abs(level);
+  light_pad = 2.0 * push.deviation * r / volume;
+  edge_error = 176.0 * kRound * r * r + 2.0 * volume * push.deviation;
+  det_error = 256.0 * kRound * r * r * r;
 
+  // The slots of triangles that some lane could not settle quickly are kept, and looked at again.
   const Shaft shaft = make_shaft(on, side);
   const uint teams = kLanes / kTeam, team = gl_SubgroupInvocationID / kTeam, member = gl_SubgroupInvocationID % kTeam;
   uint at = subgroupAny(on) ? 0 : kChunk;
+  uint again_count = 0;
   for (; at < kChunk; at += teams) {
     const uint leaf = at + team < kChunk ? chunks[first + 1 + at + team] : kNone;
     if (subgroupAll(leaf == kNone)) {
       at = kChunk;
       break;
     }
-    const int slot = int((leaf == kNone ? 0 : leaf) * kTeam + member);
-    const uvec4 ta = texelFetch(corner_a, slot), tb = texelFetch(corner_b, slot), tc = texelFetch(corner_c, slot);
-    const vec3 a = uintBitsToFloat(ta.xyz), b = uintBitsToFloat(tb.xyz), c = uintBitsToFloat(tc.xyz);
-    const vec3 levels = vec3(dot(shaft.axis, a), dot(shaft.axis, b), dot(shaft.axis, c));
+    const uint slot = (leaf == kNone ? 0 : leaf) * kTeam + member;
+    const Corners t = fetch(slot);
+    const vec3 levels = vec3(dot(shaft.axis, t.a), dot(shaft.axis, t.b), dot(shaft.axis, t.c));
     const float nearest = min(levels.x, min(levels.y, levels.z));
-    const vec4 least = min(shaft.nx * a.x + shaft.ny * a.y + shaft.nz * a.z,
-                           min(shaft.nx * b.x + shaft.ny * b.y + shaft.nz * b.z, shaft.nx * c.x + shaft.ny * c.y + shaft.nz * c.z));
-    const bool hit = leaf != kNone && ta.w != kNone && int(tc.w) != push.light && nearest <= shaft.highest &&
+    const vec4 least = min(shaft.nx * t.a.x + shaft.ny * t.a.y + shaft.nz * t.a.z,
+                           min(shaft.nx * t.b.x + shaft.ny * t.b.y + shaft.nz * t.b.z, shaft.nx * t.c.x + shaft.ny * t.c.y + shaft.nz * t.c.z));
+    const bool hit = leaf != kNone && t.triangle != kNone && t.light != push.light && nearest <= shaft.highest &&
                      max(levels.x, max(levels.y, levels.z)) >= shaft.lowest && all(lessThanEqual(least, shaft.beyond));
-    const vec3 e1 = b - a, e2 = c - a;
-    const float edge = size1(e1) + size1(e2);
+    const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
+    const vec2 sizes = vec2(length(e1), length(e2));
     const uvec4 hits = subgroupBallot(hit), fronts = subgroupBallot(nearest > shaft.front);
     for (uint word = 0; word < (kLanes + 31) / 32; ++word) {
       for (uint left = hits[word]; left != 0; left &= left - 1) {
-        const uint from = word * 32 + uint(findLSB(left));
-        const vec3 a1 = subgroupShuffle(a, from), e11 = subgroupShuffle(e1, from), e21 = subgroupShuffle(e2, from);
-        const float edge1 = subgroupShuffle(edge, from);
-        const uint triangle = subgroupShuffle(ta.w, from), plane = subgroupShuffle(tb.w, from);
-        if (on && plane != carrier_plane) test(a1, e11, e21, edge1, triangle, (fronts[word] >> (from & 31) & 1) != 0);
+        const uint bit = uint(findLSB(left)), from = word * 32 + bit;
+        const vec3 a = subgroupShuffle(t.a, from), e11 = subgroupShuffle(e1, from), e21 = subgroupShuffle(e2, from);
+        const vec2 sizes1 = subgroupShuffle(sizes, from);
+        const uint plane = subgroupShuffle(t.plane, from), front = fronts[word] >> bit & 1;
+        bool settled = true;
+        if (on && plane != carrier_plane) settled = kScatteredPoints == 0 && test_quickly(a, e11, e21, sizes1, front != 0);
+        again[again_count] = subgroupShuffle(slot, from) | front << 31;  // every lane writes the same
+        again_count += subgroupAll(settled) ? 0 : 1;
       }
     }
   }
+  uint i = 0;
+  for (; i < again_count; ++i) {
+    const uint slot = again[i] & 0x7fffffffu;
+    const Corners t = fetch(slot);
+    const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
+    if (on && t.plane != carrier_plane) test_carefully(t.a, e1, e2, vec2(length(e1), length(e2)), t.triangle, again[i] >> 31 != 0);
+  }
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
-  if (at < kChunk) atomicOr(unfinished, kTestCut);
+  if (at < kChunk || i < again_count) atomicOr(unfinished, kTestCut);
   if (on) add_to_mask();
 }

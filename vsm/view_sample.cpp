@@ -15,7 +15,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <bit>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -119,13 +119,13 @@ class ViewSampleMapping final : public visibility::Method {
 
     const std::uint32_t lanes = device_->limits().subgroup_size;
     const std::uint32_t words_per_row = (light.columns + 31) / 32;
-    const bool rows = !frame_.row_starts.empty() && light.rows * words_per_row * lanes * 4 <= kSharedBudget;
+    const bool rows = frame_.rows && light.rows * words_per_row * lanes * 4 <= kSharedBudget;
     std::vector<glm::vec2> table;
     std::vector<std::uint32_t> first_point(kPointCells + 1, 0);
     bit_of_.resize(light.sample_count());
     std::iota(bit_of_.begin(), bit_of_.end(), 0U);
     if (rows) {
-      table = frame_.row_starts;
+      table.emplace_back();  // rows are computed
     } else {
       // Sorted by t, so that a triangle looks at one stretch of them.
       std::stable_sort(bit_of_.begin(), bit_of_.end(),
@@ -288,6 +288,7 @@ class ViewSampleMapping final : public visibility::Method {
     push.sample_count = light_->sample_count();
     push.rows = light_->rows;
     push.columns = light_->columns;
+    push.shift_step = frame_.shift_step;
     push.empty_tree = tree_.nodes.empty() ? 1 : 0;
     return push;
   }
@@ -359,7 +360,10 @@ class ViewSampleMapping final : public visibility::Method {
     if (count == 0) return;
     std::vector<gpu::OpenQuestion> questions(count);
     questions_->read(std::span(questions), sizeof(Counts));
-    apply(settle({*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_}, questions));
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Answer> answers = settle({*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_}, questions);
+    add_time({"exact predicates", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
+    apply(answers);
   }
 
   void apply(const std::vector<Answer>& answers) {
@@ -372,13 +376,15 @@ class ViewSampleMapping final : public visibility::Method {
   }
 
   void submit() {
-    for (const render::PassMilliseconds& pass : commands_.submit()) {
-      const auto same = std::find_if(pass_times_.begin(), pass_times_.end(), [&](const auto& time) { return time.name == pass.name; });
-      if (same == pass_times_.end()) {
-        pass_times_.push_back({pass.name, pass.milliseconds});
-      } else {
-        same->milliseconds += pass.milliseconds;
-      }
+    for (const render::PassMilliseconds& pass : commands_.submit()) add_time({pass.name, pass.milliseconds});
+  }
+
+  void add_time(const visibility::PassTime& time) {
+    const auto same = std::find_if(pass_times_.begin(), pass_times_.end(), [&](const auto& other) { return other.name == time.name; });
+    if (same == pass_times_.end()) {
+      pass_times_.push_back(time);
+    } else {
+      same->milliseconds += time.milliseconds;
     }
   }
 

@@ -21,7 +21,7 @@ layout(constant_id = 7) const uint kStackSize = 64;
 layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (p, carrying triangle), (normal, plane)
 layout(scalar, binding = 1) readonly buffer Samples {
   uint first_point[257];                                  // scattered: first point with t ≥ −1 + i / 128
-  vec2 samples[];                                         // rows: (s of column 0, t); scattered: (s, t)
+  vec2 samples[];                                         // scattered: (s, t)
 };
 layout(scalar, binding = 2) buffer Masks { uint masks[]; };  // blocked light samples, words per pixel
 layout(scalar, binding = 3) buffer Questions {
@@ -100,6 +100,12 @@ void mark_points(HalfPlanes f, vec4 box, uint triangle) {
   }
 }
 
+// (s of column 0, t) of a row; twin of visibility::row_shift_of.
+vec2 row_start(int row) {
+  const int shift = int((uint(row) * push.shift_step + 32768u) & 0xffffu) - 32768;
+  return vec2((1.0 + float(shift) / 32768.0) / float(push.columns) - 1.0, float(2 * row + 1) / float(push.rows) - 1.0);
+}
+
 // Along a row each half-plane is a ray of column numbers: beyond x + slack certainly inside, short of x − slack certainly
 // outside (rising), or the other way round (falling). (bound row)
 void mark_rows(HalfPlanes f, vec4 box, uint triangle) {
@@ -115,7 +121,7 @@ void mark_rows(HalfPlanes f, vec4 box, uint triangle) {
   const int first_row = max(int(ceil((max(box.y, -1.0) + 1.0) * half_rows - 0.51)), 0);
   const int last_row = min(int(floor((min(box.w, 1.0) + 1.0) * half_rows - 0.49)), int(push.rows) - 1);
   for (int row = first_row; row <= last_row; ++row) {
-    const vec2 at = samples[row];                         // column k is at s = at.x + spacing · k
+    const vec2 at = row_start(row);                       // column k is at s = at.x + spacing · k
     const vec4 x = at_0 + per_t * at.y + per_s * at.x;
     const vec4 far = vec4(1e9);
     const vec4 certain_froms = mix(-far, x + slack, rising), possible_froms = mix(-far, x - slack, rising);

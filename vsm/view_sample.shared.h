@@ -23,6 +23,7 @@ struct ViewSamplePush {
   uint band_first, band_rows;  // the rows of the tile that this dispatch works on
   uint sample_count;
   uint rows, columns;          // rows and grid patterns
+  uint shift_step;             // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
   uint question_capacity, chunk_capacity;
   uint empty_tree;
 };
