@@ -6,10 +6,10 @@
 #include <cstdlib>
 
 /// We erred: prints the condition, the place and the values, and aborts; on in release as well.
-#define PENUMBRA_ASSERT(condition, ...)                                                                              \
-  do {                                                                                                               \
-    if (!(condition)) {                                                                                              \
+#define PENUMBRA_ASSERT(condition, ...)                                                                                \
+  do {                                                                                                                 \
+    if (!(condition)) {                                                                                                \
       fmt::print(stderr, "{}:{}: internal error: {}: {}\n", __FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)); \
-      std::abort();                                                                                                  \
-    }                                                                                                                \
+      std::abort();                                                                                                    \
+    }                                                                                                                  \
   } while (false)

@@ -11,10 +11,10 @@ namespace penumbra {
 /// What the process returns to the shell; the meaning of each number never changes.
 enum class ExitCode {
   done = 0,
-  answer_is_no = 1,    ///< the job ran and the answer is no (validation failed, --max-rmse exceeded)
-  usage = 2,           ///< wrong usage
-  input = 3,           ///< bad input: file, line or JSON pointer, what is wrong, what would be right
-  resource = 4,        ///< device or resource: no device, out of memory, disk full, lost
+  answer_is_no = 1,  ///< the job ran and the answer is no (validation failed, --max-rmse exceeded)
+  usage = 2,         ///< wrong usage
+  input = 3,         ///< bad input: file, line or JSON pointer, what is wrong, what would be right
+  resource = 4,      ///< device or resource: no device, out of memory, disk full, lost
   interrupted = 130,
 };
 

@@ -40,7 +40,8 @@ void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std:
       const auto type = shader_.bindings[binding];
       vk::WriteDescriptorSet write(set, binding++, 0, 1, type);
       if (type == vk::DescriptorType::eUniformTexelBuffer) {
-        PENUMBRA_ASSERT(*buffer.state().view, "{}: {} is bound as texels but was not made for them", name_, buffer.name());
+        PENUMBRA_ASSERT(*buffer.state().view, "{}: {} is bound as texels but was not made for them", name_,
+                        buffer.name());
         views.push_back(*buffer.state().view);
         write.setPTexelBufferView(&views.back());
       } else {
@@ -62,7 +63,8 @@ SpecializationConstants::SpecializationConstants(std::span<const std::uint32_t> 
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     entries_.emplace_back(i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t));
   }
-  info_ = vk::SpecializationInfo(static_cast<std::uint32_t>(entries_.size()), entries_.data(), values.size_bytes(), values.data());
+  info_ = vk::SpecializationInfo(static_cast<std::uint32_t>(entries_.size()), entries_.data(), values.size_bytes(),
+                                 values.data());
 }
 
 }  // namespace penumbra::render

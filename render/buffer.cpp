@@ -9,14 +9,17 @@
 namespace penumbra::render {
 namespace {
 
-std::optional<std::uint32_t> find_type(const Device::State& device, std::uint32_t allowed, vk::MemoryPropertyFlags wanted) {
+std::optional<std::uint32_t> find_type(const Device::State& device, std::uint32_t allowed,
+                                       vk::MemoryPropertyFlags wanted) {
   for (std::uint32_t i = 0; i < device.memory.memoryTypeCount; ++i) {
     if ((allowed >> i & 1U) != 0 && (device.memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
   }
   return std::nullopt;
 }
 
-std::string human(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20)); }
+std::string human(std::uint64_t bytes) {
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
 
 vk::raii::Buffer make_vk_buffer(const Device::State& device, std::uint64_t bytes, vk::BufferUsageFlags usage) {
   return {device.device, vk::BufferCreateInfo({}, bytes, usage, vk::SharingMode::eExclusive)};
@@ -38,7 +41,8 @@ void copy_and_wait(Device::State& device, vk::Buffer from, vk::Buffer to, const 
 
 }  // namespace
 
-Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, bool prefer_host, const std::string& name) {
+Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, bool prefer_host,
+                    const std::string& name) {
   using Flag = vk::MemoryPropertyFlagBits;
   const auto host = Flag::eHostVisible | Flag::eHostCoherent;
   std::optional<std::uint32_t> type;
@@ -57,9 +61,10 @@ Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, 
   try {
     allocation.memory = vk::raii::DeviceMemory(device.device, vk::MemoryAllocateInfo(needs.size, *type));
   } catch (const vk::SystemError&) {
-    throw ResourceError("{}: {} do not fit into the device's memory ({} are in use); try a smaller --size or fewer "
-                        "--light-samples",
-                        name, human(needs.size), human(device.allocated));
+    throw ResourceError(
+        "{}: {} do not fit into the device's memory ({} are in use); try a smaller --size or fewer "
+        "--light-samples",
+        name, human(needs.size), human(device.allocated));
   }
   const auto flags = device.memory.memoryTypes[*type].propertyFlags;
   allocation.host_visible = (flags & host) == host;
@@ -72,7 +77,8 @@ Buffer::State::~State() {
   if (device != nullptr) device->account(-static_cast<std::int64_t>(allocation.bytes));
 }
 
-Buffer::Buffer(const Device& device, std::string name, std::uint64_t bytes, BufferUse use) : state_(std::make_unique<State>()) {
+Buffer::Buffer(const Device& device, std::string name, std::uint64_t bytes, BufferUse use)
+    : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.name = std::move(name);
   s.bytes = (bytes + 3) / 4 * 4;  // fills work on words
@@ -82,8 +88,8 @@ Buffer::Buffer(const Device& device, std::string name, std::uint64_t bytes, Buff
                         human(device.limits().max_storage_buffer_range));
   }
   using Usage = vk::BufferUsageFlagBits;
-  vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst | Usage::eVertexBuffer |
-                               Usage::eIndexBuffer | Usage::eIndirectBuffer;
+  vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst |
+                               Usage::eVertexBuffer | Usage::eIndexBuffer | Usage::eIndirectBuffer;
   if (use == BufferUse::texels) usage |= Usage::eUniformTexelBuffer;
   Device::State& d = device.state();
   try {
@@ -95,8 +101,8 @@ Buffer::Buffer(const Device& device, std::string name, std::uint64_t bytes, Buff
     if (s.allocation.host_visible) s.mapped = s.allocation.memory.mapMemory(0, VK_WHOLE_SIZE);
     if (use == BufferUse::texels) {
       if (s.bytes / 16 > device.limits().max_texel_buffer_elements) {
-        throw ResourceError("{}: {} texels are more than this device can read from one buffer ({})", s.name, s.bytes / 16,
-                            device.limits().max_texel_buffer_elements);
+        throw ResourceError("{}: {} texels are more than this device can read from one buffer ({})", s.name,
+                            s.bytes / 16, device.limits().max_texel_buffer_elements);
       }
       s.view = vk::raii::BufferView(
           d.device, vk::BufferViewCreateInfo({}, *s.buffer, vk::Format::eR32G32B32A32Uint, 0, s.bytes / 16 * 16));
@@ -110,8 +116,12 @@ Buffer::~Buffer() = default;
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;
 
-std::uint64_t Buffer::bytes() const { return state_->bytes; }
-const std::string& Buffer::name() const { return state_->name; }
+std::uint64_t Buffer::bytes() const {
+  return state_->bytes;
+}
+const std::string& Buffer::name() const {
+  return state_->name;
+}
 
 void Buffer::upload(std::span<const std::byte> data, std::uint64_t offset) try {
   State& s = *state_;
@@ -149,7 +159,8 @@ void Buffer::download(std::span<std::byte> data, std::uint64_t offset) const try
   fail(error, fmt::format("reading the buffer {}", state_->name));
 }
 
-bool grow(const Device& device, std::unique_ptr<Buffer>& buffer, const std::string& name, std::uint64_t bytes, BufferUse use) {
+bool grow(const Device& device, std::unique_ptr<Buffer>& buffer, const std::string& name, std::uint64_t bytes,
+          BufferUse use) {
   if (buffer && buffer->bytes() >= bytes) return false;
   buffer.reset();  // before the new one: the two need not fit together
   buffer = std::make_unique<Buffer>(device, name, bytes, use);

@@ -13,8 +13,8 @@ namespace penumbra::render {
 /// Where a buffer lives. `device`: fastest for shaders; upload and download go through a staging copy unless the memory
 /// is host-visible anyway (unified memory, processors).
 enum class BufferUse {
-  storage,   ///< storage buffer, index and vertex buffer, transfer
-  texels,    ///< uniform texel buffer of RGBA32UI (16-byte elements) beside storage and transfer
+  storage,  ///< storage buffer, index and vertex buffer, transfer
+  texels,   ///< uniform texel buffer of RGBA32UI (16-byte elements) beside storage and transfer
 };
 
 /// A range of device memory. Move-only. Its contents after construction are undefined.
@@ -50,7 +50,8 @@ class Buffer {
 
 /// A buffer with exactly these elements; at least one element large.
 template <typename T>
-Buffer make_buffer(const Device& device, std::string name, std::span<const T> values, BufferUse use = BufferUse::storage) {
+Buffer make_buffer(const Device& device, std::string name, std::span<const T> values,
+                   BufferUse use = BufferUse::storage) {
   Buffer buffer(device, std::move(name), values.empty() ? sizeof(T) : values.size_bytes(), use);
   if (!values.empty()) buffer.write(values);
   return buffer;

@@ -11,10 +11,10 @@ constexpr std::uint32_t kMaxPasses = 256;  // timestamped ones a recording; more
 
 /// Everything before is done and seen by everything after, the host included.
 void full_barrier(const vk::raii::CommandBuffer& commands) {
-  const vk::MemoryBarrier2 barrier(vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite,
-                                   vk::PipelineStageFlagBits2::eAllCommands | vk::PipelineStageFlagBits2::eHost,
-                                   vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite |
-                                       vk::AccessFlagBits2::eHostRead);
+  const vk::MemoryBarrier2 barrier(
+      vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite,
+      vk::PipelineStageFlagBits2::eAllCommands | vk::PipelineStageFlagBits2::eHost,
+      vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite | vk::AccessFlagBits2::eHostRead);
   commands.pipelineBarrier2(vk::DependencyInfo({}, barrier));
 }
 
@@ -26,10 +26,12 @@ Commands::Commands(const Device& device) : state_(std::make_unique<State>()) {
   const vk::CommandBufferAllocateInfo info(*s.device->pool, vk::CommandBufferLevel::ePrimary, 1);
   s.commands = std::move(vk::raii::CommandBuffers(s.device->device, info).front());
   s.fence = vk::raii::Fence(s.device->device, vk::FenceCreateInfo());
-  // A processor's driver runs passes when it likes and stamps them when it likes: there each pass is run and timed alone.
+  // A processor's driver runs passes when it likes and stamps them when it likes: there each pass is run and timed
+  // alone.
   s.host_timed = s.device->info.kind == "cpu";
   if (!s.host_timed && s.device->limits.timestamp_period > 0) {
-    s.queries = vk::raii::QueryPool(s.device->device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2 * kMaxPasses));
+    s.queries =
+        vk::raii::QueryPool(s.device->device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2 * kMaxPasses));
   }
 }
 
@@ -68,7 +70,8 @@ void Commands::State::close_pass() {
   full_barrier(commands);
   if (host_timed) {
     run();
-    host_times.back().milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - opened).count();
+    host_times.back().milliseconds +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - opened).count();
   }
 }
 
@@ -82,7 +85,9 @@ void Commands::State::run() {
   recording = false;
 }
 
-void Commands::fill(const Buffer& buffer, std::uint32_t value) { fill(buffer, value, 0, buffer.bytes()); }
+void Commands::fill(const Buffer& buffer, std::uint32_t value) {
+  fill(buffer, value, 0, buffer.bytes());
+}
 
 void Commands::fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes) {
   state_->begin_if_needed();
@@ -103,8 +108,8 @@ std::vector<PassMilliseconds> Commands::submit() try {
   const auto timed = std::min<std::size_t>(s.pass_names.size(), kMaxPasses);
   if (*s.queries && timed > 0) {
     const auto count = static_cast<std::uint32_t>(2 * timed);
-    const auto [result, ticks] = s.queries.getResults<std::uint64_t>(0, count, count * sizeof(std::uint64_t),
-                                                                     sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
+    const auto [result, ticks] = s.queries.getResults<std::uint64_t>(
+        0, count, count * sizeof(std::uint64_t), sizeof(std::uint64_t), vk::QueryResultFlagBits::e64);
     const std::uint64_t mask = s.device->timestamp_bits >= 64 ? ~0ULL : (1ULL << s.device->timestamp_bits) - 1;
     for (std::size_t i = 0; result == vk::Result::eSuccess && i < timed; ++i) {
       const auto elapsed = (ticks[2 * i + 1] - ticks[2 * i]) & mask;

@@ -15,8 +15,8 @@ struct PassMilliseconds {
   double milliseconds = 0;
 };
 
-/// One command buffer: passes record into it, submit() runs it to its end. Between any two recorded passes stands a full
-/// memory barrier: simple, and right; what matters for speed happens inside passes.
+/// One command buffer: passes record into it, submit() runs it to its end. Between any two recorded passes stands a
+/// full memory barrier: simple, and right; what matters for speed happens inside passes.
 class Commands {
  public:
   explicit Commands(const Device& device);

@@ -26,10 +26,12 @@ ComputePass::ComputePass(const Device& device, const ComputePassOptions& options
 
   const vk::raii::Device& d = s.device->device;
   const SpecializationConstants constants(options.constants);
-  const vk::raii::ShaderModule module(d, vk::ShaderModuleCreateInfo({}, options.spirv.size_bytes(), options.spirv.data()));
+  const vk::raii::ShaderModule module(d,
+                                      vk::ShaderModuleCreateInfo({}, options.spirv.size_bytes(), options.spirv.data()));
   const vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup(device.limits().subgroup_size);
-  const auto properties = s.device->physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan13Properties>()
-                              .get<vk::PhysicalDeviceVulkan13Properties>();
+  const auto properties =
+      s.device->physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan13Properties>()
+          .get<vk::PhysicalDeviceVulkan13Properties>();
   // A device whose subgroup size varies is pinned to the one that Limits states; one whose size is fixed need not be.
   const bool pin = options.full_subgroups && properties.minSubgroupSize != properties.maxSubgroupSize &&
                    (properties.requiredSubgroupSizeStages & vk::ShaderStageFlagBits::eCompute);

@@ -60,11 +60,16 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
 
 const char* kind_of(vk::PhysicalDeviceType type) {
   switch (type) {
-    case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete";
-    case vk::PhysicalDeviceType::eIntegratedGpu: return "integrated";
-    case vk::PhysicalDeviceType::eVirtualGpu: return "virtual";
-    case vk::PhysicalDeviceType::eCpu: return "cpu";
-    default: return "other";
+    case vk::PhysicalDeviceType::eDiscreteGpu:
+      return "discrete";
+    case vk::PhysicalDeviceType::eIntegratedGpu:
+      return "integrated";
+    case vk::PhysicalDeviceType::eVirtualGpu:
+      return "virtual";
+    case vk::PhysicalDeviceType::eCpu:
+      return "cpu";
+    default:
+      return "other";
   }
 }
 
@@ -95,7 +100,8 @@ std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& physic
   };
   need(core.shaderFloat64, "no shaderFloat64 (view samples are decided in double precision)");
   need(core.shaderInt64, "no shaderInt64 (the visibility buffer orders double distances as 64-bit integers)");
-  need(v12.shaderBufferInt64Atomics, "no shaderBufferInt64Atomics (the visibility buffer takes the nearest by atomicMin)");
+  need(v12.shaderBufferInt64Atomics,
+       "no shaderBufferInt64Atomics (the visibility buffer takes the nearest by atomicMin)");
   need(core.fragmentStoresAndAtomics, "no fragmentStoresAndAtomics (the visibility buffer is a storage buffer)");
   need(v12.scalarBlockLayout, "no scalarBlockLayout (structs are shared between C++ and GLSL)");
   need(v13.dynamicRendering, "no dynamicRendering");
@@ -153,7 +159,8 @@ std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance&
 }
 
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -206,7 +213,8 @@ std::filesystem::path cache_path(const vk::PhysicalDeviceProperties& properties)
     return {};
   }
   return folder / "penumbra" /
-         fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties.vendorID, properties.deviceID, properties.driverVersion);
+         fmt::format("pipelines-{:04x}-{:04x}-{:08x}.bin", properties.vendorID, properties.deviceID,
+                     properties.driverVersion);
 }
 
 std::vector<char> read_file(const std::filesystem::path& file) {
@@ -259,10 +267,9 @@ Limits read_limits(const vk::raii::PhysicalDevice& physical, std::uint32_t times
   const auto& limits = physical.getProperties().limits;
   Limits out;
   out.max_storage_buffer_range = limits.maxStorageBufferRange;
-  out.subgroup_size =
-      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
-          .get<vk::PhysicalDeviceSubgroupProperties>()
-          .subgroupSize;
+  out.subgroup_size = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
+                          .get<vk::PhysicalDeviceSubgroupProperties>()
+                          .subgroupSize;
   out.max_shared_memory = limits.maxComputeSharedMemorySize;
   out.max_workgroup_count = limits.maxComputeWorkGroupCount[0];
   out.max_image_size = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
@@ -294,8 +301,7 @@ std::vector<DeviceInfo> list_devices() try {
   return {};  // no loader, or none that can make an instance
 }
 
-Device::Device(const DeviceOptions& options) try
-    : state_(std::make_unique<State>()) {
+Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.log = std::make_unique<ValidationLog>();
   s.instance = make_instance(s.context, options.validation, s.debug_names);
@@ -303,8 +309,9 @@ Device::Device(const DeviceOptions& options) try
     using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
     using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
     s.messenger = vk::raii::DebugUtilsMessengerEXT(
-        s.instance, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
-                                                         Type::eValidation | Type::ePerformance, &on_message, s.log.get()));
+        s.instance,
+        vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
+                                             Type::eValidation | Type::ePerformance, &on_message, s.log.get()));
   }
   auto devices = physical_devices(s.instance);
   s.info = choose(devices, options.wanted);
@@ -319,8 +326,8 @@ Device::Device(const DeviceOptions& options) try
       s.device, vk::CommandPoolCreateInfo(vk::CommandPoolCreateFlagBits::eResetCommandBuffer, s.queue_family));
   s.cache_file = cache_path(s.physical.getProperties());
   if (!s.cache_file.empty()) s.cache_on_disk = read_file(s.cache_file);
-  s.cache = vk::raii::PipelineCache(
-      s.device, vk::PipelineCacheCreateInfo({}, s.cache_on_disk.size(), s.cache_on_disk.data()));
+  s.cache = vk::raii::PipelineCache(s.device,
+                                    vk::PipelineCacheCreateInfo({}, s.cache_on_disk.size(), s.cache_on_disk.data()));
 } catch (const vk::SystemError& error) {
   fail(error, "making the Vulkan device");
 } catch (const std::runtime_error& error) {
@@ -334,10 +341,18 @@ Device::~Device() {
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;
 
-const DeviceInfo& Device::info() const { return state_->info; }
-const Limits& Device::limits() const { return state_->limits; }
-std::uint64_t Device::allocated_bytes() const { return state_->allocated; }
-std::uint64_t Device::peak_bytes() const { return state_->peak; }
+const DeviceInfo& Device::info() const {
+  return state_->info;
+}
+const Limits& Device::limits() const {
+  return state_->limits;
+}
+std::uint64_t Device::allocated_bytes() const {
+  return state_->allocated;
+}
+std::uint64_t Device::peak_bytes() const {
+  return state_->peak;
+}
 
 std::vector<std::string> Device::take_validation_messages() const {
   const std::lock_guard lock(state_->log->mutex);

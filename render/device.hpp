@@ -10,15 +10,15 @@ namespace penumbra::render {
 
 /// What one Vulkan device is, and why it cannot be used if it cannot.
 struct DeviceInfo {
-  std::uint32_t index = 0;                 ///< as `--device INDEX` takes it
+  std::uint32_t index = 0;  ///< as `--device INDEX` takes it
   std::string name;
-  std::string kind;                        ///< "discrete", "integrated", "virtual", "cpu", "other"
-  std::string driver;                      ///< driver name and version
+  std::string kind;    ///< "discrete", "integrated", "virtual", "cpu", "other"
+  std::string driver;  ///< driver name and version
   std::string api_version;
-  std::vector<std::string> refusals;       ///< why it cannot run Penumbra; empty: it can
+  std::vector<std::string> refusals;  ///< why it cannot run Penumbra; empty: it can
   std::uint64_t max_storage_buffer_range = 0;
   std::uint32_t subgroup_size = 0;
-  std::uint64_t memory_bytes = 0;          ///< its largest device-local heap
+  std::uint64_t memory_bytes = 0;  ///< its largest device-local heap
 
   [[nodiscard]] bool usable() const { return refusals.empty(); }
 };
@@ -27,8 +27,8 @@ struct DeviceInfo {
 std::vector<DeviceInfo> list_devices();
 
 struct DeviceOptions {
-  std::string wanted;        ///< a part of its name (case ignored), its index, "cpu", or empty: the best one
-  bool validation = false;   ///< validation layer with synchronization validation; see Device::take_validation_messages
+  std::string wanted;       ///< a part of its name (case ignored), its index, "cpu", or empty: the best one
+  bool validation = false;  ///< validation layer with synchronization validation; see Device::take_validation_messages
 };
 
 /// Limits that code here depends on.
@@ -36,10 +36,10 @@ struct Limits {
   std::uint64_t max_storage_buffer_range = 0;
   std::uint32_t subgroup_size = 0;
   std::uint32_t max_shared_memory = 0;
-  std::uint32_t max_workgroup_count = 0;   ///< in x
+  std::uint32_t max_workgroup_count = 0;  ///< in x
   std::uint32_t max_image_size = 0;
   std::uint32_t max_texel_buffer_elements = 0;
-  double timestamp_period = 0;             ///< nanoseconds a tick; 0: no timestamps
+  double timestamp_period = 0;  ///< nanoseconds a tick; 0: no timestamps
 };
 
 /// A Vulkan device with one queue for graphics, compute and transfer. Move-only; must outlive everything made from it.

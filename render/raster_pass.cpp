@@ -30,9 +30,10 @@ DepthTarget::DepthTarget(const Device& device, const std::string& name, std::uin
   s.height = height;
   constexpr auto kFormat = vk::Format::eD32Sfloat;
   s.image = vk::raii::Image(
-      d.device, vk::ImageCreateInfo({}, vk::ImageType::e2D, kFormat, vk::Extent3D(width, height, 1), 1, 1,
-                                    vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
-                                    vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eTransferSrc));
+      d.device,
+      vk::ImageCreateInfo({}, vk::ImageType::e2D, kFormat, vk::Extent3D(width, height, 1), 1, 1,
+                          vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                          vk::ImageUsageFlagBits::eDepthStencilAttachment | vk::ImageUsageFlagBits::eTransferSrc));
   s.allocation = allocate(d, s.image.getMemoryRequirements(), false, name);
   s.device = &d;
   s.image.bindMemory(*s.allocation.memory, 0);
@@ -47,17 +48,22 @@ DepthTarget::DepthTarget(const Device& device, const std::string& name, std::uin
 DepthTarget::~DepthTarget() = default;
 DepthTarget::DepthTarget(DepthTarget&&) noexcept = default;
 DepthTarget& DepthTarget::operator=(DepthTarget&&) noexcept = default;
-std::uint32_t DepthTarget::width() const { return state_->width; }
-std::uint32_t DepthTarget::height() const { return state_->height; }
+std::uint32_t DepthTarget::width() const {
+  return state_->width;
+}
+std::uint32_t DepthTarget::height() const {
+  return state_->height;
+}
 
 namespace {
 
 /// From one layout to another, everything before done and seen.
 void change_layout(Commands::State& commands, vk::Image image, vk::ImageLayout from, vk::ImageLayout to) {
-  const vk::ImageMemoryBarrier2 barrier(
-      vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite, vk::PipelineStageFlagBits2::eAllCommands,
-      vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite, from, to, VK_QUEUE_FAMILY_IGNORED,
-      VK_QUEUE_FAMILY_IGNORED, image, vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eDepth, 0, 1, 0, 1));
+  const vk::ImageMemoryBarrier2 barrier(vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite,
+                                        vk::PipelineStageFlagBits2::eAllCommands,
+                                        vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite, from, to,
+                                        VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image,
+                                        vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eDepth, 0, 1, 0, 1));
   commands.commands.pipelineBarrier2(vk::DependencyInfo({}, {}, {}, barrier));
 }
 
@@ -67,8 +73,8 @@ void DepthTarget::copy_to(Commands& commands, const Buffer& to, std::uint64_t of
   Commands::State& c = commands.state();
   c.open_pass("copy depth");
   change_layout(c, *state_->image, vk::ImageLayout::eDepthAttachmentOptimal, vk::ImageLayout::eTransferSrcOptimal);
-  const vk::BufferImageCopy region(offset, 0, 0, vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eDepth, 0, 0, 1), {},
-                                   vk::Extent3D(state_->width, state_->height, 1));
+  const vk::BufferImageCopy region(offset, 0, 0, vk::ImageSubresourceLayers(vk::ImageAspectFlagBits::eDepth, 0, 0, 1),
+                                   {}, vk::Extent3D(state_->width, state_->height, 1));
   c.commands.copyImageToBuffer(*state_->image, vk::ImageLayout::eTransferSrcOptimal, *to.state().buffer, region);
   change_layout(c, *state_->image, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eDepthAttachmentOptimal);
   c.close_pass();
@@ -82,8 +88,7 @@ struct RasterPass::State {
   vk::raii::Pipeline pipeline{nullptr};
 };
 
-RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) try
-    : state_(std::make_unique<State>()) {
+RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) try : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.device = &device.state();
   s.name = options.name;
@@ -97,32 +102,38 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
   }
   PENUMBRA_ASSERT(shader.push_bytes == options.push_bytes, "{}: the shaders' push constants have {} bytes, C++'s {}",
                   s.name, shader.push_bytes, options.push_bytes);
-  s.bindings = Bindings(*s.device, s.name, shader, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment);
+  s.bindings =
+      Bindings(*s.device, s.name, shader, vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment);
 
   const vk::raii::Device& d = s.device->device;
   const SpecializationConstants constants(options.constants);
-  const vk::raii::ShaderModule vertex(d, vk::ShaderModuleCreateInfo({}, options.vertex.size_bytes(), options.vertex.data()));
+  const vk::raii::ShaderModule vertex(
+      d, vk::ShaderModuleCreateInfo({}, options.vertex.size_bytes(), options.vertex.data()));
   vk::raii::ShaderModule fragment(nullptr);
   std::vector<vk::PipelineShaderStageCreateInfo> stages;
-  stages.emplace_back(vk::PipelineShaderStageCreateFlags(), vk::ShaderStageFlagBits::eVertex, *vertex, "main", constants.get());
+  stages.emplace_back(vk::PipelineShaderStageCreateFlags(), vk::ShaderStageFlagBits::eVertex, *vertex, "main",
+                      constants.get());
   if (!options.fragment.empty()) {
-    fragment = vk::raii::ShaderModule(d, vk::ShaderModuleCreateInfo({}, options.fragment.size_bytes(), options.fragment.data()));
-    stages.emplace_back(vk::PipelineShaderStageCreateFlags(), vk::ShaderStageFlagBits::eFragment, *fragment, "main", constants.get());
+    fragment = vk::raii::ShaderModule(
+        d, vk::ShaderModuleCreateInfo({}, options.fragment.size_bytes(), options.fragment.data()));
+    stages.emplace_back(vk::PipelineShaderStageCreateFlags(), vk::ShaderStageFlagBits::eFragment, *fragment, "main",
+                        constants.get());
   }
   const vk::PipelineVertexInputStateCreateInfo no_inputs;
   const vk::PipelineInputAssemblyStateCreateInfo assembly(
       {}, options.triangle_strip ? vk::PrimitiveTopology::eTriangleStrip : vk::PrimitiveTopology::eTriangleList);
   const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
-  const vk::PipelineRasterizationStateCreateInfo raster({}, VK_FALSE, VK_FALSE, vk::PolygonMode::eFill, vk::CullModeFlagBits::eNone,
-                                                        vk::FrontFace::eCounterClockwise, VK_FALSE, 0, 0, 0, 1.0F);
+  const vk::PipelineRasterizationStateCreateInfo raster({}, VK_FALSE, VK_FALSE, vk::PolygonMode::eFill,
+                                                        vk::CullModeFlagBits::eNone, vk::FrontFace::eCounterClockwise,
+                                                        VK_FALSE, 0, 0, 0, 1.0F);
   const vk::PipelineMultisampleStateCreateInfo multisample({}, vk::SampleCountFlagBits::e1);
   const vk::PipelineDepthStencilStateCreateInfo depth({}, s.depth, s.depth, vk::CompareOp::eLess);
   const vk::PipelineColorBlendStateCreateInfo blend;
   const std::array dynamic{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
   vk::StructureChain<vk::GraphicsPipelineCreateInfo, vk::PipelineRenderingCreateInfo> chain(
-      vk::GraphicsPipelineCreateInfo({}, stages, &no_inputs, &assembly, nullptr, &viewport, &raster, &multisample, &depth,
-                                     &blend, &dynamic_state, s.bindings.layout()),
+      vk::GraphicsPipelineCreateInfo({}, stages, &no_inputs, &assembly, nullptr, &viewport, &raster, &multisample,
+                                     &depth, &blend, &dynamic_state, s.bindings.layout()),
       vk::PipelineRenderingCreateInfo(0, {}, s.depth ? vk::Format::eD32Sfloat : vk::Format::eUndefined));
   s.pipeline = vk::raii::Pipeline(d, s.device->cache, chain.get<vk::GraphicsPipelineCreateInfo>());
   s.device->name(s.pipeline, s.name);
@@ -135,7 +146,8 @@ RasterPass::RasterPass(RasterPass&&) noexcept = default;
 RasterPass& RasterPass::operator=(RasterPass&&) noexcept = default;
 
 void RasterPass::record_bytes(Commands& commands, std::span<const std::byte> push,
-                              std::initializer_list<std::reference_wrapper<const Buffer>> buffers, const Draw& draw) const {
+                              std::initializer_list<std::reference_wrapper<const Buffer>> buffers,
+                              const Draw& draw) const {
   const State& s = *state_;
   PENUMBRA_ASSERT(s.depth == (draw.depth != nullptr), "{}: depth target given: {}", s.name, draw.depth != nullptr);
   Commands::State& c = commands.state();
@@ -151,8 +163,9 @@ void RasterPass::record_bytes(Commands& commands, std::span<const std::byte> pus
       change_layout(c, *target.image, vk::ImageLayout::eUndefined, vk::ImageLayout::eDepthAttachmentOptimal);
       target.fresh = false;
     }
-    depth = vk::RenderingAttachmentInfo(*target.view, vk::ImageLayout::eDepthAttachmentOptimal, vk::ResolveModeFlagBits::eNone, {},
-                                        {}, draw.clear ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad,
+    depth = vk::RenderingAttachmentInfo(*target.view, vk::ImageLayout::eDepthAttachmentOptimal,
+                                        vk::ResolveModeFlagBits::eNone, {}, {},
+                                        draw.clear ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad,
                                         vk::AttachmentStoreOp::eStore, vk::ClearDepthStencilValue(1.0F, 0));
     rendering.setPDepthAttachment(&depth);
   }

@@ -34,13 +34,13 @@ class DepthTarget {
 };
 
 struct RasterPassOptions {
-  std::string name;                            ///< labels timestamps, debug regions and errors
+  std::string name;  ///< labels timestamps, debug regions and errors
   std::span<const std::uint32_t> vertex;
-  std::span<const std::uint32_t> fragment;     ///< may be empty: depth only
-  std::uint32_t push_bytes = 0;                ///< sizeof the push-constant struct; checked against the shaders
-  std::vector<std::uint32_t> constants{};      ///< specialization constants 0, 1, 2 … of both stages
-  bool triangle_strip = false;                 ///< else a list
-  bool depth = false;                          ///< tests (less) and writes a DepthTarget
+  std::span<const std::uint32_t> fragment;  ///< may be empty: depth only
+  std::uint32_t push_bytes = 0;             ///< sizeof the push-constant struct; checked against the shaders
+  std::vector<std::uint32_t> constants{};   ///< specialization constants 0, 1, 2 … of both stages
+  bool triangle_strip = false;              ///< else a list
+  bool depth = false;                       ///< tests (less) and writes a DepthTarget
 };
 
 /// A graphics pipeline without vertex inputs or colours: vertices are read from storage buffers, results go to depth or
@@ -53,10 +53,10 @@ class RasterPass {
   RasterPass& operator=(RasterPass&&) noexcept;
 
   struct Draw {
-    std::uint32_t width = 0, height = 0;       ///< of the viewport, which starts at (0, 0)
+    std::uint32_t width = 0, height = 0;  ///< of the viewport, which starts at (0, 0)
     std::uint32_t vertices = 0, instances = 1;
-    const DepthTarget* depth = nullptr;        ///< exactly when the pass has depth
-    bool clear = true;                         ///< depth to 1 before
+    const DepthTarget* depth = nullptr;  ///< exactly when the pass has depth
+    bool clear = true;                   ///< depth to 1 before
   };
 
   template <typename Push>

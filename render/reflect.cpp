@@ -31,7 +31,8 @@ ShaderInterface reflect(std::span<const std::uint32_t> spirv, const std::string&
   spvc_parsed_ir ir = nullptr;
   context.check(spvc_context_parse_spirv(context.get(), spirv.data(), spirv.size(), &ir));
   spvc_compiler compiler = nullptr;
-  context.check(spvc_context_create_compiler(context.get(), SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler));
+  context.check(
+      spvc_context_create_compiler(context.get(), SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler));
   spvc_resources resources = nullptr;
   context.check(spvc_compiler_create_shader_resources(compiler, &resources));
 
@@ -61,10 +62,12 @@ ShaderInterface reflect(std::span<const std::uint32_t> spirv, const std::string&
   }
   const spvc_reflected_resource* push = nullptr;
   std::size_t push_count = 0;
-  context.check(spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_PUSH_CONSTANT, &push, &push_count));
+  context.check(
+      spvc_resources_get_resource_list_for_type(resources, SPVC_RESOURCE_TYPE_PUSH_CONSTANT, &push, &push_count));
   if (push_count > 0) {
     std::size_t bytes = 0;
-    context.check(spvc_compiler_get_declared_struct_size(compiler, spvc_compiler_get_type_handle(compiler, push->base_type_id), &bytes));
+    context.check(spvc_compiler_get_declared_struct_size(
+        compiler, spvc_compiler_get_type_handle(compiler, push->base_type_id), &bytes));
     shader.push_bytes = static_cast<std::uint32_t>(bytes);
   }
   return shader;

@@ -45,9 +45,10 @@ std::vector<Batch> upload(const Device& device, const visibility::SceneFloats& s
     for (std::size_t i = first; i < first + count; ++i) {
       for (const glm::vec3& corner : scene.corners(static_cast<std::uint32_t>(i))) corners.push_back(corner);
     }
-    batches.push_back({make_buffer<glm::vec3>(device, "visibility buffer corners", corners),
-                       make_buffer<std::uint32_t>(device, "visibility buffer ranks", std::span(scene.rank).subspan(first, count)),
-                       static_cast<std::uint32_t>(count)});
+    batches.push_back(
+        {make_buffer<glm::vec3>(device, "visibility buffer corners", corners),
+         make_buffer<std::uint32_t>(device, "visibility buffer ranks", std::span(scene.rank).subspan(first, count)),
+         static_cast<std::uint32_t>(count)});
   }
   return batches;
 }
@@ -70,8 +71,8 @@ struct VisibilityBuffer::State {
 };
 
 VisibilityBuffer::VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene)
-    : state_(new State{&device, &scene, make_pass(device, "view samples: nearest", 0), make_pass(device, "view samples: rank", 1),
-                       upload(device, scene), triangles_by_rank(scene)}) {}
+    : state_(new State{&device, &scene, make_pass(device, "view samples: nearest", 0),
+                       make_pass(device, "view samples: rank", 1), upload(device, scene), triangles_by_rank(scene)}) {}
 
 VisibilityBuffer::~VisibilityBuffer() = default;
 VisibilityBuffer::VisibilityBuffer(VisibilityBuffer&&) noexcept = default;
@@ -83,7 +84,8 @@ visibility::ViewSamples VisibilityBuffer::render(const visibility::PinholeCamera
     throw ResourceError("--size {}x{}: this device draws at most {} pixels in a row", camera.width, camera.height,
                         device.limits().max_image_size);
   }
-  const std::uint64_t most_rows = device.limits().max_storage_buffer_range / (std::uint64_t{camera.width} * sizeof(std::uint64_t));
+  const std::uint64_t most_rows =
+      device.limits().max_storage_buffer_range / (std::uint64_t{camera.width} * sizeof(std::uint64_t));
   const auto band = static_cast<std::uint32_t>(
       std::min<std::uint64_t>({camera.height, std::max<std::uint64_t>(most_rows, 1), device.limits().max_image_size}));
   const std::uint64_t slots = std::uint64_t{camera.width} * band;

@@ -36,8 +36,8 @@ struct Device::State {
   vk::raii::Queue queue{nullptr};
   vk::raii::CommandPool pool{nullptr};
   vk::raii::PipelineCache cache{nullptr};
-  std::filesystem::path cache_file;   // empty: no folder to keep it in
-  std::vector<char> cache_on_disk;    // what cache_file held when the device was made
+  std::filesystem::path cache_file;  // empty: no folder to keep it in
+  std::vector<char> cache_on_disk;   // what cache_file held when the device was made
   vk::PhysicalDeviceMemoryProperties memory;
   std::uint32_t timestamp_bits = 0;
   DeviceInfo info;
@@ -59,7 +59,8 @@ struct Allocation {
   bool host_visible = false;
   std::uint64_t bytes = 0;
 };
-Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, bool prefer_host, const std::string& name);
+Allocation allocate(Device::State& device, const vk::MemoryRequirements& needs, bool prefer_host,
+                    const std::string& name);
 
 struct Buffer::State {
   Device::State* device = nullptr;
@@ -67,8 +68,8 @@ struct Buffer::State {
   std::uint64_t bytes = 0;
   vk::raii::Buffer buffer{nullptr};
   Allocation allocation;
-  void* mapped = nullptr;             // when host-visible
-  vk::raii::BufferView view{nullptr}; // texels
+  void* mapped = nullptr;              // when host-visible
+  vk::raii::BufferView view{nullptr};  // texels
   ~State();
 };
 

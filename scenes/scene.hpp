@@ -15,21 +15,21 @@ namespace penumbra::scenes {
 /// One mesh of the scene. Its triangles are those of Scene::soup whose `object` is its index.
 struct Object {
   std::string name;
-  glm::dvec3 color{0.8};                       ///< linear base colour, in [0, 1]
+  glm::dvec3 color{0.8};  ///< linear base colour, in [0, 1]
   bool casts_shadow = true;
   bool receives_shadow = true;
-  std::optional<std::uint32_t> emits;          ///< the light (index into Scene::lights) that this mesh is the body of
+  std::optional<std::uint32_t> emits;  ///< the light (index into Scene::lights) that this mesh is the body of
 };
 
 struct Rectangle {
-  glm::dvec3 center, half_u, half_v;           ///< emits to the side that half_u × half_v points to
+  glm::dvec3 center, half_u, half_v;  ///< emits to the side that half_u × half_v points to
 };
 struct Disk {
-  glm::dvec3 center, normal;                   ///< emits to the side of normal (unit length)
+  glm::dvec3 center, normal;  ///< emits to the side of normal (unit length)
   double radius = 0;
 };
 struct Polygon {
-  std::vector<glm::dvec3> vertices;            ///< flat, convex, counter-clockwise seen from the side it emits to
+  std::vector<glm::dvec3> vertices;  ///< flat, convex, counter-clockwise seen from the side it emits to
 };
 struct Sphere {
   glm::dvec3 center;
@@ -47,18 +47,18 @@ struct AreaLight {
 struct Camera {
   std::string name;
   glm::dvec3 eye{0}, target{0}, up{0, 1, 0};
-  double vertical_fov = 45;                    ///< degrees
+  double vertical_fov = 45;  ///< degrees
 };
 
 /// A scene as the program understood it: world space, double precision, right-handed, Y up.
 struct Scene {
-  std::string name;                            ///< the file's name without folder
-  std::uint32_t width = 512, height = 512;     ///< pixels
-  mesh::TriangleSoup soup;                     ///< world space; triangle order is that of `convert`'s output
+  std::string name;                         ///< the file's name without folder
+  std::uint32_t width = 512, height = 512;  ///< pixels
+  mesh::TriangleSoup soup;                  ///< world space; triangle order is that of `convert`'s output
   std::vector<Object> objects;
-  std::vector<AreaLight> lights;               ///< at least one; names are unique
-  std::vector<Camera> cameras;                 ///< at least one
-  std::vector<std::string> warnings;           ///< what was skipped or changed on the way, each with its place and count
+  std::vector<AreaLight> lights;      ///< at least one; names are unique
+  std::vector<Camera> cameras;        ///< at least one
+  std::vector<std::string> warnings;  ///< what was skipped or changed on the way, each with its place and count
 };
 
 }  // namespace penumbra::scenes

@@ -19,37 +19,37 @@ const char* name_of(SamplePattern pattern);
 
 /// How many light samples, and where. `rows` × `columns` is set only by LxB on the command line.
 struct SampleRequest {
-  std::uint32_t count = 256;                 ///< 1 … 4096
-  std::uint32_t rows = 0, columns = 0;       ///< both 0: chosen by the pattern
+  std::uint32_t count = 256;            ///< 1 … 4096
+  std::uint32_t rows = 0, columns = 0;  ///< both 0: chosen by the pattern
   SamplePattern pattern = SamplePattern::rows;
-  std::uint32_t seed = 0;                    ///< of sobol and jittered
+  std::uint32_t seed = 0;  ///< of sobol and jittered
 };
 
 /// A light in scene floats (float32 of world − origin), with its light samples in their fixed order: the same points
 /// for every method and every oracle.
 struct Light {
   std::string name;
-  std::int32_t index = 0;                    ///< in Scene::lights
+  std::int32_t index = 0;  ///< in Scene::lights
   LightKind kind = LightKind::rectangle;
   bool two_sided = false;
   glm::dvec3 radiance{0};
-  double area = 0;                           ///< |L| in world units, double (a sphere's: its facing disk's)
+  double area = 0;  ///< |L| in world units, double (a sphere's: its facing disk's)
 
   /// The stored frame: three points that span the light's plane and say where it emits: (u − c) × (v − c) points to
   /// the emitting side. rectangle: centre, centre + halfU, centre + halfV; disk: centre and two points of its rim;
   /// polygon: its first three non-collinear vertices. (sphere: centre and radius only.)
   glm::vec3 center{0}, center_u{0}, center_v{0};
-  std::vector<glm::vec3> outline;            ///< stored corners that bound the light: rectangle 4, polygon all, disk a
-                                             ///< circumscribed square's 4; conservative hull of light and samples
-  double radius = 0;                         ///< disk, sphere
+  std::vector<glm::vec3> outline;  ///< stored corners that bound the light: rectangle 4, polygon all, disk a
+                                   ///< circumscribed square's 4; conservative hull of light and samples
+  double radius = 0;               ///< disk, sphere
 
   SamplePattern pattern = SamplePattern::rows;
-  std::uint32_t rows = 0, columns = 0;       ///< rows and grid: sample j = row · columns + column; else rows = 0
-  std::vector<double> row_shift;             ///< rows pattern: each row's shift in cells, in (−0.5, 0.5); else empty
-  std::vector<glm::vec3> points;             ///< the light samples as stored in float32 (a sphere's: empty)
-  std::vector<glm::dvec2> coordinates;       ///< the same samples before rounding, in [−1, 1]² along (u − c, v − c)
-                                             ///< (rectangle); a disk's and a sphere's: on the unit disk; a polygon's:
-                                             ///< over its bounding rectangle
+  std::uint32_t rows = 0, columns = 0;  ///< rows and grid: sample j = row · columns + column; else rows = 0
+  std::vector<double> row_shift;        ///< rows pattern: each row's shift in cells, in (−0.5, 0.5); else empty
+  std::vector<glm::vec3> points;        ///< the light samples as stored in float32 (a sphere's: empty)
+  std::vector<glm::dvec2> coordinates;  ///< the same samples before rounding, in [−1, 1]² along (u − c, v − c)
+                                        ///< (rectangle); a disk's and a sphere's: on the unit disk; a polygon's:
+                                        ///< over its bounding rectangle
 
   [[nodiscard]] std::uint32_t sample_count() const { return static_cast<std::uint32_t>(coordinates.size()); }
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
@@ -63,8 +63,8 @@ std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
 
 /// Throws InputError for a light of zero area or one whose points are not finite in float32 relative to `origin`.
 /// If rows or grid rounded the count, `notes` (when given) gets a line that says so.
-Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin, const SampleRequest& request,
-                 std::vector<std::string>* notes = nullptr);
+Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
+                 const SampleRequest& request, std::vector<std::string>* notes = nullptr);
 
 /// The axes u, v of the light as seen from p: centre → centre + halfU and → centre + halfV of the stored frame; for a
 /// sphere the axes, one radius long, of the disk through its centre that faces p (u × v points to p).

@@ -14,15 +14,15 @@ namespace penumbra::visibility {
 
 enum class Family { reference, geometry, image };
 enum class Output {
-  mask,      ///< one bit a light sample: visible or not
-  scalar,    ///< V alone
+  mask,    ///< one bit a light sample: visible or not
+  scalar,  ///< V alone
 };
 const char* name_of(Family family);
 const char* name_of(Output output);
 
 struct OptionDescription {
   std::string name;
-  std::string values;         ///< "on|off", "1 … 4096"
+  std::string values;  ///< "on|off", "1 … 4096"
   std::string default_value;
   std::string help;
 };
@@ -33,8 +33,8 @@ struct MethodDescription {
   Family family = Family::geometry;
   std::string paper;
   Output output = Output::mask;
-  std::string exact_for;                    ///< what it is exact for, in words
-  std::vector<LightKind> lights;            ///< shapes it can do
+  std::string exact_for;          ///< what it is exact for, in words
+  std::vector<LightKind> lights;  ///< shapes it can do
   std::vector<OptionDescription> options;
 };
 

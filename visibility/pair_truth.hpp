@@ -33,13 +33,14 @@ struct Meeting {
 /// Does the open segment p→l meet the triangle? Exact. An edge sign that is zero is read as that of
 /// l + ε(u) + ε²(v), with u, v the light's frame axes; zero-area triangles, and triangles whose plane contains p or l,
 /// are not met. Does not know about carriers: coplanar triangles are the caller's.
-Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners, const Light& light);
+Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
+                               const Light& light);
 
 enum class PairOutcome : std::uint8_t {
   visible,
-  blocked,   ///< some triangle meets the open segment
-  horizon,   ///< l is not strictly on the viewer's side of the carrying triangle's plane
-  behind,    ///< p is not strictly on an emitting side of the light
+  blocked,  ///< some triangle meets the open segment
+  horizon,  ///< l is not strictly on the viewer's side of the carrying triangle's plane
+  behind,   ///< p is not strictly on an emitting side of the light
 };
 
 struct PairTruth {

@@ -59,8 +59,12 @@ std::vector<RTCBuildPrimitive> primitives_of(const SceneFloats& scene) {
   return primitives;
 }
 
-glm::vec3 lower_of(const RTCBounds& b) { return {b.lower_x, b.lower_y, b.lower_z}; }
-glm::vec3 upper_of(const RTCBounds& b) { return {b.upper_x, b.upper_y, b.upper_z}; }
+glm::vec3 lower_of(const RTCBounds& b) {
+  return {b.lower_x, b.lower_y, b.lower_z};
+}
+glm::vec3 upper_of(const RTCBounds& b) {
+  return {b.upper_x, b.upper_y, b.upper_z};
+}
 
 class Flattener {
  public:
@@ -100,7 +104,8 @@ TriangleTree make_triangle_tree(const SceneFloats& scene) {
   const std::size_t count = primitives.size();
 
   const RTCDevice device = rtcNewDevice(nullptr);
-  if (device == nullptr) throw ResourceError("Embree cannot start (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
+  if (device == nullptr)
+    throw ResourceError("Embree cannot start (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
   const RTCBVH bvh = rtcNewBVH(device);
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;

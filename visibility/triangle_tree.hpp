@@ -20,14 +20,14 @@ struct TriangleTree {
 
   struct Child {
     glm::vec3 lower{0}, upper{0};
-    std::uint32_t reference = kNoChild;     ///< a node, or kLeafBit | leaf, or kNoChild
+    std::uint32_t reference = kNoChild;  ///< a node, or kLeafBit | leaf, or kNoChild
   };
   using Node = std::array<Child, kWidth>;
   using Leaf = std::array<std::uint32_t, kWidth>;  ///< triangles; kNoTriangle in unused slots at the end
 
-  std::vector<Node> nodes;                  ///< the root is node 0; empty when nothing casts shadow
+  std::vector<Node> nodes;  ///< the root is node 0; empty when nothing casts shadow
   std::vector<Leaf> leaves;
-  std::uint32_t depth = 0;                  ///< nodes on the longest way from root to leaf
+  std::uint32_t depth = 0;  ///< nodes on the longest way from root to leaf
 
   /// Calls `visit(triangle)` for each triangle in a leaf whose box touches [lower, upper].
   template <typename Visit>
@@ -46,7 +46,8 @@ void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper,
     for (const Child& child : node) {
       if (child.reference == kNoChild) continue;
       bool touches = true;
-      for (int axis = 0; axis < 3; ++axis) touches = touches && child.lower[axis] <= upper[axis] && child.upper[axis] >= lower[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        touches = touches && child.lower[axis] <= upper[axis] && child.upper[axis] >= lower[axis];
       if (!touches) continue;
       if ((child.reference & kLeafBit) == 0) {
         stack.push_back(child.reference);

@@ -25,7 +25,8 @@ struct PinholeCamera {
 };
 
 /// Throws InputError when eye and target coincide or `up` is parallel to the view direction.
-PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width, std::uint32_t height);
+PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width,
+                          std::uint32_t height);
 
 /// What each pixel sees, in scan-line order: carrying triangle, p, geometric normal toward the viewer.
 struct ViewSamples {
@@ -36,9 +37,9 @@ struct ViewSamples {
   std::vector<glm::vec3> p;            ///< relative to the origin, rounded once from double; 0 for background
   std::vector<glm::vec3> n;            ///< unit geometric normal turned toward the viewer; 0 for background
   std::vector<float> depth;            ///< along the view axis; 0 for background
-  std::vector<std::int8_t> facing;     ///< +1: the sorted triangle's (b − a) × (c − a) points to the viewer's side, −1:
-                                       ///< away; 0 for background. The one answer to "which side is the viewer on"
-  glm::vec3 eye{0};                    ///< float32 of the camera's eye (for display; decisions take `facing`)
+  std::vector<std::int8_t> facing;  ///< +1: the sorted triangle's (b − a) × (c − a) points to the viewer's side, −1:
+                                    ///< away; 0 for background. The one answer to "which side is the viewer on"
+  glm::vec3 eye{0};  ///< float32 of the camera's eye (for display; decisions take `facing`)
 
   [[nodiscard]] std::size_t size() const { return triangle.size(); }
 };
@@ -46,23 +47,25 @@ struct ViewSamples {
 /// Does the pixel's ray from the camera meet the closed triangle (sorted vertices) in front of the eye, and at which t?
 /// Double arithmetic on the scene floats; each edge's sign is computed from its end points in lexicographic order, so
 /// two triangles that share an edge never leave a crack. Triangles of zero area or seen edge-on cover nothing.
-std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direction, const std::array<glm::vec3, 3>& corners);
+std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direction,
+                            const std::array<glm::vec3, 3>& corners);
 
 /// Fills p, n and depth from the carrying triangle of each pixel (kBackground where there is none). The definition:
 /// intersection of the pixel's ray with the triangle's plane in double from its sorted vertices; p rounded once.
-ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera& camera, std::vector<std::int32_t> triangles);
+ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera& camera,
+                                  std::vector<std::int32_t> triangles);
 
 /// The C++ twin of the visibility buffer: tries every triangle at every pixel. Slow; the truth in tests.
 ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCamera& camera);
 
 /// What kind of receiver a pixel is for one light.
 enum class PixelClass : std::uint8_t {
-  background,   ///< A = 0
-  emitter,      ///< carries the body of some light: V = 1
-  unshadowed,   ///< receivesShadow is false: V = 1
-  judged,       ///< the whole light is above the tangent plane and p is in front of the light
-  horizon,      ///< some of the light is not strictly above the tangent plane
-  behind,       ///< p is not strictly on an emitting side of the light
+  background,  ///< A = 0
+  emitter,     ///< carries the body of some light: V = 1
+  unshadowed,  ///< receivesShadow is false: V = 1
+  judged,      ///< the whole light is above the tangent plane and p is in front of the light
+  horizon,     ///< some of the light is not strictly above the tangent plane
+  behind,      ///< p is not strictly on an emitting side of the light
 };
 
 /// Exact (the predicates of pair_truth on the stored floats; the light by its outline). One entry a pixel.

@@ -27,40 +27,42 @@ void walk(bool on, float side, uint header) {
   const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
   uint stack_size = 1, leaf_count = 0;
   stack[0] = 0;                                           // every lane writes the same
-  while (stack_size > 0) {
-    const uint taken = min(stack_size, teams);
-    const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
-    stack_size -= taken;
-    const int texel = int((node * kTeam + member) * 2);
-    const uvec4 first = texelFetch(nodes, texel), second = texelFetch(nodes, texel + 1);
-    const vec3 middle = uintBitsToFloat(first.xyz), half_size = uintBitsToFloat(second.xyz);
-    const float at = dot(shaft.axis, middle), spread = dot(abs(shaft.axis), half_size);
-    const vec4 least = shaft.nx * middle.x + shaft.ny * middle.y + shaft.nz * middle.z -
-                       (abs(shaft.nx) * half_size.x + abs(shaft.ny) * half_size.y + abs(shaft.nz) * half_size.z);
-    const bool hit = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
-                     all(lessThanEqual(least, shaft.beyond));
-    const bool leaf = (first.w & kLeafBit) != 0;
-    const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
-    if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
-    if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
-    stack_size += subgroupBallotBitCount(inner_hits);
-    leaf_count += subgroupBallotBitCount(leaf_hits);
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
-    if (leaf_count >= kChunk) {
-      emit_chunk(header, kChunk);
-      leaf_count -= kChunk;
-      const uint rest = lane < leaf_count ? leaves[kChunk + lane] : 0;
+  while (stack_size > 0 || leaf_count > 0) {
+    // Short, because some devices run all of a loop's body whatever its branches say.
+    while (stack_size > 0 && leaf_count < kChunk) {
+      const uint taken = min(stack_size, teams);
+      const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
+      stack_size -= taken;
+      const int texel = int((node * kTeam + member) * 2);
+      const uvec4 first = texelFetch(nodes, texel), second = texelFetch(nodes, texel + 1);
+      const vec3 middle = uintBitsToFloat(first.xyz), half_size = uintBitsToFloat(second.xyz);
+      const float at = dot(shaft.axis, middle), spread = dot(abs(shaft.axis), half_size);
+      const vec4 least = shaft.nx * middle.x + shaft.ny * middle.y + shaft.nz * middle.z -
+                         (abs(shaft.nx) * half_size.x + abs(shaft.ny) * half_size.y + abs(shaft.nz) * half_size.z);
+      const bool hit = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
+                       all(lessThanEqual(least, shaft.beyond));
+      const bool leaf = (first.w & kLeafBit) != 0;
+      const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
       subgroupMemoryBarrierShared();
       subgroupBarrier();
-      if (lane < leaf_count) leaves[lane] = rest;
+      if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
+      if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
+      stack_size += subgroupBallotBitCount(inner_hits);
+      leaf_count += subgroupBallotBitCount(leaf_hits);
       subgroupMemoryBarrierShared();
       subgroupBarrier();
     }
+    const uint emitted = min(leaf_count, kChunk);
+    if (emitted > 0) emit_chunk(header, emitted);
+    leaf_count -= emitted;
+    const uint rest = lane < leaf_count ? leaves[emitted + lane] : 0;
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+    if (lane < leaf_count) leaves[lane] = rest;
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+    if (emitted < kChunk && stack_size > 0) break;        // the inner loop was cut off
   }
-  if (leaf_count > 0) emit_chunk(header, leaf_count);
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
   if (stack_size > 0) atomicOr(unfinished, kWalkCut);
 }

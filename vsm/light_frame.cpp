@@ -17,7 +17,8 @@ struct Span {
 };
 
 Span span_of(const visibility::Light& light) {
-  const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center, to_v = glm::dvec3(light.center_v) - center;
+  const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center,
+                                         to_v = glm::dvec3(light.center_v) - center;
   if (light.kind == visibility::LightKind::rectangle) return {center, to_u, to_v};
   const glm::dvec3 axis_u = glm::normalize(to_u);
   const glm::dvec3 axis_v = glm::normalize(glm::cross(glm::cross(to_u, to_v), axis_u));
@@ -65,7 +66,8 @@ std::optional<std::uint32_t> shift_step_of(const visibility::Light& light) {
 LightFrame make_light_frame(const visibility::Light& light, float scale) {
   PENUMBRA_ASSERT(light.kind != visibility::LightKind::sphere, "a sphere has no plane");
   const Span span = span_of(light);
-  LightFrame frame{glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, false, 0, {}, 0};
+  LightFrame frame{
+      glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, false, 0, {}, 0};
   const std::optional<std::uint32_t> step = shift_step_of(light);
   frame.rows = step.has_value();
   frame.shift_step = step.value_or(0);
@@ -74,8 +76,10 @@ LightFrame make_light_frame(const visibility::Light& light, float scale) {
     const glm::dvec3 point = glm::dvec3(light.points[j]) * static_cast<double>(scale);
     glm::vec2 at = coordinates_of(frame, point);
     if (frame.rows) {
-      const auto row = static_cast<std::uint32_t>(j / light.columns), column = static_cast<std::uint32_t>(j % light.columns);
-      at = glm::vec2(2.0 * (column + 0.5 + shift_of(row, frame.shift_step)) / light.columns - 1.0, 2.0 * (row + 0.5) / light.rows - 1.0);
+      const auto row = static_cast<std::uint32_t>(j / light.columns),
+                 column = static_cast<std::uint32_t>(j % light.columns);
+      at = glm::vec2(2.0 * (column + 0.5 + shift_of(row, frame.shift_step)) / light.columns - 1.0,
+                     2.0 * (row + 0.5) / light.rows - 1.0);
     }
     frame.coordinates.push_back(at);
     const glm::dvec3 there = glm::dvec3(frame.center) + static_cast<double>(at.x) * glm::dvec3(frame.u) +

@@ -22,12 +22,12 @@ struct SettleInput {
   const visibility::TriangleTree& tree;
   const visibility::ViewSamples& samples;
   const visibility::Light& light;
-  std::size_t first_pixel = 0;                 ///< of the tile
-  std::span<const std::uint32_t> bit_of;       ///< for each of the device's sample numbers, the light sample
+  std::size_t first_pixel = 0;            ///< of the tile
+  std::span<const std::uint32_t> bit_of;  ///< for each of the device's sample numbers, the light sample
 };
 
-/// Answers by exact predicates what float arithmetic left open. Parallel; the result does not depend on the order of the
-/// questions but as a set.
+/// Answers by exact predicates what float arithmetic left open. Parallel; the result does not depend on the order of
+/// the questions but as a set.
 std::vector<Answer> settle(const SettleInput& input, std::span<const gpu::OpenQuestion> questions);
 
 }  // namespace penumbra::vsm

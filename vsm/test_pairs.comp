@@ -38,7 +38,7 @@ struct Seen {
   vec3 A, D1, D2;
   float far;                                              // bounds the distance of each corner
   float error_a;                                          // of A, A + D1, A + D2, each coordinate (bound W)
-  float lowest;                                           // W of the corner nearest to p's plane
+  float lowest, highest;                                  // W of the corners: the nearest to p's plane, the farthest
   vec4 box;                                               // where on the light (bound box)
 };
 
@@ -53,6 +53,7 @@ Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
   seen.far = length(d) + sizes.x + sizes.y;
   seen.error_a = 16.0 * kRound * r * seen.far;
   seen.lowest = min(seen.A.z, min(B.z, C.z));
+  seen.highest = max(seen.A.z, max(B.z, C.z));
   const vec3 w = 1.0 / vec3(seen.A.z, B.z, C.z);
   const vec3 s = vec3(seen.A.x, B.x, C.x) * w, t = vec3(seen.A.y, B.y, C.y) * w;
   const vec2 lower = vec2(min(s.x, min(s.y, s.z)), min(t.x, min(t.y, t.z)));
@@ -77,33 +78,37 @@ bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
   const vec3 ab = cross(seen.A, seen.D1), bc = cross(seen.A + seen.D1, seen.D2 - seen.D1), ca = cross(seen.D2, seen.A);
   const float det = dot(ab, seen.D2);
   const vec3 error = error_of_edges(seen, sizes);
-  const bool missed = seen.box.x > 1.0 || seen.box.y > 1.0 || seen.box.z < -1.0 || seen.box.w < -1.0;
+  const bool missed = seen.highest < -seen.error_a || seen.box.x > 1.0 || seen.box.y > 1.0 || seen.box.z < -1.0 || seen.box.w < -1.0;
   const bool clear = beyond && seen.lowest > 8.0 * seen.error_a && has_side(det, seen, sizes);
   if (missed) return true;
   if (!clear) return false;
   const float sign = det < 0.0 ? -1.0 : 1.0, spacing = 2.0 / float(push.columns);
   const vec3 x = sign * vec3(ab.x, bc.x, ca.x), y = sign * vec3(ab.y, bc.y, ca.y), z = sign * vec3(ab.z, bc.z, ca.z);
-  // As in mark_rows, for three edges.
+  // As in mark_rows, for three edges: column k of a row is at s = at.x + spacing · k.
   const vec3 slope = x * spacing;
   const bvec3 rising = greaterThanEqual(slope, vec3(0.0));
   const vec3 least = error / (16.0 * float(push.columns));
   const vec3 inverse = 1.0 / mix(min(slope, -least), max(slope, least), rising);
-  const vec3 at_0 = -z * inverse, per_t = -y * inverse, per_s = -x * inverse;
-  const vec3 slack = 1.25 * error * abs(inverse) + float(push.columns) * (8.0 * kRound);
-  const float half_rows = 0.5 * float(push.rows), last_column = float(push.columns) - 1.0;
+  const vec3 at_0 = -z * inverse, per_t = -y * inverse;
+  const vec3 slack = 1.375 * error * abs(inverse) + float(push.columns) * (8.0 * kRound);
+  // Added to an edge's crossing: a bound from below if it rises, from above if it falls; the other one says nothing.
+  const vec3 none = vec3(1e9);
+  const vec3 sure_below = mix(-none, slack, rising), sure_above = mix(-slack, none, rising);
+  const vec3 open_below = mix(-none, -slack, rising), open_above = mix(slack, none, rising);
+  const float half_rows = 0.5 * float(push.rows), per_unit = 0.5 * float(push.columns), last_column = float(push.columns) - 1.0;
+  const float box_from = seen.box.x * per_unit - 0.01, box_to = seen.box.z * per_unit + 0.01;
   const int first_row = max(int(ceil((max(seen.box.y, -1.0) + 1.0) * half_rows - 0.51)), 0);
   const int last_row = min(int(floor((min(seen.box.w, 1.0) + 1.0) * half_rows - 0.49)), int(push.rows) - 1);
   bool settled = true;
   for (int row = first_row; row <= last_row; ++row) {
     const vec2 at = row_start(row);
-    const vec3 k = at_0 + per_t * at.y + per_s * at.x;
-    const vec3 inner = mix(k - slack, k + slack, rising), outer = mix(k + slack, k - slack, rising);
-    const vec3 inner_from = mix(vec3(0.0), inner, rising), inner_to = mix(inner, vec3(last_column), rising);
-    const vec3 outer_from = mix(vec3(0.0), outer, rising), outer_to = mix(outer, vec3(last_column), rising);
-    const float sure_from = ceil(max(max(inner_from.x, inner_from.y), max(inner_from.z, 0.0)));
-    const float sure_to = floor(min(min(inner_to.x, inner_to.y), min(inner_to.z, last_column)));
-    const float from = ceil(max(max(max(outer_from.x, outer_from.y), max(outer_from.z, 0.0)), (seen.box.x - at.x) / spacing - 0.01));
-    const float to = floor(min(min(min(outer_to.x, outer_to.y), min(outer_to.z, last_column)), (seen.box.z - at.x) / spacing + 0.01));
+    const float start = at.x * per_unit;
+    const vec3 k = at_0 + per_t * at.y - start;
+    const vec3 sf = k + sure_below, st = k + sure_above, of = k + open_below, ot = k + open_above;
+    const float sure_from = ceil(max(max(sf.x, sf.y), max(sf.z, 0.0)));
+    const float sure_to = floor(min(min(st.x, st.y), min(st.z, last_column)));
+    const float from = ceil(max(max(max(of.x, of.y), max(of.z, 0.0)), box_from - start));
+    const float to = floor(min(min(min(ot.x, ot.y), min(ot.z, last_column)), box_to - start));
     const bool some = sure_from <= sure_to;
     settled = settled && (from > to || (some && from >= sure_from && to <= sure_to));
     if (kWordsPerRow == 1) {

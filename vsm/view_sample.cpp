@@ -10,6 +10,7 @@
 #include "vsm/settle.comp.spv.hpp"
 #include "vsm/settle.hpp"
 #include "vsm/test_pairs.comp.spv.hpp"
+#include "vsm/uploads.hpp"
 #include "vsm/view_sample.shared.h"
 
 #include <glm/common.hpp>
@@ -26,17 +27,9 @@ namespace {
 
 using visibility::TriangleTree;
 
-/// One texel of the shaders' buffers: three floats and a number, kept as bits so that nothing is flushed to zero.
-struct Texel {
-  glm::vec3 value{0};
-  std::uint32_t number = 0;
-};
-static_assert(sizeof(Texel) == 16);
-
-constexpr std::uint32_t kSharedBudget = 16 * 1024;      // bytes of shared memory for row masks
+constexpr std::uint32_t kSharedBudget = 16 * 1024;                            // bytes of shared memory for row masks
 constexpr std::uint32_t kFirstQuestions = 1U << 16, kFirstChunks = 1U << 15;  // both grow
-constexpr std::uint32_t kMostChunk = 32;                // leaves that one workgroup tests
-constexpr std::uint32_t kPointCells = 256;
+constexpr std::uint32_t kMostChunk = 32;                                      // leaves that one workgroup tests
 
 const visibility::MethodDescription& describe() {
   static const visibility::MethodDescription description{
@@ -55,17 +48,9 @@ const visibility::MethodDescription& describe() {
 /// sixth powers of lengths that the shader multiplies.
 float scale_of(const visibility::SceneFloats& scene) {
   float largest = 0;
-  for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
   return largest > 0 ? std::ldexp(1.0F, -std::ilogb(largest)) : 1.0F;
-}
-
-/// A box as middle and half extent in float, not smaller than the box.
-std::array<Texel, 2> box_texels(const TriangleTree::Child& child, float scale) {
-  const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
-  const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
-  glm::vec3 half = glm::max(upper - middle, middle - lower);
-  for (int axis = 0; axis < 3; ++axis) half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
-  return {Texel{middle, child.reference}, Texel{half, 0}};
 }
 
 class ViewSampleMapping final : public visibility::Method {
@@ -84,25 +69,8 @@ class ViewSampleMapping final : public visibility::Method {
     scene_ = &scene;
     scale_ = scale_of(scene);
     tree_ = visibility::make_triangle_tree(scene);
-    std::vector<Texel> nodes;
-    nodes.reserve(tree_.nodes.size() * 2 * TriangleTree::kWidth);
-    for (const TriangleTree::Node& node : tree_.nodes) {
-      for (const TriangleTree::Child& child : node) {
-        for (const Texel& texel : box_texels(child, scale_)) nodes.push_back(texel);
-      }
-    }
-    std::array<std::vector<Texel>, 3> corners;
-    for (const TriangleTree::Leaf& leaf : tree_.leaves) {
-      for (const std::uint32_t triangle : leaf) {
-        std::array<glm::vec3, 3> at{};
-        std::array<std::uint32_t, 3> numbers{TriangleTree::kNoTriangle, visibility::SceneFloats::kNoPlane, 0xffffffffU};
-        if (triangle != TriangleTree::kNoTriangle) {
-          at = scene.corners(triangle);
-          numbers = {triangle, scene.plane[triangle], static_cast<std::uint32_t>(scene.emits[triangle])};
-        }
-        for (std::size_t i = 0; i < 3; ++i) corners[i].push_back({at[i] * scale_, numbers[i]});
-      }
-    }
+    const std::vector<Texel> nodes = node_texels(tree_, scale_);
+    const std::array<std::vector<Texel>, 3> corners = corner_texels(tree_, scene, scale_);
     using render::BufferUse;
     nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", nodes, BufferUse::texels));
     for (std::size_t i = 0; i < 3; ++i) {
@@ -120,29 +88,9 @@ class ViewSampleMapping final : public visibility::Method {
     const std::uint32_t lanes = device_->limits().subgroup_size;
     const std::uint32_t words_per_row = (light.columns + 31) / 32;
     const bool rows = frame_.rows && light.rows * words_per_row * lanes * 4 <= kSharedBudget;
-    std::vector<glm::vec2> table;
-    std::vector<std::uint32_t> first_point(kPointCells + 1, 0);
-    bit_of_.resize(light.sample_count());
-    std::iota(bit_of_.begin(), bit_of_.end(), 0U);
-    if (rows) {
-      table.emplace_back();  // rows are computed
-    } else {
-      // Sorted by t, so that a triangle looks at one stretch of them.
-      std::stable_sort(bit_of_.begin(), bit_of_.end(),
-                       [&](auto a, auto b) { return frame_.coordinates[a].y < frame_.coordinates[b].y; });
-      for (const std::uint32_t j : bit_of_) table.push_back(frame_.coordinates[j]);
-      for (std::uint32_t cell = 0; cell < kPointCells; ++cell) {
-        const float from = -1.0F + static_cast<float>(cell) / 128.0F;
-        first_point[cell] = static_cast<std::uint32_t>(
-            std::lower_bound(table.begin(), table.end(), from, [](const glm::vec2& at, float t) { return at.y < t; }) - table.begin());
-      }
-      first_point[kPointCells] = light.sample_count();
-    }
-    std::vector<std::byte> bytes(first_point.size() * sizeof(std::uint32_t) + table.size() * sizeof(glm::vec2));
-    std::copy_n(std::as_bytes(std::span(first_point)).begin(), first_point.size() * sizeof(std::uint32_t), bytes.begin());
-    std::copy_n(std::as_bytes(std::span(table)).begin(), table.size() * sizeof(glm::vec2),
-                bytes.begin() + static_cast<std::ptrdiff_t>(first_point.size() * sizeof(std::uint32_t)));
-    table_.emplace(render::make_buffer<std::byte>(*device_, "light samples", bytes));
+    SampleTable table = make_sample_table(frame_, rows);
+    bit_of_ = std::move(table.bit_of);
+    table_.emplace(render::make_buffer<std::byte>(*device_, "light samples", table.bytes));
 
     // Some processors' drivers end loops after 65535 turns a workgroup; a triangle takes about a turn a row or point.
     const std::uint32_t turns = TriangleTree::kWidth * ((rows ? light.rows : light.sample_count()) + 8);
@@ -155,15 +103,7 @@ class ViewSampleMapping final : public visibility::Method {
 
   void prepare_view(const visibility::ViewSamples& samples) override {
     samples_ = &samples;
-    std::vector<Texel> texels;
-    texels.reserve(2 * samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const std::int32_t carrier = samples.triangle[i];
-      const bool background = carrier == visibility::ViewSamples::kBackground;
-      texels.push_back({samples.p[i] * scale_, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
-      texels.push_back({samples.n[i], background ? 0U : scene_->plane[static_cast<std::size_t>(carrier)]});
-    }
-    view_texels_ = std::move(texels);
+    view_texels_ = view_texels(samples, *scene_, scale_);
     view_rows_ = 0;
     if (max_tile_rows() >= samples.height) upload_rows({0, samples.height});
   }
@@ -173,8 +113,9 @@ class ViewSampleMapping final : public visibility::Method {
     const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * light_->words_per_mask(), 2 * sizeof(Texel));
     const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
     if (rows == 0) {
-      throw ResourceError("one row of {} pixels with {} light samples is more than this device's storage buffers can hold",
-                          samples_->width, light_->sample_count());
+      throw ResourceError(
+          "one row of {} pixels with {} light samples is more than this device's storage buffers can hold",
+          samples_->width, light_->sample_count());
     }
     const auto whole = static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, samples_->height));
     return whole >= 16 && whole < samples_->height ? whole / 16 * 16 : whole;
@@ -193,14 +134,16 @@ class ViewSampleMapping final : public visibility::Method {
       bands.pop_back();
       if (run_band(band)) continue;
       if (band.row_count < 2 * block_height()) {
-        throw ResourceError("view-sample: the lists of one row of pixels are more than this device's storage buffers can hold");
+        throw ResourceError(
+            "view-sample: the lists of one row of pixels are more than this device's storage buffers can hold");
       }
       const std::uint32_t half = band.row_count / 2 / block_height() * block_height();
       bands.push_back({band.first_row + half, band.row_count - half});
       bands.push_back({band.first_row, half});
       ++counters_["splitBands"];
     }
-    resolve_.record(commands_, gpu::ResolvePush{pixels, light_->sample_count()}, {*masks_, *visibility_}, (pixels + 63) / 64);
+    resolve_.record(commands_, gpu::ResolvePush{pixels, light_->sample_count()}, {*masks_, *visibility_},
+                    (pixels + 63) / 64);
     submit();
   }
 
@@ -245,8 +188,9 @@ class ViewSampleMapping final : public visibility::Method {
     const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
     // Depth first, `teams` nodes at a time, each leaves at most seven more than it takes.
     const std::uint32_t stack = teams * TriangleTree::kWidth * (tree_.depth + 2);
-    const std::vector<std::uint32_t> constants{lanes,          lanes,          layout_.scattered ? 1U : 0U, layout_.words_per_row,
-                                               layout_.shared_words, block_width(), layout_.chunk,                stack};
+    const std::vector<std::uint32_t> constants{
+        lanes,         lanes, layout_.scattered ? 1U : 0U, layout_.words_per_row, layout_.shared_words, block_width(),
+        layout_.chunk, stack};
     if (find_leaves_ && constants == constants_) return;
     const auto make = [&](const char* name, std::span<const std::uint32_t> spirv) {
       return render::ComputePass(*device_, {.name = name,
@@ -261,8 +205,9 @@ class ViewSampleMapping final : public visibility::Method {
   }
 
   void upload_rows(const visibility::Tile& tile) {
-    const std::span<const Texel> rows =
-        std::span<const Texel>(view_texels_).subspan(std::size_t{2} * tile.first_row * samples_->width, std::size_t{2} * tile.row_count * samples_->width);
+    const std::span<const Texel> rows = std::span<const Texel>(view_texels_)
+                                            .subspan(std::size_t{2} * tile.first_row * samples_->width,
+                                                     std::size_t{2} * tile.row_count * samples_->width);
     render::grow(*device_, view_, "view samples", rows.size_bytes(), render::BufferUse::texels);
     view_->write(rows);
     view_row_ = tile.first_row;
@@ -308,7 +253,8 @@ class ViewSampleMapping final : public visibility::Method {
                                  ((band.row_count + block_height() - 1) / block_height());
     for (;;) {
       const std::uint64_t chunk_bytes = std::uint64_t{chunk_capacity_} * (1 + layout_.chunk) * sizeof(std::uint32_t);
-      const std::uint64_t question_bytes = sizeof(Counts) + std::uint64_t{question_capacity_} * sizeof(gpu::OpenQuestion);
+      const std::uint64_t question_bytes =
+          sizeof(Counts) + std::uint64_t{question_capacity_} * sizeof(gpu::OpenQuestion);
       if (std::max(chunk_bytes, question_bytes) > device_->limits().max_storage_buffer_range) {
         chunk_capacity_ = kFirstChunks;
         question_capacity_ = kFirstQuestions;
@@ -333,12 +279,14 @@ class ViewSampleMapping final : public visibility::Method {
         continue;
       }
       push.chunk_capacity = counts.chunks;
-      test_pairs_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *corners_[0], *corners_[1], *corners_[2]},
+      test_pairs_->record(commands_, push,
+                          {*view_, *table_, *masks_, *questions_, *chunks_, *corners_[0], *corners_[1], *corners_[2]},
                           counts.chunks);
       submit();
       questions_->read(std::span(&counts, 1));
       if ((counts.unfinished & gpu::kTestCut) != 0) {
-        if (layout_.chunk == 1) throw ResourceError("view-sample: {} cuts off loops over the light samples", device_->info().name);
+        if (layout_.chunk == 1)
+          throw ResourceError("view-sample: {} cuts off loops over the light samples", device_->info().name);
         layout_.chunk = std::max(layout_.chunk / 4, 1U);
         build_passes();
         ++counters_["loopRetries"];
@@ -361,8 +309,10 @@ class ViewSampleMapping final : public visibility::Method {
     std::vector<gpu::OpenQuestion> questions(count);
     questions_->read(std::span(questions), sizeof(Counts));
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Answer> answers = settle({*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_}, questions);
-    add_time({"exact predicates", std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
+    const std::vector<Answer> answers = settle(
+        {*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_}, questions);
+    add_time({"exact predicates",
+              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
     apply(answers);
   }
 
@@ -371,7 +321,8 @@ class ViewSampleMapping final : public visibility::Method {
     if (answers.empty()) return;
     render::grow(*device_, answers_, "answers", answers.size() * sizeof(Answer));
     answers_->write(std::span<const Answer>(answers));
-    settle_.record(commands_, static_cast<std::uint32_t>(answers.size()), {*masks_, *answers_}, (answers.size() + 63) / 64);
+    settle_.record(commands_, static_cast<std::uint32_t>(answers.size()), {*masks_, *answers_},
+                   (answers.size() + 63) / 64);
     submit();
   }
 
@@ -380,7 +331,8 @@ class ViewSampleMapping final : public visibility::Method {
   }
 
   void add_time(const visibility::PassTime& time) {
-    const auto same = std::find_if(pass_times_.begin(), pass_times_.end(), [&](const auto& other) { return other.name == time.name; });
+    const auto same = std::find_if(pass_times_.begin(), pass_times_.end(),
+                                   [&](const auto& other) { return other.name == time.name; });
     if (same == pass_times_.end()) {
       pass_times_.push_back(time);
     } else {
@@ -419,9 +371,12 @@ class ViewSampleMapping final : public visibility::Method {
 
 }  // namespace
 
-const visibility::MethodDescription& view_sample_description() { return describe(); }
+const visibility::MethodDescription& view_sample_description() {
+  return describe();
+}
 
-std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device, const visibility::MethodOptions& options) {
+std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
+                                                     const visibility::MethodOptions& options) {
   return std::make_unique<ViewSampleMapping>(device, options);
 }
 

@@ -9,9 +9,10 @@ namespace penumbra::vsm {
 
 /// `view-sample`: triangle-bitmask view-sample mapping for arbitrary receivers (Eisemann-Décoret 2007, Sintorn et al.
 /// 2008) of planar lights, one- and two-sided, any 1 … 4096 light samples, any triangle soup; no bias, no adjacency.
-/// Every bit is the truth of its pair (visibility/pair_truth.hpp): float arithmetic with error bounds on the device, the
-/// few open questions by exact predicates on the host. The device must outlive it.
-std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device, const visibility::MethodOptions& options);
+/// Every bit is the truth of its pair (visibility/pair_truth.hpp): float arithmetic with error bounds on the device,
+/// the few open questions by exact predicates on the host. The device must outlive it.
+std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
+                                                     const visibility::MethodOptions& options);
 
 /// What it is; needs no device.
 const visibility::MethodDescription& view_sample_description();

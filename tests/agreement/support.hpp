@@ -3,6 +3,7 @@
 // What tests of methods on a device share: a device with validation, a run over a whole picture, and the truth of every
 // pair to hold it against.
 
+#include "base/error.hpp"
 #include "render/device.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
 #include "tests/unit/visibility_scenes.hpp"
@@ -197,11 +198,12 @@ inline visibility::ViewSamples samples_on_triangles(const visibility::SceneFloat
     }
     const std::uint32_t triangle = with_area[random() % with_area.size()];
     const auto [a, b, c] = floats.corners(triangle);
-    const unsigned quarters_s = random() % 5, quarters_t = random() % (5 - quarters_s);
+    const auto quarters_s = random() % 5, quarters_t = random() % (5 - quarters_s);
     const glm::dvec3 da(a), ab = glm::dvec3(b) - da, ac = glm::dvec3(c) - da;
     const auto facing = static_cast<std::int8_t>(random() % 2 == 0 ? 1 : -1);
     samples.triangle.push_back(static_cast<std::int32_t>(triangle));
-    samples.p.push_back(glm::vec3(da + 0.25 * quarters_s * ab + 0.25 * quarters_t * ac) + 0.0F);
+    const double s = 0.25 * static_cast<double>(quarters_s), t = 0.25 * static_cast<double>(quarters_t);
+    samples.p.push_back(glm::vec3(da + s * ab + t * ac) + 0.0F);
     samples.n.push_back(glm::vec3(glm::normalize(glm::cross(ab, ac)) * static_cast<double>(facing)) + 0.0F);
     samples.depth.push_back(1);
     samples.facing.push_back(facing);

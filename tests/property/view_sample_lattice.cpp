@@ -1,0 +1,190 @@
+// View-sample mapping where nothing is in general position: every pair equals the exact decision, without tolerance.
+
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/support.hpp"
+
+#include <cmath>
+
+namespace penumbra::vsm {
+namespace {
+
+using tests::LatticeSoup;
+using tests::PairCounts;
+using visibility::Light;
+using visibility::SceneFloats;
+using visibility::ViewSamples;
+
+/// What all cameras see, and points on triangles that no camera's rounding has moved off them.
+ViewSamples all_samples(const scenes::Scene& scene, const SceneFloats& floats, std::mt19937& random) {
+  ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
+  for (const scenes::Camera& camera : scene.cameras) {
+    tests::append(samples, visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
+  }
+  return samples;
+}
+
+/// The same points as a heap of points without rows: the other way through the shaders.
+Light scattered(Light light, bool as_polygon) {
+  light.pattern = visibility::SamplePattern::sobol;
+  light.rows = light.columns = 0;
+  light.row_shift.clear();
+  if (as_polygon) light.kind = visibility::LightKind::polygon;
+  return light;
+}
+
+/// Puts the origin of the scene floats at zero, so that numbers next to zero stay as small as they are.
+void anchor(scenes::Scene& scene) {
+  tests::add_object(scene, "anchor", {{glm::dvec3(-4), glm::dvec3(4, 4, -4), glm::dvec3(4)}}).casts_shadow = false;
+}
+
+class LatticeSoups : public tests::DeviceTest, public testing::WithParamInterface<int> {};
+
+TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
+  const auto method = make_view_sample(device(), {});
+  PairCounts counts;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    LatticeSoup soup(seed + 1000 * static_cast<std::uint32_t>(GetParam()), GetParam());
+    visibility::SampleRequest request;
+    const scenes::Scene scene = lattice_scene(soup, request);
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light rows = visibility::make_light(scene, 0, floats.origin, request);
+    const ViewSamples samples = all_samples(scene, floats, soup.random());
+    const Light light = seed % 3 == 0 ? rows : scattered(rows, seed % 3 == 2);
+    const tests::Masks masks = tests::run(*method, floats, light, samples);
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << GetParam();
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 20);
+  EXPECT_GT(counts.horizon, counts.pairs / 20);
+  EXPECT_GT(counts.behind, counts.pairs / 100);
+  EXPECT_GT(counts.zero, counts.pairs / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Range, LatticeSoups, testing::Values(1, 2, 4));
+
+using HardScenes = tests::DeviceTest;
+
+/// Needles so thin that a double cross product of their edges is mostly rounding, in scenes of mixed magnitudes: as
+/// carriers, as occluders, far from and at the origin.
+TEST_F(HardScenes, NeedlesOfMixedMagnitudes) {
+  const auto method = make_view_sample(device(), {});
+  PairCounts counts;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&] { return glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    anchor(scene);
+    std::vector<tests::Corners> needles;
+    for (int i = 0; i < 24; ++i) {
+      const glm::vec3 b = glm::vec3(point());
+      const glm::dvec3 a = point() * std::ldexp(1.0, -static_cast<int>(random() % 60));
+      switch (random() % 3) {
+        case 0: needles.push_back({a, b, 2.0F * b}); break;                       // nearly on a line through zero
+        case 1: needles.push_back({b, glm::dvec3(b) + a, -point()}); break;       // one short edge
+        default: needles.push_back({b, -b, a}); break;                            // flat: its third corner at the middle
+      }
+    }
+    tests::add_object(scene, "needles", needles);
+    scene.lights.push_back(tests::rectangle_light(glm::dvec3(0.3, 1.5, 0.2) + point(), {0.5, 0.1, 0}, {0, 0.1, 0.6}));
+    scene.lights[0].two_sided = seed % 2 == 0;
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, visibility::SamplePattern::rows, 0});
+    const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
+    const tests::Masks masks = tests::run(*method, floats, light, samples);
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed;
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 10);
+  EXPECT_GT(counts.blocked, counts.pairs / 1000);
+}
+
+/// Coordinates over forty powers of two: a cluster of tiny triangles inside large ones, with the light near either.
+TEST_F(HardScenes, MagnitudesFarApart) {
+  const auto method = make_view_sample(device(), {});
+  PairCounts counts;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+    const double small = std::ldexp(1.0, -static_cast<int>(random() % 40)), light_size = seed % 2 == 0 ? 1 : small;
+    scenes::Scene scene;
+    anchor(scene);
+    std::vector<tests::Corners> soup;
+    for (int i = 0; i < 24; ++i) {
+      const double size = i % 3 == 0 ? 1 : small;
+      soup.push_back({point(size), point(size), point(size)});
+    }
+    tests::add_object(scene, "soup", soup);
+    scene.lights.push_back(tests::rectangle_light(point(light_size) + glm::dvec3(0, 2 * light_size, 0),
+                                                  light_size * glm::dvec3(0.5, 0.1, 0), light_size * glm::dvec3(0, 0.1, 0.6)));
+    scene.lights[0].two_sided = seed % 3 == 0;
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const auto pattern = seed % 4 < 2 ? visibility::SamplePattern::rows : visibility::SamplePattern::jittered;
+    Light light;
+    try {
+      light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, pattern, 0});
+    } catch (const InputError&) {
+      continue;  // so small that it has no area in float32 at that distance from the origin
+    }
+    const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
+    const tests::Masks masks = tests::run(*method, floats, light, samples);
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " small " << small;
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 100);
+}
+
+/// A light as large as the sun and as far: the scene is a speck beside it.
+TEST_F(HardScenes, LightsFarAway) {
+  const auto method = make_view_sample(device(), {});
+  PairCounts counts;
+  for (int exponent = 0; exponent <= 60; exponent += 2) {
+    std::mt19937 random(static_cast<std::uint32_t>(exponent));
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    tests::add_object(scene, "floor", tests::quad({0, -1.37, 0}, {3.1, 0.1, 0}, {0, 0.2, -2.9}));
+    std::vector<tests::Corners> soup;
+    for (int i = 0; i < 24; ++i) soup.push_back({point(1), point(1), point(1)});
+    tests::add_object(scene, "soup", soup);
+    const double distance = 4 * std::ldexp(1.0, exponent);
+    scene.lights.push_back(tests::rectangle_light(distance * glm::dvec3(0.3, 1, 0.2), distance * glm::dvec3(0.2, 0.05, 0),
+                                                  distance * glm::dvec3(0, 0.05, 0.2)));
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
+      const Light light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, pattern, 0});
+      const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
+      const tests::Masks masks = tests::run(*method, floats, light, samples);
+      EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "distance 2^" << exponent << " " << name_of(pattern);
+    }
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 10);
+  EXPECT_GT(counts.blocked, counts.pairs / 10);
+}
+
+/// A picture with nothing in it, and one where nothing casts shadow.
+TEST_F(HardScenes, NothingToHideTheLight) {
+  for (const bool empty_view : {false, true}) {
+    scenes::Scene scene;
+    tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4})).casts_shadow = false;
+    scene.lights.push_back(tests::ceiling_light(3, 1));
+    scene.cameras.push_back(tests::camera({0, 2, 6}, empty_view ? glm::dvec3(0, 9, 9) : glm::dvec3(0)));
+    const tests::Stage stage(scene, 17, 11);
+    const tests::Masks masks = tests::map_view_samples(device(), stage.floats, stage.light, stage.samples);
+    for (std::size_t pixel = 0; pixel < stage.samples.size(); ++pixel) ASSERT_EQ(masks.visible_count(pixel), 256U) << pixel;
+  }
+}
+
+TEST_F(HardScenes, SphereLightsAreRefused) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  scene.lights.emplace_back();
+  scene.lights[0].shape = scenes::Sphere{{0, 3, 0}, 1};
+  scene.cameras.push_back(tests::camera({0, 2, 6}, {0, 0, 0}));
+  const tests::Stage stage(scene, 8, 8);
+  EXPECT_THROW(tests::map_view_samples(device(), stage.floats, stage.light, stage.samples), InputError);
+  EXPECT_THROW(make_view_sample(device(), {{"bias", "0.1"}}), UsageError);
+}
+
+}  // namespace
+}  // namespace penumbra::vsm

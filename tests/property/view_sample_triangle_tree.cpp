@@ -1,0 +1,121 @@
+// The hierarchy that view-sample mapping searches: it holds every triangle that casts shadow exactly once, and no box
+// is smaller than what is below it.
+
+#include "tests/agreement/lattice.hpp"
+#include "visibility/triangle_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <glm/common.hpp>
+
+namespace penumbra::visibility {
+namespace {
+
+/// Walks a whole tree; every triangle is counted, every node and leaf reached once.
+struct Walk {
+  const SceneFloats& floats;
+  const TriangleTree& tree;
+  std::vector<int> triangle_seen, node_seen, leaf_seen;
+  std::uint32_t deepest = 0;
+
+  explicit Walk(const SceneFloats& scene, const TriangleTree& over)
+      : floats(scene), tree(over), triangle_seen(scene.triangles.size()), node_seen(over.nodes.size()), leaf_seen(over.leaves.size()) {
+    if (!tree.nodes.empty()) node(0, 1, {});
+  }
+
+  /// `around`: all boxes on the way here.
+  void node(std::uint32_t index, std::uint32_t depth, const std::vector<TriangleTree::Child>& around) {
+    ASSERT_LT(index, tree.nodes.size());
+    ++node_seen[index];
+    deepest = std::max(deepest, depth);
+    for (const TriangleTree::Child& child : tree.nodes[index]) {
+      if (child.reference == TriangleTree::kNoChild) continue;
+      std::vector<TriangleTree::Child> boxes = around;
+      boxes.push_back(child);
+      if ((child.reference & TriangleTree::kLeafBit) == 0) {
+        node(child.reference, depth + 1, boxes);
+      } else {
+        leaf(child.reference & ~TriangleTree::kLeafBit, boxes);
+      }
+    }
+  }
+
+  void leaf(std::uint32_t index, const std::vector<TriangleTree::Child>& boxes) {
+    ASSERT_LT(index, tree.leaves.size());
+    ++leaf_seen[index];
+    bool ended = false;
+    for (const std::uint32_t triangle : tree.leaves[index]) {
+      ended = ended || triangle == TriangleTree::kNoTriangle;
+      if (ended) {
+        EXPECT_EQ(triangle, TriangleTree::kNoTriangle) << "unused slots come last";
+        continue;
+      }
+      ASSERT_LT(triangle, floats.triangles.size());
+      ++triangle_seen[triangle];
+      for (const glm::vec3& corner : floats.corners(triangle)) {
+        for (const TriangleTree::Child& box : boxes) {
+          EXPECT_TRUE(corner == glm::clamp(corner, box.lower, box.upper)) << "triangle " << triangle;
+        }
+      }
+    }
+  }
+};
+
+void check(const SceneFloats& floats) {
+  const TriangleTree tree = make_triangle_tree(floats);
+  const Walk walk(floats, tree);
+  for (std::size_t i = 0; i < floats.triangles.size(); ++i) {
+    EXPECT_EQ(walk.triangle_seen[i], floats.casts_shadow[i] != 0 ? 1 : 0) << "triangle " << i;
+  }
+  for (const int seen : walk.node_seen) EXPECT_EQ(seen, 1);
+  for (const int seen : walk.leaf_seen) EXPECT_EQ(seen, 1);
+  EXPECT_EQ(walk.deepest, tree.depth) << "the shaders' stack is made for it";
+}
+
+scenes::Scene with(const std::vector<tests::Corners>& triangles) {
+  scenes::Scene scene;
+  tests::add_object(scene, "anchor", {{glm::dvec3(-9), glm::dvec3(9, -9, 9), glm::dvec3(9)}}).casts_shadow = false;
+  tests::add_object(scene, "soup", triangles);
+  return scene;
+}
+
+TEST(TriangleTree, HoldsEveryCastingTriangleOnceInBoxesAroundIt) {
+  for (const std::uint32_t count : {0U, 1U, 2U, 7U, 8U, 9U, 64U, 65U, 1000U, 20000U}) {
+    SCOPED_TRACE(count);
+    tests::LatticeSoup soup(count, count < 100 ? 3 : 100);
+    check(visibility::make_scene_floats(with(soup.triangles(count))));
+  }
+}
+
+TEST(TriangleTree, HoldsDoublesAsOftenAsTheyAre) {
+  for (const std::size_t count : {8U, 9U, 100U, 5000U}) {
+    SCOPED_TRACE(count);
+    check(visibility::make_scene_floats(
+        with(std::vector<tests::Corners>(count, {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}))));
+  }
+}
+
+TEST(TriangleTree, FindsEveryTriangleWhoseBoxIsTouched) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    tests::LatticeSoup soup(seed, 6);
+    const SceneFloats floats = make_scene_floats(with(soup.triangles(300)));
+    const TriangleTree tree = make_triangle_tree(floats);
+    for (int i = 0; i < 20; ++i) {
+      const glm::vec3 p(soup.point()), q(soup.point()), lower = glm::min(p, q), upper = glm::max(p, q);
+      std::vector<int> found(floats.triangles.size());
+      tree.for_each_near(lower, upper, [&](std::uint32_t triangle) { ++found[triangle]; });
+      for (std::uint32_t t = 0; t < floats.triangles.size(); ++t) {
+        const auto [a, b, c] = floats.corners(t);
+        const glm::vec3 from = glm::min(a, glm::min(b, c)), to = glm::max(a, glm::max(b, c));
+        const bool touched = glm::max(from, lower) == glm::clamp(glm::max(from, lower), glm::vec3(-1e30F), glm::min(to, upper));
+        if (touched && floats.casts_shadow[t] != 0) {
+          EXPECT_EQ(found[t], 1) << "seed " << seed << " triangle " << t;
+        }
+        EXPECT_LE(found[t], floats.casts_shadow[t] != 0 ? 1 : 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::visibility

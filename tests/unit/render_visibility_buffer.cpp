@@ -1,0 +1,105 @@
+// The rasterised view samples equal their definition bit for bit, also where triangles coincide, cross each other, cross
+// the eye's plane or are seen edge-on.
+
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/support.hpp"
+
+#include "render/visibility_buffer.hpp"
+#include "scenes/reader.hpp"
+
+namespace penumbra::render {
+namespace {
+
+using visibility::ViewSamples;
+
+class VisibilityBufferTest : public tests::DeviceTest {
+ protected:
+  static std::string text_of(const visibility::SceneFloats& floats, const ViewSamples& samples, std::size_t pixel) {
+    if (samples.triangle[pixel] < 0) return "nothing";
+    const auto [a, b, c] = floats.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
+    return fmt::format("triangle {} {} {} {} at depth {} in {} facing {}", samples.triangle[pixel], tests::text_of(a),
+                       tests::text_of(b), tests::text_of(c), samples.depth[pixel], tests::text_of(samples.p[pixel]),
+                       samples.facing[pixel]);
+  }
+
+  /// Returns how many pixels see something.
+  static std::size_t check(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height, const std::string& what) {
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    VisibilityBuffer buffer(device(), floats);
+    std::size_t covered = 0;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+      const auto camera = visibility::make_camera(scene.cameras[i], floats.origin, width, height);
+      const ViewSamples expected = visibility::brute_force_view_samples(floats, camera), found = buffer.render(camera);
+      std::size_t differing = 0, first = 0;
+      for (std::size_t pixel = 0; pixel < expected.size(); ++pixel) {
+        covered += expected.triangle[pixel] >= 0 ? 1 : 0;
+        const bool same = expected.triangle[pixel] == found.triangle[pixel] && expected.p[pixel] == found.p[pixel] &&
+                          expected.n[pixel] == found.n[pixel] && expected.depth[pixel] == found.depth[pixel] &&
+                          expected.facing[pixel] == found.facing[pixel];
+        if (!same && differing++ == 0) first = pixel;
+      }
+      if (differing == 0) continue;
+      ADD_FAILURE() << what << " camera " << i << ": " << differing << " pixels differ; pixel " << first << " sees "
+                    << text_of(floats, found, first) << ", not " << text_of(floats, expected, first) << "; eye "
+                    << fmt::format("({}, {}, {})", camera.eye.x, camera.eye.y, camera.eye.z);
+    }
+    return covered;
+  }
+};
+
+TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnLatticeSoups) {
+  // Cameras stand on the lattice among the triangles: many cross the eye's plane, some pass through the eye.
+  std::size_t covered = 0;
+  for (std::uint32_t seed = 0; seed < 80; ++seed) {
+    tests::LatticeSoup soup(seed, 1 + static_cast<int>(seed % 4));
+    visibility::SampleRequest request;
+    covered += check(lattice_scene(soup, request), 31, 23, "seed " + std::to_string(seed));
+  }
+  EXPECT_GT(covered, 80U * 31 * 23 / 4);
+}
+
+TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnCrossingSoups) {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    std::vector<tests::Corners> soup;
+    for (int i = 0; i < 200; ++i) {
+      // From specks below a pixel to ones that reach far behind the eye.
+      const glm::dvec3 center = point(1);
+      const double size = std::ldexp(4.0, -static_cast<int>(random() % 12));
+      soup.push_back({center + point(size), center + point(size), center + point(size)});
+    }
+    tests::add_object(scene, "soup", soup);
+    scene.lights.push_back(tests::ceiling_light(3, 1));
+    scene.cameras.push_back(tests::camera(point(1), point(1), 90));
+    scene.cameras.push_back(tests::camera(point(4), point(0.1), 40));
+    scene.cameras.push_back(tests::camera(point(400), point(0.1), 0.5));
+    scene.cameras.push_back(tests::camera(point(1), point(1), 175));
+    check(scene, 48, 37, "seed " + std::to_string(seed));
+  }
+}
+
+TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnTheBunny) {
+  EXPECT_GT(check(scenes::read_scene(PENUMBRA_SCENES "/bunny.json"), 64, 64, "bunny"), 2000U);
+}
+
+TEST_F(VisibilityBufferTest, AFewPixelsAndNoTriangles) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  scene.cameras.push_back(tests::camera({0, 2, 6}, {0, 0, 0}));
+  EXPECT_EQ(check(scene, 1, 1, "one pixel"), 1U);
+  check(scene, 257, 1, "a row");
+  check(scene, 1, 257, "a column");
+  scene.cameras[0] = tests::camera({0, 2, 6}, {0, 4, 9});
+  EXPECT_EQ(check(scene, 16, 16, "nothing in sight"), 0U);
+  tests::add_object(scene, "needle", {{glm::dvec3(0), glm::dvec3(1), glm::dvec3(2)}});
+  scene.soup.triangles.erase(scene.soup.triangles.begin(), scene.soup.triangles.begin() + 2);
+  scene.soup.object.erase(scene.soup.object.begin(), scene.soup.object.begin() + 2);
+  scene.cameras[0] = tests::camera({0, 2, 6}, {0, 0, 0});
+  EXPECT_EQ(check(scene, 16, 16, "nothing with area"), 0U);
+}
+
+}  // namespace
+}  // namespace penumbra::render

@@ -1,0 +1,91 @@
+#include "vsm/uploads.hpp"
+
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+namespace penumbra::vsm {
+
+using visibility::TriangleTree;
+
+std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
+  std::vector<Texel> texels;
+  texels.reserve(tree.nodes.size() * 2 * TriangleTree::kWidth);
+  for (const TriangleTree::Node& node : tree.nodes) {
+    for (const TriangleTree::Child& child : node) {
+      const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
+      const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
+      glm::vec3 half = glm::max(upper - middle, middle - lower);
+      for (int axis = 0; axis < 3; ++axis)
+        half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
+      texels.push_back({middle, child.reference});
+      texels.push_back({half, 0});
+    }
+  }
+  return texels;
+}
+
+std::array<std::vector<Texel>, 3> corner_texels(const TriangleTree& tree, const visibility::SceneFloats& scene,
+                                                float scale) {
+  std::array<std::vector<Texel>, 3> texels;
+  for (auto& list : texels) list.reserve(tree.leaves.size() * TriangleTree::kWidth);
+  for (const TriangleTree::Leaf& leaf : tree.leaves) {
+    for (const std::uint32_t triangle : leaf) {
+      std::array<glm::vec3, 3> at{};
+      std::array<std::uint32_t, 3> numbers{TriangleTree::kNoTriangle, visibility::SceneFloats::kNoPlane, 0xffffffffU};
+      if (triangle != TriangleTree::kNoTriangle) {
+        at = scene.corners(triangle);
+        numbers = {triangle, scene.plane[triangle], static_cast<std::uint32_t>(scene.emits[triangle])};
+      }
+      for (std::size_t i = 0; i < 3; ++i) texels[i].push_back({at[i] * scale, numbers[i]});
+    }
+  }
+  return texels;
+}
+
+std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
+                               float scale) {
+  std::vector<Texel> texels;
+  texels.reserve(2 * samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::int32_t carrier = samples.triangle[i];
+    const bool background = carrier == visibility::ViewSamples::kBackground;
+    texels.push_back(
+        {samples.p[i] * scale, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
+    texels.push_back({samples.n[i], background ? 0U : scene.plane[static_cast<std::size_t>(carrier)]});
+  }
+  return texels;
+}
+
+SampleTable make_sample_table(const LightFrame& frame, bool rows) {
+  constexpr std::uint32_t kCells = 256;
+  std::array<std::uint32_t, kCells + 1> first_point{};
+  std::vector<glm::vec2> points(1);
+  SampleTable table;
+  table.bit_of.resize(frame.coordinates.size());
+  std::iota(table.bit_of.begin(), table.bit_of.end(), 0U);
+  if (!rows) {
+    std::stable_sort(table.bit_of.begin(), table.bit_of.end(),
+                     [&](auto a, auto b) { return frame.coordinates[a].y < frame.coordinates[b].y; });
+    points.clear();
+    for (const std::uint32_t j : table.bit_of) points.push_back(frame.coordinates[j]);
+    for (std::uint32_t cell = 0; cell < kCells; ++cell) {
+      const float from = -1.0F + static_cast<float>(cell) / (kCells / 2);
+      const auto first =
+          std::lower_bound(points.begin(), points.end(), from, [](const glm::vec2& at, float t) { return at.y < t; });
+      first_point[cell] = static_cast<std::uint32_t>(first - points.begin());
+    }
+    first_point[kCells] = static_cast<std::uint32_t>(points.size());
+  }
+  table.bytes.resize(sizeof(first_point) + points.size() * sizeof(glm::vec2));
+  std::memcpy(table.bytes.data(), first_point.data(), sizeof(first_point));
+  std::memcpy(table.bytes.data() + sizeof(first_point), points.data(), points.size() * sizeof(glm::vec2));
+  return table;
+}
+
+}  // namespace penumbra::vsm
