@@ -180,6 +180,12 @@ int preference(const DeviceInfo& info) {
   return info.kind == "cpu" ? 3 : 4;
 }
 
+ResourceError no_driver() {
+  return ResourceError(
+      "no Vulkan device: the loader found no driver; install one (mesa-vulkan-drivers runs on any processor) and check "
+      "VK_DRIVER_FILES and VK_ICD_FILENAMES");
+}
+
 /// The best usable wanted device, or a ResourceError that says of each device why not.
 DeviceInfo choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::string& wanted) {
   std::optional<DeviceInfo> best;
@@ -195,11 +201,7 @@ DeviceInfo choose(const std::vector<vk::raii::PhysicalDevice>& devices, const st
     }
   }
   if (best) return *best;
-  if (devices.empty()) {
-    throw ResourceError(
-        "no Vulkan device: the loader found no driver; install one (mesa-vulkan-drivers runs on any processor) and "
-        "check VK_DRIVER_FILES and VK_ICD_FILENAMES");
-  }
+  if (devices.empty()) throw no_driver();
   throw ResourceError("no usable Vulkan device:{}", reasons);
 }
 
@@ -328,6 +330,8 @@ Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State
   if (!s.cache_file.empty()) s.cache_on_disk = read_file(s.cache_file);
   s.cache = vk::raii::PipelineCache(s.device,
                                     vk::PipelineCacheCreateInfo({}, s.cache_on_disk.size(), s.cache_on_disk.data()));
+} catch (const vk::IncompatibleDriverError&) {
+  throw no_driver();
 } catch (const vk::SystemError& error) {
   fail(error, "making the Vulkan device");
 } catch (const std::runtime_error& error) {

@@ -4,6 +4,7 @@
 #include "tests/agreement/support.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace penumbra::vsm {
 namespace {
@@ -63,6 +64,16 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
 INSTANTIATE_TEST_SUITE_P(Range, LatticeSoups, testing::Values(1, 2, 4));
 
 using HardScenes = tests::DeviceTest;
+
+/// A method may refuse a light that float32 cannot span together with the scene; it may not be wrong about it.
+std::optional<tests::Masks> run_or_refuse(visibility::Method& method, const SceneFloats& floats, const Light& light,
+                                          const ViewSamples& samples) {
+  try {
+    return tests::run(method, floats, light, samples);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
 
 /// Needles so thin that a double cross product of their edges is mostly rounding, in scenes of mixed magnitudes: as
 /// carriers, as occluders, far from and at the origin.
@@ -127,8 +138,10 @@ TEST_F(HardScenes, MagnitudesFarApart) {
       continue;  // so small that it has no area in float32 at that distance from the origin
     }
     const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
-    const tests::Masks masks = tests::run(*method, floats, light, samples);
-    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " small " << small;
+    const std::optional<tests::Masks> masks = run_or_refuse(*method, floats, light, samples);
+    EXPECT_TRUE(masks || small < 0x1p-24) << "refused: seed " << seed << " small " << small;
+    if (!masks) continue;
+    EXPECT_TRUE(equals_truth(floats, light, samples, *masks, &counts)) << "seed " << seed << " small " << small;
   }
   EXPECT_GT(counts.visible, counts.pairs / 20);
   EXPECT_GT(counts.blocked, counts.pairs / 100);
@@ -154,8 +167,10 @@ TEST_F(HardScenes, LightsFarAway) {
     for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
       const Light light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, pattern, 0});
       const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
-      const tests::Masks masks = tests::run(*method, floats, light, samples);
-      EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "distance 2^" << exponent << " " << name_of(pattern);
+      const std::optional<tests::Masks> masks = run_or_refuse(*method, floats, light, samples);
+      EXPECT_TRUE(masks || exponent > 24) << "refused: distance 2^" << exponent;
+      if (!masks) continue;
+      EXPECT_TRUE(equals_truth(floats, light, samples, *masks, &counts)) << "distance 2^" << exponent << " " << name_of(pattern);
     }
   }
   EXPECT_GT(counts.visible, counts.pairs / 10);
