@@ -81,12 +81,12 @@ Buffer::Buffer(const Device& device, std::string name, std::uint64_t bytes, Buff
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.name = std::move(name);
-  s.bytes = (bytes + 3) / 4 * 4;  // fills work on words
   PENUMBRA_ASSERT(bytes > 0, "buffer {} of no bytes", s.name);
-  if (s.bytes > device.limits().max_storage_buffer_range) {
-    throw ResourceError("{}: {} are more than this device's storage buffers can hold ({})", s.name, human(s.bytes),
+  if (bytes > device.limits().max_storage_buffer_range) {
+    throw ResourceError("{}: {} are more than this device's storage buffers can hold ({})", s.name, human(bytes),
                         human(device.limits().max_storage_buffer_range));
   }
+  s.bytes = (bytes + 3) / 4 * 4;  // fills work on words
   using Usage = vk::BufferUsageFlagBits;
   vk::BufferUsageFlags usage = Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst |
                                Usage::eVertexBuffer | Usage::eIndexBuffer | Usage::eIndirectBuffer;

@@ -33,17 +33,20 @@ void main() {
   precise const double ndc_x = 2.0 * (double(pixel.x) + 0.5) / double(camera.width) - 1.0;
   precise const double ndc_y = 1.0 - 2.0 * (double(pixel.y) + 0.5) / double(camera.height);
   precise const double aspect = double(camera.width) / double(camera.height);
-  precise const double x = ndc_x * aspect * camera.tan_half_fov;
-  precise const double y = ndc_y * camera.tan_half_fov;
-  precise const dvec3 direction = camera.forward + (x * camera.right + y * camera.up);
+  // The same operations in the same order as PinholeCamera::direction: a ray through an edge must hit it here and there.
+  precise const double across = ndc_x * aspect;
+  precise const dvec3 offset = across * camera.right + ndc_y * camera.up;
+  precise const dvec3 direction = camera.forward + offset * camera.tan_half_fov;
 
   precise const dvec3 a = dvec3(corners[3 * triangle]) - camera.eye;
   precise const dvec3 b = dvec3(corners[3 * triangle + 1]) - camera.eye;
   precise const dvec3 c = dvec3(corners[3 * triangle + 2]) - camera.eye;
   const double ab = cross_dot(direction, a, b), bc = cross_dot(direction, b, c), ac = cross_dot(direction, a, c);
   const bool one_way = ab >= 0.0 && bc >= 0.0 && ac <= 0.0, other_way = ab <= 0.0 && bc <= 0.0 && ac >= 0.0;
-  if (!one_way && !other_way) return;
-  precise const dvec3 u = b - a, v = c - a;
+  if (one_way == other_way) return;  // neither; or all zero: edge-on or without area
+  // Edges from the corners themselves, as visibility::cover takes them: relative to the eye they would be rounded.
+  precise const dvec3 corner = dvec3(corners[3 * triangle]);
+  precise const dvec3 u = dvec3(corners[3 * triangle + 1]) - corner, v = dvec3(corners[3 * triangle + 2]) - corner;
   const double toward = cross_dot(direction, u, v);
   if (toward == 0.0) return;
   precise const double t = cross_dot(a, u, v) / toward;

@@ -16,9 +16,9 @@ using Triangle = mesh::Triangle;
 /// is the centre of the bounding box of all mesh vertices, in double. Far from zero or tiny, a scene looks the same.
 struct SceneFloats {
   glm::dvec3 origin{0};
-  std::vector<glm::vec3> positions;  ///< one per soup position
-  std::vector<Triangle> triangles;   ///< soup order; each with its vertices in lexicographic order of position (−0 =
-                                    ///< +0), so that nothing computed from them depends on winding or first vertex
+  std::vector<glm::vec3> positions;   ///< one per soup position
+  std::vector<Triangle> triangles;    ///< soup order; each with its vertices in lexicographic order of position (−0 =
+                                      ///< +0), so that nothing computed from them depends on winding or first vertex
   std::vector<std::uint32_t> object;  ///< for each triangle
   std::vector<std::uint32_t> plane;   ///< for each triangle: equal numbers ⇔ exactly coplanar (kNoPlane: zero area)
   std::vector<std::uint32_t> rank;    ///< for each triangle: its place in the lexicographic order of sorted vertices;

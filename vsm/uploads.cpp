@@ -1,6 +1,7 @@
 #include "vsm/uploads.hpp"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
@@ -12,6 +13,19 @@
 namespace penumbra::vsm {
 
 using visibility::TriangleTree;
+
+namespace {
+
+/// Is the normal, as computed in double, right to float32? Not that of a needle whose edges are parallel but for their
+/// last digits: each component of the cross product is off by up to 4 · 2⁻⁵³ |e1| |e2| (1-norms). Where it is not, the
+/// device gets a normal of zero, which leaves every sample of the horizon open.
+bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
+  const glm::dvec3 cross = glm::abs(glm::cross(e1, e2)), size1 = glm::abs(e1), size2 = glm::abs(e2);
+  return cross.x + cross.y + cross.z > 0x1p-25 * (size1.x + size1.y + size1.z) * (size2.x + size2.y + size2.z);
+}
+
+}  // namespace
 
 std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
   std::vector<Texel> texels;
@@ -57,7 +71,9 @@ std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const vis
     const bool background = carrier == visibility::ViewSamples::kBackground;
     texels.push_back(
         {samples.p[i] * scale, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
-    texels.push_back({samples.n[i], background ? 0U : scene.plane[static_cast<std::size_t>(carrier)]});
+    const bool known = !background && normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
+    texels.push_back(
+        {known ? samples.n[i] : glm::vec3(0), background ? 0U : scene.plane[static_cast<std::size_t>(carrier)]});
   }
   return texels;
 }

@@ -83,6 +83,7 @@ class ViewSampleMapping final : public visibility::Method {
     PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
     light_ = &light;
     frame_ = make_light_frame(light, scale_);
+    check_proportions();
     counters_.clear();
 
     const std::uint32_t lanes = device_->limits().subgroup_size;
@@ -173,6 +174,21 @@ class ViewSampleMapping final : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
 
  private:
+  /// The shader multiplies up to six lengths; with the scene scaled to 1, float32 holds that for lights from 2⁻²⁸ to
+  /// 2²⁸.
+  void check_proportions() const {
+    const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
+    const float largest = size(frame_.center) + size(frame_.u) + size(frame_.v);
+    const float smallest = std::min(size(frame_.u), size(frame_.v));
+    if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
+    throw InputError(
+        "light \"{}\": view-sample handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size "
+        "{:.3g} "
+        "and reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in "
+        "scale",
+        light_->name, smallest, largest);
+  }
+
   /// How the shaders are specialised for a light.
   struct Layout {
     bool scattered = false;

@@ -36,15 +36,30 @@ class LatticeSoup {
       Corners corners{point(), point(), point()};
       const Corners old = soup.empty() ? corners : soup[below(static_cast<std::uint32_t>(soup.size()))];
       switch (below(10)) {
-        case 0: corners = old; break;
-        case 1: corners = {old[1], old[0], old[2]}; break;
+        case 0:
+          corners = old;
+          break;
+        case 1:
+          corners = {old[1], old[0], old[2]};
+          break;
         case 2:
-        case 3: corners = {old[1], old[0], corners[2]}; break;
-        case 4: corners = {old[1], old[2], old[1] + old[2] - old[0]}; break;  // completes a parallelogram
-        case 5: corners[2] = below(2) == 0 ? corners[0] : 2.0 * corners[1] - corners[0]; break;
-        case 6: corners[0].y = corners[1].y = corners[2].y; break;
-        case 7: corners[0].x = corners[1].x = corners[2].x; break;
-        default: break;
+        case 3:
+          corners = {old[1], old[0], corners[2]};
+          break;
+        case 4:
+          corners = {old[1], old[2], old[1] + old[2] - old[0]};
+          break;  // completes a parallelogram
+        case 5:
+          corners[2] = below(2) == 0 ? corners[0] : 2.0 * corners[1] - corners[0];
+          break;
+        case 6:
+          corners[0].y = corners[1].y = corners[2].y;
+          break;
+        case 7:
+          corners[0].x = corners[1].x = corners[2].x;
+          break;
+        default:
+          break;
       }
       soup.push_back(corners);
     }
@@ -58,8 +73,8 @@ class LatticeSoup {
     const auto [rows, columns] = kLayouts[below(4)];
     request = {rows * columns, rows, columns, visibility::SamplePattern::grid, 0};
     static const std::pair<glm::dvec3, glm::dvec3> kSteps[] = {
-        {{1, 0, 0}, {0, 0, 1}}, {{0, 0, 1}, {1, 0, 0}}, {{1, 0, 0}, {0, 1, 0}},
-        {{0, 1, 0}, {1, 0, 0}}, {{1, 1, 0}, {0, 0, 1}}, {{1, 0, 1}, {1, 0, -1}}, {{1, 1, 0}, {-1, 1, 1}}};
+        {{1, 0, 0}, {0, 0, 1}}, {{0, 0, 1}, {1, 0, 0}},  {{1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {1, 0, 0}},
+        {{1, 1, 0}, {0, 0, 1}}, {{1, 0, 1}, {1, 0, -1}}, {{1, 1, 0}, {-1, 1, 1}}};
     const auto [u, v] = kSteps[below(std::size(kSteps))];
     glm::dvec3 center = point();
     if (below(2) == 0) center.y = range_ + 1.0 + below(3);

@@ -75,15 +75,21 @@ inline Masks map_view_samples(const render::Device& device, const visibility::Sc
 
 inline const char* name_of(visibility::PairOutcome outcome) {
   switch (outcome) {
-    case visibility::PairOutcome::visible: return "visible";
-    case visibility::PairOutcome::blocked: return "blocked";
-    case visibility::PairOutcome::horizon: return "horizon";
-    case visibility::PairOutcome::behind: return "behind";
+    case visibility::PairOutcome::visible:
+      return "visible";
+    case visibility::PairOutcome::blocked:
+      return "blocked";
+    case visibility::PairOutcome::horizon:
+      return "horizon";
+    case visibility::PairOutcome::behind:
+      return "behind";
   }
   return "?";
 }
 
-inline std::string text_of(const glm::vec3& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); }
+inline std::string text_of(const glm::vec3& v) {
+  return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
+}
 
 /// One pair in numbers, enough to make a test of its own of it.
 inline std::string describe_pair(const visibility::SceneFloats& floats, const visibility::ViewSamples& samples,

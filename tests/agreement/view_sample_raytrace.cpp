@@ -31,7 +31,9 @@ Differences compare(const visibility::SceneFloats& floats, const ViewSamples& sa
   for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
     if (samples.triangle[pixel] == ViewSamples::kBackground) continue;
     result.pairs_all += n;
-    const auto partly = [&](const tests::Masks& masks) { return masks.visible_count(pixel) > 0 && masks.visible_count(pixel) < n; };
+    const auto partly = [&](const tests::Masks& masks) {
+      return masks.visible_count(pixel) > 0 && masks.visible_count(pixel) < n;
+    };
     if (partly(mapped) || partly(traced)) result.pairs += n;
     for (std::uint32_t j = 0; j < n; ++j) {
       if (mapped.visible(pixel, j) == traced.visible(pixel, j)) continue;
@@ -62,12 +64,13 @@ class AgreementTest : public tests::DeviceTest, public testing::WithParamInterfa
     const auto method = reference::make_ray_traced({});
     const tests::Masks traced = tests::run(*method, floats, light, samples);
     const Differences found = compare(floats, samples, light, mapped, traced);
-    fmt::print("{} {}x{}: {} of {} pairs differ ({:.2e}; {:.2e} of those in penumbra); of {} judged, {} with a zero, "
-               "view-sample is right about {}\n",
-               GetParam(), size, size, found.differing, found.pairs_all,
-               static_cast<double>(found.differing) / static_cast<double>(found.pairs_all),
-               static_cast<double>(found.differing) / static_cast<double>(found.pairs), found.judged, found.zero_predicate,
-               found.view_sample_right);
+    fmt::print(
+        "{} {}x{}: {} of {} pairs differ ({:.2e}; {:.2e} of those in penumbra); of {} judged, {} with a zero, "
+        "view-sample is right about {}\n",
+        GetParam(), size, size, found.differing, found.pairs_all,
+        static_cast<double>(found.differing) / static_cast<double>(found.pairs_all),
+        static_cast<double>(found.differing) / static_cast<double>(found.pairs), found.judged, found.zero_predicate,
+        found.view_sample_right);
     EXPECT_GT(found.pairs, 0U);
     EXPECT_LE(static_cast<double>(found.differing), 2e-5 * static_cast<double>(found.pairs_all));
     EXPECT_LE(static_cast<double>(found.differing), 2e-4 * static_cast<double>(found.pairs));
@@ -88,16 +91,21 @@ std::vector<std::string> shipped_scenes(bool with_large_ones) {
 
 std::string name_of_case(const testing::TestParamInfo<std::string>& info) {
   std::string name = std::filesystem::path(info.param).stem().string();
-  std::replace_if(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 }
 
 using Agreement = AgreementTest;
-TEST_P(Agreement, WithTheRayCaster) { check(128); }
+TEST_P(Agreement, WithTheRayCaster) {
+  check(128);
+}
 INSTANTIATE_TEST_SUITE_P(Scenes, Agreement, testing::ValuesIn(shipped_scenes(false)), name_of_case);
 
 class AgreementFull : public AgreementTest {};
-TEST_P(AgreementFull, WithTheRayCaster) { check(512); }
+TEST_P(AgreementFull, WithTheRayCaster) {
+  check(512);
+}
 INSTANTIATE_TEST_SUITE_P(Scenes, AgreementFull, testing::ValuesIn(shipped_scenes(true)), name_of_case);
 
 }  // namespace

@@ -69,7 +69,8 @@ TEST_F(ClosedForm, ParallelSquareHidesExactlyItsProjection) {
   for (const glm::dvec2& size : {glm::dvec2(0.5, 0.5), glm::dvec2(0.25, 1.5), glm::dvec2(0.7, 0.3)}) {
     for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid, SamplePattern::jittered}) {
       const Stage stage(board_scene(-size, size), 96, 96, {256, 0, 0, pattern, 0});
-      const Comparison result = compare_pairs(stage, tests::map_view_samples(device(), stage.floats, stage.light, stage.samples));
+      const Comparison result =
+          compare_pairs(stage, tests::map_view_samples(device(), stage.floats, stage.light, stage.samples));
       EXPECT_GT(result.pairs, 500000U);
       EXPECT_GT(result.hidden, 10000U);
       EXPECT_EQ(result.wrong, 0U) << "of " << result.pairs << ", " << result.within_rounding << " within rounding";
@@ -81,7 +82,8 @@ TEST_F(ClosedForm, ParallelSquareHidesExactlyItsProjection) {
 TEST_F(ClosedForm, HalfPlaneHidesExactlyItsProjection) {
   for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::sobol}) {
     const Stage stage(board_scene({-64, -64}, {0.25, 64}), 96, 96, {256, 0, 0, pattern, 0});
-    const Comparison result = compare_pairs(stage, tests::map_view_samples(device(), stage.floats, stage.light, stage.samples));
+    const Comparison result =
+        compare_pairs(stage, tests::map_view_samples(device(), stage.floats, stage.light, stage.samples));
     EXPECT_GT(result.pairs, 500000U);
     EXPECT_GT(result.hidden, 100000U);
     EXPECT_EQ(result.wrong, 0U) << "of " << result.pairs << ", " << result.within_rounding << " within rounding";
@@ -89,12 +91,13 @@ TEST_F(ClosedForm, HalfPlaneHidesExactlyItsProjection) {
   }
 }
 
-/// The share of the light [−1, 1]² that the board hides from p on the floor: seen from p the board's corners fall on the
-/// light's plane at p + (corner − p) · light height / board height, and stay an axis-aligned rectangle.
+/// The share of the light [−1, 1]² that the board hides from p on the floor: seen from p the board's corners fall on
+/// the light's plane at p + (corner − p) · light height / board height, and stay an axis-aligned rectangle.
 double hidden_share(const glm::dvec3& p, const glm::dvec2& half) {
   const double scale = kLightHeight / kBoardHeight;
   const auto overlap = [&](double half_size, double at) {
-    const double low = std::max(at + scale * (-half_size - at), -kLightHalf), high = std::min(at + scale * (half_size - at), kLightHalf);
+    const double low = std::max(at + scale * (-half_size - at), -kLightHalf),
+                 high = std::min(at + scale * (half_size - at), kLightHalf);
     return std::max(0.0, high - low) / (2 * kLightHalf);
   };
   return overlap(half.x, p.x) * overlap(half.y, p.z);

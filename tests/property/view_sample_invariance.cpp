@@ -36,7 +36,9 @@ class Invariance : public tests::DeviceTest {
     return {std::move(samples), std::move(masks)};
   }
 
-  static scenes::Scene shipped(const std::string& name) { return scenes::read_scene(std::string(PENUMBRA_SCENES "/") + name); }
+  static scenes::Scene shipped(const std::string& name) {
+    return scenes::read_scene(std::string(PENUMBRA_SCENES "/") + name);
+  }
 
   static void expect_same(const Picture& a, const Picture& b, const std::string& what) {
     EXPECT_EQ(a.samples.p, b.samples.p) << what;
@@ -107,7 +109,8 @@ TEST_F(Invariance, AnotherRunAndSmallTiles) {
     const SceneFloats floats = visibility::make_scene_floats(scene);
     render::VisibilityBuffer view(device(), floats);
     const ViewSamples samples = view.render(visibility::make_camera(scene.cameras[0], floats.origin, 100, 75));
-    for (const SampleRequest& request : {SampleRequest{}, SampleRequest{50, 0, 0, visibility::SamplePattern::sobol, 1}}) {
+    for (const SampleRequest& request :
+         {SampleRequest{}, SampleRequest{50, 0, 0, visibility::SamplePattern::sobol, 1}}) {
       const Light light = visibility::make_light(scene, 0, floats.origin, request);
       const auto method = make_view_sample(device(), {});
       const Masks whole = tests::run(*method, floats, light, samples);
@@ -158,7 +161,8 @@ TEST_F(Invariance, AnotherScaleAndPlace) {
     const Picture plain = picture(scene, 128);
     std::size_t pairs = 0;
     for (const std::int32_t triangle : plain.samples.triangle) pairs += triangle < 0 ? 0 : 256;
-    for (const auto& [scale, offset] : {Case{0.001, glm::dvec3(0)}, Case{1000, glm::dvec3(0)}, Case{1, glm::dvec3(1000, -500, 2000)}}) {
+    for (const auto& [scale, offset] :
+         {Case{0.001, glm::dvec3(0)}, Case{1000, glm::dvec3(0)}, Case{1, glm::dvec3(1000, -500, 2000)}}) {
       const Picture other = picture(tests::moved(scene, scale, offset), 128);
       const std::size_t differing = tests::differing_bits(plain.masks, other.masks);
       EXPECT_LE(static_cast<double>(differing), 2e-5 * static_cast<double>(pairs))

@@ -19,7 +19,8 @@ using visibility::ViewSamples;
 ViewSamples all_samples(const scenes::Scene& scene, const SceneFloats& floats, std::mt19937& random) {
   ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
   for (const scenes::Camera& camera : scene.cameras) {
-    tests::append(samples, visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
+    tests::append(samples,
+                  visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
   }
   return samples;
 }
@@ -91,9 +92,15 @@ TEST_F(HardScenes, NeedlesOfMixedMagnitudes) {
       const glm::vec3 b = glm::vec3(point());
       const glm::dvec3 a = point() * std::ldexp(1.0, -static_cast<int>(random() % 60));
       switch (random() % 3) {
-        case 0: needles.push_back({a, b, 2.0F * b}); break;                       // nearly on a line through zero
-        case 1: needles.push_back({b, glm::dvec3(b) + a, -point()}); break;       // one short edge
-        default: needles.push_back({b, -b, a}); break;                            // flat: its third corner at the middle
+        case 0:
+          needles.push_back({a, b, 2.0F * b});
+          break;  // nearly on a line through zero
+        case 1:
+          needles.push_back({b, glm::dvec3(b) + a, -point()});
+          break;  // one short edge
+        default:
+          needles.push_back({b, -b, a});
+          break;  // flat: its third corner at the middle
       }
     }
     tests::add_object(scene, "needles", needles);
@@ -127,7 +134,8 @@ TEST_F(HardScenes, MagnitudesFarApart) {
     }
     tests::add_object(scene, "soup", soup);
     scene.lights.push_back(tests::rectangle_light(point(light_size) + glm::dvec3(0, 2 * light_size, 0),
-                                                  light_size * glm::dvec3(0.5, 0.1, 0), light_size * glm::dvec3(0, 0.1, 0.6)));
+                                                  light_size * glm::dvec3(0.5, 0.1, 0),
+                                                  light_size * glm::dvec3(0, 0.1, 0.6)));
     scene.lights[0].two_sided = seed % 3 == 0;
     const SceneFloats floats = visibility::make_scene_floats(scene);
     const auto pattern = seed % 4 < 2 ? visibility::SamplePattern::rows : visibility::SamplePattern::jittered;
@@ -161,8 +169,8 @@ TEST_F(HardScenes, LightsFarAway) {
     for (int i = 0; i < 24; ++i) soup.push_back({point(1), point(1), point(1)});
     tests::add_object(scene, "soup", soup);
     const double distance = 4 * std::ldexp(1.0, exponent);
-    scene.lights.push_back(tests::rectangle_light(distance * glm::dvec3(0.3, 1, 0.2), distance * glm::dvec3(0.2, 0.05, 0),
-                                                  distance * glm::dvec3(0, 0.05, 0.2)));
+    scene.lights.push_back(tests::rectangle_light(
+        distance * glm::dvec3(0.3, 1, 0.2), distance * glm::dvec3(0.2, 0.05, 0), distance * glm::dvec3(0, 0.05, 0.2)));
     const SceneFloats floats = visibility::make_scene_floats(scene);
     for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
       const Light light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, pattern, 0});
@@ -170,7 +178,8 @@ TEST_F(HardScenes, LightsFarAway) {
       const std::optional<tests::Masks> masks = run_or_refuse(*method, floats, light, samples);
       EXPECT_TRUE(masks || exponent > 24) << "refused: distance 2^" << exponent;
       if (!masks) continue;
-      EXPECT_TRUE(equals_truth(floats, light, samples, *masks, &counts)) << "distance 2^" << exponent << " " << name_of(pattern);
+      EXPECT_TRUE(equals_truth(floats, light, samples, *masks, &counts))
+          << "distance 2^" << exponent << " " << name_of(pattern);
     }
   }
   EXPECT_GT(counts.visible, counts.pairs / 10);
@@ -186,7 +195,8 @@ TEST_F(HardScenes, NothingToHideTheLight) {
     scene.cameras.push_back(tests::camera({0, 2, 6}, empty_view ? glm::dvec3(0, 9, 9) : glm::dvec3(0)));
     const tests::Stage stage(scene, 17, 11);
     const tests::Masks masks = tests::map_view_samples(device(), stage.floats, stage.light, stage.samples);
-    for (std::size_t pixel = 0; pixel < stage.samples.size(); ++pixel) ASSERT_EQ(masks.visible_count(pixel), 256U) << pixel;
+    for (std::size_t pixel = 0; pixel < stage.samples.size(); ++pixel)
+      ASSERT_EQ(masks.visible_count(pixel), 256U) << pixel;
   }
 }
 

@@ -62,7 +62,8 @@ class Patterns : public tests::DeviceTest {
 };
 
 TEST_F(Patterns, CountsOfEveryPattern) {
-  for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+  for (const SamplePattern pattern :
+       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
     for (const std::uint32_t count : {1U, 2U, 5U, 31U, 32U, 33U, 256U, 1000U, 4096U}) {
       check(count % 2 == 0 ? Shape::rectangle : Shape::tilted, {count, 0, 0, pattern, count});
     }
@@ -71,8 +72,8 @@ TEST_F(Patterns, CountsOfEveryPattern) {
 
 TEST_F(Patterns, RowsByColumns) {
   using Layout = std::pair<std::uint32_t, std::uint32_t>;
-  for (const auto& [rows, columns] : {Layout(1, 7), Layout(7, 1), Layout(3, 40), Layout(40, 3), Layout(64, 64), Layout(1, 4096),
-                                      Layout(4096, 1), Layout(2, 33), Layout(5, 32), Layout(16, 31)}) {
+  for (const auto& [rows, columns] : {Layout(1, 7), Layout(7, 1), Layout(3, 40), Layout(40, 3), Layout(64, 64),
+                                      Layout(1, 4096), Layout(4096, 1), Layout(2, 33), Layout(5, 32), Layout(16, 31)}) {
     for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid}) {
       check(Shape::tilted, {rows * columns, rows, columns, pattern, 0});
     }
@@ -81,7 +82,8 @@ TEST_F(Patterns, RowsByColumns) {
 
 TEST_F(Patterns, DisksAndPolygons) {
   for (const Shape shape : {Shape::disk, Shape::polygon}) {
-    for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+    for (const SamplePattern pattern :
+         {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
       for (const std::uint32_t count : {1U, 33U, 256U, 1000U}) check(shape, {count, 0, 0, pattern, 7});
     }
   }
@@ -89,7 +91,8 @@ TEST_F(Patterns, DisksAndPolygons) {
 
 TEST_F(Patterns, SeedsOfRectangles) {
   for (int i = 0; i < 30; ++i) {
-    check(i % 2 == 0 ? Shape::rectangle : Shape::tilted, {64, 0, 0, i % 3 == 0 ? SamplePattern::rows : SamplePattern::sobol, 3});
+    check(i % 2 == 0 ? Shape::rectangle : Shape::tilted,
+          {64, 0, 0, i % 3 == 0 ? SamplePattern::rows : SamplePattern::sobol, 3});
   }
 }
 

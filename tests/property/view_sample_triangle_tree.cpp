@@ -19,7 +19,11 @@ struct Walk {
   std::uint32_t deepest = 0;
 
   explicit Walk(const SceneFloats& scene, const TriangleTree& over)
-      : floats(scene), tree(over), triangle_seen(scene.triangles.size()), node_seen(over.nodes.size()), leaf_seen(over.leaves.size()) {
+      : floats(scene),
+        tree(over),
+        triangle_seen(scene.triangles.size()),
+        node_seen(over.nodes.size()),
+        leaf_seen(over.leaves.size()) {
     if (!tree.nodes.empty()) node(0, 1, {});
   }
 
@@ -107,7 +111,8 @@ TEST(TriangleTree, FindsEveryTriangleWhoseBoxIsTouched) {
       for (std::uint32_t t = 0; t < floats.triangles.size(); ++t) {
         const auto [a, b, c] = floats.corners(t);
         const glm::vec3 from = glm::min(a, glm::min(b, c)), to = glm::max(a, glm::max(b, c));
-        const bool touched = glm::max(from, lower) == glm::clamp(glm::max(from, lower), glm::vec3(-1e30F), glm::min(to, upper));
+        const bool touched =
+            glm::max(from, lower) == glm::clamp(glm::max(from, lower), glm::vec3(-1e30F), glm::min(to, upper));
         if (touched && floats.casts_shadow[t] != 0) {
           EXPECT_EQ(found[t], 1) << "seed " << seed << " triangle " << t;
         }

@@ -70,7 +70,8 @@ TEST_F(BufferTest, CountsItsMemory) {
 
 TEST_F(BufferTest, TooLargeIsAnErrorThatNamesIt) {
   const std::uint64_t before = device().allocated_bytes();
-  for (const std::uint64_t bytes : {device().limits().max_storage_buffer_range + 4, std::uint64_t{1} << 50U, ~std::uint64_t{0}}) {
+  for (const std::uint64_t bytes :
+       {device().limits().max_storage_buffer_range + 4, std::uint64_t{1} << 50U, ~std::uint64_t{0}}) {
     try {
       const Buffer buffer(device(), "far too large", bytes);
       ADD_FAILURE() << bytes << " bytes were given";

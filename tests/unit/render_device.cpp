@@ -26,7 +26,8 @@ TEST(DeviceChoice, TakesNameIndexAndKind) {
     if (!info.usable()) continue;
     EXPECT_EQ(Device({std::to_string(info.index), true}).info().index, info.index);
     std::string shouted = info.name;
-    std::transform(shouted.begin(), shouted.end(), shouted.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    std::transform(shouted.begin(), shouted.end(), shouted.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     EXPECT_EQ(Device({shouted, true}).info().name, info.name);
     if (info.kind == "cpu") {
       EXPECT_EQ(Device({"cpu", true}).info().kind, "cpu");

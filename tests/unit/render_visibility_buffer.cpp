@@ -1,5 +1,5 @@
-// The rasterised view samples equal their definition bit for bit, also where triangles coincide, cross each other, cross
-// the eye's plane or are seen edge-on.
+// The rasterised view samples equal their definition bit for bit, also where triangles coincide, cross each other,
+// cross the eye's plane or are seen edge-on.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
@@ -23,7 +23,8 @@ class VisibilityBufferTest : public tests::DeviceTest {
   }
 
   /// Returns how many pixels see something.
-  static std::size_t check(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height, const std::string& what) {
+  static std::size_t check(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height,
+                           const std::string& what) {
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     VisibilityBuffer buffer(device(), floats);
     std::size_t covered = 0;
