@@ -60,7 +60,7 @@ Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
   const vec2 upper = vec2(max(s.x, max(s.y, s.z)), max(t.x, max(t.y, t.z)));
   const float largest = max(max(-min(lower.x, lower.y), max(upper.x, upper.y)), 1.0);
   const float pad = (2.0 * seen.error_a * max(w.x, max(w.y, w.z)) + 8.0 * kRound) * (1.0 + largest) + light_pad;
-  const bool bounded = seen.lowest > 8.0 * seen.error_a;
+  const bool bounded = seen.lowest > 8.0 * seen.error_a && light_pad < 1.0;
   seen.box = bounded ? vec4(lower - pad, upper + pad) : kWholeLight;
   return seen;
 }
@@ -187,7 +187,7 @@ void main() {
   const float size = max(length(push.u), length(push.v));
   r = size * max(length(towards), size);
   const float volume = abs(level);
-  light_pad = 2.0 * push.deviation * r / volume;
+  light_pad = 4.0 * push.deviation * r / volume;
   edge_error = 176.0 * kRound * r * r + 2.0 * volume * push.deviation;
   det_error = 256.0 * kRound * r * r * r;
 

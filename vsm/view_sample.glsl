@@ -65,7 +65,7 @@ void load_view_sample(uint block) {
   carrier_plane = second.w;
   towards = push.center - p;
   level = -dot(cross(push.u, push.v), towards);
-  level_error = 16.0 * kRound * size1(push.u) * size1(push.v) * (size1(towards) + size1(p));
+  level_error = size1(push.u) * size1(push.v) * (16.0 * kRound * (size1(towards) + size1(p)) + push.deviation);
 }
 
 void ask(uint triangle, uint light_sample) {
@@ -187,7 +187,10 @@ struct Shaft {
 Shaft make_shaft(bool on, float side) {
   Shaft shaft;
   shaft.axis = side * normalize(cross(push.u, push.v));
-  const vec3 u_dual = push.u / dot(push.u, push.u), v_dual = push.v / dot(push.v, push.v);
+  // Coordinates along u and v, which need not be at right angles: the dual basis.
+  const vec3 n = cross(push.u, push.v);
+  const vec3 u_dual = cross(push.v, n) / dot(n, n), v_dual = cross(n, push.u) / dot(n, n);
+  const float skew = size1(push.u) * size1(push.v) / length(n);  // at least 1: 1 / sine of their angle
   const float height = on ? -dot(shaft.axis, towards) : 0.0;
   const float along_u = -dot(u_dual, towards), along_v = -dot(v_dual, towards);
   const float inverse = on ? 1.0 / height : 0.0, none = -1e18;
@@ -199,8 +202,8 @@ Shaft make_shaft(bool on, float side) {
   shaft.nz = vec4(u_dual.z, -u_dual.z, v_dual.z, -v_dual.z) - slope * shaft.axis.z;
   const vec4 sizes = abs(shaft.nx) + abs(shaft.ny) + abs(shaft.nz) + vec4(vec2(size1(u_dual)), vec2(size1(v_dual)));
   shaft.beyond = shaft.nx * push.center.x + shaft.ny * push.center.y + shaft.nz * push.center.z + 1.0 +
-                 64.0 * kRound * (2.0 * push.reach * sizes + 1.0);
-  const float slack = 128.0 * kRound * push.reach, light_level = dot(shaft.axis, push.center);
+                 64.0 * kRound * (2.0 * push.reach * sizes + skew) + sizes * push.deviation;
+  const float slack = 128.0 * kRound * push.reach + push.deviation, light_level = dot(shaft.axis, push.center);
   shaft.highest = light_level + subgroupMax(height) + slack;
   shaft.lowest = light_level - slack;
   shaft.front = light_level + slack;
