@@ -18,8 +18,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <optional>
 
 namespace penumbra::vsm {
