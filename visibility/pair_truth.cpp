@@ -1,11 +1,9 @@
-// The contract's "Truth of a pair", decided exactly: CGAL's filtered kernel takes the floats as they are (a float is a
-// double is a number) and falls back to exact arithmetic where rounding could matter.
+// The contract's "Truth of a pair", decided exactly.
 
 #include "visibility/pair_truth.hpp"
 
 #include "base/assert.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/MP_Float.h>
 #include <glm/common.hpp>
 
@@ -14,16 +12,7 @@
 namespace penumbra::visibility {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Exact = CGAL::MP_Float;  // every sum, difference and product of doubles, without rounding
-
-Kernel::Point_3 point(const glm::vec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-int orientation(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
-  return static_cast<int>(CGAL::orientation(point(a), point(b), point(c), point(d)));
-}
 
 struct ExactVector {
   Exact x, y, z;
@@ -50,7 +39,7 @@ struct EdgeSign {
 /// triangles agree about their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane,
 /// and it is not met anyway) or on the light's plane (then condition (2) has already refused the pair).
 EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
-  const int sign = orientation(p, l, a, b);
+  const int sign = static_cast<int>(side_of_plane(p, l, a, b));
   if (sign != 0) return {sign, false};
   const ExactVector pa = difference(a, p), pb = difference(b, p);
   ExactVector u, v;
@@ -76,21 +65,6 @@ bool boxes_touch(const glm::vec3& p, const glm::vec3& l, const std::array<glm::v
 }
 
 }  // namespace
-
-Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p) {
-  return static_cast<Side>(orientation(a, b, c, p));
-}
-
-bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  return CGAL::collinear(point(a), point(b), point(c));
-}
-
-bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other) {
-  for (const glm::vec3& corner : other) {
-    if (side_of_plane(carrier[0], carrier[1], carrier[2], corner) != Side::on) return false;
-  }
-  return true;
-}
 
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/predicates.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
@@ -11,17 +12,7 @@
 
 namespace penumbra::visibility {
 
-enum class Side { back = -1, on = 0, front = 1 };
-
-/// Which side of the plane (a, b, c) p is on; front is where (b − a) × (c − a) points. Exact for every finite input
-/// (CGAL's filtered kernel). Never replace by `dot(n, p - a) > 0`.
-Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p);
-
-/// Exact: do the three points lie on a line (a triangle of zero area)?
-bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
-
-/// Exact: is every corner of `other` on the plane of `carrier`? (Neither of zero area.)
-bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other);
+using mesh::collinear, mesh::coplanar, mesh::Side, mesh::side_of_plane;
 
 /// What an exact segment–triangle test found, and whether some predicate on the way was exactly zero.
 struct Meeting {

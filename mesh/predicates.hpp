@@ -1,0 +1,32 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <array>
+
+/// Signs of polynomials in coordinates, exact for every finite input (CGAL's filtered kernel: floating point where its
+/// error bound suffices, exact numbers where not). Every topological decision goes through here; no epsilon does.
+namespace penumbra::mesh {
+
+/// Three outcomes. Whoever meets a tie reads it the one documented way: a triangle whose plane contains the point p
+/// is seen edge-on from p, counts 0 on all three of its edges, and is not met (contract: "Truth of a pair").
+enum class Side { back = -1, on = 0, front = 1 };
+
+constexpr Side opposite(Side side) {
+  return static_cast<Side>(-static_cast<int>(side));
+}
+
+/// Which side of the plane (a, b, c) p is on; front is where (b − a) × (c − a) points, from where a, b, c run counter-
+/// clockwise. Never replace by `dot(n, p - a) > 0`: neighbouring faces would disagree about a shared edge and the
+/// silhouette would not close.
+Side side_of_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p);
+Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p);
+
+/// Do the three points lie on a line (a triangle of zero area)?
+bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+
+/// Is every corner of `other` on the plane of `carrier`? (Neither of zero area.)
+bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other);
+
+}  // namespace penumbra::mesh

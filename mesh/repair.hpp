@@ -1,0 +1,37 @@
+#pragma once
+
+#include "mesh/triangle_soup.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace penumbra::mesh {
+
+struct RepairOptions {
+  double weld = 0;                          ///< join vertices at most this far apart (the file's unit)
+  std::uint32_t fill_holes_up_to = 0;       ///< edges around a hole; 0: leave all
+  bool resolve_self_intersections = false;  ///< cut triangles along their intersections (CGAL's autorefinement …)
+};
+
+struct RepairStep {
+  std::string what;  ///< "removed", "stitched", …: a sentence with the count
+  std::uint64_t count = 0;
+};
+
+struct Repaired {
+  TriangleSoup soup;
+  std::vector<RepairStep> done;   ///< each thing it did; empty if there was nothing to do
+  std::vector<std::string> left;  ///< what it could not mend, with counts
+};
+
+/// True if this build has it (CGAL's polygon mesh processing is GPL: CMake option PENUMBRA_WITH_CGAL_GPL).
+bool can_repair();
+
+/// Removes zero-area and duplicate triangles, merges equal vertices, splits non-manifold vertices and edges, orients
+/// neighbours alike and closed parts outward, stitches borders that coincide, fills holes up to a size, and on request
+/// resolves self-intersections. The input is never changed. Objects keep their numbers. Throws UsageError without
+/// CGAL's GPL part.
+Repaired repair(const TriangleSoup& soup, const RepairOptions& options);
+
+}  // namespace penumbra::mesh
