@@ -161,7 +161,7 @@ void check_camera(const Camera& camera, const std::string& where) {
   }
 }
 
-void check_scene(const Scene& scene, const std::string& where) {
+void check_scene(const Scene& scene, const std::string& where, bool needs_light) {
   const mesh::TriangleSoup& soup = scene.soup;
   if (soup.triangles.empty()) throw InputError("{}: the scene has no triangles; it needs at least one mesh", where);
   std::vector<std::size_t> triangles_of(scene.objects.size(), 0);
@@ -180,7 +180,7 @@ void check_scene(const Scene& scene, const std::string& where) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     if (triangles_of[i] == 0) throw InputError("{}: mesh \"{}\" has no triangles", where, scene.objects[i].name);
   }
-  if (scene.lights.empty()) {
+  if (scene.lights.empty() && needs_light) {
     throw InputError(
         "{}: the scene has no area light; it needs at least one (glTF: a flat mesh with an emissive material)", where);
   }

@@ -13,8 +13,9 @@ void check_light(const AreaLight& light, const std::string& where);
 /// A view direction, an up direction that is not along it, and a field of view between 0 and 180 degrees.
 void check_camera(const Camera& camera, const std::string& where);
 
-/// Objects with triangles, finite positions, lights with unique names, cameras. Checks each light and camera too.
-void check_scene(const Scene& scene, const std::string& where);
+/// Objects with triangles, finite positions, lights (if it needs one) with unique names, cameras. Checks each light and
+/// camera too.
+void check_scene(const Scene& scene, const std::string& where, bool needs_light = true);
 
 /// The polygon's unit normal, by Newell's method: the side from which its vertices run counter-clockwise.
 glm::dvec3 polygon_normal(const Polygon& polygon);

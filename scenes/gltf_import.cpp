@@ -62,7 +62,10 @@ glm::dvec3 checked_factor(const std::vector<double>& numbers, glm::dvec3 otherwi
 /// Builds the scene from a parsed model, node by node.
 class GltfImport {
  public:
-  GltfImport(const tinygltf::Model& model, std::string name) : model_(model) { scene_.name = std::move(name); }
+  GltfImport(const tinygltf::Model& model, std::string name, bool needs_light)
+      : model_(model), needs_light_(needs_light) {
+    scene_.name = std::move(name);
+  }
 
   Scene run() {
     for (const PlacedNode& placed : place_nodes(model_, scene_.warnings)) {
@@ -78,7 +81,7 @@ class GltfImport {
           "fewer than three vertices)",
           points_and_lines_, without_positions_, without_triangles_);
     }
-    if (scene_.lights.empty()) {
+    if (scene_.lights.empty() && needs_light_) {
       throw InputError(
           "there is no area light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
           "material with emission (Emission Strength above 0); point, spot, sun and area lamps do not become area "
@@ -325,6 +328,7 @@ class GltfImport {
   }
 
   const tinygltf::Model& model_;
+  bool needs_light_;
   Scene scene_;
   std::set<std::string> object_names_, camera_names_;
   std::string refused_lights_;
@@ -339,7 +343,7 @@ Scene import_gltf(const std::filesystem::path& file, const ReadOptions& options)
   tinygltf::Model model;
   load_gltf_model(file, options.allow_outside, model);
   try {
-    return GltfImport(model, file.filename().string()).run();
+    return GltfImport(model, file.filename().string(), options.needs_light).run();
   } catch (const InputError& error) {
     throw InputError("{}: {}", file.string(), error.what());  // places alone do not say in which file
   }

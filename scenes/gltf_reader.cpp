@@ -11,6 +11,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   mesh::require_regular_file(file);
   mesh::HelperJob job{"gltf", file, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
+  if (!options.needs_light) job.flags.emplace_back("--without-light");
   const std::vector<std::byte> answer = mesh::run_import_helper(job, {});
   try {
     mesh::WireReader from(answer);

@@ -45,7 +45,7 @@ struct Arguments {
   std::string_view kind;
   std::uint64_t milliseconds = 0, bytes = 0;
   const char* file = nullptr;
-  bool allow_outside = false;
+  scenes::ReadOptions options;
 };
 
 bool parse(std::string_view text, std::uint64_t& value) {
@@ -58,8 +58,10 @@ bool parse(int argc, char** argv, Arguments& arguments) {
   arguments.kind = argv[1];
   arguments.file = argv[4];
   for (int i = 5; i < argc; ++i) {
-    if (std::string_view(argv[i]) != "--allow-outside") return false;
-    arguments.allow_outside = true;
+    const std::string_view flag = argv[i];
+    if (flag != "--allow-outside" && flag != "--without-light") return false;
+    arguments.options.allow_outside |= flag == "--allow-outside";
+    arguments.options.needs_light &= flag != "--without-light";
   }
   return (arguments.kind == "mesh" || arguments.kind == "gltf") && parse(argv[2], arguments.milliseconds) &&
          parse(argv[3], arguments.bytes);
@@ -98,7 +100,7 @@ mesh::WireWriter answer_for(const Arguments& arguments) {
     if (arguments.kind == "mesh") {
       mesh::put_mesh(answer, mesh::read_mesh_file(arguments.file));
     } else {
-      scenes::put_scene(answer, scenes::import_gltf(arguments.file, {.allow_outside = arguments.allow_outside}));
+      scenes::put_scene(answer, scenes::import_gltf(arguments.file, arguments.options));
     }
     return answer;
   } catch (const std::bad_alloc&) {

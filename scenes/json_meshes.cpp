@@ -55,10 +55,11 @@ std::filesystem::path resolve_file(const std::string& name, const Place& place, 
 }
 
 mesh::TriangleSoup import_file(const std::filesystem::path& path, const std::string& shown, const Place& place,
-                               std::vector<std::string>& warnings) {
+                               Scene& scene) {
   return at_place(place, [&] {
     mesh::ImportedMesh imported = mesh::import_mesh(path);
-    for (const std::string& note : imported.notes) warnings.push_back(fmt::format("{}: {}", shown, note));
+    scene.sources.push_back(path);
+    for (const std::string& note : imported.notes) scene.warnings.push_back(fmt::format("{}: {}", shown, note));
     return std::move(imported.soup);
   });
 }
@@ -77,8 +78,7 @@ mesh::TriangleSoup read_triangles(const json& triangles) {
   return soup;
 }
 
-mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadOptions& options,
-                               std::vector<std::string>& warnings) {
+mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
   if (mesh.contains("triangles")) return read_triangles(mesh["triangles"]);
   if (mesh.contains("shape")) return at_place(place / "shape", [&] { return read_shape(mesh["shape"]); });
   if (mesh.contains("quad")) {
@@ -89,10 +89,10 @@ mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadO
     const std::string package = mesh["package"]["name"].get<std::string>();
     const std::string name = mesh["package"]["file"].get<std::string>();
     const std::filesystem::path path = at_place(place / "package", [&] { return find_package_file(package, name); });
-    return import_file(path, path.string(), place / "package", warnings);
+    return import_file(path, path.string(), place / "package", scene);
   }
   const std::string name = mesh["file"].get<std::string>();
-  return import_file(resolve_file(name, place / "file", options), name, place / "file", warnings);
+  return import_file(resolve_file(name, place / "file", options), name, place / "file", scene);
 }
 
 /// Vertices that no triangle uses are no part of the scene: they would move its origin without being seen.
@@ -211,10 +211,9 @@ void apply_fit(const json& fit, const Place& place, mesh::TriangleSoup& soup) {
   for (glm::dvec3& position : soup.positions) position = (position - bottom) * scale + base;
 }
 
-mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOptions& options,
-                             std::vector<std::string>& warnings) {
-  mesh::TriangleSoup soup = read_source(mesh, place, options, warnings);
-  drop_unused_vertices(soup, place, warnings);
+mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
+  mesh::TriangleSoup soup = read_source(mesh, place, options, scene);
+  drop_unused_vertices(soup, place, scene.warnings);
   if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
   if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {

@@ -3,6 +3,7 @@
 #include "mesh/triangle_soup.hpp"
 #include "scenes/json_document.hpp"
 #include "scenes/reader.hpp"
+#include "scenes/scene.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -12,9 +13,9 @@ namespace penumbra::scenes {
 
 glm::dvec3 read_vector(const nlohmann::json& value);
 
-/// Reads, generates or lists the mesh, and brings it into world space. What was changed on the way goes to `warnings`.
-mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options,
-                             std::vector<std::string>& warnings);
+/// Reads, generates or lists the mesh, and brings it into world space. What was changed on the way goes to
+/// `scene.warnings`, the files that were read to `scene.sources`.
+mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
 
 /// Generates the mesh of a "shape".
 mesh::TriangleSoup read_shape(const nlohmann::json& shape);

@@ -155,7 +155,7 @@ Scene read_json(const std::filesystem::path& file, const ReadOptions& options) {
     const std::size_t index = scene.objects.size();
     const Place place = root / "meshes" / index;
     scene.objects.push_back(read_object(value, place, scene.lights, fmt::format("mesh{}", index)));
-    append(scene.soup, read_mesh(value, place, options, scene.warnings), static_cast<std::uint32_t>(index), place);
+    append(scene.soup, read_mesh(value, place, options, scene), static_cast<std::uint32_t>(index), place);
   }
   return scene;
 }

@@ -27,7 +27,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
         ".json names it as \"file\"",
         file.string());
   }
-  check_scene(scene, file.string());
+  check_scene(scene, file.string(), options.needs_light);
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -56,8 +57,9 @@ struct Scene {
   std::uint32_t width = 512, height = 512;  ///< pixels
   mesh::TriangleSoup soup;                  ///< world space; triangle order is that of `convert`'s output
   std::vector<Object> objects;
-  std::vector<AreaLight> lights;      ///< at least one; names are unique
-  std::vector<Camera> cameras;        ///< at least one
+  std::vector<AreaLight> lights;               ///< at least one; names are unique
+  std::vector<Camera> cameras;                 ///< at least one
+  std::vector<std::filesystem::path> sources;  ///< mesh files that the scene names, as they were opened (JSON only)
   std::vector<std::string> warnings;  ///< what was skipped or changed on the way, each with its place and count
 };
 

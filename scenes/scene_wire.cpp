@@ -158,7 +158,7 @@ Scene get_scene(WireReader& from) {
   for (const Object& object : scene.objects) {
     if (object.emits && *object.emits >= scene.lights.size()) throw WireError("an object emits an unknown light");
   }
-  if (scene.lights.empty() || scene.cameras.empty()) throw WireError("there is no light or no camera");
+  if (scene.cameras.empty()) throw WireError("there is no camera");
   return scene;
 }
 
