@@ -13,6 +13,7 @@
 #include "maps/caster_maps.hpp"
 #include "maps/center_map.hpp"
 #include "maps/map_fit.hpp"
+#include "maps/mesh_verdict.hpp"
 #include "maps/options.hpp"
 #include "maps/pass_ledger.hpp"
 #include "maps/receivers.hpp"
@@ -28,6 +29,10 @@ constexpr std::uint32_t kBitsPerWord = 32;
 /// No batch of several light samples takes more, and no tile's masks.
 constexpr std::uint64_t kBatchBytes = std::uint64_t{128} << 20, kMaskBytes = std::uint64_t{256} << 20;
 
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("each pair within half a texel of a shadow's edge may be wrong", mesh);
+}
+
 visibility::MethodDescription describe() {
   return {.name = "accumulate",
           .family = visibility::Family::image,
@@ -37,7 +42,8 @@ visibility::MethodDescription describe() {
               "nothing; in the limit of large maps every pair of view sample and light sample, any soup of "
               "triangles that can be rasterised",
           .lights = planar_lights(),
-          .options = map_option_descriptions()};
+          .options = map_option_descriptions(),
+          .verdict_on = verdict_on};
 }
 
 class Accumulate final : public visibility::Method {

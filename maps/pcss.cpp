@@ -6,6 +6,7 @@
 
 #include "maps/center_map.hpp"
 #include "maps/light_shape.hpp"
+#include "maps/mesh_verdict.hpp"
 #include "maps/nearest.comp.spv.hpp"
 #include "maps/nearest.shared.h"
 #include "maps/pcss.comp.spv.hpp"
@@ -19,6 +20,10 @@ namespace {
 
 constexpr std::uint32_t kMostSamples = 1024, kBlockerSamples = 64, kFilterSamples = 64;
 
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("one map, and one mean height for all that shades a pixel", mesh);
+}
+
 visibility::MethodDescription describe() {
   visibility::MethodDescription description{
       .name = "pcss",
@@ -29,7 +34,8 @@ visibility::MethodDescription describe() {
           "nothing; in the limit of large maps and many samples, where all blockers lie in one plane parallel to "
           "the light and cover the search window or none of it",
       .lights = planar_lights(),
-      .options = map_option_descriptions()};
+      .options = map_option_descriptions(),
+      .verdict_on = verdict_on};
   const std::string values = fmt::format("1 … {}", kMostSamples);
   description.options.push_back(
       {"blockerSamples", values, fmt::format("{}", kBlockerSamples), "taps of the blocker search"});

@@ -5,11 +5,16 @@
 #include "maps/shadow_map.hpp"
 
 #include "maps/center_map.hpp"
+#include "maps/mesh_verdict.hpp"
 #include "maps/shadow_map.comp.spv.hpp"
 #include "render/compute_pass.hpp"
 
 namespace penumbra::maps {
 namespace {
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("a hard shadow of the light's centre, its edges off by up to half a texel", mesh);
+}
 
 visibility::MethodDescription describe() {
   return {.name = "shadow-map",
@@ -18,7 +23,8 @@ visibility::MethodDescription describe() {
           .output = visibility::Output::scalar,
           .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
           .lights = planar_lights(),
-          .options = map_option_descriptions()};
+          .options = map_option_descriptions(),
+          .verdict_on = verdict_on};
 }
 
 class ShadowMap final : public CenterMapMethod {

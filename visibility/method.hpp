@@ -1,6 +1,7 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
+#include "visibility/mesh_verdict.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
@@ -27,7 +28,7 @@ struct OptionDescription {
   std::string help;
 };
 
-/// What `penumbra methods` prints of a method.
+/// What `penumbra methods` and `penumbra inspect` print of a method.
 struct MethodDescription {
   std::string name;
   Family family = Family::geometry;
@@ -36,6 +37,8 @@ struct MethodDescription {
   std::string exact_for;          ///< what it is exact for, in words
   std::vector<LightKind> lights;  ///< shapes it can do
   std::vector<OptionDescription> options;
+  /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
+  MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
 };
 
 /// KEY=VALUE pairs as the user gave them.

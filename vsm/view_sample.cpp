@@ -29,6 +29,13 @@ constexpr std::uint32_t kSharedBudget = 16 * 1024;                            //
 constexpr std::uint32_t kFirstQuestions = 1U << 16, kFirstChunks = 1U << 15;  // both grow
 constexpr std::uint32_t kMostChunk = 32;                                      // leaves that one workgroup tests
 
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return {visibility::Verdict::exact,
+          visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
+                                  {{mesh.boundary_loops, "boundaries let light pass where the mesh is open"},
+                                   {mesh.zero_area_triangles.count, "triangles without area cast nothing"}})};
+}
+
 const visibility::MethodDescription& describe() {
   static const visibility::MethodDescription description{
       .name = "view-sample",
@@ -38,6 +45,7 @@ const visibility::MethodDescription& describe() {
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
       .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon},
       .options = {},
+      .verdict_on = verdict_on,
   };
   return description;
 }

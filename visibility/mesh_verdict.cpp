@@ -1,0 +1,32 @@
+#include "visibility/mesh_verdict.hpp"
+
+#include <fmt/format.h>
+
+namespace penumbra::visibility {
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::exact:
+      return "exact";
+    case Verdict::conservative:
+      return "conservative";
+    case Verdict::approximate:
+      return "approximate";
+    case Verdict::refused:
+      return "refused";
+  }
+  return "?";
+}
+
+std::string reason_with(std::string_view sentence, const mesh::Diagnosis& mesh, std::initializer_list<Remark> remarks) {
+  std::string reason(sentence);
+  const auto add = [&](const Remark& remark) {
+    if (remark.count > 0) reason += fmt::format("; {} {}", remark.count, remark.what);
+  };
+  for (const Remark& remark : remarks) add(remark);
+  add({mesh.vertices_lost, "vertices fall on others in single precision"});
+  add({mesh.triangles_lost, "triangles lose their area in single precision and cast nothing"});
+  return reason;
+}
+
+}  // namespace penumbra::visibility
