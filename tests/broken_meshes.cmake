@@ -1,0 +1,9 @@
+# The generator of broken meshes, and view-sample mapping on what it makes and on real meshes with flaws.
+include(${PROJECT_SOURCE_DIR}/cmake/cgal_corpus.cmake)
+
+add_executable(broken_agreement_tests ${CMAKE_CURRENT_LIST_DIR}/agreement/broken_meshes_raytrace.cpp)
+target_link_libraries(broken_agreement_tests PRIVATE
+  penumbra_vsm penumbra_reference penumbra_scenes penumbra_warnings GTest::gtest_main TBB::tbb)
+penumbra_cgal_corpus(broken_agreement_tests)
+gtest_discover_tests(broken_agreement_tests TEST_FILTER "-*Full" PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+gtest_discover_tests(broken_agreement_tests TEST_FILTER "*Full" PROPERTIES LABELS full DISCOVERY_TIMEOUT 120 TIMEOUT 3600)
