@@ -113,8 +113,11 @@ glm::dvec3 read_vertex(OffWords& words, const OffHeader& header, std::uint32_t n
 }  // namespace
 
 ImportedMesh read_off_file(const std::filesystem::path& file) {
-  const std::string text = read_whole_file(file);
-  OffWords words(text, file.string());
+  return read_off_text(read_whole_file(file), file.string());
+}
+
+ImportedMesh read_off_text(std::string_view text, const std::string& file) {
+  OffWords words(text, file);
   const OffHeader header = read_header(words);
   ImportedMesh mesh;
   mesh.soup.positions.reserve(header.vertices);
@@ -135,7 +138,7 @@ ImportedMesh read_off_file(const std::filesystem::path& file) {
     faces.add(corners);
   }
   if (mesh.soup.triangles.empty()) {
-    throw InputError("{}: there are no triangles in it ({} vertices, {})", file.string(), header.vertices,
+    throw InputError("{}: there are no triangles in it ({} vertices, {})", file, header.vertices,
                      faces.instead_of_surfaces());
   }
   mesh.notes = faces.notes();

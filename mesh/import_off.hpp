@@ -3,6 +3,8 @@
 #include "mesh/import.hpp"
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace penumbra::mesh {
 
@@ -10,5 +12,8 @@ namespace penumbra::mesh {
 /// through Assimp, because its reader turns an index that is out of range into the last vertex, drops faces with more
 /// than nine corners, leaves missing vertices at the origin, and wants each vertex on a line of its own.
 ImportedMesh read_off_file(const std::filesystem::path& file);
+
+/// The same from the text of `file`, a name for messages.
+ImportedMesh read_off_text(std::string_view text, const std::string& file);
 
 }  // namespace penumbra::mesh

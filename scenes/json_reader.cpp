@@ -139,7 +139,11 @@ void append(mesh::TriangleSoup& soup, const mesh::TriangleSoup& mesh, std::uint3
 }  // namespace
 
 Scene read_json(const std::filesystem::path& file, const ReadOptions& options) {
-  json document = parse_json(read_text_file(file), file.string());
+  return read_json_text(read_text_file(file), file, options);
+}
+
+Scene read_json_text(std::string_view text, const std::filesystem::path& file, const ReadOptions& options) {
+  json document = parse_json(text, file.string());
   enforce_schema(document, file.string());
 
   const Place root{file.string(), {}};
