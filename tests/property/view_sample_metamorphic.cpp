@@ -25,13 +25,13 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> result;
   const auto defects = mesh::broken_defects();
-  constexpr std::size_t kMeshes = 4;
+  constexpr std::size_t kMeshes = 3;
   for (std::size_t i = 0; i < kMeshes; ++i) {
     mesh::BrokenShape shape{{}, 1 + static_cast<std::uint32_t>(i % 2), {0, 1, 0}, 2};
     for (std::size_t j = i; j < defects.size(); j += kMeshes) shape.defects.emplace_back(defects[j].name);
     result.push_back({fmt::format("defects {} mod {}", i, kMeshes), mesh::make_broken_mesh(shape).soup});
   }
-  for (std::uint32_t seed = 11; seed < 15; ++seed) {
+  for (std::uint32_t seed = 11; seed < 13; ++seed) {
     result.push_back({fmt::format("soup, seed {}", seed),
                       mesh::make_lattice_soup({12 * (seed - 10), 2 + seed % 3, seed, {0, 1.5, 0}, 1})});
   }
@@ -87,7 +87,7 @@ class Metamorphic : public tests::DeviceTest {
     const Light light = visibility::make_light(scene, 0, floats.origin, {});
     if (!samples) {
       render::VisibilityBuffer view(device(), floats);
-      samples = view.render(visibility::make_camera(scene.cameras[0], floats.origin, 40, 40));
+      samples = view.render(visibility::make_camera(scene.cameras[0], floats.origin, 28, 28));
     }
     Masks masks = tests::run(*method_, floats, light, *samples);
     return {std::move(*samples), std::move(masks)};
@@ -123,7 +123,7 @@ TEST_F(Metamorphic, TheSameTrianglesInOtherWords) {
       EXPECT_EQ(plain.masks.visibility, again.masks.visibility) << name << " " << wording;
     }
   }
-  EXPECT_GT(partly, 1000U);  // pixels in penumbra
+  EXPECT_GT(partly, 300U);  // pixels in penumbra
 }
 
 /// A scene whose triangles are cut, and for each piece the triangle that it is of.
@@ -144,7 +144,7 @@ Split split(const scenes::Scene& scene, std::mt19937& random) {
   for (std::uint32_t i = 0; i < scene.soup.triangles.size(); ++i) {
     mesh::Triangle t = scene.soup.triangles[i];
     std::rotate(t.begin(), t.begin() + random() % 3, t.end());
-    const auto [a, b, c] = t;
+    const std::uint32_t a = t[0], b = t[1], c = t[2];  // lambdas may not capture bindings
     const auto at = [&](double u, double v, double w) {
       const glm::dvec3 point = u * soup.positions[a] + v * soup.positions[b] + w * soup.positions[c];
       soup.positions.push_back(point);
@@ -246,7 +246,7 @@ TEST_F(Metamorphic, CutAtPointsExactlyOnThem) {
     // Points as a camera sees them, and points exactly on triangles, some on the very lines that cut them.
     const Picture cut_picture = picture(after, cut, on_pieces(plain.samples, before, after, whole));
     EXPECT_EQ(tests::differing_bits(plain.masks, cut_picture.masks), 0U) << name;
-    const Picture exact = picture(before, scene, tests::samples_on_triangles(before, 32, 16, random));
+    const Picture exact = picture(before, scene, tests::samples_on_triangles(before, 16, 12, random));
     const Picture exact_cut = picture(after, cut, on_pieces(exact.samples, before, after, whole));
     EXPECT_EQ(tests::differing_bits(exact.masks, exact_cut.masks), 0U) << name;
     // Seen anew: p is rounded from the pieces' corners.
