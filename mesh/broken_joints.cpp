@@ -51,14 +51,13 @@ void build_doubled_sheet(LatticeMesh& mesh, int s) {
   build_sheet(mesh, s);
   build_sheet(mesh, s);
 }
-/// On the rim each triangle faces its double across edges of two triangles: turned to agree, the two cancel. In a sheet
-/// of one cell that are all triangles.
+/// On the rim each triangle meets its double across an edge of two triangles. A face and its double are no neighbours
+/// that could be turned to agree (the two would cancel): the sheet stays open.
 Known know_doubled_sheet(Count s) {
   Known known = know_pillow(s);
   known.duplicate_faces = std::exchange(known.opposite_faces, 0);
   known.inconsistent_windings = 4 * s;
-  known.closed = s == 1;
-  known.closed_as_wound = false;
+  open(known);
   return known;
 }
 

@@ -48,7 +48,7 @@ scenes::Scene broken_scene(const std::vector<std::string>& defects, std::uint32_
 
 TEST_F(BrokenMeshes, EveryDefectAlone) {
   for (const mesh::DefectName& defect : mesh::broken_defects()) {
-    add(std::string(defect.name), broken_scene({std::string(defect.name)}, 2, 1), 64);
+    add(std::string(defect.name), broken_scene({std::string(defect.name)}, 2, 1), 48);
   }
 }
 
