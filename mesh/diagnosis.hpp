@@ -27,10 +27,10 @@ struct Defect {
 };
 
 struct DiagnosisOptions {
-  double weld = 0;                       ///< see build_edge_graph
-  bool search_intersections = true;      ///< the only search that takes more than seconds on a million triangles
-  std::size_t list_limit = 16;           ///< places listed of each defect
-  std::function<void(double)> progress;  ///< share done, in [0, 1]; may be empty; called from one thread at a time
+  double weld = 0;                            ///< see build_edge_graph
+  bool search_intersections = true;           ///< the only search that takes more than seconds on a million triangles
+  std::size_t list_limit = 16;                ///< places listed of each defect
+  std::function<void(double)> progress = {};  ///< share done, in [0, 1]; may be empty; called from one thread at a time
 };
 
 struct Diagnosis {
