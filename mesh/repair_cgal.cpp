@@ -194,6 +194,9 @@ CgalSurface to_cgal(const TriangleSoup& soup, const std::vector<std::uint32_t>& 
     if (face == CgalMesh::null_face()) throw std::logic_error("the joined triangles are no manifold for CGAL");
     surface.triangle[face] = t;
   }
+  for (const auto v : surface.mesh.vertices()) {
+    if (surface.mesh.is_isolated(v)) surface.mesh.remove_vertex(v);  // the others keep their numbers
+  }
   return surface;
 }
 
@@ -263,7 +266,6 @@ TriangleSoup turn_outward(const TriangleSoup& soup, Mending& mending) {
   }
   if (closed.empty()) return soup;
   CgalSurface surface = to_cgal(soup, closed);
-  surface.mesh.collect_garbage();
   const std::vector<std::uint32_t> turned =
       pmp::does_self_intersect(surface.mesh) ? inside_out_parts(soup, parts) : inverted_parts(soup, parts, surface);
   TriangleSoup mended = soup;

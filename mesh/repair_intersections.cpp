@@ -87,9 +87,6 @@ void name_new_faces(CgalSurface& surface) {
 std::optional<CgalSurface> resolve(const TriangleSoup& soup, const std::vector<std::uint32_t>& triangles,
                                    std::size_t& resolved) {
   CgalSurface surface = to_cgal(soup, triangles);
-  for (const auto v : surface.mesh.vertices()) {
-    if (surface.mesh.is_isolated(v)) surface.mesh.remove_vertex(v);
-  }
   surface.mesh.collect_garbage();
   const std::size_t before = intersections(surface.mesh).size();
   pmp::experimental::remove_self_intersections(
