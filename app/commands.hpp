@@ -31,6 +31,7 @@ class Command {
 
 std::unique_ptr<Command> make_render_command(CLI::App& app);
 std::unique_ptr<Command> make_compare_command(CLI::App& app);
+std::unique_ptr<Command> make_inspect_command(CLI::App& app);
 std::unique_ptr<Command> make_methods_command(CLI::App& app);
 std::unique_ptr<Command> make_devices_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);

@@ -49,12 +49,11 @@ int run(int argc, char** argv) {
   std::vector<std::unique_ptr<penumbra::app::Command>> commands;
   commands.push_back(penumbra::app::make_render_command(app));
   commands.push_back(penumbra::app::make_compare_command(app));
+  commands.push_back(penumbra::app::make_inspect_command(app));
   commands.push_back(penumbra::app::make_methods_command(app));
   commands.push_back(penumbra::app::make_devices_command(app));
   commands.push_back(penumbra::app::make_convert_command(app));
-  for (const char* name : {"inspect", "wedges"}) {
-    commands.push_back(penumbra::app::make_command_not_there_yet(app, name));
-  }
+  commands.push_back(penumbra::app::make_command_not_there_yet(app, "wedges"));
 
   try {
     app.parse(argc, argv);

@@ -6,10 +6,10 @@ visibility::MeshVerdict judge_for_maps(std::string_view sentence, const mesh::Di
   return {visibility::Verdict::approximate,
           visibility::reason_with(
               sentence, mesh,
-              {{mesh.needles.count, "needles may be thinner than a texel, and are then hit or missed"},
-               {mesh.boundary_loops, "boundaries: a hole or gap narrower than a texel closes or widens"},
-               {mesh.t_junctions.count, "T-junctions may open cracks a texel wide"},
-               {mesh.zero_area_triangles.count, "triangles without area cast nothing, as they should"}})};
+              {{mesh.needles.count, "needles, which are hit or missed where thinner than a texel"},
+               {mesh.boundary_loops, "open boundaries, whose holes close or widen where narrower than a texel"},
+               {mesh.t_junctions.count, "T-junctions, whose hairline cracks single texels may show"},
+               {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
 }  // namespace penumbra::maps

@@ -109,9 +109,9 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
           visibility::reason_with("rays in single precision: a pair within rounding of an edge may be wrong (measured: "
                                   "at most 2 in 100,000)",
                                   mesh,
-                                  {{mesh.needles.count, "needles make more such pairs"},
-                                   {mesh.t_junctions.count, "T-junctions make more such pairs"},
-                                   {mesh.zero_area_triangles.count, "triangles without area cast nothing"}})};
+                                  {{mesh.needles.count, "needles, which make more such pairs"},
+                                   {mesh.t_junctions.count, "T-junctions, which make more such pairs"},
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
 RayTraced::RayTraced(const visibility::MethodOptions& options) {

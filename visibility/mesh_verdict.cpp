@@ -21,11 +21,11 @@ const char* name_of(Verdict verdict) {
 std::string reason_with(std::string_view sentence, const mesh::Diagnosis& mesh, std::initializer_list<Remark> remarks) {
   std::string reason(sentence);
   const auto add = [&](const Remark& remark) {
-    if (remark.count > 0) reason += fmt::format("; {} {}", remark.count, remark.what);
+    if (remark.count > 0) reason += fmt::format("; {}: {}", remark.what, remark.count);
   };
   for (const Remark& remark : remarks) add(remark);
-  add({mesh.vertices_lost, "vertices fall on others in single precision"});
-  add({mesh.triangles_lost, "triangles lose their area in single precision and cast nothing"});
+  add({mesh.vertices_lost, "vertices that fall on others in single precision"});
+  add({mesh.triangles_lost, "triangles that lose their area in single precision and cast nothing"});
   return reason;
 }
 

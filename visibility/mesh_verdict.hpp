@@ -23,13 +23,13 @@ struct MeshVerdict {
   std::string reason;
 };
 
-/// Something that holds of `count` parts of the mesh: "needles may be thinner than a texel".
+/// Something that holds of `count` parts of the mesh: "needles, which may be thinner than a texel".
 struct Remark {
   std::uint64_t count = 0;
   std::string_view what;
 };
 
-/// The sentence, and after it each remark whose count is not 0: "sentence; 5 needles may …". What rounding to scene
+/// The sentence, and after it each remark whose count is not 0: "sentence; needles, which …: 5". What rounding to scene
 /// floats costs comes last: it is the same for every method.
 std::string reason_with(std::string_view sentence, const mesh::Diagnosis& mesh, std::initializer_list<Remark> remarks);
 

@@ -32,8 +32,8 @@ constexpr std::uint32_t kMostChunk = 32;                                      //
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
           visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
-                                  {{mesh.boundary_loops, "boundaries let light pass where the mesh is open"},
-                                   {mesh.zero_area_triangles.count, "triangles without area cast nothing"}})};
+                                  {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
 const visibility::MethodDescription& describe() {

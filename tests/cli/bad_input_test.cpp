@@ -150,7 +150,6 @@ std::vector<BadUsage> bad_usages() {
       {"UnknownLight", with({"--method", "raytrace", "--light", "moon"}), 2, {"moon", "key"}},
       {"UnknownCamera", with({"--method", "raytrace", "--camera", "drone"}), 2, {"drone"}},
       {"FramesBackwards", with({"--frames", "9-3"}), 2, {"9-3"}},
-      {"InspectNotThereYet", {"inspect", "mesh.ply", "--json", "x"}, 2, {"not there yet"}},
       {"WedgesNotThereYet", {"wedges", "SCENE", "--light", "key"}, 2, {"not there yet"}},
       {"ExactNotThereYet", {"compare", "SCENE", "-o", "DIR", "--reference", "exact"}, 2, {"not there yet"}},
       {"ReferenceThatIsNone", {"compare", "SCENE", "-o", "DIR", "--reference", "magic"}, 2, {"magic"}},

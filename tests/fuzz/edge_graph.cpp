@@ -215,7 +215,7 @@ void check_counts(const Soup& soup, const EdgeGraph& graph, const Diagnosis& dia
     used.insert(c.begin(), c.end());
     zero_area += graph.kind[t] != TriangleKind::proper;
     if (graph.kind[t] == TriangleKind::repeated) continue;
-    std::ranges::rotate(c, std::ranges::min_element(c));
+    std::rotate(c.begin(), std::ranges::min_element(c), c.end());
     ++faces[{c[0], c[1], c[2]}][c[1] < c[2] ? 0 : 1];
   }
   for (const auto& [corners, wound] : faces) {
@@ -260,8 +260,9 @@ void check_turned(const Soup& soup, const Diagnosis& diagnosis) {
   Soup turned = soup;
   std::ranges::reverse(turned.triangles);
   for (std::size_t t = 0; t < turned.triangles.size(); ++t) {
-    std::ranges::rotate(turned.triangles[t], turned.triangles[t].begin() + static_cast<long>(t % 3));
-    std::swap(turned.triangles[t][0], turned.triangles[t][2]);  // all of them: neighbours still agree or not
+    Triangle& c = turned.triangles[t];
+    std::rotate(c.begin(), c.begin() + static_cast<long>(t % 3), c.end());
+    std::swap(c[0], c[2]);  // all of them: neighbours still agree or not
   }
   const Diagnosis other = diagnose(turned.view());
   PENUMBRA_ASSERT(shape_of(other) == shape_of(diagnosis), "turned triangles have another diagnosis");

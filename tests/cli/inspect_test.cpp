@@ -1,0 +1,199 @@
+// inspect: what it says of a mesh whose defects are known, in table, JSON and files, and what it refuses.
+#include "tests/cli/program.hpp"
+
+#include "mesh/repair.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The unit cube without one of its twelve triangles.
+constexpr const char* kHoleyCube =
+    "OFF\n8 11 0\n"
+    "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+    "3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n";
+
+class Inspect : public ProgramTest {
+ protected:
+  std::string cube() const { return write("cube.off", kHoleyCube).string(); }
+  json report(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all = {"inspect", "--json", "-"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out);
+  }
+};
+
+TEST_F(Inspect, TheTableSaysWhatIsWrongAndWhatMethodsMakeOfIt) {
+  const Outcome outcome = run({"inspect", cube()});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("triangles +11\n"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("watertight +no\n"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("boundary edges +3 +loops: 1\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("(0, 1, 0) – (0, 1, 1): triangle 8"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("view-sample +exact"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("raytrace +approximate"));
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+}
+
+TEST_F(Inspect, JsonHasTheKeysOfTheContract) {
+  const json file = report({cube()});
+  const std::map<std::string, json> known = {{"triangles", 11},
+                                             {"vertices", 8},
+                                             {"components", 1},
+                                             {"closed", false},
+                                             {"boundaryEdges", 3},
+                                             {"boundaryLoops", 1},
+                                             {"nonManifoldEdges", 0},
+                                             {"nonManifoldVertices", 0},
+                                             {"inconsistentWindings", 0},
+                                             {"duplicateFaces", 0},
+                                             {"oppositeFaces", 0},
+                                             {"zeroAreaTriangles", 0},
+                                             {"needles", 0},
+                                             {"tJunctions", 0},
+                                             {"selfIntersections", 0}};
+  for (const json& object : {file, file.at("total"), file.at("objects").at(0), file.at("files").at(0).at("total")}) {
+    for (const auto& [key, value] : known) EXPECT_EQ(object.at(key), value) << key;
+    EXPECT_EQ(object.at("bounds"), json::parse("[[0, 0, 0], [1, 1, 1]]"));
+    EXPECT_EQ(object.at("verdicts").at("view-sample"), "exact");
+    // About the bounds' centre, the missing triangle's pyramid lacks: a twelfth.
+    EXPECT_DOUBLE_EQ(object.at("volume").get<double>(), 11.0 / 12);
+    const json& edges = object.at("lists").at("boundaryEdges");
+    ASSERT_EQ(edges.size(), 3u);
+    EXPECT_EQ(edges[1].at("points"), json::parse("[[0, 1, 0], [0, 1, 1]]"));
+    EXPECT_EQ(edges[1].at("triangles"), json::parse("[8]"));
+  }
+  EXPECT_EQ(file.at("objects").at(0).at("name"), "cube.off");
+  const json silent = report({cube(), "--no-self-intersections", "--list", "1"});
+  EXPECT_TRUE(silent.at("selfIntersections").is_null());
+  EXPECT_EQ(silent.at("lists").at("boundaryEdges").size(), 1u);
+}
+
+TEST_F(Inspect, SaysOfEachObjectAndLightOfAScene) {
+  tiny_scene();
+  const json scene = report({path("scene.json")});
+  ASSERT_EQ(scene.at("objects").size(), 2u);
+  EXPECT_EQ(scene.at("objects")[0].at("name"), "floor");
+  EXPECT_EQ(scene.at("objects")[1].at("name"), "wedge");
+  EXPECT_EQ(scene.at("triangles"), 4);
+  EXPECT_EQ(scene.at("objects")[1].at("lists").at("boundaryEdges")[0].at("triangles")[0], 2) << "numbers of the file";
+  write("sphere.json", scene_text_with("/lights/0", R"({"name": "b", "sphere": {"center": [0,4,0], "radius": 1}})"));
+  const json lit = report({path("sphere.json")});
+  EXPECT_EQ(lit.at("verdicts").at("view-sample"), "refused");
+  EXPECT_EQ(lit.at("verdicts").at("raytrace"), "approximate");
+}
+
+TEST_F(Inspect, SeveralFilesAreAllReportedAndTheUnreadableOneCostsExitCode3) {
+  const std::string bad = write("bad.off", "OFF\n3 1 0\n0 0 0\n").string();
+  const Outcome outcome = run({"inspect", bad, cube(), "--json", path("out.json")});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("bad.off"), HasSubstr("line 2")));
+  EXPECT_THAT(outcome.out, HasSubstr("cube.off"));
+  const json files = json::parse(read("out.json"));
+  EXPECT_FALSE(files.contains("triangles"));
+  EXPECT_THAT(files.at("files")[0].at("error").get<std::string>(), HasSubstr("line 2"));
+  EXPECT_EQ(files.at("files")[1].at("total").at("triangles"), 11);
+  EXPECT_EQ(run({"inspect", path("nowhere.off")}).code, 3);
+  EXPECT_EQ(run({"inspect", folder_.string()}).code, 3);
+}
+
+TEST_F(Inspect, ReadsGltfWithoutALight) {
+  tiny_scene();
+  ASSERT_EQ(run({"convert", path("scene.json"), "-o", path("lit.glb")}).code, 0);
+  std::string text = read("lit.glb");
+  const auto emissive = text.find("emissiveFactor");
+  ASSERT_NE(emissive, std::string::npos);
+  text[emissive] = 'E';  // an unknown member: the light's body becomes plain geometry
+  write("unlit.glb", text);
+  EXPECT_EQ(run({"render", path("unlit.glb"), "-o", path("x.exr"), "--method", "raytrace"}).code, 3);
+  EXPECT_EQ(report({path("unlit.glb")}).at("triangles"), report({path("lit.glb")}).at("triangles"));
+}
+
+TEST_F(Inspect, WeldJoinsWhatIsClose) {
+  write("gap.off", "OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 0.001 0\n1 1 0\n0 1.001 0\n3 0 1 2\n3 3 4 5\n");
+  EXPECT_EQ(report({path("gap.off")}).at("boundaryEdges"), 6);
+  EXPECT_EQ(report({path("gap.off"), "--weld", "0.01"}).at("boundaryEdges"), 4);
+}
+
+TEST_F(Inspect, ExportsTheDefectsInColour) {
+  ASSERT_EQ(run({"inspect", cube(), "--export-defects", path("bad.ply")}).code, 0);
+  const std::string ply = read("bad.ply");
+  EXPECT_THAT(ply, AllOf(HasSubstr("element face 11\n"), HasSubstr("element edge 3\n"), HasSubstr("red")));
+  const json back = report({path("bad.ply")});
+  EXPECT_EQ(back.at("boundaryEdges"), 3);
+  EXPECT_EQ(back.at("triangles"), 11);
+}
+
+TEST_F(Inspect, RepairsAndTheResultReadsBack) {
+  if (!mesh::can_repair()) {
+    EXPECT_EQ(run({"inspect", cube(), "--repair", path("mended.ply")}).code, 2);
+    return;
+  }
+  const Outcome outcome = run({"inspect", cube(), "--repair", path("mended.ply"), "--fill-holes", "3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("done:"));
+  const json back = report({path("mended.ply")});
+  EXPECT_EQ(back.at("triangles"), 12);
+  EXPECT_EQ(back.at("boundaryEdges"), 0);
+  EXPECT_EQ(back.at("closed"), true);
+  EXPECT_DOUBLE_EQ(back.at("volume").get<double>(), 1);
+}
+
+TEST_F(Inspect, NeverOverwritesItsInput) {
+  const std::string mesh = write("cube.ply",
+                                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                 "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+                               .string();
+  const std::string before = read("cube.ply");
+  std::filesystem::create_symlink("cube.ply", path("link.ply"));
+  std::filesystem::create_hard_link(mesh, path("hard.ply"));
+  for (const char* name : {"cube.ply", "./cube.ply", "link.ply", "hard.ply"}) {
+    for (const char* option : {"--json", "--export-defects", "--repair"}) {
+      const Outcome outcome = run({"inspect", mesh, option, path(name)});
+      EXPECT_EQ(outcome.code, 2) << option << ' ' << name << ": " << outcome.err;
+    }
+  }
+  // A scene's meshes are its input, too.
+  write("scene.json", scene_text_with("/meshes/1", R"({"name": "m", "file": "cube.ply"})"));
+  const Outcome outcome = run({"inspect", path("scene.json"), "--export-defects", mesh});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("cube.ply"));
+  EXPECT_EQ(read("cube.ply"), before);
+}
+
+TEST_F(Inspect, RefusesWhatCannotBeMeant) {
+  const std::string mesh = cube();
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--weld", "-1"},
+      {"--weld", "nan"},
+      {"--list", "-3"},
+      {"--repair", path("out.obj")},
+      {"--export-defects", path("out.off")},
+      {"--fill-holes", "5"},
+      {"--resolve-self-intersections"},
+      {"--json", path("a.ply"), "--export-defects", path("a.ply")},
+      {mesh, "--export-defects", path("a.ply")},
+  };
+  for (const auto& options : wrong) {
+    std::vector<std::string> all = {"inspect", mesh};
+    all.insert(all.end(), options.begin(), options.end());
+    const Outcome outcome = run(all);
+    EXPECT_EQ(outcome.code, 2) << testing::PrintToString(options) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty());
+  }
+  EXPECT_THAT(files(), ElementsAre("cube.off"));
+  EXPECT_EQ(run({"inspect", mesh, "--json", "/nowhere/at/all.json"}).code, 4);
+}
+
+}  // namespace
+}  // namespace penumbra::tests
