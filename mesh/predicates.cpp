@@ -17,6 +17,18 @@ Side side(const Vector& a, const Vector& b, const Vector& c, const Vector& p) {
   return static_cast<Side>(CGAL::orientation(point(a), point(b), point(c), point(p)));
 }
 
+/// The lines' directions, turned to have the positive first coordinate that is not zero.
+bool points_back(const glm::dvec3& v, const glm::dvec3& p) {
+  if (p.x != v.x) return p.x < v.x;
+  return p.y != v.y ? p.y < v.y : p.z < v.z;
+}
+
+/// The sign of (p − v) × (q − v) in the projection on two axes.
+int turn_in_projection(const glm::dvec3& v, const glm::dvec3& p, const glm::dvec3& q, int i, int j) {
+  using Point2 = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
+  return CGAL::orientation(Point2(v[i], v[j]), Point2(p[i], p[j]), Point2(q[i], q[j]));
+}
+
 }  // namespace
 
 Side side_of_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) {
@@ -33,6 +45,15 @@ bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return CGAL::collinear(point(a), point(b), point(c));
+}
+
+int compare_lines(const glm::dvec3& v, const glm::dvec3& p, const glm::dvec3& q) {
+  // By the angle in the xy plane, within (−90°, 90°] of the x axis; at equal angles by slope in z; lines along z last.
+  const bool p_along_z = p.x == v.x && p.y == v.y, q_along_z = q.x == v.x && q.y == v.y;
+  if (p_along_z || q_along_z) return static_cast<int>(p_along_z) - static_cast<int>(q_along_z);
+  const int flip = points_back(v, p) != points_back(v, q) ? -1 : 1;
+  const int turn = turn_in_projection(v, p, q, 0, 1);
+  return -flip * (turn != 0 ? turn : turn_in_projection(v, p, q, p.x != v.x ? 0 : 1, 2));
 }
 
 bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other) {

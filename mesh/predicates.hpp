@@ -26,6 +26,9 @@ Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, c
 bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
+/// −1, 0, 1: an order of the lines through v and p, and through v and q (p, q ≠ v); 0 exactly if they are one line.
+int compare_lines(const glm::dvec3& v, const glm::dvec3& p, const glm::dvec3& q);
+
 /// Is every corner of `other` on the plane of `carrier`? (Neither of zero area.)
 bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other);
 

@@ -1,6 +1,7 @@
 #include "scenes/json_meshes.hpp"
 
 #include "base/assert.hpp"
+#include "mesh/broken_meshes.hpp"
 #include "mesh/shapes.hpp"
 
 #include <nlohmann/json.hpp>
@@ -10,7 +11,7 @@
 #include <string_view>
 
 /// From the keys of a "shape" to a generator's options. What a key means and its bounds: the schema; defaults: the
-/// options structs of mesh/shapes.hpp (a test holds the schema's to them).
+/// options structs of mesh/shapes.hpp and mesh/broken_meshes.hpp (a test holds the schema's to them).
 namespace penumbra::scenes {
 namespace {
 
@@ -189,17 +190,39 @@ TriangleSoup bars(const Keys& keys) {
   return make_bars(options);
 }
 
+TriangleSoup broken(const Keys& keys) {
+  mesh::BrokenShape options;
+  keys.read("defects", options.defects);
+  keys.read("size", options.size);
+  keys.read("center", options.center);
+  keys.read("halfExtent", options.half_extent);
+  return make_broken_mesh(options).soup;
+}
+
+TriangleSoup lattice_soup(const Keys& keys) {
+  mesh::LatticeSoup options;
+  keys.read("triangles", options.triangles);
+  keys.read("cells", options.cells);
+  keys.read("seed", options.seed);
+  keys.read("center", options.center);
+  keys.read("halfExtent", options.half_extent);
+  return make_lattice_soup(options);
+}
+
 struct Generator {
   std::string_view type;
   TriangleSoup (*make)(const Keys&);
 };
 
 constexpr std::array kGenerators{
-    Generator{"sphere", sphere},   Generator{"icosphere", icosphere}, Generator{"blob", blob},
-    Generator{"box", box},         Generator{"cylinder", cylinder},   Generator{"cone", cone},
-    Generator{"torus", torus},     Generator{"knot", knot},           Generator{"grid", grid},
-    Generator{"terrain", terrain}, Generator{"fence", fence},         Generator{"hair", hair},
-    Generator{"room", room},       Generator{"bars", bars},
+    Generator{"sphere", sphere},     Generator{"icosphere", icosphere},
+    Generator{"blob", blob},         Generator{"box", box},
+    Generator{"cylinder", cylinder}, Generator{"cone", cone},
+    Generator{"torus", torus},       Generator{"knot", knot},
+    Generator{"grid", grid},         Generator{"terrain", terrain},
+    Generator{"fence", fence},       Generator{"hair", hair},
+    Generator{"room", room},         Generator{"bars", bars},
+    Generator{"broken", broken},     Generator{"lattice-soup", lattice_soup},
 };
 
 }  // namespace

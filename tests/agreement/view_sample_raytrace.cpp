@@ -1,11 +1,7 @@
-// View-sample mapping and the ray caster on every shipped scene, pair by pair on the same view and light samples. They
-// share no code that decides anything: a hierarchy of shafts and float arithmetic with error bounds here, Embree's rays
-// there. Where they differ, the exact decision says who is right.
+// View-sample mapping and the ray caster on every shipped scene.
 
-#include "tests/agreement/support.hpp"
+#include "tests/agreement/differences.hpp"
 
-#include "reference/ray_traced.hpp"
-#include "render/visibility_buffer.hpp"
 #include "scenes/reader.hpp"
 
 #include <filesystem>
@@ -13,63 +9,11 @@
 namespace penumbra {
 namespace {
 
-using visibility::PairOutcome;
-using visibility::ViewSamples;
-
-struct Differences {
-  std::size_t pairs_all = 0, pairs = 0, differing = 0;
-  std::size_t judged = 0, view_sample_right = 0, zero_predicate = 0;
-  std::string first_wrong;
-};
-
-constexpr std::size_t kMostJudged = 2000;
-
-Differences compare(const visibility::SceneFloats& floats, const ViewSamples& samples, const visibility::Light& light,
-                    const tests::Masks& mapped, const tests::Masks& traced) {
-  Differences result;
-  const std::uint32_t n = light.sample_count();
-  for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
-    if (samples.triangle[pixel] == ViewSamples::kBackground) continue;
-    result.pairs_all += n;
-    const auto partly = [&](const tests::Masks& masks) {
-      return masks.visible_count(pixel) > 0 && masks.visible_count(pixel) < n;
-    };
-    if (partly(mapped) || partly(traced)) result.pairs += n;
-    for (std::uint32_t j = 0; j < n; ++j) {
-      if (mapped.visible(pixel, j) == traced.visible(pixel, j)) continue;
-      ++result.differing;
-      if (result.judged == kMostJudged) continue;
-      const auto truth = visibility::decide_pair(floats, samples, pixel, light, j);
-      ++result.judged;
-      result.zero_predicate += truth.zero_predicate ? 1 : 0;
-      if (mapped.visible(pixel, j) == (truth.outcome == PairOutcome::visible)) {
-        ++result.view_sample_right;
-      } else if (result.first_wrong.empty()) {
-        result.first_wrong = tests::describe_pair(floats, samples, pixel, light, j);
-      }
-    }
-  }
-  return result;
-}
-
 class AgreementBase : public tests::DeviceTest {
  protected:
   void check(const scenes::Scene& scene, std::uint32_t size) {
-    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const visibility::Light light = visibility::make_light(scene, 0, floats.origin, {});
-    render::VisibilityBuffer view(device(), floats);
-    const ViewSamples samples = view.render(visibility::make_camera(scene.cameras[0], floats.origin, size, size));
-    const tests::Masks mapped = tests::map_view_samples(device(), floats, light, samples);
-    const auto method = reference::make_ray_traced({});
-    const tests::Masks traced = tests::run(*method, floats, light, samples);
-    const Differences found = compare(floats, samples, light, mapped, traced);
-    fmt::print(
-        "{} {}x{}: {} of {} pairs differ ({:.2e}; {:.2e} of those in penumbra); of {} judged, {} with a zero, "
-        "view-sample is right about {}\n",
-        scene.name, size, size, found.differing, found.pairs_all,
-        static_cast<double>(found.differing) / static_cast<double>(found.pairs_all),
-        static_cast<double>(found.differing) / static_cast<double>(found.pairs), found.judged, found.zero_predicate,
-        found.view_sample_right);
+    const tests::Differences found = tests::BothMethods(device()).on(scene, size);
+    tests::print(fmt::format("{} {}x{}", scene.name, size, size), found);
     EXPECT_GT(found.pairs, 0U);
     EXPECT_LE(static_cast<double>(found.differing), 2e-5 * static_cast<double>(found.pairs_all));
     EXPECT_LE(static_cast<double>(found.differing), 2e-4 * static_cast<double>(found.pairs));

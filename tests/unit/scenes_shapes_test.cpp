@@ -1,3 +1,4 @@
+#include "mesh/broken_meshes.hpp"
 #include "mesh/shapes.hpp"
 #include "scenes/json_meshes.hpp"
 #include "scenes/json_schema.hpp"
@@ -151,6 +152,7 @@ TEST(Shapes, SchemaKnowsTheDefaults) {
     nlohmann::json bare, written;
     bare["type"] = branch["properties"]["type"]["const"];
     if (bare["type"] == "grid") bare["halfU"] = {1, 0, 0}, bare["halfV"] = {0, 0, -1};
+    if (bare["type"] == "broken") bare["defects"] = {"hole", "fin"};
     written = bare;
     for (const auto& [key, value] : branch["properties"].items()) {
       if (value.contains("default")) written[key] = value["default"];
@@ -160,7 +162,18 @@ TEST(Shapes, SchemaKnowsTheDefaults) {
     EXPECT_EQ(a.triangles, b.triangles) << bare;
     ++types;
   }
-  EXPECT_EQ(types, 14);
+  EXPECT_EQ(types, 16);
+}
+
+TEST(Shapes, SchemaKnowsTheDefects) {
+  const auto schema = nlohmann::json::parse(scenes::kSceneSchemaText);
+  std::vector<std::string> named, known;
+  for (const auto& branch : schema["definitions"]["shape"]["oneOf"]) {
+    if (branch["properties"]["type"]["const"] != "broken") continue;
+    named = branch["properties"]["defects"]["items"]["enum"].get<std::vector<std::string>>();
+  }
+  for (const mesh::DefectName& defect : mesh::broken_defects()) known.emplace_back(defect.name);
+  EXPECT_EQ(named, known);
 }
 
 }  // namespace

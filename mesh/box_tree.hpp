@@ -1,0 +1,66 @@
+#pragma once
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::mesh {
+
+/// Axis-aligned, closed. Empty (lower > upper) by default.
+struct Box {
+  glm::dvec3 lower{1.7976931348623157e308}, upper{-1.7976931348623157e308};
+
+  void include(const glm::dvec3& p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }
+  void include(const Box& box) { lower = glm::min(lower, box.lower), upper = glm::max(upper, box.upper); }
+  [[nodiscard]] bool meets(const Box& other) const {
+    return lower.x <= other.upper.x && lower.y <= other.upper.y && lower.z <= other.upper.z &&
+           other.lower.x <= upper.x && other.lower.y <= upper.y && other.lower.z <= upper.z;
+  }
+};
+
+/// A binary tree over boxes, split at medians: balanced whatever the distribution, and a function of the boxes alone.
+/// Level d has 2^d nodes; node j of it holds the items at [n j / 2^d, n (j + 1) / 2^d) of `order`.
+class BoxTree {
+ public:
+  explicit BoxTree(std::span<const Box> boxes);
+
+  /// The items' numbers, near ones together.
+  [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
+
+  /// visit(item) for every item whose box `reaches(box)`; reaches must be true of a box that holds one it is true of.
+  template <typename Reaches, typename Visit>
+  void find(const Reaches& reaches, const Visit& visit) const {
+    if (order_.empty()) return;
+    std::array<std::uint32_t, 64> stack;  // numbers as in a heap, from 1; never more than one a level waits
+    std::size_t waiting = 0;
+    stack[waiting++] = 1;
+    while (waiting > 0) {
+      const std::uint32_t node = stack[--waiting];
+      if (!reaches(nodes_[node])) continue;
+      if (node < leaves_) {
+        stack[waiting++] = 2 * node + 1;
+        stack[waiting++] = 2 * node;
+        continue;
+      }
+      for (std::size_t i = begin_of_leaf(node); i < begin_of_leaf(node + 1); ++i) {
+        if (reaches(boxes_[i])) visit(order_[i]);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t begin_of_leaf(std::uint32_t node) const {
+    return order_.size() * (node - leaves_) / leaves_;
+  }
+  struct Builder;
+
+  std::uint32_t leaves_ = 1;  ///< a power of two
+  std::vector<std::uint32_t> order_;
+  std::vector<Box> nodes_, boxes_;  ///< as in a heap; the items', in order
+};
+
+}  // namespace penumbra::mesh

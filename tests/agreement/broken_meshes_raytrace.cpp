@@ -1,0 +1,104 @@
+// View-sample mapping and the ray caster on meshes that are broken: every defect of the generator, random soups on a
+// lattice, and the meshes of CGAL's demos, many of which are flawed.
+
+#include "tests/agreement/differences.hpp"
+
+#include "mesh/broken_meshes.hpp"
+#include "mesh/import.hpp"
+
+#include <filesystem>
+
+namespace penumbra {
+namespace {
+
+using tests::Differences;
+
+/// `allowed` of all pairs may differ; of those that do and are judged, view-sample must be right about every one.
+void expect_agreement(const std::string& name, const Differences& found, double allowed = 2e-5) {
+  EXPECT_GT(found.pairs_all, 0U) << name;
+  EXPECT_LE(static_cast<double>(found.differing), allowed * static_cast<double>(found.pairs_all)) << name;
+  EXPECT_EQ(found.view_sample_right, found.judged) << name << ": " << found.first_wrong;
+}
+
+/// One device and one pair of methods for all cases of a test.
+class Meshes : public tests::DeviceTest {
+ protected:
+  void add(const std::string& name, const scenes::Scene& scene, std::uint32_t size,
+           std::size_t most_judged = tests::kMostJudged) {
+    const Differences found = methods_.on(scene, size, {}, most_judged);
+    if (found.differing > 0) tests::print(name, found);
+    expect_agreement(name, found);
+    total_ += found;
+  }
+  void TearDown() override {
+    tests::print("in total", total_);
+    DeviceTest::TearDown();
+  }
+
+ private:
+  tests::BothMethods methods_{device()};
+  Differences total_;
+};
+
+using BrokenMeshes = Meshes;
+
+scenes::Scene broken_scene(const std::vector<std::string>& defects, std::uint32_t size, double half_extent) {
+  return tests::with_a_floor(mesh::make_broken_mesh({defects, size, {0, 1, 0}, half_extent}).soup);
+}
+
+TEST_F(BrokenMeshes, EveryDefectAlone) {
+  for (const mesh::DefectName& defect : mesh::broken_defects()) {
+    add(std::string(defect.name), broken_scene({std::string(defect.name)}, 2, 1), 48);
+  }
+}
+
+TEST_F(BrokenMeshes, AllDefectsTogether) {
+  std::vector<std::string> all;
+  for (const mesh::DefectName& defect : mesh::broken_defects()) all.emplace_back(defect.name);
+  for (const std::uint32_t size : {1u, 2u, 3u, 16u}) {
+    add(fmt::format("all, size {}", size), broken_scene(all, size, 4), 128);
+  }
+}
+
+TEST_F(BrokenMeshes, LatticeSoups) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const mesh::TriangleSoup soup = mesh::make_lattice_soup({16 * seed, 1 + seed % 4, seed, {0, 1.5, 0}, 1});
+    add(fmt::format("soup, seed {}", seed), tests::with_a_floor(soup), 64);
+  }
+}
+
+scenes::Scene corpus_scene(const std::string& name) {
+  const std::filesystem::path file = std::filesystem::path(PENUMBRA_CGAL_CORPUS) / "meshes" / (name + ".off");
+  return tests::with_a_floor(tests::fitted(mesh::import_mesh(file).soup));
+}
+
+using CgalMeshes = Meshes;
+
+TEST_F(CgalMeshes, ADozen) {
+  for (const char* name : {"cow", "cube-shuffled", "degtri_sliding", "hole", "icosahedron", "mushroom", "negative",
+                           "open_cube", "plane", "quads_to_stitch", "tetra_intersected_by_triangle", "tet-shuffled"}) {
+    add(name, corpus_scene(name), 128);
+  }
+}
+
+/// Open, self-intersecting, shuffled, degenerate: every differing pair is judged.
+TEST_F(CgalMeshes, FlawedOnesFull) {
+  for (const char* name : {"diplodocus", "cow", "cube-shuffled", "cube4-shuffled", "blobby-shuffled", "oblong-shuffled",
+                           "tet-shuffled", "boeing", "mannequin-devil", "elephant-with-holes", "degtri_sliding",
+                           "tetra_intersected_by_triangle", "mech-holes-shark"}) {
+    add(name, corpus_scene(name), 128, std::numeric_limits<std::size_t>::max());
+  }
+}
+
+TEST_F(CgalMeshes, EveryOneFull) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_CGAL_CORPUS "/meshes")) {
+    if (entry.path().extension() == ".off") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names.size(), 138U) << "in " << PENUMBRA_CGAL_CORPUS << "; Debian's package libcgal-demo has them";
+  for (const std::string& name : names) add(name, corpus_scene(name), 128);
+}
+
+}  // namespace
+}  // namespace penumbra
