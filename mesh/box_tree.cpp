@@ -10,7 +10,7 @@
 namespace penumbra::mesh {
 namespace {
 
-constexpr std::size_t kItemsInLeaf = 4;           // at most
+constexpr std::size_t kItemsInLeaf = 8;           // at most
 constexpr std::size_t kItemsWorthAThread = 4096;  // below that, starting a task costs more than it saves
 
 }  // namespace

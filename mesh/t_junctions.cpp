@@ -89,7 +89,7 @@ Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_
   tbb::enumerable_thread_specific<DefectList> found(list_limit);
   tbb::enumerable_thread_specific<std::vector<std::uint32_t>> triangles;
   Progress::Counter counter(progress, graph.edges.size());
-  for_each_index(graph.edges.size(), [&](std::size_t e) {
+  const auto search = [&](std::uint32_t e) {
     const auto [a, b] = graph.edges[e];
     const glm::dvec3 &at_a = mesh.positions[a], &at_b = mesh.positions[b];
     const SegmentQuery query(scaled(a), scaled(b));
@@ -100,11 +100,19 @@ Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_
       if (!strictly_between(at_a, at_b, p) || !collinear(at_a, at_b, p)) return;
       std::vector<std::uint32_t>& around = triangles.local();
       around.clear();
-      for (const Incidence& i : graph.around(static_cast<std::uint32_t>(e))) around.push_back(i.triangle);
+      for (const Incidence& i : graph.around(e)) around.push_back(i.triangle);
       found.local().add(around, std::array{v, a, b});
     };
     tree.find([&](const Box& box) { return query.reaches(box); }, visit);
     counter.done_one();
+  };
+  // In the order of the tree, so that successive searches go the same ways through memory; edges are sorted by a.
+  for_each_index(vertices.size(), [&](std::size_t i) {
+    const std::uint32_t v = vertices[tree.order()[i]];
+    auto edge = std::ranges::lower_bound(graph.edges, Edge{v, 0});
+    for (; edge != graph.edges.end() && edge->a == v; ++edge) {
+      search(static_cast<std::uint32_t>(edge - graph.edges.begin()));
+    }
   });
   DefectList all(list_limit);
   for (DefectList& list : found) all.add_all(std::move(list));
