@@ -103,7 +103,7 @@ class EdgeGraphOfLatticeSoup : public testing::TestWithParam<std::uint32_t> {};
 TEST_P(EdgeGraphOfLatticeSoup, IsItsDefinition) {
   std::map<TriangleKind, int> kinds;
   std::size_t most_around = 0;
-  for (const std::size_t triangles : {1, 2, 5, 20, 120, 300}) {
+  for (const std::size_t triangles : {1U, 2U, 5U, 20U, 120U, 300U}) {
     const Soup soup = lattice_soup(GetParam() * 16 + static_cast<std::uint32_t>(triangles), triangles, 2);
     const EdgeGraph graph = build_edge_graph(soup.view());
     ASSERT_NO_FATAL_FAILURE(expect_same(graph, brute_force(soup.view(), 0))) << triangles << " triangles";
