@@ -1,0 +1,41 @@
+#pragma once
+
+#include "mesh/diagnosis.hpp"
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+/// mesh/diagnosis.hpp once more, straight from its definitions, in time quadratic or worse. For soups whose coordinates
+/// are small integers: all arithmetic that decides is in integers, but for the winding numbers.
+namespace penumbra::mesh::oracle {
+
+struct Point {
+  std::int64_t x = 0, y = 0, z = 0;
+  auto operator<=>(const Point&) const = default;
+};
+using Corners = std::array<Point, 3>;
+using Segment = std::pair<Point, Point>;  // first < second
+
+/// The counts of a Diagnosis, but for needles and self-intersections.
+struct Counts {
+  std::uint64_t vertices = 0, components = 0, boundary_edges = 0, boundary_loops = 0, non_manifold_edges = 0,
+                non_manifold_vertices = 0, inconsistent_windings = 0, duplicate_faces = 0, opposite_faces = 0,
+                zero_area_triangles = 0, t_junctions = 0;
+  bool closed = false, closed_as_wound = false;
+
+  friend bool operator==(const Counts&, const Counts&) = default;
+};
+
+Counts count(const std::vector<Corners>& soup);
+Counts counts_of(const Diagnosis& diagnosis);
+std::ostream& operator<<(std::ostream& out, const Counts& counts);
+
+/// The sum of the signed solid angles of the triangles, over 4π (van Oosterom, Strackee 1983).
+double winding_number(const std::vector<Corners>& soup, const glm::dvec3& q);
+
+/// By exact constructions: what the triangles share, and whether that is part of a vertex or edge of both.
+std::uint64_t count_self_intersections(const std::vector<Corners>& soup);
+
+}  // namespace penumbra::mesh::oracle
