@@ -86,8 +86,9 @@ class Pass {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
-      const std::string_view message = error.what();
-      mending_.left.push_back(fmt::format("{} failed in CGAL ({})", what, message.substr(0, message.find('\n'))));
+      std::string message = error.what();
+      std::ranges::replace(message, '\n', ' ');
+      mending_.left.push_back(fmt::format("{} failed in CGAL ({})", what, message));
     }
   }
 

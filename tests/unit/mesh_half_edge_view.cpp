@@ -60,7 +60,7 @@ void expect_sound(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEd
     }
     if (std::ranges::binary_search(surface.turned(), t)) std::swap(points[1], points[2]);
     const auto start = std::ranges::find(held, points[0]) - held.begin();
-    std::ranges::rotate(held, held.begin() + start);
+    std::rotate(held.begin(), held.begin() + start, held.end());
     EXPECT_EQ(held, points) << "triangle " << t;
   }
   std::uint32_t faces = 0;
@@ -93,7 +93,7 @@ TEST(HalfEdgeView, ABoxIsOneClosedComponent) {
 
 TEST(HalfEdgeView, FlippedFacesAreTurnedAndRecorded) {
   TriangleSoup soup = test::box();
-  for (const std::size_t t : {0, 5, 7}) std::swap(soup.triangles[t][0], soup.triangles[t][1]);
+  for (const std::size_t t : {0u, 5u, 7u}) std::swap(soup.triangles[t][0], soup.triangles[t][1]);
   const HalfEdgeView surface = half_edges(soup);
   EXPECT_EQ(std::vector(surface.turned().begin(), surface.turned().end()), (std::vector<std::uint32_t>{0, 5, 7}));
   expect_sound(soup, build_edge_graph(view(soup)), surface);
@@ -167,7 +167,7 @@ TEST(HalfEdgeView, OneRingsRunAroundTheirVertex) {
     ASSERT_EQ(ring.vertices.size(), ring.faces.size() + (ring.closed ? 0 : 1));
     for (std::size_t i = 0; i < ring.faces.size(); ++i) {  // the face (v, vertices[i], vertices[i + 1]), as it is wound
       Triangle corners = surface.corners(ring.faces[i]);
-      std::ranges::rotate(corners, std::ranges::find(corners, v));
+      std::rotate(corners.begin(), std::ranges::find(corners, v), corners.end());
       EXPECT_EQ(corners, (Triangle{v, ring.vertices[i], ring.vertices[(i + 1) % ring.vertices.size()]}));
     }
   }
