@@ -28,7 +28,7 @@ struct Defect {
 
 struct DiagnosisOptions {
   double weld = 0;                            ///< see build_edge_graph
-  bool search_intersections = true;           ///< the only search that takes more than seconds on a million triangles
+  bool search_intersections = true;           ///< the search that may take long: see find_self_intersections
   std::size_t list_limit = 16;                ///< places listed of each defect
   std::function<void(double)> progress = {};  ///< share done, in [0, 1]; may be empty; called from one thread at a time
 };
@@ -39,8 +39,8 @@ struct Diagnosis {
   std::uint64_t components = 0;  ///< sets of triangles connected through shared edges; a triangle that repeats a vertex
                                  ///< has no edges and belongs to none
 
-  /// Watertight by winding: once neighbours across edges of two triangles are turned to agree (`inconsistent_windings`
-  /// counts what that needs), the winding number is an integer at every point of space. That is: the signed boundary is
+  /// Watertight by winding: once neighbours across edges of two triangles are turned to agree (how: turns_to_agree in
+  /// mesh/winding.hpp), the winding number is an integer at every point of space. That is: the signed boundary is
   /// exactly zero *as a set of points with multiplicity*, wherever its edges are split (so a boundary that is closed by
   /// another component's edges, or across T-junctions, is closed), and a sheet that is merely doubled is not.
   bool closed = false;
@@ -48,12 +48,13 @@ struct Diagnosis {
   bool closed_as_wound = false;
 
   Defect boundary_edges;             ///< exactly one triangle
-  std::uint64_t boundary_loops = 0;  ///< chains of boundary edges, followed around each vertex through the fan of
-                                     ///< triangles; two loops that touch in a vertex are two
-  Defect non_manifold_edges;         ///< more than two triangles
+  std::uint64_t boundary_loops = 0;  ///< sets of boundary edges linked where two end at a vertex in the same fan (see
+                                     ///< non_manifold_vertices): two sheets that touch in a vertex have two loops, two
+                                     ///< holes of one sheet that touch are one loop, as in a half-edge structure
+  Defect non_manifold_edges;     ///< more than two triangles
   Defect non_manifold_vertices;  ///< the triangles at the vertex form more than one fan (linked through edges there)
   Defect inconsistent_windings;  ///< edges of exactly two triangles that both run along it the same way
-  Defect duplicate_faces;        ///< triangles with the same three vertices and winding as an earlier one
+  Defect duplicate_faces;        ///< triangles with the same three (different) vertices and winding as an earlier one
   Defect opposite_faces;         ///< pairs of triangles with the same three vertices wound the other way (each triangle
                                  ///< in one pair at most)
   Defect zero_area_triangles;    ///< collinear, or a repeated vertex
@@ -69,7 +70,7 @@ struct Diagnosis {
   double largest_coordinate = 0;     ///< in absolute value, as the file has it
   double float_spacing = 0;          ///< of floats at the farthest corner from the centre
   double shortest_edge = 0;          ///< that is not zero
-  std::uint64_t vertices_lost = 0;   ///< vertices that become equal to another in float32
+  std::uint64_t vertices_lost = 0;   ///< how many fewer different vertices there are in float32
   std::uint64_t triangles_lost = 0;  ///< triangles with an area that lose it in float32
 };
 

@@ -115,7 +115,7 @@ void diagnose_duplicates(const MeshView& mesh, const EdgeGraph& graph, std::size
   std::vector<Incidence> faces;
   for (std::uint32_t edge = 0; edge < graph.edges.size(); ++edge) {
     // A face is met at the edge of its two smaller vertices; those of an edge with one apex have the same vertices.
-    const std::uint32_t a = graph.edges[edge].a, b = graph.edges[edge].b;  // clang 14 captures no structured bindings
+    const std::uint32_t a = graph.edges[edge].a, b = graph.edges[edge].b;
     faces.clear();
     std::ranges::copy_if(graph.around(edge), std::back_inserter(faces), [&](const auto& i) { return i.apex > b; });
     std::ranges::stable_sort(faces, {}, &Incidence::apex);

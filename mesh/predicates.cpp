@@ -1,6 +1,12 @@
 #include "mesh/predicates.hpp"
 
+#include "base/assert.hpp"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/MP_Float.h>
+
+#include <cmath>
+#include <limits>
 
 namespace penumbra::mesh {
 namespace {
@@ -61,6 +67,24 @@ bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec
     if (side_of_plane(carrier[0], carrier[1], carrier[2], corner) != Side::on) return false;
   }
   return true;
+}
+
+int sign_of_products(std::span<const double> x, std::span<const double> y) {
+  PENUMBRA_ASSERT(x.size() == y.size(), "{} and {} numbers", x.size(), y.size());
+  double sum = 0, size = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double product = x[i] * y[i];
+    sum += product;
+    size += std::abs(product);
+  }
+  // n products and n − 1 sums, each within 2⁻⁵³ of the running size: n · 2⁻⁵² bounds them all. What underflows is
+  // within n · 2⁻¹⁰⁷⁴, far below the smallest normal number.
+  const double error = static_cast<double>(x.size()) * 0x1p-52 * size + std::numeric_limits<double>::min();
+  if (std::isfinite(size) && std::abs(sum) > error) return sum > 0 ? 1 : -1;
+  using Exact = CGAL::MP_Float;  // every sum and product of doubles, without rounding
+  Exact exact = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) exact += Exact(x[i]) * Exact(y[i]);
+  return static_cast<int>(CGAL::sign(exact));
 }
 
 }  // namespace penumbra::mesh

@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <span>
 
 /// Signs of polynomials in coordinates, exact for every finite input (CGAL's filtered kernel: floating point where its
 /// error bound suffices, exact numbers where not). Every topological decision goes through here; no epsilon does.
@@ -31,5 +32,8 @@ int compare_lines(const glm::dvec3& v, const glm::dvec3& p, const glm::dvec3& q)
 
 /// Is every corner of `other` on the plane of `carrier`? (Neither of zero area.)
 bool coplanar(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other);
+
+/// The sign of x₀ y₀ + x₁ y₁ + …, for as many finite numbers on either side.
+int sign_of_products(std::span<const double> x, std::span<const double> y);
 
 }  // namespace penumbra::mesh

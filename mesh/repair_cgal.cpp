@@ -174,6 +174,24 @@ std::vector<Hole> find_holes(const CgalSurface& surface) {
   return holes;
 }
 
+struct Filling {
+  std::uint32_t neighbour;
+  std::size_t first_triangle, triangles;
+};
+
+/// The triangles from `first_new` on that meet others elsewhere than in common points.
+std::set<std::size_t> crossing_fillings(const TriangleSoup& soup, std::size_t first_new) {
+  if (soup.triangles.size() == first_new) return {};
+  const CgalSurface surface = to_cgal(soup);
+  std::set<std::size_t> crossing;
+  for (const auto& [f, g] : intersections(surface.mesh)) {
+    for (const Face face : {f, g}) {
+      if (surface.triangle[face] >= first_new) crossing.insert(surface.triangle[face]);
+    }
+  }
+  return crossing;
+}
+
 }  // namespace
 
 QuietCgal::QuietCgal()
@@ -279,9 +297,10 @@ TriangleSoup turn_outward(const TriangleSoup& soup, Mending& mending) {
 TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Mending& mending) {
   const QuietCgal quiet;
   CgalSurface surface = to_cgal(soup);
-  TriangleSoup mended = soup;
   FillingJudge judge(soup);
-  std::uint64_t unfilled = 0;
+  std::vector<Filling> fillings;
+  std::size_t unfilled = 0;
+  TriangleSoup tried = soup;
   for (const Hole& hole : find_holes(surface)) {
     if (hole.edges > most_edges) continue;
     std::vector<Face> patch;
@@ -290,19 +309,31 @@ TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Mend
       ++unfilled;
       continue;
     }
-    ++mending[Mend::hole];
-    mending[Mend::hole_face] += patch.size();
+    fillings.push_back({hole.neighbour, tried.triangles.size(), patch.size()});
     for (const Face face : patch) {
       const auto [a, b, c] = corners(surface.mesh, face);
-      mended.triangles.push_back({a.idx(), b.idx(), c.idx()});
-      mended.object.push_back(soup.object[hole.neighbour]);
-      mended.source_face.push_back(soup.source_face[hole.neighbour]);
+      tried.triangles.push_back({a.idx(), b.idx(), c.idx()});
     }
   }
+  const std::set<std::size_t> crossing = crossing_fillings(tried, soup.triangles.size());
+  TriangleSoup mended = soup;
+  for (const Filling& filling : fillings) {
+    const auto end = crossing.lower_bound(filling.first_triangle + filling.triangles);
+    if (crossing.lower_bound(filling.first_triangle) != end) {
+      ++unfilled;
+      continue;
+    }
+    ++mending[Mend::hole];
+    mending[Mend::hole_face] += filling.triangles;
+    const auto first = tried.triangles.begin() + static_cast<std::ptrdiff_t>(filling.first_triangle);
+    mended.triangles.insert(mended.triangles.end(), first, first + static_cast<std::ptrdiff_t>(filling.triangles));
+    mended.object.resize(mended.triangles.size(), soup.object[filling.neighbour]);
+    mended.source_face.resize(mended.triangles.size(), soup.source_face[filling.neighbour]);
+  }
   if (unfilled > 0) {
-    mending.left.push_back(
-        fmt::format("{} holes of at most {} edges stay open: their filling would have no area or lie on what is there",
-                    unfilled, most_edges));
+    mending.left.push_back(fmt::format(
+        "{} holes of at most {} edges stay open: their filling would have no area, or lie on or cross what is there",
+        unfilled, most_edges));
   }
   return mended;
 }

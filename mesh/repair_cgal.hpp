@@ -5,6 +5,11 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 /// Inside mesh/ only: soups as CGAL's meshes. Whatever includes this is GPL.
 namespace penumbra::mesh {
 
@@ -37,6 +42,10 @@ CgalSurface to_cgal(const TriangleSoup& soup);
 
 /// A face's vertices, counter-clockwise.
 std::array<CgalMesh::Vertex_index, 3> corners(const CgalMesh& mesh, CgalMesh::Face_index face);
+
+/// Pairs of faces that meet elsewhere than in common points. (CGAL also counts those that only touch where a vertex was
+/// split in two.)
+std::vector<std::pair<CgalMesh::Face_index, CgalMesh::Face_index>> intersections(const CgalMesh& mesh);
 
 /// For each triangle, its component (through edges that it shares by its indices), numbered by their first triangles.
 struct Components {

@@ -24,8 +24,6 @@ using FacePair = std::pair<Face, Face>;
 /// but at times by cutting away whole limbs.
 constexpr double kEnvelope = 0.01;
 
-/// CGAL calls faces intersecting that only touch where a vertex was split in two. Only pairs that meet elsewhere than
-/// in common points count here.
 bool meet_elsewhere(const CgalMesh& mesh, const FacePair& pair) {
   std::array<CgalPoint, 3> p, q;
   std::ranges::transform(corners(mesh, pair.first), p.begin(), [&](auto v) { return mesh.point(v); });
@@ -53,13 +51,6 @@ bool meet_elsewhere(const CgalMesh& mesh, const FacePair& pair) {
     default:
       return false;  // the two sides of a plate
   }
-}
-
-std::vector<FacePair> intersections(const CgalMesh& mesh) {
-  std::vector<FacePair> pairs;
-  pmp::self_intersections(mesh, std::back_inserter(pairs));
-  std::erase_if(pairs, [&](const FacePair& pair) { return !meet_elsewhere(mesh, pair); });
-  return pairs;
 }
 
 double diagonal(const CgalMesh& mesh) {
@@ -118,6 +109,13 @@ void append(TriangleSoup& to, const TriangleSoup& from, const CgalSurface& surfa
 }
 
 }  // namespace
+
+std::vector<FacePair> intersections(const CgalMesh& mesh) {
+  std::vector<FacePair> pairs;
+  pmp::self_intersections(mesh, std::back_inserter(pairs));
+  std::erase_if(pairs, [&](const FacePair& pair) { return !meet_elsewhere(mesh, pair); });
+  return pairs;
+}
 
 TriangleSoup resolve_intersections(const TriangleSoup& soup, Mending& mending) {
   const QuietCgal quiet;

@@ -90,7 +90,7 @@ Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_
   tbb::enumerable_thread_specific<std::vector<std::uint32_t>> triangles;
   Progress::Counter counter(progress, graph.edges.size());
   const auto search = [&](std::uint32_t e) {
-    const std::uint32_t a = graph.edges[e].a, b = graph.edges[e].b;  // clang 14 captures no structured bindings
+    const std::uint32_t a = graph.edges[e].a, b = graph.edges[e].b;
     const glm::dvec3 &at_a = mesh.positions[a], &at_b = mesh.positions[b];
     const SegmentQuery query(scaled(a), scaled(b));
     const auto visit = [&](std::uint32_t item) {

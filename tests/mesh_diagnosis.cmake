@@ -6,7 +6,10 @@ add_executable(mesh_diagnosis_test
   unit/mesh_diagnosis_test.cpp property/mesh_diagnosis_properties.cpp property/diagnosis_oracle.cpp)
 target_link_libraries(mesh_diagnosis_test PRIVATE
   penumbra_mesh penumbra_warnings CGAL::CGAL GTest::gmock GTest::gtest_main)
-gtest_discover_tests(mesh_diagnosis_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+# Two tests to ctest: hundreds of processes for as many seeds would take longer than the seeds.
+add_test(NAME mesh_diagnosis.closed_forms COMMAND mesh_diagnosis_test --gtest_filter=Diagnosis.*)
+add_test(NAME mesh_diagnosis.lattice_soups COMMAND mesh_diagnosis_test --gtest_filter=Seeds/Soups.*)
+set_tests_properties(mesh_diagnosis.closed_forms mesh_diagnosis.lattice_soups PROPERTIES LABELS quick)
 
 # Polygon_mesh_processing is GPL; the test, never the program, links it.
 if(PENUMBRA_WITH_CGAL_GPL)

@@ -6,23 +6,55 @@
 // the tree that the shaft from a block of view samples to the light meets. Where Sintorn et al. rasterise footprints in
 // light space, we walk a hierarchy: that needs no light frustum, and the light may be anywhere.
 
-layout(binding = 5) uniform usamplerBuffer nodes;         // 2 texels a child: (centre, reference), (half extent, -)
+layout(binding = 5) uniform usamplerBuffer nodes;         // 2 texels a child: (centre, reference), (half extent, the
+                                                          // closed part outside which all below is dispensable, or 0)
+layout(binding = 6) uniform usamplerBuffer parts;         // 14 texels a closed part: 7 boxes, itself and what touches it
 
 shared uint stack[kStackSize];
 shared uint leaves[kChunk + 8 * (kLanes / 8) + 8];
 
 // Hands the first `count` collected leaves to the second pass.
-void emit_chunk(uint header, uint count) {
+void emit_chunk(uint header, uint outside_of, uint count) {
   uint chunk = 0;
   if (subgroupElect()) chunk = atomicAdd(chunk_count, 1);
   chunk = subgroupBroadcastFirst(chunk);
   if (chunk >= push.chunk_capacity) return;
-  const uint first = chunk * (1 + kChunk);
-  if (gl_SubgroupInvocationID == 0) chunks[first] = header;
-  for (uint i = gl_SubgroupInvocationID; i < kChunk; i += kLanes) chunks[first + 1 + i] = i < count ? leaves[i] : kNone;
+  const uint first = chunk * (kChunkHead + kChunk);
+  if (gl_SubgroupInvocationID == 0) {
+    chunks[first] = header;
+    chunks[first + 1] = outside_of;
+  }
+  for (uint i = gl_SubgroupInvocationID; i < kChunk; i += kLanes) chunks[first + kChunkHead + i] = i < count ? leaves[i] : kNone;
 }
 
-void walk(bool on, float side, uint header) {
+// Integers in the order of the floats, −0 and +0 the same: comparing them flushes nothing to zero.
+ivec3 ordered(uvec3 bits) {
+  const ivec3 size = ivec3(bits & 0x7fffffffu);
+  return mix(size, -size, greaterThan(bits, uvec3(0x7fffffffu)));
+}
+
+bool outside_box(ivec3 at, int texel) {
+  return any(lessThan(at, ordered(texelFetch(parts, texel).xyz))) || any(greaterThan(at, ordered(texelFetch(parts, texel + 1).xyz)));
+}
+
+// Bit k: every view sample `on` is outside of part k, or on a face of its box where the part does not reach.
+uint parts_around(bool on) {
+  uint outside_of = 0;
+  const ivec3 at = ordered(floatBitsToUint(p));
+  for (uint left = push.closed_parts; left != 0; left &= left - 1) {
+    const uint part = uint(findLSB(left));
+    const int texel = int((part - 1) * 14);
+    bool outside = outside_box(at, texel);
+    for (int face = 0; face < 6; ++face) {
+      const ivec3 bound = ordered(texelFetch(parts, texel + face / 3).xyz);
+      outside = outside || (at[face % 3] == bound[face % 3] && outside_box(at, texel + 2 + 2 * face));
+    }
+    if (subgroupAll(!on || (outside && carrier_part != part))) outside_of |= 1u << part;
+  }
+  return outside_of;
+}
+
+void walk(bool on, float side, uint header, uint outside_of) {
   const Shaft shaft = make_shaft(on, side);
   const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
   uint stack_size = 1, leaf_count = 0;
@@ -39,7 +71,7 @@ void walk(bool on, float side, uint header) {
       const float at = dot(shaft.axis, middle), spread = dot(abs(shaft.axis), half_size);
       const vec4 least = shaft.nx * middle.x + shaft.ny * middle.y + shaft.nz * middle.z -
                          (abs(shaft.nx) * half_size.x + abs(shaft.ny) * half_size.y + abs(shaft.nz) * half_size.z);
-      const bool hit = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
+      const bool hit = team < taken && first.w != kNone && (outside_of >> second.w & 1) == 0 && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
                        all(lessThanEqual(least, shaft.beyond));
       const bool leaf = (first.w & kLeafBit) != 0;
       const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
@@ -53,7 +85,7 @@ void walk(bool on, float side, uint header) {
       subgroupBarrier();
     }
     const uint emitted = min(leaf_count, kChunk);
-    if (emitted > 0) emit_chunk(header, emitted);
+    if (emitted > 0) emit_chunk(header, outside_of, emitted);
     leaf_count -= emitted;
     const uint rest = lane < leaf_count ? leaves[emitted + lane] : 0;
     subgroupMemoryBarrierShared();
@@ -104,7 +136,8 @@ void main() {
     if (on) add_to_mask();
   }
   if (push.empty_tree == 0) {
-    if (subgroupAny(on && level > 0.0)) walk(on && level > 0.0, 1.0, block);
-    if (subgroupAny(on && level < 0.0)) walk(on && level < 0.0, -1.0, block | kBackBit);
+    const uint outside_of = parts_around(on);
+    if (subgroupAny(on && level > 0.0)) walk(on && level > 0.0, 1.0, block, outside_of);
+    if (subgroupAny(on && level < 0.0)) walk(on && level < 0.0, -1.0, block | kBackBit, outside_of);
   }
 }

@@ -8,20 +8,21 @@
 // that with exact predicates.
 
 layout(binding = 5) uniform usamplerBuffer corner_a;      // per leaf slot: (a, triangle)
-layout(binding = 6) uniform usamplerBuffer corner_b;      // (b, plane)
+layout(binding = 6) uniform usamplerBuffer corner_b;      // (b, plane and closed part)
 layout(binding = 7) uniform usamplerBuffer corner_c;      // (c, light that it is the body of)
 
 shared uint again[kChunk * kTeam + 1];
 
 struct Corners {
   vec3 a, b, c;
-  uint triangle, plane;
+  uint triangle, plane, part;
   int light;
 };
 
 Corners fetch(uint slot) {
   const uvec4 a = texelFetch(corner_a, int(slot)), b = texelFetch(corner_b, int(slot)), c = texelFetch(corner_c, int(slot));
-  return Corners(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w, b.w, int(c.w));
+  return Corners(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz), a.w, b.w & kPlaneMask,
+                 b.w >> kPartShift, int(c.w));
 }
 
 float orientation;                                        // ±1: makes W positive on the way to the light
@@ -169,7 +170,7 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
 void main() {
   const uint chunk = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (chunk >= push.chunk_capacity) return;               // here: how many there are
-  const uint first = chunk * (1 + kChunk), header = chunks[first];
+  const uint first = chunk * (kChunkHead + kChunk), header = chunks[first], outside_of = chunks[first + 1];
   const float side = (header & kBackBit) != 0 ? -1.0 : 1.0;
   load_view_sample(header & ~kBackBit);
   const uint words = (push.sample_count + 31) / 32;
@@ -193,11 +194,13 @@ void main() {
 
   // The slots of triangles that some lane could not settle quickly are kept, and looked at again.
   const Shaft shaft = make_shaft(on, side);
+  const vec3 lower = subgroupMin(on ? p : vec3(1e30)), upper = subgroupMax(on ? p : vec3(-1e30));
+  const vec3 middle = 0.5 * lower + 0.5 * upper, half_size = 0.5 * upper - 0.5 * lower;
   const uint teams = kLanes / kTeam, team = gl_SubgroupInvocationID / kTeam, member = gl_SubgroupInvocationID % kTeam;
   uint at = subgroupAny(on) ? 0 : kChunk;
   uint again_count = 0;
   for (; at < kChunk; at += teams) {
-    const uint leaf = at + team < kChunk ? chunks[first + 1 + at + team] : kNone;
+    const uint leaf = at + team < kChunk ? chunks[first + kChunkHead + at + team] : kNone;
     if (subgroupAll(leaf == kNone)) {
       at = kChunk;
       break;
@@ -212,7 +215,11 @@ void main() {
                      max(levels.x, max(levels.y, levels.z)) >= shaft.lowest && all(lessThanEqual(least, shaft.beyond));
     const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
     const vec2 sizes = vec2(length(e1), length(e2));
-    const uvec4 hits = subgroupBallot(hit), fronts = subgroupBallot(nearest > shaft.front);
+    // Behind a triangle of a part, and outside of it: whatever this triangle hides, another of the part hides as well.
+    const vec3 n = cross(e1, e2);
+    const bool behind = dot(n, t.a - middle) - dot(abs(n), half_size) > 64.0 * kRound * push.reach * size1(e1) * size1(e2);
+    const bool dispensable = behind && (outside_of >> t.part & 1) != 0;
+    const uvec4 hits = subgroupBallot(hit && !dispensable), fronts = subgroupBallot(nearest > shaft.front);
     for (uint word = 0; word < (kLanes + 31) / 32; ++word) {
       for (uint left = hits[word]; left != 0; left &= left - 1) {
         const uint bit = uint(findLSB(left)), from = word * 32 + bit;

@@ -45,7 +45,7 @@ std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
 }
 
 std::array<std::vector<Texel>, 3> corner_texels(const TriangleTree& tree, const visibility::SceneFloats& scene,
-                                                float scale) {
+                                                const ClosedParts& closed, float scale) {
   std::array<std::vector<Texel>, 3> texels;
   for (auto& list : texels) list.reserve(tree.leaves.size() * TriangleTree::kWidth);
   for (const TriangleTree::Leaf& leaf : tree.leaves) {
@@ -54,7 +54,10 @@ std::array<std::vector<Texel>, 3> corner_texels(const TriangleTree& tree, const 
       std::array<std::uint32_t, 3> numbers{TriangleTree::kNoTriangle, visibility::SceneFloats::kNoPlane, 0xffffffffU};
       if (triangle != TriangleTree::kNoTriangle) {
         at = scene.corners(triangle);
-        numbers = {triangle, scene.plane[triangle], static_cast<std::uint32_t>(scene.emits[triangle])};
+        const std::uint32_t part = closed.parts.empty() ? 0U : closed.part[triangle];
+        if (part != 0 && closed.turn[triangle] < 0) std::swap(at[1], at[2]);
+        numbers = {triangle, scene.plane[triangle] | part << kPartShift,
+                   static_cast<std::uint32_t>(scene.emits[triangle])};
       }
       for (std::size_t i = 0; i < 3; ++i) texels[i].push_back({at[i] * scale, numbers[i]});
     }
@@ -62,18 +65,64 @@ std::array<std::vector<Texel>, 3> corner_texels(const TriangleTree& tree, const 
   return texels;
 }
 
+namespace {
+
+/// The part to whose outside all triangles below a child are dispensable, or 0; marks the nodes below.
+std::uint32_t mark_child(const TriangleTree& tree, const TriangleTree::Child& child,
+                         std::span<const std::uint8_t> dispensable, std::span<Texel> nodes) {
+  constexpr std::uint32_t kUnseen = 0xffffffffU;
+  std::uint32_t common = kUnseen;
+  const auto add = [&](std::uint32_t part) { common = common == kUnseen || common == part ? part : 0; };
+  if ((child.reference & TriangleTree::kLeafBit) != 0) {
+    for (const std::uint32_t triangle : tree.leaves[child.reference & ~TriangleTree::kLeafBit]) {
+      if (triangle != TriangleTree::kNoTriangle) add(dispensable[triangle]);
+    }
+    return common == kUnseen ? 0 : common;
+  }
+  const TriangleTree::Node& node = tree.nodes[child.reference];
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    if (node[i].reference == TriangleTree::kNoChild) continue;
+    const std::uint32_t part = mark_child(tree, node[i], dispensable, nodes);
+    nodes[2 * (child.reference * TriangleTree::kWidth + i) + 1].number = part;
+    add(part);
+  }
+  return common == kUnseen ? 0 : common;
+}
+
+}  // namespace
+
+void mark_dispensable(const TriangleTree& tree, std::span<const std::uint8_t> dispensable, std::span<Texel> nodes) {
+  if (!tree.nodes.empty()) mark_child(tree, {.reference = 0}, dispensable, nodes);
+}
+
+std::vector<Texel> part_texels(const ClosedParts& closed, float scale) {
+  std::vector<Texel> texels;
+  const auto add = [&](const Box& box) {
+    texels.push_back({box.lower * scale, 0});
+    texels.push_back({box.upper * scale, 0});
+  };
+  for (const ClosedPart& part : closed.parts) {
+    add(part.box);
+    for (const Box& box : part.touching) add(box);
+  }
+  if (texels.empty()) texels.emplace_back();  // a buffer is never empty
+  return texels;
+}
+
 std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
-                               float scale) {
+                               const ClosedParts& closed, float scale) {
   std::vector<Texel> texels;
   texels.reserve(2 * samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::int32_t carrier = samples.triangle[i];
-    const bool background = carrier == visibility::ViewSamples::kBackground;
+    const bool background = carrier == visibility::ViewSamples::kBackground ||
+                            scene.receives_shadow[static_cast<std::size_t>(carrier)] == 0;  // the host says V = 1
     texels.push_back(
         {samples.p[i] * scale, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
     const bool known = !background && normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
-    texels.push_back(
-        {known ? samples.n[i] : glm::vec3(0), background ? 0U : scene.plane[static_cast<std::size_t>(carrier)]});
+    const std::uint32_t part = background || closed.parts.empty() ? 0U : closed.part[static_cast<std::size_t>(carrier)];
+    const std::uint32_t plane = background ? 0U : scene.plane[static_cast<std::size_t>(carrier)];
+    texels.push_back({known ? samples.n[i] : glm::vec3(0), plane | part << kPartShift});
   }
   return texels;
 }

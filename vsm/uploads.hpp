@@ -3,6 +3,7 @@
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "visibility/view_samples.hpp"
+#include "vsm/closed_parts.hpp"
 #include "vsm/light_frame.hpp"
 
 #include <glm/vec3.hpp>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace penumbra::vsm {
@@ -21,16 +23,28 @@ struct Texel {
 };
 static_assert(sizeof(Texel) == 16);
 
+/// A plane's number shares its word with a closed part's.
+inline constexpr std::uint32_t kPartShift = 27;
+
 /// Two texels a child, eight children a node: (middle, reference), (half extent, 0). Boxes are rounded outward.
 std::vector<Texel> node_texels(const visibility::TriangleTree& tree, float scale);
 
-/// For each slot of each leaf: (a, triangle), (b, plane), (c, light that the triangle is the body of).
+/// For each slot of each leaf: (a, triangle), (b, plane and closed part), (c, light that the triangle is the body of).
+/// Triangles of closed parts are wound alike.
 std::array<std::vector<Texel>, 3> corner_texels(const visibility::TriangleTree& tree,
-                                                const visibility::SceneFloats& scene, float scale);
+                                                const visibility::SceneFloats& scene, const ClosedParts& closed,
+                                                float scale);
 
-/// Two texels a pixel: (p, carrying triangle), (normal, plane).
+/// Writes into each child's second texel the closed part to whose outside all triangles below are dispensable, or 0.
+void mark_dispensable(const visibility::TriangleTree& tree, std::span<const std::uint8_t> dispensable,
+                      std::span<Texel> nodes);
+
+/// Seven boxes of two texels a part: itself, and what touches each face.
+std::vector<Texel> part_texels(const ClosedParts& closed, float scale);
+
+/// Two texels a pixel: (p, carrying triangle), (normal, plane and closed part). Pixels without shadow are background.
 std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
-                               float scale);
+                               const ClosedParts& closed, float scale);
 
 /// The shaders' table of light samples: uint first_point[257], then (s, t) of each, sorted by t, so that a triangle
 /// looks at one stretch of them. Rows are computed, not read: their table is empty and their order the contract's.

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/triangle_tree.hpp"
+#include "vsm/closed_parts.hpp"
 #include "vsm/find_leaves.comp.spv.hpp"
 #include "vsm/light_frame.hpp"
 #include "vsm/resolve.comp.spv.hpp"
@@ -75,13 +76,20 @@ class ViewSampleMapping final : public visibility::Method {
     scene_ = &scene;
     scale_ = scale_of(scene);
     tree_ = visibility::make_triangle_tree(scene);
-    const std::vector<Texel> nodes = node_texels(tree_, scale_);
-    const std::array<std::vector<Texel>, 3> corners = corner_texels(tree_, scene, scale_);
+    if (scene.triangles.size() >> kPartShift != 0) {
+      throw ResourceError("view-sample handles up to 2^{} triangles; this scene has {}", kPartShift,
+                          scene.triangles.size());
+    }
+    closed_ = find_closed_parts(scene);
+    node_texels_ = node_texels(tree_, scale_);
+    const std::array<std::vector<Texel>, 3> corners = corner_texels(tree_, scene, closed_, scale_);
     using render::BufferUse;
-    nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", nodes, BufferUse::texels));
+    nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", node_texels_, BufferUse::texels));
     for (std::size_t i = 0; i < 3; ++i) {
       corners_[i].emplace(render::make_buffer<Texel>(*device_, "tree corners", corners[i], BufferUse::texels));
     }
+    parts_.emplace(
+        render::make_buffer<Texel>(*device_, "closed parts", part_texels(closed_, scale_), BufferUse::texels));
   }
 
   void prepare_light(const visibility::Light& light) override {
@@ -106,11 +114,16 @@ class ViewSampleMapping final : public visibility::Method {
                .shared_words = rows ? light.rows * words_per_row : light.words_per_mask(),
                .chunk = std::clamp(40000 / turns, 1U, kMostChunk)};
     build_passes();
+    parts_apart_ = parts_apart_from(closed_, frame_, scale_);
+    if (parts_apart_ != 0) {
+      mark_dispensable(tree_, find_dispensable(closed_, *scene_, frame_, scale_), node_texels_);
+      nodes_->write(std::span<const Texel>(node_texels_));
+    }
   }
 
   void prepare_view(const visibility::ViewSamples& samples) override {
     samples_ = &samples;
-    view_texels_ = view_texels(samples, *scene_, scale_);
+    view_texels_ = view_texels(samples, *scene_, closed_, scale_);
     view_rows_ = 0;
     if (max_tile_rows() >= samples.height) upload_rows({0, samples.height});
   }
@@ -257,6 +270,7 @@ class ViewSampleMapping final : public visibility::Method {
     push.columns = light_->columns;
     push.shift_step = frame_.shift_step;
     push.empty_tree = tree_.nodes.empty() ? 1 : 0;
+    push.closed_parts = parts_apart_;
     return push;
   }
 
@@ -274,7 +288,7 @@ class ViewSampleMapping final : public visibility::Method {
     const std::uint64_t blocks = std::uint64_t{(samples_->width + block_width() - 1) / block_width()} *
                                  ((band.row_count + block_height() - 1) / block_height());
     for (;;) {
-      const std::uint64_t chunk_bytes = std::uint64_t{chunk_capacity_} * (1 + layout_.chunk) * sizeof(std::uint32_t);
+      const std::uint64_t chunk_bytes = std::uint64_t{chunk_capacity_} * (2 + layout_.chunk) * sizeof(std::uint32_t);
       const std::uint64_t question_bytes =
           sizeof(Counts) + std::uint64_t{question_capacity_} * sizeof(gpu::OpenQuestion);
       if (std::max(chunk_bytes, question_bytes) > device_->limits().max_storage_buffer_range) {
@@ -287,7 +301,8 @@ class ViewSampleMapping final : public visibility::Method {
       push.question_capacity = question_capacity_;
       push.chunk_capacity = chunk_capacity_;
       commands_.fill(*questions_, 0, 0, sizeof(Counts));
-      find_leaves_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *nodes_}, blocks);
+      find_leaves_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *nodes_, *parts_},
+                           blocks);
       submit();
       Counts counts;
       questions_->read(std::span(&counts, 1));
@@ -372,7 +387,10 @@ class ViewSampleMapping final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   float scale_ = 1;
   TriangleTree tree_;
-  std::optional<render::Buffer> nodes_;
+  ClosedParts closed_;
+  std::vector<Texel> node_texels_;  // a light changes them
+  std::uint32_t parts_apart_ = 0;   // bits: closed parts apart from the light
+  std::optional<render::Buffer> nodes_, parts_;
   std::array<std::optional<render::Buffer>, 3> corners_;
 
   const visibility::Light* light_ = nullptr;

@@ -18,7 +18,7 @@ layout(constant_id = 5) const uint kBlockWidth = 4;       // pixels of a block; 
 layout(constant_id = 6) const uint kChunk = 32;           // leaves of a chunk
 layout(constant_id = 7) const uint kStackSize = 64;
 
-layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (p, carrying triangle), (normal, plane)
+layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (p, carrying triangle), (normal, plane and part)
 layout(scalar, binding = 1) readonly buffer Samples {
   uint first_point[257];                                  // scattered: first point with t ≥ −1 + i / 128
   vec2 samples[];                                         // scattered: (s, t)
@@ -28,12 +28,15 @@ layout(scalar, binding = 3) buffer Questions {
   uint question_count, chunk_count, unfinished;
   OpenQuestion questions[];
 };
-// A chunk is 1 + kChunk words: the block (top bit: on the light's back side) and leaves of the tree that its shaft meets.
+// A chunk is 2 + kChunk words: the block (top bit: on the light's back side), the closed parts that all its view
+// samples are outside of (bits), and leaves of the tree that its shaft meets.
 layout(scalar, binding = 4) buffer Chunks { uint chunks[]; };
 layout(scalar, push_constant) uniform Push { ViewSamplePush push; };
 
 const uint kTeam = 8;                                     // children of a node, triangles of a leaf
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u, kBackBit = 0x80000000u;
+const uint kPartShift = 27, kPlaneMask = (1u << kPartShift) - 1;  // a plane's number, and above it a closed part's
+const uint kChunkHead = 2;                                // words before the leaves
 const float kRound = 1.0 / 16777216.0;                    // 2⁻²⁴: half a unit in the last place of 1
 
 shared uint blocked[kSharedWords * kLanes];
@@ -41,7 +44,7 @@ shared uint blocked[kSharedWords * kLanes];
 // The view sample of this lane.
 uint pixel;                                               // in the tile
 bool inside;                                              // the picture
-uint carrier, carrier_plane;
+uint carrier, carrier_plane, carrier_part;
 vec3 p, normal;
 vec3 towards;                                             // the light's centre − p
 float level, level_error;                                 // > 0: p lies where u × v points (bound level)
@@ -62,7 +65,8 @@ void load_view_sample(uint block) {
   p = uintBitsToFloat(first.xyz);
   normal = uintBitsToFloat(second.xyz);
   carrier = first.w;
-  carrier_plane = second.w;
+  carrier_plane = second.w & kPlaneMask;
+  carrier_part = second.w >> kPartShift;
   towards = push.center - p;
   level = -dot(cross(push.u, push.v), towards);
   level_error = size1(push.u) * size1(push.v) * (16.0 * kRound * (size1(towards) + size1(p)) + push.deviation);

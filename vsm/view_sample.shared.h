@@ -26,6 +26,7 @@ struct ViewSamplePush {
   uint shift_step;             // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
   uint question_capacity, chunk_capacity;
   uint empty_tree;
+  uint closed_parts;           // bit k: part k, from 1, is apart from the light, and has dispensable triangles
 };
 
 // Why a pass could not finish: what the device's loop limit cut off.

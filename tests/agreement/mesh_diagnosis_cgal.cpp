@@ -16,7 +16,10 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/box_intersection_d.h>
 
-#include <fmt/format.h>
+#include <boost/property_map/function_property_map.hpp>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,6 +28,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -61,8 +65,8 @@ Diagnosis diagnosis_of(const Soup& soup) {
   std::vector<Triangle> triangles;
   for (const Point& p : soup.points) positions.emplace_back(p.x(), p.y(), p.z());
   for (const Polygon& t : soup.triangles) {
-    triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                         static_cast<std::uint32_t>(t[2])});
+    triangles.push_back(
+        {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
   }
   return diagnose({positions, triangles}, {.list_limit = std::numeric_limits<std::size_t>::max()});
 }
@@ -79,11 +83,7 @@ typename K::Triangle_3 corners(const Soup& soup, const Polygon& t) {
   return {point(0), point(1), point(2)};
 }
 
-/// What CGAL's orienter says of a soup.
-struct Singular {
-  std::set<std::pair<Point, Point>> edges;
-  std::set<Point> vertices;
-};
+/// Collects what CGAL's orienter meets.
 struct Visitor : pmp::Default_orientation_visitor {
   std::set<std::pair<std::size_t, std::size_t>>* edges = nullptr;
   std::set<std::size_t>* vertices = nullptr;
@@ -151,59 +151,122 @@ double worst_winding(const Soup& soup, const Diagnosis& diagnosis) {
   return worst;
 }
 
-void compare(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
-  SCOPED_TRACE(name);
-  std::optional<Soup> loaded = read(file);
-  if (!loaded) { fmt::print("{}: unreadable\n", name); return; }
-  Soup soup = std::move(*loaded);
-  const Diagnosis ours = diagnosis_of(soup);
-  fmt::print("{}: t {} v {} closed {}{} be {} bl {} nme {} nmv {} iw {} dup {} opp {} za {} tj {} si {} comp {}", name, ours.triangles, ours.vertices, ours.closed, ours.closed_as_wound, ours.boundary_edges.count, ours.boundary_loops, ours.non_manifold_edges.count, ours.non_manifold_vertices.count, ours.inconsistent_windings.count, ours.duplicate_faces.count, ours.opposite_faces.count, ours.zero_area_triangles.count, ours.t_junctions.count, ours.self_intersections->count, ours.components);
-  fmt::print(" gwn {:.2g}", worst_winding(soup, ours));
-  pmp::merge_duplicate_points_in_polygon_soup(soup.points, soup.triangles);
-  const auto degenerate = std::ranges::count_if(soup.triangles, [&](const Polygon& t) { return corners(soup, t).is_degenerate(); });
-  EXPECT_EQ(ours.zero_area_triangles.count, static_cast<std::size_t>(degenerate));
-  std::erase_if(soup.triangles, repeats);
-  std::vector<Polygon> polygons = soup.triangles;
-  EXPECT_EQ(ours.duplicate_faces.count, pmp::merge_duplicate_polygons_in_polygon_soup(soup.points, polygons, CGAL::parameters::require_same_orientation(true)));
-  EXPECT_EQ(ours.opposite_faces.count, pmp::merge_duplicate_polygons_in_polygon_soup(soup.points, polygons));
+/// What CGAL counts besides, and why. It cuts a soup at its non-manifold edges before it makes a mesh of it: the ends
+/// of these edges are singular vertices to it, and the cuts are borders. The definition is about the soup as it stands:
+/// its fans are linked through such edges, which have too many triangles, not one; and no cut opens it.
+struct Difference {
+  std::uint64_t vertices = 0, border_edges = 0, cycles = 0;
+  bool closed_to_us_alone = false;
+};
+Difference known_difference(const std::string& name) {
+  static const std::map<std::string, Difference> known = {
+      {"diplodocus.off", {.vertices = 4, .border_edges = 8, .cycles = 2, .closed_to_us_alone = true}},
+  };
+  const auto found = known.find(name);
+  return found != known.end() ? found->second : Difference{};
+}
 
-  std::set<std::pair<std::size_t, std::size_t>> edges;
-  std::set<std::size_t> vertices;
-  Visitor visitor;
-  visitor.edges = &edges, visitor.vertices = &vertices;
-  Soup oriented = soup;
-  const bool whole = pmp::orient_polygon_soup(oriented.points, oriented.triangles, CGAL::parameters::visitor(visitor));
-  EXPECT_EQ(ours.non_manifold_edges.count, edges.size());
-  EXPECT_EQ(ours.non_manifold_vertices.count, vertices.size());
-  SurfaceMesh mesh;
-  pmp::polygon_soup_to_polygon_mesh(oriented.points, oriented.triangles, mesh);
-  std::uint64_t border = 0;
-  for (const auto h : mesh.halfedges()) border += mesh.is_border(h);
+void compare_duplicates(const Soup& soup, const Diagnosis& ours) {
+  std::vector<Polygon> triangles = soup.triangles;
+  const auto remove = [&](bool same_orientation) {
+    return pmp::merge_duplicate_polygons_in_polygon_soup(soup.points, triangles,
+                                                         CGAL::parameters::require_same_orientation(same_orientation));
+  };
+  EXPECT_EQ(ours.duplicate_faces.count, remove(true));
+  EXPECT_EQ(ours.opposite_faces.count, remove(false));  // one of each kind is left, so pairs are what CGAL removes
+}
+
+void compare_mesh(const SurfaceMesh& mesh, const Diagnosis& ours, const Difference& difference) {
+  const auto border = std::ranges::count_if(mesh.halfedges(), [&](auto h) { return mesh.is_border(h); });
+  EXPECT_EQ(ours.boundary_edges.count + difference.border_edges, static_cast<std::uint64_t>(border));
   std::vector<SurfaceMesh::Halfedge_index> cycles;
   pmp::extract_boundary_cycles(mesh, std::back_inserter(cycles));
-  EXPECT_EQ(ours.boundary_edges.count, border);
-  EXPECT_EQ(ours.boundary_loops, cycles.size());
-  auto ids = mesh.add_property_map<SurfaceMesh::Face_index, std::size_t>("f:component", 0).first;
-  EXPECT_EQ(ours.components, pmp::connected_components(mesh, ids));
-  EXPECT_EQ(ours.closed, CGAL::is_closed(mesh));
-  if (whole) {
+  EXPECT_EQ(ours.boundary_loops + difference.cycles, cycles.size());
+  std::vector<std::size_t> of_face(mesh.number_of_faces());
+  const auto component = [&](auto face) -> std::size_t& { return of_face[face]; };
+  EXPECT_EQ(ours.components,
+            pmp::connected_components(
+                mesh, boost::make_function_property_map<SurfaceMesh::Face_index, std::size_t&>(component)));
+  EXPECT_EQ(ours.closed, CGAL::is_closed(mesh) || difference.closed_to_us_alone);
+}
+
+void compare_self_intersections(const Soup& soup, const SurfaceMesh& mesh, bool as_it_stands, const Diagnosis& ours) {
+  constexpr std::size_t kFew = 500;
+  // CGAL's function wants a mesh, and takes vertices that were split to get one for different places.
+  if (as_it_stands) {
     std::vector<std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>> pairs;
-    pmp::self_intersections(mesh, std::back_inserter(pairs));
-    std::erase_if(pairs, [](const auto& p) { return p.first == p.second; });
-    EXPECT_EQ(ours.self_intersections->count, pairs.size());
-  } else {
-    const auto exact = count_self_intersections(soup);
-    EXPECT_EQ(ours.self_intersections->count, exact);
+    pmp::self_intersections<CGAL::Parallel_if_available_tag>(mesh, std::back_inserter(pairs));
+    std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });  // that is: without area
+    EXPECT_EQ(ours.self_intersections.value().count, pairs.size());
   }
-  if (CGAL::is_closed(mesh)) fmt::print(" vol {} {}", ours.volume, pmp::volume(mesh));
-  fmt::print(" whole {} polymesh {}\n", whole, pmp::is_polygon_soup_a_polygon_mesh(soup.triangles));
+  if (!as_it_stands || soup.triangles.size() < kFew) {
+    EXPECT_EQ(ours.self_intersections.value().count, count_self_intersections(soup));
+  }
+}
+
+/// Both sums of n determinants, each of them off by less than 2⁻⁴⁸ R³ where R is the farthest corner's distance from
+/// the point that they are about: CGAL's is the origin.
+void compare_volume(const Soup& soup, const SurfaceMesh& mesh, const Diagnosis& ours) {
+  const double radius = glm::length(glm::max(glm::abs(ours.lower), glm::abs(ours.upper)));
+  const double bound = 0x1p-48 * static_cast<double>(soup.triangles.size()) * radius * radius * radius;
+  EXPECT_NEAR(ours.volume, pmp::volume(mesh), bound);
+}
+
+void compare(const std::filesystem::path& file) {
+  SCOPED_TRACE(file.filename().string());
+  std::optional<Soup> read_soup = read(file);
+  ASSERT_TRUE(read_soup);
+  Soup& soup = *read_soup;
+  const Diagnosis ours = diagnosis_of(soup);
+  const Difference difference = known_difference(file.filename().string());
+
+  // Each angle is off by less than 2⁻⁵⁰; the nearest to closed of the open meshes, ChineseDragon-10kv.off, by 3.6e-8.
+  EXPECT_EQ(ours.closed_as_wound, worst_winding(soup, ours) < 0x1p-50 * static_cast<double>(soup.triangles.size()));
+  pmp::merge_duplicate_points_in_polygon_soup(soup.points, soup.triangles);
+  const auto flat =
+      std::ranges::count_if(soup.triangles, [&](const auto& t) { return corners(soup, t).is_degenerate(); });
+  EXPECT_EQ(ours.zero_area_triangles.count, static_cast<std::uint64_t>(flat));
+  std::erase_if(soup.triangles, repeats);
+  compare_duplicates(soup, ours);
+
+  Soup oriented = soup;
+  Visitor visitor;
+  std::set<std::pair<std::size_t, std::size_t>> edges;
+  std::set<std::size_t> vertices;
+  visitor.edges = &edges;
+  visitor.vertices = &vertices;
+  const bool as_it_stands =
+      pmp::orient_polygon_soup(oriented.points, oriented.triangles, CGAL::parameters::visitor(visitor));
+  EXPECT_EQ(ours.non_manifold_edges.count, edges.size());
+  EXPECT_EQ(ours.non_manifold_vertices.count + difference.vertices, vertices.size());
+  SurfaceMesh mesh;
+  pmp::polygon_soup_to_polygon_mesh(oriented.points, oriented.triangles, mesh);
+  compare_mesh(mesh, ours, difference);
+  compare_self_intersections(soup, mesh, as_it_stands, ours);
+  const bool nothing_turned = pmp::is_polygon_soup_a_polygon_mesh(soup.triangles);
+  EXPECT_EQ(ours.inconsistent_windings.count == 0, nothing_turned || !as_it_stands);
+  if (nothing_turned && CGAL::is_closed(mesh)) compare_volume(soup, mesh, ours);
+}
+
+const std::filesystem::path kMeshes = PENUMBRA_CGAL_CORPUS "/meshes";
+
+TEST(CgalMeshes, Small) {
+  ASSERT_TRUE(std::filesystem::exists(kMeshes)) << "install the package libcgal-demo (packages.txt)";
+  for (const char* name : {"degtri_sliding", "mpi", "tet-shuffled", "cube-shuffled", "boeing", "elephant-with-holes",
+                           "ALSTOM_TEST4", "pig", "tetra_intersected_by_triangle", "corner_poly", "triangular_hole"}) {
+    compare(kMeshes / (std::string(name) + ".off"));
+  }
 }
 
 TEST(CgalMeshes, All) {
-  for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_CGAL_CORPUS "/meshes")) {
-    if (entry.path().extension() == ".off") compare(entry.path());
+  ASSERT_TRUE(std::filesystem::exists(kMeshes)) << "install the package libcgal-demo (packages.txt)";
+  int meshes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kMeshes)) {
+    if (entry.path().extension() != ".off") continue;
+    compare(entry.path());
+    ++meshes;
   }
+  EXPECT_EQ(meshes, 138);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <random>
 #include <span>
 #include <string>
@@ -183,14 +184,16 @@ inline void append(visibility::ViewSamples& to, const visibility::ViewSamples& m
 }
 
 /// View samples made by hand: on each of `rows` × `width` randomly chosen triangles with area the point
-/// a + s (b − a) + t (c − a) with s, t multiples of ¼, seen from a random side.
+/// a + s (b − a) + t (c − a) with s, t multiples of ¼, seen from a random side. `object`: on its triangles only.
 inline visibility::ViewSamples samples_on_triangles(const visibility::SceneFloats& floats, std::uint32_t width,
-                                                    std::uint32_t rows, std::mt19937& random) {
+                                                    std::uint32_t rows, std::mt19937& random,
+                                                    std::optional<std::uint32_t> object = {}) {
   visibility::ViewSamples samples;
   samples.width = width;
   samples.height = rows;
   std::vector<std::uint32_t> with_area;
   for (std::uint32_t i = 0; i < floats.triangles.size(); ++i) {
+    if (object && floats.object[i] != *object) continue;
     if (floats.plane[i] != visibility::SceneFloats::kNoPlane) with_area.push_back(i);
   }
   for (std::uint32_t i = 0; i < width * rows; ++i) {

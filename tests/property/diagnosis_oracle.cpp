@@ -56,7 +56,7 @@ Corners reversed(const Corners& t) {
 }
 /// The same for t however it begins, another one wound the other way.
 Corners rotated(Corners t) {
-  std::ranges::rotate(t, std::ranges::min_element(t));
+  std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   return t;
 }
 

@@ -52,7 +52,7 @@ class Soups : public testing::TestWithParam<std::uint32_t> {
     for (int i = 0; i < splits; ++i) {
       const auto t = static_cast<std::size_t>(below(static_cast<int>(soup.size())));
       Corners corners = soup[t];
-      std::ranges::rotate(corners, corners.begin() + below(3));
+      std::rotate(corners.begin(), corners.begin() + below(3), corners.end());
       const auto [a, b, c] = corners;
       if ((a.x + b.x) % 2 != 0 || (a.y + b.y) % 2 != 0 || (a.z + b.z) % 2 != 0) continue;
       const Point middle = {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
@@ -103,7 +103,7 @@ TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
   std::vector<Corners> soup = below(2) == 0 ? random_soup(60, 4) : wound_at_random(closed_soup(6, 12));
   const Diagnosis before = diagnosis_of(soup_of(soup));
   std::ranges::shuffle(soup, random_);
-  for (Corners& t : soup) std::ranges::rotate(t, t.begin() + below(3));
+  for (Corners& t : soup) std::rotate(t.begin(), t.begin() + below(3), t.end());
   TriangleSoup shared = soup_of(soup);  // and now with positions that several triangles use, some of them −0
   for (Triangle& t : shared.triangles) {
     for (std::uint32_t& corner : t) {

@@ -93,7 +93,7 @@ TEST(HalfEdgeView, ABoxIsOneClosedComponent) {
 
 TEST(HalfEdgeView, FlippedFacesAreTurnedAndRecorded) {
   TriangleSoup soup = test::box();
-  for (const std::size_t t : {0, 5, 7}) std::swap(soup.triangles[t][0], soup.triangles[t][1]);
+  for (const std::size_t t : {0u, 5u, 7u}) std::swap(soup.triangles[t][0], soup.triangles[t][1]);
   const HalfEdgeView surface = half_edges(soup);
   EXPECT_EQ(std::vector(surface.turned().begin(), surface.turned().end()), (std::vector<std::uint32_t>{0, 5, 7}));
   expect_sound(soup, build_edge_graph(view(soup)), surface);

@@ -251,6 +251,15 @@ TEST(Repair, FillsNoHoleByFoldingASheetOntoItself) {
   EXPECT_EQ(repaired.left.size(), 2u) << sentences(repaired);
 }
 
+TEST(Repair, FillsNoHoleThroughWhatStandsInIt) {
+  const TriangleSoup lidless = test::without_triangle(test::without_triangle(test::box(), 11), 10);
+  EXPECT_EQ(count_of(repair_and_check(lidless, {.fill_holes_up_to = 4}), "filled"), 1u);
+  const TriangleSoup pierced = test::together(lidless, test::box({0.5, 0.4, 0.4}, {2, 0.25, 0.25}));
+  const Repaired repaired = repair_and_check(pierced, {.fill_holes_up_to = 4});
+  EXPECT_EQ(count_of(repaired, "filled"), 0u);
+  EXPECT_EQ(repaired.left.size(), 2u) << sentences(repaired);
+}
+
 TEST(Repair, SaysThatAMoebiusBandStaysCut) {
   const Repaired repaired = repair_and_check(test::moebius(12));
   EXPECT_EQ(repaired.soup.triangles.size(), 24u);

@@ -1,0 +1,61 @@
+#include "volumes/light_hull.hpp"
+
+#include "base/assert.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace penumbra::volumes {
+namespace {
+
+using visibility::LightKind;
+
+/// What float32 storage may have moved a point by, and rounding here: the hull is made larger by as much.
+constexpr double kRounding = 1 + 0x1p-20;
+
+LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
+  const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
+                                         v = glm::dvec3(light.center_v) - center;
+  const double angle = 2 * std::numbers::pi / sides, reach = kRounding / std::cos(angle / 2);
+  LightHull hull{{}, center, light.radius * (reach - 1)};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    hull.corners.push_back(center + reach * (std::cos(i * angle) * u + std::sin(i * angle) * v));
+  }
+  return hull;
+}
+
+/// The icosahedron that the sphere is inscribed in: its faces are 0.7947 of its corners' distance away.
+LightHull sphere_hull(const visibility::Light& light) {
+  const double golden = std::numbers::phi;
+  const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2
+  const double scale = light.radius / inradius * kRounding;
+  LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius};
+  for (const double one : {-1.0, 1.0}) {
+    for (const double other : {-golden, golden}) {
+      for (const glm::dvec3& corner :
+           {glm::dvec3(0, one, other), glm::dvec3(one, other, 0), glm::dvec3(other, 0, one)}) {
+        hull.corners.push_back(hull.center + scale * corner);
+      }
+    }
+  }
+  return hull;
+}
+
+}  // namespace
+
+LightHull light_hull(const visibility::Light& light, std::uint32_t sides) {
+  PENUMBRA_ASSERT(sides >= 3, "{} sides", sides);
+  if (light.kind == LightKind::disk) return disk_hull(light, sides);
+  if (light.kind == LightKind::sphere) return sphere_hull(light);
+  LightHull hull;
+  for (const glm::vec3& corner : light.outline) {
+    hull.corners.emplace_back(corner);
+    hull.center += glm::dvec3(corner) / static_cast<double>(light.outline.size());
+  }
+  if (light.kind == LightKind::rectangle) hull.center = light.center;
+  return hull;
+}
+
+}  // namespace penumbra::volumes

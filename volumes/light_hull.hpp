@@ -1,0 +1,24 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// The corners of a convex polygon or polyhedron that contains every point of a light, relative to the scene's origin.
+/// Rectangles and polygons are their own stored corners. A disk becomes a circumscribed regular polygon, a sphere a
+/// circumscribed polyhedron: they stick out by at most `slack`.
+struct LightHull {
+  std::vector<glm::dvec3> corners;
+  glm::dvec3 center{0};
+  double slack = 0;  ///< in the scene's unit
+};
+
+/// `sides` of a disk's polygon: it sticks out by radius · (1 / cos(π / sides) − 1), 0.5 % for 32.
+LightHull light_hull(const visibility::Light& light, std::uint32_t sides = 32);
+
+}  // namespace penumbra::volumes
