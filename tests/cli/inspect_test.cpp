@@ -171,6 +171,16 @@ TEST_F(Inspect, NeverOverwritesItsInput) {
   EXPECT_EQ(read("cube.ply"), before);
 }
 
+TEST_F(Inspect, AnInterruptEndsIt) {
+  // Two million triangles: seconds of work anywhere.
+  write("large.json", scene_text_with("/meshes/1", R"({"shape": {"type": "sphere", "segments": 1448}})"));
+  const Outcome outcome = run_program({.arguments = {"inspect", path("large.json"), "--json", path("out.json")},
+                                       .environment = {},
+                                       .interrupt_after = 0.4});
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_THAT(files(), ElementsAre("large.json"));
+}
+
 TEST_F(Inspect, RefusesWhatCannotBeMeant) {
   const std::string mesh = cube();
   const std::vector<std::vector<std::string>> wrong = {
