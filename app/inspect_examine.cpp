@@ -5,6 +5,7 @@
 #include "base/assert.hpp"
 #include "mesh/import.hpp"
 #include "mesh/silhouettes.hpp"
+#include "scenes/checks.hpp"
 #include "scenes/reader.hpp"
 
 #include <glm/common.hpp>
@@ -89,6 +90,10 @@ std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis,
   for (const visibility::MethodDescription* method : all_methods()) {
     PENUMBRA_ASSERT(method->verdict_on != nullptr, "method {} says nothing of meshes", method->name);
     visibility::MeshVerdict verdict = method->verdict_on(diagnosis);
+    if (diagnosis.largest_coordinate > scenes::kLargestCoordinate) {
+      verdict = {visibility::Verdict::refused,
+                 fmt::format("scenes hold coordinates up to {:g}; scale it down", scenes::kLargestCoordinate)};
+    }
     for (const InspectedMesh::Light& light : lights) {
       if (std::ranges::find(method->lights, light.kind) != method->lights.end()) continue;
       verdict = {visibility::Verdict::refused,

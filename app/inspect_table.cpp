@@ -18,6 +18,11 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
+/// Of coordinates near the end of double's range some figures overflow.
+std::string figure(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "overflow";
+}
+
 std::string point_text(const glm::dvec3& p) {
   return fmt::format("({:.7g}, {:.7g}, {:.7g})", p.x, p.y, p.z);
 }
@@ -90,10 +95,11 @@ std::string all_rows(const ObjectReport& object, std::size_t list_limit) {
   text += d.self_intersections
               ? defect_rows("self-intersections", *d.self_intersections, object, list_limit, "pairs of triangles")
               : row("self-intersections", "not searched");
-  text += row("volume", fmt::format("{:.7g}", d.volume), d.closed_as_wound ? "" : "signed; of an open mesh: no volume");
+  text += row("volume", figure(d.volume, 7), d.closed_as_wound ? "" : "signed; of an open mesh: no volume");
   text += row("bounds", "", fmt::format("{} … {}", point_text(d.lower), point_text(d.upper)));
-  text += row("float spacing", fmt::format("{:.3g}", d.float_spacing),
-              fmt::format("largest coordinate {:.7g}, shortest edge {:.3g}", d.largest_coordinate, d.shortest_edge));
+  text += row("float spacing", figure(d.float_spacing, 3),
+              fmt::format("largest coordinate {}, shortest edge {}", figure(d.largest_coordinate, 7),
+                          figure(d.shortest_edge, 3)));
   if (d.vertices_lost + d.triangles_lost > 0) {
     text += row("lost in float", grouped(d.vertices_lost),
                 fmt::format("vertices fall on others; {} triangles lose their area", grouped(d.triangles_lost)));

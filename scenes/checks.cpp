@@ -15,8 +15,6 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Scene floats are float32 and predicates multiply three differences of them.
-constexpr double kLargestCoordinate = 1e12;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 

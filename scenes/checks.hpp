@@ -7,6 +7,9 @@
 /// What must hold of a scene whatever file it came from. `where` begins the message: a file and a place in it.
 namespace penumbra::scenes {
 
+/// The largest absolute coordinate in a scene: scene floats are float32 and predicates multiply three differences.
+inline constexpr double kLargestCoordinate = 1e12;
+
 /// Finite, with an area, and a polygon flat and convex: InputError otherwise, naming the vertex and how far it is off.
 void check_light(const AreaLight& light, const std::string& where);
 

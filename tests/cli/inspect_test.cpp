@@ -118,6 +118,14 @@ TEST_F(Inspect, ReadsGltfWithoutALight) {
   EXPECT_EQ(report({path("unlit.glb")}).at("triangles"), report({path("lit.glb")}).at("triangles"));
 }
 
+TEST_F(Inspect, CoordinatesBeyondAnySceneAreSaidToBeRefused) {
+  write("far.off", "OFF\n4 2 0\n-1.7e308 0 0\n1.7e308 0 0\n0 1.7e308 0\n0 0 1\n3 0 1 2\n3 0 1 3\n");
+  const json far = report({path("far.off")});
+  for (const auto& [method, verdict] : far.at("verdicts").items()) EXPECT_EQ(verdict, "refused") << method;
+  EXPECT_EQ(far.at("triangles"), 2);
+  EXPECT_EQ(run({"inspect", path("far.off")}).out.find("nan"), std::string::npos);
+}
+
 TEST_F(Inspect, WeldJoinsWhatIsClose) {
   write("gap.off", "OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n1 0.001 0\n1 1 0\n0 1.001 0\n3 0 1 2\n3 3 4 5\n");
   EXPECT_EQ(report({path("gap.off")}).at("boundaryEdges"), 6);
