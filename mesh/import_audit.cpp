@@ -151,6 +151,10 @@ FileAudit audit_ply(const std::filesystem::path& file) {
     if (keyword == "format") ascii = take_word(rest) == "ascii";
     if (keyword == "element") {
       PlyElement element{std::string(take_word(rest)), 0, 0};
+      const bool named = !element.name.empty() && (element.name[0] < '0' || element.name[0] > '9');
+      if (!named) {  // Assimp would take the digits for the count, and loop
+        fail(fmt::format("line {}: '{}' is no name of an element", number, element.name));
+      }
       const std::string_view count = take_word(rest);
       const auto value = parse_number<std::uint64_t>(count);
       if (!value) fail(fmt::format("line {}: '{}' is no number of elements", number, count));
@@ -173,11 +177,12 @@ FileAudit audit_ply(const std::filesystem::path& file) {
   const auto header = static_cast<std::uint64_t>(stream.tellg());
   std::uint64_t left = std::filesystem::file_size(file) - header + 1;  // the last line may lack its end
   for (const PlyElement& element : elements) {
-    if (element.bytes > 0 && element.count > left / element.bytes) {
+    // One without properties takes a byte, too: nobody means to repeat nothing a billion times.
+    if (element.count > left / std::max<std::uint64_t>(element.bytes, 1)) {
       fail(
           fmt::format("it promises {} elements '{}' of {} bytes or more, but only {} bytes follow; the file is "
                       "truncated or damaged",
-                      element.count, element.name, element.bytes, left));
+                      element.count, element.name, std::max<std::uint64_t>(element.bytes, 1), left));
     }
     left -= element.count * element.bytes;
   }

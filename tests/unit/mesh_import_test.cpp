@@ -217,6 +217,9 @@ TEST_F(MeshImport, RefusesBadFilesWithTheirPlace) {
   expect_refused("lies.ply",
                  "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n",
                  {"4000000000", "truncated"});
+  expect_refused("digits.ply", "ply\nformat ascii 1.0\nelement 99999999vertex 2\nproperty float x\nend_header\n",
+                 {"line 3", "99999999vertex"});
+  expect_refused("nothing.ply", "ply\nformat ascii 1.0\nelement nothing 4000000000\nend_header\n", {"4000000000"});
   expect_refused("headless.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", {"end_header", "truncated"});
   expect_refused("short.ply", binary_ply<true>().substr(0, 300), {"truncated"});
 
