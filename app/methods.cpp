@@ -12,6 +12,9 @@
 #ifdef PENUMBRA_HAS_VSM
 #include "vsm/view_sample.hpp"
 #endif
+#ifdef PENUMBRA_HAS_VOLUMES
+#include "volumes/hard_volume.hpp"
+#endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/accumulate.hpp"
 #include "maps/pcss.hpp"
@@ -62,6 +65,9 @@ const std::vector<TableRow>& table() {
 #ifdef PENUMBRA_HAS_VSM
       on_device<vsm::view_sample_description, vsm::make_view_sample>(),
 #endif
+#ifdef PENUMBRA_HAS_VOLUMES
+      on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
+#endif
 #ifdef PENUMBRA_HAS_MAPS
       on_device<maps::pcss_description, maps::make_pcss>(),
       on_device<maps::accumulate_description, maps::make_accumulate>(),
@@ -76,7 +82,6 @@ const std::vector<TableRow>& table() {
 
 /// Names that the program will understand some day; they mean nothing else until then.
 constexpr std::array kNotThereYet = {"exact",
-                                     "hard-volume",
                                      "wedge-ramp",
                                      "soft-volume",
                                      "soft-volume-blend",

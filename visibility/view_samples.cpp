@@ -145,6 +145,7 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
   ViewSamples samples;
   samples.width = camera.width;
   samples.height = camera.height;
+  samples.camera = camera;
   samples.eye = glm::vec3(camera.eye);
   samples.triangle = std::move(triangles);
   samples.p.assign(pixels, glm::vec3(0));

@@ -39,7 +39,8 @@ struct ViewSamples {
   std::vector<float> depth;            ///< along the view axis; 0 for background
   std::vector<std::int8_t> facing;  ///< +1: the sorted triangle's (b − a) × (c − a) points to the viewer's side, −1:
                                     ///< away; 0 for background. The one answer to "which side is the viewer on"
-  glm::vec3 eye{0};  ///< float32 of the camera's eye (for display; decisions take `facing`)
+  PinholeCamera camera;  ///< that they were seen by
+  glm::vec3 eye{0};      ///< float32 of the camera's eye (for display; decisions take `facing`)
 
   [[nodiscard]] std::size_t size() const { return triangle.size(); }
 };

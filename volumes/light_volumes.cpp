@@ -1,0 +1,137 @@
+// Shadow volumes of any triangle soup (F. Crow 1977; P. Bergeron 1986 for open meshes): a volume a triangle, their
+// common faces gone by the signed multiplicity of edges.
+
+#include "volumes/light_volumes.hpp"
+
+#include "mesh/parallel.hpp"
+#include "mesh/silhouettes.hpp"
+#include "volumes/volume_count.shared.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+/// Signs that must all be one sign for something to be so; GLSL twin in volume_count.frag.
+struct Agreement {
+  bool up = false, down = false, doubt = false;
+  void look(double value, double bound) {
+    up |= value > bound;
+    down |= value < -bound;
+    doubt |= !(value > bound || value < -bound);
+  }
+  /// Nothing if it hangs on a sign that rounding may have made.
+  [[nodiscard]] std::optional<bool> agree() const {
+    if (up && down) return false;
+    if (doubt) return std::nullopt;
+    return true;
+  }
+};
+
+double norm1(const glm::dvec3& v) {
+  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+void look_at_determinant(Agreement& signs, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  signs.look(glm::dot(a, glm::cross(b, c)), gpu::kDeterminantError * norm1(a) * norm1(b) * norm1(c));
+}
+
+/// Is the direction d within the cone of the cap from l?
+std::optional<bool> in_cone(const LightVolumes& volumes, const VolumeCap& cap, const glm::dvec3& d) {
+  Agreement signs;
+  const glm::dvec3 l = volumes.l;
+  for (std::size_t i = 0; i < 3; ++i) {
+    look_at_determinant(signs, glm::dvec3(cap.corners[i]) - l, glm::dvec3(cap.corners[(i + 1) % 3]) - l, d);
+  }
+  // The cone, not the one opposite: (a, b, c) as directions from l are negative for corners counter-clockwise from l.
+  signs.look(-1, 0);
+  return signs.agree();
+}
+
+/// The sum over caps of what `inside` says, or nothing if it is ever silent.
+template <typename Inside>
+std::optional<std::int32_t> count(const LightVolumes& volumes, const Inside& inside) {
+  std::int32_t sum = 0;
+  for (const VolumeCap& cap : volumes.caps) {
+    const std::optional<bool> is = inside(cap);
+    if (!is) return std::nullopt;
+    sum += *is ? 1 : 0;
+  }
+  return sum;
+}
+
+glm::dvec3 centroid(const std::vector<glm::vec3>& outline, const glm::dvec3& normal) {
+  const glm::dvec3 a = outline.front();
+  glm::dvec3 sum{0};
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
+    const glm::dvec3 b = glm::dvec3(outline[i]) - a, c = glm::dvec3(outline[i + 1]) - a;
+    const double weight = glm::dot(glm::cross(b, c), normal);
+    sum += weight * (b + c) / 3.0;
+    area += weight;
+  }
+  return a + sum / area;
+}
+
+}  // namespace
+
+ShadowCasters::ShadowCasters(const visibility::SceneFloats& scene)
+    : scene_(&scene), positions_(mesh::widened(scene.positions)) {
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (scene.casts_shadow[i] == 0) continue;
+    casters_.push_back(i);
+    triangles_.push_back(scene.triangles[i]);
+  }
+  graph_ = mesh::build_edge_graph({positions_, triangles_});
+}
+
+LightVolumes ShadowCasters::seen_from(const glm::vec3& l, std::int32_t light_index) const {
+  std::vector<mesh::Side> sides = mesh::facings({positions_, triangles_}, graph_, l);
+  LightVolumes volumes{l, {}, {}};
+  volumes.caps.reserve(casters_.size());
+  for (std::size_t i = 0; i < casters_.size(); ++i) {
+    if (scene_->emits[casters_[i]] == light_index) sides[i] = mesh::Side::on;
+    if (sides[i] == mesh::Side::on) continue;
+    VolumeCap cap{scene_->corners(casters_[i]), scene_->plane[casters_[i]]};
+    if (sides[i] == mesh::Side::back) std::swap(cap.corners[1], cap.corners[2]);
+    volumes.caps.push_back(cap);
+  }
+  std::vector<std::int32_t> multiplicities(graph_.edges.size());
+  mesh::for_each_index(multiplicities.size(), [&](std::size_t edge) {
+    multiplicities[edge] = mesh::signed_multiplicity(graph_, static_cast<std::uint32_t>(edge), sides);
+  });
+  for (std::size_t edge = 0; edge < multiplicities.size(); ++edge) {
+    if (multiplicities[edge] == 0) continue;
+    const auto [a, b] = graph_.edges[edge];
+    volumes.edges.push_back({scene_->positions[a], scene_->positions[b], multiplicities[edge]});
+  }
+  return volumes;
+}
+
+glm::vec3 center_of(const visibility::Light& light) {
+  if (light.kind != visibility::LightKind::polygon) return light.center;
+  const glm::dvec3 c = light.center;
+  return glm::vec3(centroid(light.outline, glm::cross(glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c)));
+}
+
+std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction) {
+  return count(volumes, [&](const VolumeCap& cap) { return in_cone(volumes, cap, direction); });
+}
+
+std::optional<std::int32_t> count_at(const LightVolumes& volumes, const glm::dvec3& x) {
+  return count(volumes, [&](const VolumeCap& cap) -> std::optional<bool> {
+    const std::optional<bool> cone = in_cone(volumes, cap, x - glm::dvec3(volumes.l));
+    if (cone && !*cone) return false;
+    const glm::dvec3 a = cap.corners[0];
+    Agreement beyond;
+    look_at_determinant(beyond, glm::dvec3(cap.corners[1]) - a, glm::dvec3(cap.corners[2]) - a, x - a);
+    if (!beyond.doubt && beyond.up) return false;  // on l's side
+    return beyond.doubt ? std::nullopt : cone;
+  });
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "mesh/edge_graph.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// A silhouette edge as seen from the light's centre l: its side face runs from a b away from l to infinity.
+struct VolumeEdge {
+  glm::vec3 a, b;
+  std::int32_t multiplicity = 0;  ///< k_e(l), never 0: how many volumes end here, with sign (mesh/silhouettes.hpp)
+};
+
+/// A triangle that bounds its own volume toward the light.
+struct VolumeCap {
+  std::array<glm::vec3, 3> corners;  ///< counter-clockwise as seen from l
+  std::uint32_t plane = 0;           ///< SceneFloats::plane
+};
+
+/// The boundary of all shadow volumes of one point, the far end left out. Each triangle has a volume of its own, all
+/// that it hides from l; between two triangles that l sees side by side no face is left.
+struct LightVolumes {
+  glm::vec3 l{0};
+  std::vector<VolumeEdge> edges;
+  std::vector<VolumeCap> caps;  ///< of every triangle whose plane does not hold l
+};
+
+/// Everything that casts shadow, with its edges. `scene` must outlive it.
+class ShadowCasters {
+ public:
+  explicit ShadowCasters(const visibility::SceneFloats& scene);
+
+  /// Seen from `l`, without the body of that light. Exact.
+  [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, std::int32_t light_index) const;
+  [[nodiscard]] std::size_t size() const { return casters_.size(); }
+
+ private:
+  const visibility::SceneFloats* scene_;
+  std::vector<glm::dvec3> positions_;
+  std::vector<std::uint32_t> casters_;     // into the scene's triangles
+  std::vector<mesh::Triangle> triangles_;  // the same, corners
+  mesh::EdgeGraph graph_;
+};
+
+/// The point that stands for the whole light: the stored centre; of a polygon, its centroid rounded to float32.
+glm::vec3 center_of(const visibility::Light& light);
+
+/// How many triangles the ray from l in this direction meets; nothing if double cannot tell.
+std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction);
+
+/// In how many volumes x is; nothing if double cannot tell.
+std::optional<std::int32_t> count_at(const LightVolumes& volumes, const glm::dvec3& x);
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "visibility/view_samples.hpp"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <optional>
+#include <span>
+
+namespace penumbra::volumes {
+
+/// A corner of a volume's face: a point, or a direction, which is the point infinitely far that way.
+struct FaceCorner {
+  glm::dvec3 at{0};  ///< relative to the scene's origin
+  bool infinite = false;
+};
+
+/// A rectangle on the screen, turned as suits what it holds: its corners in pixels from the picture's upper left, as a
+/// triangle strip takes them.
+struct ScreenBox {
+  std::array<glm::vec2, 4> corners;
+};
+
+/// Where the rasteriser has to look for the pixels of a face. It only proposes: shaders decide (README.md, Counting).
+class BoxFinder {
+ public:
+  explicit BoxFinder(const visibility::PinholeCamera& camera);
+
+  /// Holds every pixel whose centre is within an eighth of a pixel of the projection of the convex polygon (three or
+  /// four corners, its part behind the eye left out), but for what is not on the screen. Empty: no pixel.
+  [[nodiscard]] std::optional<ScreenBox> around(std::span<const FaceCorner> polygon) const;
+
+  /// Where x appears, in pixels; only for what is in front of the eye.
+  [[nodiscard]] glm::dvec2 project(const glm::dvec3& x) const;
+
+ private:
+  glm::dvec3 eye_, across_, upward_, forward_;  // of a frustum of half-width and half-height 1
+  glm::dvec2 half_;                             // half the picture, in pixels
+};
+
+}  // namespace penumbra::volumes
