@@ -53,7 +53,8 @@ class CompareCommand : public Command {
                     "what to compare: names with options of their own, a:key=value,b; or geometry, image, all")
         ->type_name("LIST")
         ->capture_default_str();
-    cli_.add_option("--reference", options_.reference, "who judges: raytrace (exact is not there yet)")
+    cli_.add_option("--reference", options_.reference,
+                    "who judges: raytrace, or exact: areas, not samples (slow; see --sample-pixels)")
         ->type_name("NAME")
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
@@ -61,7 +62,7 @@ class CompareCommand : public Command {
         ->type_name("M|same")
         ->capture_default_str();
     cli_.add_option("--sample-pixels", options_.sample_pixels,
-                    "take the error over N judged pixels, all, or these: x,y;x,y")
+                    "take the error over N judged pixels, all, or these: x,y;x,y; exact evaluates no others")
         ->type_name("N|all|x,y;...")
         ->capture_default_str();
     cli_.add_option("--max-rmse", max_rmse_, "exit with 1 if the error of a method exceeds this")

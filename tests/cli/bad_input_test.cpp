@@ -152,7 +152,7 @@ std::vector<BadUsage> bad_usages() {
       {"FramesBackwards", with({"--frames", "9-3"}), 2, {"9-3"}},
       {"InspectNotThereYet", {"inspect", "mesh.ply", "--json", "x"}, 2, {"not there yet"}},
       {"WedgesNotThereYet", {"wedges", "SCENE", "--light", "key"}, 2, {"not there yet"}},
-      {"ExactNotThereYet", {"compare", "SCENE", "-o", "DIR", "--reference", "exact"}, 2, {"not there yet"}},
+      {"ReferenceThatIsNoJudge", {"compare", "SCENE", "-o", "DIR", "--reference", "pcss"}, 2, {"raytrace or exact"}},
       {"ReferenceThatIsNone", {"compare", "SCENE", "-o", "DIR", "--reference", "magic"}, 2, {"magic"}},
       {"ReferenceSamples",
        {"compare", "SCENE", "-o", "DIR", "--methods", "raytrace", "--reference-samples", "0"},
