@@ -19,8 +19,10 @@ std::string number(const std::optional<double>& value, const char* format) {
 
 /// The result for people, on stdout: one line a method.
 void print_table(const compare::Metrics& metrics) {
-  fmt::print("{} judged pixels, {} at the horizon; errors of V against {} with {} light samples\n",
-             metrics.judged_pixels, metrics.horizon_pixels, metrics.reference.method, metrics.reference.light_samples);
+  const bool samples = describe_method(metrics.reference.method).output == visibility::Output::mask;
+  fmt::print("{} judged pixels, {} at the horizon; errors of V against {}{}\n", metrics.judged_pixels,
+             metrics.horizon_pixels, metrics.reference.method,
+             samples ? fmt::format(" with {} light samples", metrics.reference.light_samples) : "");
   fmt::print("{:<28} {:>9} {:>9} {:>9} {:>10} {:>12} {:>9}\n", "method", "rmse", "max", "bias", "differing", "of pairs",
              "shadow s");
   const auto line = [](const std::string& name, const compare::Stats& stats, const compare::MethodResult* result) {

@@ -2,9 +2,9 @@
 //
 // As seen from p each triangle is clipped to what lies between p and the light and taken counter-clockwise; each of its
 // edges then counts +1 or −1. Where triangles share an edge their counts add up: 0 inside a surface, ±2 on the
-// silhouette of a closed one, any integer in a soup (Laine et al. 2005 for two; the digest of signed multiplicities is
-// docs/signed-crossings.md). The edges that are left bound the same depth complexity as all triangles do, and they are
-// few; a sweep (area_sweep.hpp) finds the area where it is zero. Nothing is assumed of the mesh.
+// silhouette of a closed one, any integer in a soup (Laine et al. 2005 for closed ones; docs/signed-crossings.md for
+// any). The edges that are left bound the same depth complexity as all triangles do, and they are few; a sweep
+// (area_sweep.hpp) finds the area where it is zero. Nothing is assumed of the mesh.
 //
 // Why not polygon Booleans: the union of n triangles has to merge every inner edge of a surface, which here cancels
 // before any crossing is looked for.
@@ -241,16 +241,16 @@ class OccluderEdges {
   std::uint64_t triangles_ = 0;
 };
 
+/// The share of the light that is region and not hidden. `edges` are the region's, and the workspace.
 template <typename Number>
-double share_left(const OccluderEdges& occluders, std::vector<SweepEdge<Number>> edges, const Region& region,
-                  const mpq_class& area, AreaWork& work) {
-  if (edges.empty()) edges = region_edges<Number>(region);
+double share_left(const ExactAreaData& data, const Region& region, std::vector<SweepEdge<Number>> edges,
+                  const OccluderEdges& occluders, AreaWork& work) {
   const std::size_t of_region = edges.size();
   occluders.append_to(edges);
   work = {occluders.triangles(), edges.size() - of_region};
-  if (edges.size() == of_region) return mpq_class(area_of(region) / area).get_d();
+  if (work.edges == 0) return &region == &data.region ? 1 : mpq_class(area_of(region) / data.area).get_d();
   AreaSweep<Number> sweep;
-  const mpq_class left = mpq_class(sweep.uncovered_area(edges)) / area;
+  const mpq_class left = mpq_class(sweep.uncovered_area(edges)) / data.area;
   return std::clamp(left.get_d(), 0.0, 1.0);
 }
 
@@ -300,9 +300,10 @@ double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmeti
   projection.set_box(box);
   const LightShaft shaft(frame, projection.mirrored(), receiver.p, box);
   const OccluderEdges occluders(*data_, receiver, projection, shaft);
-  if (arithmetic == SweepArithmetic::rational) return share_left<mpq_class>(occluders, {}, region, data_->area, counts);
-  return share_left<double>(occluders, whole ? data_->edges : std::vector<SweepEdge<double>>(), region, data_->area,
-                            counts);
+  if (arithmetic == SweepArithmetic::rational) {
+    return share_left(*data_, region, region_edges<mpq_class>(region), occluders, counts);
+  }
+  return share_left(*data_, region, whole ? data_->edges : region_edges<double>(region), occluders, counts);
 }
 
 std::uint64_t ExactArea::memory_bytes() const {

@@ -123,7 +123,8 @@ TEST_F(Compare, TheExactReferenceEvaluatesChosenPixelsAlone) {
   EXPECT_EQ(result.at("reference").at("method"), "exact");
   EXPECT_EQ(result.at("judgedPixels"), 40);
   EXPECT_TRUE(result.at("methods").at(0).at("pairs").is_null());
-  EXPECT_LT(result.at("methods").at(0).at("error").at("max"), 4.0 / 32);  // two cells a row, two rows of 32
+  // Two convex occluders and what they share: three times the bound of tests/unit/exact_method.cpp, at 32 rows.
+  EXPECT_LT(result.at("methods").at(0).at("error").at("max"), 3 * 2.0 / 32);
   EXPECT_EQ(result.at("methods").at(1).at("error").at("max"), 0);
   const std::uint64_t evaluated = result.at("reference").at("counters").at("viewSamples");
   EXPECT_GE(evaluated, 40u);  // and those at the horizon
