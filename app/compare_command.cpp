@@ -19,8 +19,10 @@ std::string number(const std::optional<double>& value, const char* format) {
 
 /// The result for people, on stdout: one line a method.
 void print_table(const compare::Metrics& metrics) {
-  fmt::print("{} judged pixels, {} at the horizon; errors of V against {} with {} light samples\n",
-             metrics.judged_pixels, metrics.horizon_pixels, metrics.reference.method, metrics.reference.light_samples);
+  const bool samples = describe_method(metrics.reference.method).output == visibility::Output::mask;
+  fmt::print("{} judged pixels, {} at the horizon; errors of V against {}{}\n", metrics.judged_pixels,
+             metrics.horizon_pixels, metrics.reference.method,
+             samples ? fmt::format(" with {} light samples", metrics.reference.light_samples) : "");
   fmt::print("{:<28} {:>9} {:>9} {:>9} {:>10} {:>12} {:>9}\n", "method", "rmse", "max", "bias", "differing", "of pairs",
              "shadow s");
   const auto line = [](const std::string& name, const compare::Stats& stats, const compare::MethodResult* result) {
@@ -53,7 +55,8 @@ class CompareCommand : public Command {
                     "what to compare: names with options of their own, a:key=value,b; or geometry, image, all")
         ->type_name("LIST")
         ->capture_default_str();
-    cli_.add_option("--reference", options_.reference, "who judges: raytrace (exact is not there yet)")
+    cli_.add_option("--reference", options_.reference,
+                    "who judges: raytrace, or exact: areas, not samples (slow; see --sample-pixels)")
         ->type_name("NAME")
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
@@ -61,7 +64,7 @@ class CompareCommand : public Command {
         ->type_name("M|same")
         ->capture_default_str();
     cli_.add_option("--sample-pixels", options_.sample_pixels,
-                    "take the error over N judged pixels, all, or these: x,y;x,y")
+                    "take the error over N judged pixels, all, or these: x,y;x,y; exact evaluates no others")
         ->type_name("N|all|x,y;...")
         ->capture_default_str();
     cli_.add_option("--max-rmse", max_rmse_, "exit with 1 if the error of a method exceeds this")

@@ -16,6 +16,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -59,6 +60,10 @@ class Comparison {
           "no pixel is judged (none sees the whole light above its tangent plane, or --sample-pixels chose none): "
           "there is no error to report");
     }
+    if (options_.sample_pixels != "all") {
+      wanted_.emplace();
+      std::ranges::merge(judged_, horizon_, std::back_inserter(*wanted_));
+    }
   }
 
   compare::Metrics run(const std::vector<std::string>& arguments) {
@@ -78,7 +83,7 @@ class Comparison {
   static const MethodDescription& describe_reference(const std::string& name) {
     const MethodDescription& description = describe_method(name);
     if (description.family != visibility::Family::reference) {
-      throw UsageError("--reference {}: a {} method is no judge; expected raytrace", name,
+      throw UsageError("--reference {}: a {} method is no judge; expected raytrace or exact", name,
                        visibility::name_of(description.family));
     }
     return description;
@@ -205,7 +210,12 @@ class Comparison {
     if (options_.bits && description.output == Output::mask) {
       bits.emplace(file_of(name, ".bits"), session_, lights.front(), description);
     }
-    const RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true};
+    RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
+    // An oracle without samples is not raced, and it may take minutes: once is enough.
+    if (description.family == visibility::Family::reference && description.output == Output::scalar) {
+      plan.runs = 1;
+      plan.discard_first = false;
+    }
     Finished done;
     done.run = run_method(
         *method, session_, plan,
@@ -279,10 +289,11 @@ class Comparison {
   Session session_;
   std::vector<Light> reference_lights_;
   std::vector<MethodEntry> entries_;
-  std::vector<std::uint32_t> judged_, horizon_;  ///< pixels that errors are taken over
-  std::vector<std::uint32_t> reference_masks_;   ///< of the first light; empty unless pairs can be compared
-  std::vector<float> reference_visibility_;      ///< of the first light
-  std::vector<std::vector<float>> visibility_;   ///< of each entry, of the first light
+  std::vector<std::uint32_t> judged_, horizon_;       ///< pixels that errors are taken over
+  std::optional<std::vector<std::uint32_t>> wanted_;  ///< both, if --sample-pixels chose; nothing: all pixels
+  std::vector<std::uint32_t> reference_masks_;        ///< of the first light; empty unless pairs can be compared
+  std::vector<float> reference_visibility_;           ///< of the first light
+  std::vector<std::vector<float>> visibility_;        ///< of each entry, of the first light
   std::vector<std::string> warnings_;
   compare::ReportInput report_;
 };

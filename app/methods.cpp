@@ -21,6 +21,7 @@
 #include "maps/shadow_map.hpp"
 #endif
 #ifdef PENUMBRA_HAS_REFERENCE
+#include "reference/exact_method.hpp"
 #include "reference/ray_traced.hpp"
 #endif
 
@@ -75,6 +76,7 @@ const std::vector<TableRow>& table() {
 #endif
 #ifdef PENUMBRA_HAS_REFERENCE
       on_processor<reference::make_ray_traced>(),
+      on_processor<reference::make_exact>(),
 #endif
   };
   return rows;

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace penumbra::app {
@@ -62,7 +63,9 @@ void BeautyAccumulator::add(const TileResult& result) {
   const auto band =
       compare::integrate_beauty({session_.floats, rows, colors_, lights_.subspan(result.light, 1)}, {&seen, 1});
   const std::size_t first = std::size_t{result.tile.first_row} * session_.width;
-  for (std::size_t i = 0; i < band.size(); ++i) pixels_[first + i] += band[i];
+  for (std::size_t i = 0; i < band.size(); ++i) {
+    if (!std::isnan(result.visibility[i])) pixels_[first + i] += band[i];  // what was not evaluated stays black
+  }
 }
 
 BitsOutput::BitsOutput(std::filesystem::path path, const Session& session, const visibility::Light& light,

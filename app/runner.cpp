@@ -117,6 +117,8 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   // Lights that the method cannot do are refused before any work.
   for (const Light& light : plan.lights) visibility::check_light(method.description(), light);
 
+  if (plan.pixels) method.want_pixels(*plan.pixels);
+
   const Stopwatch total;
   MethodRun result;
   result.visibility.assign(plan.lights.size(), std::vector<float>(session.pixel_count()));

@@ -18,7 +18,7 @@ namespace penumbra::app {
 struct TileResult {
   std::size_t light = 0;  ///< index into RunPlan::lights
   visibility::Tile tile;
-  std::span<const float> visibility;     ///< V of each pixel of the tile
+  std::span<const float> visibility;     ///< V of each pixel of the tile; NaN: not evaluated (RunPlan::pixels)
   std::span<const std::uint32_t> masks;  ///< words_per_mask() words a pixel; empty for a method without masks
 };
 
@@ -29,6 +29,8 @@ struct RunPlan {
   std::span<const visibility::Light> lights;  ///< as in Session::lights, perhaps with other light samples
   std::uint32_t runs = 1;                     ///< timed runs
   bool discard_first = false;                 ///< one more before them, which warms up and does not count
+  std::optional<std::vector<std::uint32_t>> pixels =
+      {};  ///< all that will be looked at (ascending); nothing: every pixel
 };
 
 /// Times of one method over all lights, in seconds: medians where there were several runs.
@@ -40,7 +42,7 @@ struct RunTimes {
 
 struct MethodRun {
   RunTimes times;
-  std::vector<std::vector<float>> visibility;  ///< for each light, V of each pixel
+  std::vector<std::vector<float>> visibility;  ///< for each light, V of each pixel; NaN: not evaluated
   std::vector<visibility::PassTime> passes;    ///< of the last run
   std::map<std::string, std::uint64_t> counters;
   std::uint64_t memory_bytes = 0;

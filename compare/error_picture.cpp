@@ -23,12 +23,15 @@ void check_sizes(const visibility::ViewSamples& samples, std::span<const float> 
                   samples.height);
 }
 
-/// One picture, pixel by pixel, with `color_of(i)` where there is no background.
-template <typename ColorOf>
-Image8 paint(const visibility::ViewSamples& samples, ColorOf color_of) {
+/// One picture, pixel by pixel, of `value_of(i)` in `color_of(value)` where there is no background. NaN, which is not a
+/// number but the mark of a pixel that nobody evaluated, looks like background.
+template <typename ValueOf, typename ColorOf>
+Image8 paint(const visibility::ViewSamples& samples, ValueOf value_of, ColorOf color_of) {
   Image8 image{samples.width, samples.height, std::vector<Color8>(samples.size(), kBackgroundColor)};
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples.triangle[i] != visibility::ViewSamples::kBackground) image.pixels[i] = color_of(i);
+    const double value = value_of(i);
+    if (samples.triangle[i] != visibility::ViewSamples::kBackground && !std::isnan(value))
+      image.pixels[i] = color_of(value);
   }
   return image;
 }
@@ -58,18 +61,20 @@ Image8 error_picture(const visibility::ViewSamples& samples, std::span<const flo
                      std::span<const float> reference, double limit) {
   check_sizes(samples, visibility);
   check_sizes(samples, reference);
-  return paint(samples, [&](std::size_t i) {
-    return error_color(static_cast<double>(visibility[i]) - static_cast<double>(reference[i]), limit);
-  });
+  return paint(
+      samples, [&](std::size_t i) { return static_cast<double>(visibility[i]) - static_cast<double>(reference[i]); },
+      [&](double error) { return error_color(error, limit); });
 }
 
 Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<const float> visibility) {
   check_sizes(samples, visibility);
-  return paint(samples, [&](std::size_t i) {
-    // sRGB bytes are already spaced for the eye: V = 0.5 shall look half way.
-    const auto grey = static_cast<std::uint8_t>(std::lround(std::clamp(visibility[i], 0.0f, 1.0f) * 255.0f));
-    return Color8{grey, grey, grey};
-  });
+  return paint(
+      samples, [&](std::size_t i) { return static_cast<double>(visibility[i]); },
+      [](double value) {
+        // sRGB bytes are already spaced for the eye: V = 0.5 shall look half way.
+        const auto grey = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
+        return Color8{grey, grey, grey};
+      });
 }
 
 float auto_exposure(std::span<const glm::vec3> linear) {

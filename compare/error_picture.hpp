@@ -20,11 +20,12 @@ Color8 error_color(double error, double limit);
 /// shared by all pictures that will be looked at side by side.
 double error_scale_limit(double largest);
 
-/// V − reference of each pixel by error_color; the background in kBackgroundColor.
+/// V − reference of each pixel by error_color; the background, and where either is NaN (nobody evaluated it), in
+/// kBackgroundColor.
 Image8 error_picture(const visibility::ViewSamples& samples, std::span<const float> visibility,
                      std::span<const float> reference, double limit);
 
-/// V as grey, 0 black to 1 white, evenly spaced for the eye; the background in kBackgroundColor.
+/// V as grey, 0 black to 1 white, evenly spaced for the eye; the background and NaN in kBackgroundColor.
 Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<const float> visibility);
 
 /// A factor for linear colours that makes a picture neither dark nor burnt: the 99th percentile of the largest

@@ -13,6 +13,12 @@
 namespace penumbra::compare {
 namespace {
 
+/// `same`: what to add if they are the methods' own.
+std::string samples_of_reference(const ReportInput& in, const char* same) {
+  if (in.reference.description.output == visibility::Output::scalar) return "areas, no light samples";
+  return fmt::format("{} light samples{}", in.metrics.reference.light_samples, in.same_samples ? same : "");
+}
+
 std::string options_text(const visibility::MethodOptions& options) {
   std::string text;
   for (const auto& [key, value] : options) text += fmt::format("{}{}={}", text.empty() ? "" : ", ", key, value);
@@ -69,10 +75,9 @@ std::string glance_html(const ReportInput& in) {
                  "{} for the shadow{}", seconds_text(shadow_of(*best)),
                  speed == "–" ? "" : fmt::format(", {} {} the reference", speed, speed == "as fast" ? "as" : "than")));
   }
-  html +=
-      card("Judged by", reference.method,
-           fmt::format("{} light samples{}, {} for the shadow", reference.light_samples,
-                       in.same_samples ? ", the same as the methods’" : "", seconds_text(reference.seconds.shadow())));
+  html += card("Judged by", reference.method,
+               fmt::format("{}, {} for the shadow", samples_of_reference(in, ", the same as the methods’"),
+                           seconds_text(reference.seconds.shadow())));
   html += card("Compared on", in.metrics.reference.scene,
                fmt::format("{} × {} pixels, {} of them judged", reference.width, reference.height,
                            count_text(in.metrics.judged_pixels)));
@@ -304,8 +309,8 @@ std::string machine_html(const ReportInput& in) {
   if (!machine.operating_system.empty()) facts.push_back({"System", machine.operating_system});
   facts.push_back({"Program", "penumbra " + in.version});
   facts.push_back({"Light samples", fmt::format("{}, pattern {}", first.light_samples, first.sample_pattern)});
-  facts.push_back({"Reference", fmt::format("{}, {} light samples{}", in.metrics.reference.method,
-                                            in.metrics.reference.light_samples, in.same_samples ? " (the same)" : "")});
+  facts.push_back(
+      {"Reference", fmt::format("{}, {}", in.metrics.reference.method, samples_of_reference(in, " (the same)"))});
   if (in.sampled_pixels != 0)
     facts.push_back({"Compared pixels", fmt::format("{} chosen ones", count_text(in.sampled_pixels))});
   facts.push_back({"Reading the scene", seconds_text(first.seconds.load)});

@@ -64,6 +64,10 @@ class Method {
 
   [[nodiscard]] virtual const MethodDescription& description() const = 0;
 
+  /// The host will look at no other pixels than these (indices, ascending; copied). A method that works pixel by pixel
+  /// leaves the rest out and gives NaN as their V; others need not listen. Without a call: all pixels.
+  virtual void want_pixels([[maybe_unused]] std::span<const std::uint32_t> pixels) {}
+
   /// Once a mesh: adjacency, hierarchies, upload. `scene` must outlive the method.
   virtual void prepare_mesh(const SceneFloats& scene) = 0;
   /// Redone when a light moves. `light` must outlive its use.

@@ -151,7 +151,7 @@ std::vector<BadUsage> bad_usages() {
       {"UnknownCamera", with({"--method", "raytrace", "--camera", "drone"}), 2, {"drone"}},
       {"FramesBackwards", with({"--frames", "9-3"}), 2, {"9-3"}},
       {"WedgesNotThereYet", {"wedges", "SCENE", "--light", "key"}, 2, {"not there yet"}},
-      {"ExactNotThereYet", {"compare", "SCENE", "-o", "DIR", "--reference", "exact"}, 2, {"not there yet"}},
+      {"ReferenceThatIsNoJudge", {"compare", "SCENE", "-o", "DIR", "--reference", "pcss"}, 2, {"raytrace or exact"}},
       {"ReferenceThatIsNone", {"compare", "SCENE", "-o", "DIR", "--reference", "magic"}, 2, {"magic"}},
       {"ReferenceSamples",
        {"compare", "SCENE", "-o", "DIR", "--methods", "raytrace", "--reference-samples", "0"},

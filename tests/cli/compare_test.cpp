@@ -114,6 +114,28 @@ TEST_F(Compare, ErrorsOverChosenPixels) {
   EXPECT_TRUE(metrics().at("methods").at(0).at("error").is_null());
 }
 
+TEST_F(Compare, TheExactReferenceEvaluatesChosenPixelsAlone) {
+  ASSERT_EQ(compare({"--methods", "view-sample,exact", "--light-samples", "1024", "--reference", "exact",
+                     "--sample-pixels", "40"})
+                .code,
+            0);
+  const json result = metrics();
+  EXPECT_EQ(result.at("reference").at("method"), "exact");
+  EXPECT_EQ(result.at("judgedPixels"), 40);
+  EXPECT_TRUE(result.at("methods").at(0).at("pairs").is_null());
+  // Two convex occluders and what they share: three times the bound of tests/unit/exact_method.cpp, at 32 rows.
+  EXPECT_LT(result.at("methods").at(0).at("error").at("max"), 3 * 2.0 / 32);
+  EXPECT_EQ(result.at("methods").at(1).at("error").at("max"), 0);
+  const std::uint64_t evaluated = result.at("reference").at("counters").at("viewSamples");
+  EXPECT_GE(evaluated, 40u);  // and those at the horizon
+  EXPECT_LE(evaluated, 40u + result.at("horizonPixels").get<std::uint64_t>());
+  const ExrFile picture = read_exr(path("dir/reference.exr"));
+  std::size_t known = 0;
+  for (const float v : picture.floats.at("V")) known += std::isnan(v) ? 0 : 1;
+  EXPECT_GE(known, evaluated);
+  for (const float r : picture.floats.at("R")) EXPECT_TRUE(std::isfinite(r));
+}
+
 TEST_F(Compare, DefaultIsEveryGeometryAndImageMethod) {
   const Outcome outcome = compare({"--light-samples", "16", "--reference-samples", "64"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+// Inside reference/ only: the part of a region that no polygon covers, by a sweep over slabs.
+
+namespace penumbra::reference {
+
+/// One edge of a polygon that runs counter-clockwise. What a vertical line counts when it crosses the edge upward: +1
+/// for an edge that runs toward larger s (the polygon is above it), −1 for one that runs back.
+template <typename Number>
+struct SweepEdge {
+  Number s0, t0, s1, t1;  ///< s0 < s1
+  int cover = 0;          ///< counted into the depth of what covers
+  int region = 0;         ///< counted into the region itself
+};
+
+/// The area of {region > 0 and cover ≤ 0}, where both counts start from 0 at t = −∞ and step at each edge. Edges may
+/// cross, touch, coincide and run along one another.
+///
+/// Between neighbouring end points (a strip) the same edges are active. Within a strip, between neighbouring crossings
+/// (a slab), they keep their order, and the uncovered length of a vertical line is linear in s: its value in the middle
+/// times the width is the slab's area. With rational numbers the result is exact. With double it is the exact result
+/// for end points and crossings moved by rounding: docs/exact.md has the bound. The result does not depend on the order
+/// of the edges.
+template <typename Number>
+class AreaSweep {
+ public:
+  Number uncovered_area(std::vector<SweepEdge<Number>>& edges) {
+    std::sort(edges.begin(), edges.end(), before);
+    breaks_.clear();
+    for (const SweepEdge<Number>& edge : edges) {
+      breaks_.push_back(edge.s0);
+      breaks_.push_back(edge.s1);
+    }
+    sort_unique(breaks_);
+    active_.clear();
+    std::size_t next = 0;
+    Number area = 0;
+    for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
+      const Number &left = breaks_[i], &right = breaks_[i + 1];
+      std::erase_if(active_, [&](const Active& active) { return active.edge->s1 <= left; });
+      for (; next < edges.size() && edges[next].s0 <= left; ++next) active_.push_back({&edges[next], 0, 0, 0});
+      area += strip(left, right);
+    }
+    return area;
+  }
+
+ private:
+  struct Active {
+    const SweepEdge<Number>* edge;
+    Number left, right;  ///< t at the strip's two ends
+    Number t;            ///< in the middle of a slab
+  };
+
+  static bool before(const SweepEdge<Number>& a, const SweepEdge<Number>& b) {
+    if (a.s0 != b.s0) return a.s0 < b.s0;
+    if (a.t0 != b.t0) return a.t0 < b.t0;
+    if (a.s1 != b.s1) return a.s1 < b.s1;
+    if (a.t1 != b.t1) return a.t1 < b.t1;
+    return a.cover != b.cover ? a.cover < b.cover : a.region < b.region;
+  }
+
+  static void sort_unique(std::vector<Number>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+  }
+
+  /// Never outside the edge's own end points, whatever is rounded.
+  static Number height(const SweepEdge<Number>& edge, const Number& s) {
+    if (s <= edge.s0) return edge.t0;
+    if (s >= edge.s1) return edge.t1;
+    const Number share = (s - edge.s0) / (edge.s1 - edge.s0);
+    const Number t = edge.t0 + share * (edge.t1 - edge.t0);
+    return std::clamp(t, std::min(edge.t0, edge.t1), std::max(edge.t0, edge.t1));
+  }
+
+  Number strip(const Number& left, const Number& right) {
+    if (active_.size() < 2) return 0;
+    for (Active& active : active_) {
+      active.left = height(*active.edge, left);
+      active.right = height(*active.edge, right);
+      active.t = (active.left + active.right) / 2;
+    }
+    const Number width = right - left;
+    sort_active();
+    if (!some_cross()) return width * uncovered_length();
+
+    crossings_.assign({left, right});
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      for (std::size_t j = i + 1; j < active_.size(); ++j) add_crossing(active_[i], active_[j], left, width);
+    }
+    sort_unique(crossings_);
+    Number area = 0;
+    for (std::size_t i = 0; i + 1 < crossings_.size(); ++i) {
+      const Number middle = (crossings_[i] + crossings_[i + 1]) / 2;
+      const Number share = (middle - left) / width;
+      for (Active& active : active_) active.t = active.left + share * (active.right - active.left);
+      sort_active();
+      area += (crossings_[i + 1] - crossings_[i]) * uncovered_length();
+    }
+    return area;
+  }
+
+  /// By insertion: from slab to slab the order hardly changes.
+  void sort_active() {
+    for (std::size_t i = 1; i < active_.size(); ++i) {
+      for (std::size_t j = i; j > 0 && active_[j].t < active_[j - 1].t; --j) std::swap(active_[j], active_[j - 1]);
+    }
+  }
+
+  /// Sorted by their middles, edges that do not cross are sorted at both ends as well.
+  [[nodiscard]] bool some_cross() const {
+    for (std::size_t i = 1; i < active_.size(); ++i) {
+      if (active_[i].left < active_[i - 1].left || active_[i].right < active_[i - 1].right) return true;
+    }
+    return false;
+  }
+
+  void add_crossing(const Active& a, const Active& b, const Number& left, const Number& width) {
+    const Number at_left = b.left - a.left, at_right = b.right - a.right;
+    const bool cross = (at_left < 0 && at_right > 0) || (at_left > 0 && at_right < 0);
+    if (!cross) return;
+    const Number s = left + width * (at_left / (at_left - at_right));
+    crossings_.push_back(std::clamp(s, left, crossings_[1]));
+  }
+
+  [[nodiscard]] Number uncovered_length() const {
+    Number length = 0;
+    int cover = 0, region = 0;
+    for (std::size_t i = 0; i + 1 < active_.size(); ++i) {
+      cover += active_[i].edge->cover;
+      region += active_[i].edge->region;
+      if (region > 0 && cover <= 0) length += active_[i + 1].t - active_[i].t;
+    }
+    return length;
+  }
+
+  std::vector<Number> breaks_, crossings_;  // of a strip: left, right, then what lies between
+  std::vector<Active> active_;
+};
+
+}  // namespace penumbra::reference

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <memory>
+
+namespace penumbra::reference {
+
+/// In what the sweep over the light's plane computes. Projecting, clipping and facing are exact in both.
+enum class SweepArithmetic {
+  rounded,   ///< double, on vertices rounded once from the exact ones
+  rational,  ///< rationals throughout, rounded once at the end: for doubting the other; slow, and slower with size
+};
+
+struct Receiver {
+  glm::vec3 p{0};
+  std::uint32_t carrier = 0;
+  std::int8_t facing = 0;  ///< ViewSamples::facing
+};
+
+/// What one view sample's area was made of.
+struct AreaWork {
+  std::uint64_t triangles = 0;  ///< whose boxes touch the shaft from p to the light
+  std::uint64_t edges = 0;      ///< on the light: signed edges that do not cancel, and cuts
+};
+
+struct ExactAreaData;
+
+/// V of a view sample as an area, not a count: the part of the light's exact region that is strictly above the
+/// carrier's plane and in no triangle's back-projection, over the region's own area. The region is what
+/// light_region.hpp says of each kind. Thread-safe once the light is set.
+class ExactArea {
+ public:
+  /// `scene` must outlive it.
+  explicit ExactArea(const visibility::SceneFloats& scene);
+  ~ExactArea();
+  ExactArea(ExactArea&&) noexcept;
+  ExactArea& operator=(ExactArea&&) noexcept;
+
+  /// `light` must outlive its use.
+  void set_light(const visibility::Light& light);
+  /// In [0, 1]; 0 if p is not strictly on an emitting side of the light (or is the centre of a sphere).
+  [[nodiscard]] double visibility(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded,
+                                  AreaWork* work = nullptr) const;
+  [[nodiscard]] std::uint64_t memory_bytes() const;
+
+ private:
+  std::unique_ptr<ExactAreaData> data_;
+};
+
+}  // namespace penumbra::reference

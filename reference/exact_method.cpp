@@ -1,0 +1,151 @@
+#include "reference/exact_method.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "reference/exact_area.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace penumbra::reference {
+namespace {
+
+using visibility::Light;
+using visibility::LightKind;
+using visibility::SceneFloats;
+using visibility::Tile;
+using visibility::ViewSamples;
+
+constexpr float kNotEvaluated = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t kTileRows = 8;  // enough pixels for all cores, few enough to see progress
+
+class Exact final : public visibility::Method {
+ public:
+  explicit Exact(const visibility::MethodOptions& options);
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void want_pixels(std::span<const std::uint32_t> pixels) override { wanted_.emplace(pixels.begin(), pixels.end()); }
+  void prepare_mesh(const SceneFloats& scene) override;
+  void prepare_light(const Light& light) override;
+  void prepare_view(const ViewSamples& samples) override { samples_ = &samples; }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override { return kTileRows; }
+  void evaluate(const Tile& tile) override;
+  void read_visibility(std::span<float> visibility) override;
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
+    return {{"viewSamples", view_samples_}, {"triangles", triangles_}, {"edges", edges_}};
+  }
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    return (area_ ? area_->memory_bytes() : 0) + visibility_.capacity() * sizeof(float);
+  }
+
+ private:
+  [[nodiscard]] bool is_question(std::size_t pixel) const;
+  float evaluate_pixel(std::size_t pixel);
+
+  visibility::MethodDescription description_;
+  SweepArithmetic arithmetic_ = SweepArithmetic::rounded;
+  const SceneFloats* scene_ = nullptr;
+  const ViewSamples* samples_ = nullptr;
+  std::optional<ExactArea> area_;
+  std::optional<std::vector<std::uint32_t>> wanted_;  // ascending; nothing: every pixel
+  std::vector<float> visibility_;                     // of the tile last evaluated
+  std::atomic<std::uint64_t> view_samples_ = 0, triangles_ = 0, edges_ = 0;
+};
+
+Exact::Exact(const visibility::MethodOptions& options) {
+  description_.name = "exact";
+  description_.family = visibility::Family::reference;
+  description_.paper =
+      "area of the union of back-projected triangles, by signed edges (after Laine et al., Soft shadow volumes for ray "
+      "tracing, 2005) and a sweep";
+  description_.output = visibility::Output::scalar;
+  description_.exact_for =
+      "rectangle and polygon lights and any triangle soup, up to float32 of V; disk and sphere lights within 7.6e-8 (a "
+      "polygon of 4096 sides)";
+  description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
+  description_.options = {{"sweep", "rounded|rational", "rounded",
+                           "add areas in double on exactly projected vertices, or in rational numbers (slow)"}};
+  visibility::check_options(description_, options);
+  const auto sweep = options.find("sweep");
+  if (sweep == options.end() || sweep->second == "rounded") return;
+  if (sweep->second != "rational") {
+    throw UsageError("method exact: option sweep is \"{}\"; it must be rounded or rational", sweep->second);
+  }
+  arithmetic_ = SweepArithmetic::rational;
+}
+
+void Exact::prepare_mesh(const SceneFloats& scene) {
+  scene_ = &scene;
+  area_.reset();
+  area_.emplace(scene);
+}
+
+void Exact::prepare_light(const Light& light) {
+  PENUMBRA_ASSERT(area_.has_value(), "prepare_mesh comes first");
+  visibility::check_light(description_, light);
+  area_->set_light(light);
+  view_samples_ = triangles_ = edges_ = 0;
+}
+
+/// Not those that the host's rules answer.
+bool Exact::is_question(std::size_t pixel) const {
+  if (samples_->triangle[pixel] == ViewSamples::kBackground) return false;
+  const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
+  return scene_->emits[carrier] < 0 && scene_->receives_shadow[carrier] != 0;
+}
+
+float Exact::evaluate_pixel(std::size_t pixel) {
+  AreaWork work;
+  const Receiver receiver{samples_->p[pixel], static_cast<std::uint32_t>(samples_->triangle[pixel]),
+                          samples_->facing[pixel]};
+  const double visible = area_->visibility(receiver, arithmetic_, &work);
+  view_samples_.fetch_add(1, std::memory_order_relaxed);
+  triangles_.fetch_add(work.triangles, std::memory_order_relaxed);
+  edges_.fetch_add(work.edges, std::memory_order_relaxed);
+  return static_cast<float>(visible);
+}
+
+void Exact::evaluate(const Tile& tile) {
+  PENUMBRA_ASSERT(samples_ != nullptr && area_.has_value(), "prepare_light and prepare_view come first");
+  PENUMBRA_ASSERT(tile.first_row + tile.row_count <= samples_->height, "rows {} + {} of {}", tile.first_row,
+                  tile.row_count, samples_->height);
+  const std::size_t first = std::size_t{tile.first_row} * samples_->width;
+  const std::size_t end = first + std::size_t{tile.row_count} * samples_->width;
+  visibility_.assign(end - first, wanted_ ? kNotEvaluated : 1.0f);
+  std::vector<std::size_t> questions;
+  const auto ask = [&](std::size_t pixel) {
+    visibility_[pixel - first] = 1;
+    if (is_question(pixel)) questions.push_back(pixel);
+  };
+  if (wanted_) {
+    for (auto pixel = std::ranges::lower_bound(*wanted_, first); pixel != wanted_->end() && *pixel < end; ++pixel)
+      ask(*pixel);
+  } else {
+    for (std::size_t pixel = first; pixel < end; ++pixel) ask(pixel);
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, questions.size(), 4), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      visibility_[questions[i] - first] = evaluate_pixel(questions[i]);
+    }
+  });
+}
+
+void Exact::read_visibility(std::span<float> visibility) {
+  PENUMBRA_ASSERT(visibility.size() == visibility_.size(), "{} pixels asked for, {} evaluated", visibility.size(),
+                  visibility_.size());
+  std::ranges::copy(visibility_, visibility.begin());
+}
+
+}  // namespace
+
+std::unique_ptr<visibility::Method> make_exact(const visibility::MethodOptions& options) {
+  return std::make_unique<Exact>(options);
+}
+
+}  // namespace penumbra::reference

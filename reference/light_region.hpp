@@ -1,0 +1,64 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+
+#include <glm/vec3.hpp>
+#include <gmpxx.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+// Inside reference/ only: the light as an exact region of its own plane.
+
+namespace penumbra::reference {
+
+/// A point of the light's plane, centre + s · u + t · v with u, v the axes of the stored frame.
+struct PlanePoint {
+  mpq_class s, t;
+};
+
+/// A polygon in frame coordinates, counter-clockwise; closed. It need not be convex (rounding may dent a stored
+/// outline).
+using Region = std::vector<PlanePoint>;
+
+/// Sides of the polygon that stands for a disk. It has the disk's area, so as much of it lies outside the disk as the
+/// other way round: with φ = π/m, along a side at angle θ from its middle it is θ²/2 − φ²/6 outside, in all m ·
+/// 2φ³/(9√3). That, over π, is the most that V can be off: 1.27/m² = 7.6e-8.
+constexpr std::uint32_t kDiskSides = 4096;
+
+/// The light in its frame's coordinates, exact for what is stored. rectangle: [−1, 1]², the parallelogram that centre
+/// ± u ± v span (its corners are within rounding of the stored outline). polygon: the stored outline, projected at
+/// right angles onto the frame's plane. disk, sphere: the regular polygon of kDiskSides with the unit disk's area.
+Region light_region(const visibility::Light& light);
+
+mpq_class area_of(const Region& region);
+
+/// What of the region has at + s · along_s + t · along_t ≥ 0.
+struct HalfPlane {
+  mpz_class at, along_s, along_t;
+};
+Region clip(const Region& region, const HalfPlane& half_plane);
+
+/// A rectangle around a region whose sides are multiples of 1 / kGrid: small numbers to compute with.
+struct GridBox {
+  static constexpr long kGrid = 1024;
+  mpz_class s0, s1, t0, t1;  ///< times kGrid
+};
+GridBox box_around(const Region& region);
+
+/// A power of two, 2^bits, that makes all of a set of doubles integers.
+class IntegerGrid {
+ public:
+  void include(double value);
+  void include(const glm::vec3& point);
+  void include(const IntegerGrid& other);
+  [[nodiscard]] mpz_class integer(double value) const;
+  [[nodiscard]] std::array<mpz_class, 3> integers(const glm::dvec3& point) const;
+
+ private:
+  int bits_ = 0;
+};
+
+}  // namespace penumbra::reference

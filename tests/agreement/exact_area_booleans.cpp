@@ -1,0 +1,120 @@
+// The exact area against CGAL's Boolean set operations: projected triangles joined one by one in an exact kernel, cut
+// from the light. Nothing is shared with the sweep but the question.
+
+#include "tests/unit/exact_area_soups.hpp"
+
+#include <gtest/gtest.h>
+
+#include <CGAL/Boolean_set_operations_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Polygon_set_2.h>
+
+#include <list>
+
+namespace penumbra::reference {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Number = Kernel::FT;
+using Point2 = Kernel::Point_2;
+using Point3 = Kernel::Point_3;
+using Vector3 = Kernel::Vector_3;
+using Polygon2 = CGAL::Polygon_2<Kernel>;
+using PolygonSet = CGAL::Polygon_set_2<Kernel>;
+
+Point3 point_of(const glm::vec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+/// What of the polygon is where height(q) ≥ 0.
+template <typename Height>
+std::vector<Point3> clipped(const std::vector<Point3>& polygon, Height height) {
+  std::vector<Point3> result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    const Number at_a = height(a), at_b = height(b);
+    if (at_a >= 0) result.push_back(a);
+    if ((at_a >= 0) != (at_b >= 0)) result.push_back(a + at_a / (at_a - at_b) * (b - a));
+  }
+  return result;
+}
+
+Polygon2 simple_polygon(const std::vector<Point2>& points) {
+  Polygon2 polygon;
+  for (const Point2& point : points) {
+    if (polygon.is_empty() || *(polygon.vertices_end() - 1) != point) polygon.push_back(point);
+  }
+  while (polygon.size() > 1 && *polygon.vertices_begin() == *(polygon.vertices_end() - 1))
+    polygon.erase(polygon.vertices_end() - 1);
+  if (polygon.size() < 3 || polygon.area() == 0) return {};
+  if (polygon.is_clockwise_oriented()) polygon.reverse_orientation();
+  return polygon;
+}
+
+double area_left(const tests::AreaStage& stage, const glm::vec3& at) {
+  const Point3 p = point_of(at), c = point_of(stage.light.center);
+  const Vector3 u = point_of(stage.light.center_u) - c, v = point_of(stage.light.center_v) - c;
+  const Vector3 n = CGAL::cross_product(u, v);
+  const Number reach = n * (p - c);
+  const auto on_light = [&](const Point3& q) {
+    const Point3 l = p + reach / (n * (p - q)) * (q - p);
+    const Vector3 w = l - c;
+    const Number under = CGAL::determinant(u, v, n);
+    return Point2(CGAL::determinant(w, v, n) / under, CGAL::determinant(u, w, n) / under);
+  };
+  PolygonSet light;
+  std::vector<Point2> outline = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  light.insert(simple_polygon(outline));
+  PolygonSet hidden;
+  // Lattice planes that do not contain p stay further from it than 2^-20; so does what is seen on the light.
+  const Number nearest = reach / (1 << 30);
+  for (std::uint32_t i = 1; i < stage.floats.triangles.size(); ++i) {
+    if (stage.floats.casts_shadow[i] == 0 || stage.floats.plane[i] == stage.floats.plane[0]) continue;
+    const auto [a, b, d] = stage.floats.corners(i);
+    if (CGAL::coplanar(point_of(a), point_of(b), point_of(d), p)) continue;
+    std::vector<Point3> corners = {point_of(a), point_of(b), point_of(d)};
+    corners = clipped(corners, [&](const Point3& q) { return Number(n * (q - c)); });
+    corners = clipped(corners, [&](const Point3& q) { return Number(n * (p - q) - nearest); });
+    std::vector<Point2> seen;
+    bool between = false;
+    for (const Point3& q : corners) {
+      seen.push_back(on_light(q));
+      between = between || n * (q - c) > 0;
+    }
+    const Polygon2 polygon = simple_polygon(seen);
+    if (between && !polygon.is_empty()) hidden.join(polygon);
+  }
+  light.difference(hidden);
+  std::list<CGAL::Polygon_with_holes_2<Kernel>> parts;
+  light.polygons_with_holes(std::back_inserter(parts));
+  Number area = 0;
+  for (const auto& part : parts) {
+    area += part.outer_boundary().area();
+    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole) area += hole->area();  // negative
+  }
+  return CGAL::to_double(area / 4);
+}
+
+class ExactAreaBooleans : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(ExactAreaBooleans, Agree) {
+  SCOPED_TRACE(testing::Message() << "seed " << GetParam());
+  std::mt19937 random(GetParam());
+  int part = 0;
+  for (const tests::Lamp lamp : {tests::Lamp::flat, tests::Lamp::tilted}) {
+    const tests::AreaStage stage(tests::soup_scene(tests::lattice_soup(random, 12), lamp));
+    for (int i = 0; i < 8; ++i) {
+      const glm::vec3 p = tests::soup_receiver(random);
+      const double expected = area_left(stage, p);
+      // 1e-12: see exact_area_closed_forms.cpp.
+      EXPECT_NEAR(stage.visibility(p), expected, 1e-12) << p.x << " " << p.z;
+      part += expected > 0 && expected < 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(part, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ExactAreaBooleans, testing::Range(0u, 12u));
+
+}  // namespace
+}  // namespace penumbra::reference
