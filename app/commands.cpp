@@ -22,7 +22,8 @@ class CommandNotThereYet : public Command {
   }
 
   int run(const GlobalOptions&) override {
-    throw UsageError("{} is not there yet; what is: render, compare, methods, devices, convert", cli_.get_name());
+    throw UsageError("{} is not there yet; what is: render, compare, methods, devices, convert, wedges",
+                     cli_.get_name());
   }
 };
 

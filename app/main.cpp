@@ -52,9 +52,8 @@ int run(int argc, char** argv) {
   commands.push_back(penumbra::app::make_methods_command(app));
   commands.push_back(penumbra::app::make_devices_command(app));
   commands.push_back(penumbra::app::make_convert_command(app));
-  for (const char* name : {"inspect", "wedges"}) {
-    commands.push_back(penumbra::app::make_command_not_there_yet(app, name));
-  }
+  commands.push_back(penumbra::app::make_wedges_command(app));
+  commands.push_back(penumbra::app::make_command_not_there_yet(app, "inspect"));
 
   try {
     app.parse(argc, argv);

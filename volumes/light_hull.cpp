@@ -19,7 +19,7 @@ LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
   const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
                                          v = glm::dvec3(light.center_v) - center;
   const double angle = 2 * std::numbers::pi / sides, reach = kRounding / std::cos(angle / 2);
-  LightHull hull{{}, center, light.radius * (reach - 1)};
+  LightHull hull{{}, center, light.radius * (reach - 1), false};
   for (std::uint32_t i = 0; i < sides; ++i) {
     hull.corners.push_back(center + reach * (std::cos(i * angle) * u + std::sin(i * angle) * v));
   }
@@ -31,7 +31,7 @@ LightHull sphere_hull(const visibility::Light& light) {
   const double golden = std::numbers::phi;
   const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2
   const double scale = light.radius / inradius * kRounding;
-  LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius};
+  LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius, true};
   for (const double one : {-1.0, 1.0}) {
     for (const double other : {-golden, golden}) {
       for (const glm::dvec3& corner :
