@@ -2,9 +2,10 @@
 
 #include <glm/geometric.hpp>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -74,22 +75,43 @@ class Careless {
   Fault fault_;
 };
 
+std::vector<Wedge> without_splits(const std::vector<Wedge>& wedges, const Careless& careless) {
+  std::vector<Wedge> whole;
+  for (const Wedge& wedge : wedges) {
+    if (wedge.parent) continue;
+    whole.push_back(wedge);
+    if (wedge.outcome != WedgeOutcome::split) continue;
+    whole.back().outcome = WedgeOutcome::wedge;
+    whole.back().planes = careless.planes_of(wedge.a, wedge.b);
+  }
+  return whole;
+}
+
+/// The longest edge becomes `split`, and one piece follows.
+std::vector<Wedge> half_forgotten(std::vector<Wedge> wedges) {
+  const auto longest =
+      std::ranges::max_element(wedges, {}, [](const Wedge& wedge) { return glm::length(wedge.b - wedge.a); });
+  if (longest == wedges.end()) return wedges;
+  Wedge half = *longest;
+  half.b = 0.5 * half.a + 0.5 * half.b;
+  half.parent = static_cast<std::uint32_t>(longest - wedges.begin());
+  longest->outcome = WedgeOutcome::split;
+  longest->planes.clear();
+  wedges.insert(longest + 1, half);
+  return wedges;
+}
+
 }  // namespace
 
 std::vector<Wedge> build_faulty_wedges(std::span<const WedgeEdge> edges, const LightHull& light, Fault fault) {
   const Careless careless(light, fault);
-  std::vector<Wedge> wedges;
-  for (Wedge& wedge : build_wedges(edges, light, Construction::original)) {
-    if (fault == Fault::split_missing) {
-      if (wedge.parent) continue;
-      if (wedge.outcome == WedgeOutcome::split) {
-        wedge.outcome = WedgeOutcome::wedge;
-        wedge.planes = careless.planes_of(wedge.a, wedge.b);
-      }
-    } else if (wedge.outcome == WedgeOutcome::wedge) {
-      wedge.planes = careless.planes_of(wedge.a, wedge.b);
-    }
-    wedges.push_back(std::move(wedge));
+  std::vector<Wedge> wedges = build_wedges(edges, light, Construction::original);
+  if (fault == Fault::split_missing) {
+    const bool any_split = std::ranges::find(wedges, WedgeOutcome::split, &Wedge::outcome) != wedges.end();
+    return any_split ? without_splits(wedges, careless) : half_forgotten(std::move(wedges));
+  }
+  for (Wedge& wedge : wedges) {
+    if (wedge.outcome == WedgeOutcome::wedge) wedge.planes = careless.planes_of(wedge.a, wedge.b);
   }
   return wedges;
 }

@@ -14,7 +14,8 @@ enum class Fault {
   front_back_swapped,      ///< front and back plane look the wrong way
   rounded_inward,          ///< coefficients as floats, and d rounded towards the inside
   near_plane_clipped,      ///< one more plane, across the wedge a little below the edge
-  split_missing,           ///< where the construction splits, four planes of the whole edge all the same
+  split_missing,           ///< where the construction splits, four planes of the whole edge all the same; in a scene
+                           ///< where it never does, the longest edge is split and its second half forgotten
 };
 
 /// As build_wedges(…, Construction::original), but built with the fault and without proof. Planes that can be proved

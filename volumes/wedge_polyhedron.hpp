@@ -39,7 +39,7 @@ struct PolyhedronFace {
 
 enum class Extent {
   solid,
-  flat,   ///< no volume: the box is only touched, or the half-spaces leave a piece of a plane or line. No faces.
+  flat,   ///< no volume: the box is touched only, or all is in a plane. No faces; planes after that are not looked at
   empty,  ///< nothing at all
 };
 

@@ -63,26 +63,28 @@ double distance_beyond(const Plane& plane, const ExactPoint& p) {
   return -height_of(plane, p).get_d() / glm::length(plane.normal());
 }
 
-/// A point of the penumbra outside the plane, x + t (x − l), if an end x or a ray x − l says that there is one.
+/// A point of the penumbra outside the plane, x + t (x − l), if an end x or a ray x − l says that there is one: of
+/// those tried the farthest outside.
 std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight& cast) {
+  std::optional<ExactPoint> farthest;
+  double distance = 0;
   for (const glm::dvec3& x : {cast.a, cast.b}) {
     for (const glm::dvec3& l : cast.light) {
       const ExactPoint end(x), corner(l);
       const mpq_class above = height_of(plane, end), rise = above - height_of(plane, corner);
-      mpq_class t;
-      if (sgn(above) < 0) {
-        t = sgn(rise) <= 0 ? mpq_class(1) : mpq_class(above / (-2 * rise));
-      } else if (sgn(rise) < 0) {
-        t = 1 - above / rise;
-      } else {
-        continue;
-      }
+      if (sgn(above) >= 0 && sgn(rise) >= 0) continue;
+      mpq_class t = 1;  // if the ray falls, far enough to end below; if it rises, not so far that it ends above
+      if (sgn(above) >= 0) t = 1 - above / rise;
+      if (sgn(above) < 0 && sgn(rise) > 0) t = -above / (2 * rise);
       std::array<mpq_class, 3> at;
       for (std::size_t k = 0; k < 3; ++k) at[k] = end.at[k] + t * (end.at[k] - corner.at[k]);
-      return ExactPoint(std::move(at));
+      ExactPoint point(std::move(at));
+      if (farthest && distance_beyond(plane, point) <= distance) continue;
+      distance = distance_beyond(plane, point);
+      farthest = std::move(point);
     }
   }
-  return std::nullopt;
+  return farthest;
 }
 
 /// A direction with positive products with all x − l, by walking to the point of their hull nearest to zero (Gilbert

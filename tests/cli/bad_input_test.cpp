@@ -151,7 +151,7 @@ std::vector<BadUsage> bad_usages() {
       {"UnknownCamera", with({"--method", "raytrace", "--camera", "drone"}), 2, {"drone"}},
       {"FramesBackwards", with({"--frames", "9-3"}), 2, {"9-3"}},
       {"InspectNotThereYet", {"inspect", "mesh.ply", "--json", "x"}, 2, {"not there yet"}},
-      {"WedgesNotThereYet", {"wedges", "SCENE", "--light", "key"}, 2, {"not there yet"}},
+      {"ExplainNotThereYet", {"wedges", "SCENE", "--explain", "1,1"}, 2, {"not there yet"}},
       {"ExactNotThereYet", {"compare", "SCENE", "-o", "DIR", "--reference", "exact"}, 2, {"not there yet"}},
       {"ReferenceThatIsNone", {"compare", "SCENE", "-o", "DIR", "--reference", "magic"}, 2, {"magic"}},
       {"ReferenceSamples",
