@@ -35,7 +35,6 @@ std::unique_ptr<Command> make_inspect_command(CLI::App& app);
 std::unique_ptr<Command> make_methods_command(CLI::App& app);
 std::unique_ptr<Command> make_devices_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);
-/// A name that is taken: whoever calls it learns that its time has yet to come.
-std::unique_ptr<Command> make_command_not_there_yet(CLI::App& app, const std::string& name);
+std::unique_ptr<Command> make_wedges_command(CLI::App& app);
 
 }  // namespace penumbra::app

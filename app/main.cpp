@@ -53,7 +53,7 @@ int run(int argc, char** argv) {
   commands.push_back(penumbra::app::make_methods_command(app));
   commands.push_back(penumbra::app::make_devices_command(app));
   commands.push_back(penumbra::app::make_convert_command(app));
-  commands.push_back(penumbra::app::make_command_not_there_yet(app, "wedges"));
+  commands.push_back(penumbra::app::make_wedges_command(app));
 
   try {
     app.parse(argc, argv);

@@ -58,6 +58,13 @@ class Exact final : public visibility::Method {
   std::atomic<std::uint64_t> view_samples_ = 0, triangles_ = 0, edges_ = 0;
 };
 
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return {
+      visibility::Verdict::exact,
+      visibility::reason_with("the area of what the triangles leave of the light, whatever is wrong with the mesh",
+                              mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+}
+
 Exact::Exact(const visibility::MethodOptions& options) {
   description_.name = "exact";
   description_.family = visibility::Family::reference;
@@ -69,6 +76,7 @@ Exact::Exact(const visibility::MethodOptions& options) {
       "rectangle and polygon lights and any triangle soup, up to float32 of V; disk and sphere lights within 7.6e-8 (a "
       "polygon of 4096 sides)";
   description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
+  description_.verdict_on = verdict_on;
   description_.options = {{"sweep", "rounded|rational", "rounded",
                            "add areas in double on exactly projected vertices, or in rational numbers (slow)"}};
   visibility::check_options(description_, options);

@@ -1,20 +1,17 @@
 #include "scenes/checks.hpp"
+#include "scenes/glb_model.hpp"
 #include "scenes/writers.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <numbers>
-#include <sstream>
 #include <unordered_map>
 #include <variant>
 
@@ -26,14 +23,6 @@ constexpr unsigned kDiskSides = 64;
 
 class GlbBuilder {
  public:
-  GlbBuilder() {
-    model_.asset.version = "2.0";
-    model_.asset.generator = "penumbra";
-    model_.scenes.emplace_back();
-    model_.defaultScene = 0;
-    model_.buffers.emplace_back();
-  }
-
   int add_material(const std::string& name, const glm::dvec3& color, const AreaLight* light) {
     tinygltf::Material material;
     material.name = name;
@@ -51,39 +40,18 @@ class GlbBuilder {
       material.doubleSided = light->two_sided;
       uses_emissive_strength_ = true;
     }
-    model_.materials.push_back(std::move(material));
-    return last(model_.materials);
+    return glb_.add_material(std::move(material));
   }
 
   /// A node with a mesh of its own.
   void add_mesh(const std::string& name, const std::vector<glm::vec3>& positions,
                 const std::vector<std::uint32_t>& indices, int material) {
     PENUMBRA_ASSERT(!positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
-    glm::vec3 low = positions.front(), high = low;
-    for (const glm::vec3& position : positions) {
-      low = glm::min(low, position);
-      high = glm::max(high, position);
-    }
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = material;
-    primitive.attributes["POSITION"] =
-        add_accessor(positions.data(), positions.size(), sizeof(glm::vec3), TINYGLTF_COMPONENT_TYPE_FLOAT,
-                     TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
-    tinygltf::Accessor& accessor = model_.accessors.back();
-    accessor.minValues = {low.x, low.y, low.z};
-    accessor.maxValues = {high.x, high.y, high.z};
-    primitive.indices =
-        add_accessor(indices.data(), indices.size(), sizeof(std::uint32_t), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                     TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     tinygltf::Mesh mesh;
     mesh.name = name;
-    mesh.primitives.push_back(std::move(primitive));
-    model_.meshes.push_back(std::move(mesh));
-    tinygltf::Node node;
-    node.name = name;
-    node.mesh = last(model_.meshes);
-    add_node(std::move(node));
+    mesh.primitives.push_back(
+        glb_.primitive(TINYGLTF_MODE_TRIANGLES, glb_.add_positions(positions), indices, material));
+    glb_.add_root(glb_.add_mesh_node(std::move(mesh)));
   }
 
   void add_camera(const Camera& camera, double aspect) {
@@ -94,62 +62,24 @@ class GlbBuilder {
     gltf.perspective.aspectRatio = aspect;
     gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
     gltf.perspective.zfar = 0;  // none
-    model_.cameras.push_back(std::move(gltf));
     // A glTF camera looks along its −Z with +Y up.
     const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
     const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back)), up = glm::cross(back, right);
     tinygltf::Node node;
     node.name = camera.name;
-    node.camera = last(model_.cameras);
+    node.camera = glb_.add_camera(std::move(gltf));
     node.matrix = {right.x, right.y, right.z, 0, up.x,         up.y,         up.z,         0,
                    back.x,  back.y,  back.z,  0, camera.eye.x, camera.eye.y, camera.eye.z, 1};
-    add_node(std::move(node));
+    glb_.add_root(glb_.add_node(std::move(node)));
   }
 
   std::string finish() {
-    if (uses_emissive_strength_) model_.extensionsUsed.push_back(kEmissiveStrength);
-    std::ostringstream stream;
-    if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, false, true)) {
-      throw ResourceError("the scene could not be encoded as GLB");
-    }
-    return std::move(stream).str();
+    if (uses_emissive_strength_) glb_.uses_extension(kEmissiveStrength);
+    return glb_.encoded();
   }
 
  private:
-  template <typename Element>
-  static int last(const std::vector<Element>& elements) {
-    return static_cast<int>(elements.size()) - 1;
-  }
-
-  void add_node(tinygltf::Node node) {
-    model_.nodes.push_back(std::move(node));
-    model_.scenes[0].nodes.push_back(last(model_.nodes));
-  }
-
-  int add_accessor(const void* data, std::size_t count, std::size_t stride, int component_type, int type, int target) {
-    std::vector<unsigned char>& bytes = model_.buffers[0].data;
-    const std::size_t offset = bytes.size(), length = count * stride;  // every element is a multiple of 4 bytes
-    if (offset + length > std::numeric_limits<std::uint32_t>::max() - (std::uint32_t{1} << 24)) {
-      throw InputError("the scene does not fit into a GLB, which holds at most 4 GiB; write .json or .obj");
-    }
-    bytes.resize(offset + length);
-    std::memcpy(bytes.data() + offset, data, length);
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = offset;
-    view.byteLength = length;
-    view.target = target;
-    model_.bufferViews.push_back(view);
-    tinygltf::Accessor accessor;
-    accessor.bufferView = last(model_.bufferViews);
-    accessor.componentType = component_type;
-    accessor.count = count;
-    accessor.type = type;
-    model_.accessors.push_back(accessor);
-    return last(model_.accessors);
-  }
-
-  tinygltf::Model model_;
+  GlbModel glb_;
   bool uses_emissive_strength_ = false;
 };
 

@@ -10,6 +10,13 @@
 namespace penumbra::volumes {
 namespace {
 
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return {
+      visibility::Verdict::approximate,
+      visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
+                              mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+}
+
 visibility::MethodDescription describe() {
   using visibility::LightKind;
   return {.name = "hard-volume",
@@ -19,7 +26,8 @@ visibility::MethodDescription describe() {
           .exact_for = "the hard shadow of the light's centre, of any triangle soup (z-fail)",
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
           .options = {{"variant", "z-fail|z-pass", "z-fail",
-                       "count volumes beyond the surface, or before it: wrong when the camera is in shadow"}}};
+                       "count volumes beyond the surface, or before it: wrong when the camera is in shadow"}},
+          .verdict_on = verdict_on};
 }
 
 CountVariant variant_of(const visibility::MethodDescription& method, const visibility::MethodOptions& options) {

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,14 +13,18 @@ namespace {
 
 using visibility::LightKind;
 
-/// What float32 storage may have moved a point by, and rounding here: the hull is made larger by as much.
-constexpr double kRounding = 1 + 0x1p-20;
+/// By how much of the radius the hull is made larger, for rounding here and for what storage in float32 may have moved
+/// points by: half an ulp of each coordinate of the centre and of a point of the rim, less than 2⁻²² of their size.
+double margin_of(const visibility::Light& light) {
+  const double farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
+  return 0x1p-20 + 0x1p-22 * (farthest + light.radius) / light.radius;
+}
 
 LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
   const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
                                          v = glm::dvec3(light.center_v) - center;
-  const double angle = 2 * std::numbers::pi / sides, reach = kRounding / std::cos(angle / 2);
-  LightHull hull{{}, center, light.radius * (reach - 1)};
+  const double angle = 2 * std::numbers::pi / sides, reach = (1 + margin_of(light)) / std::cos(angle / 2);
+  LightHull hull{{}, center, light.radius * (reach - 1), false};
   for (std::uint32_t i = 0; i < sides; ++i) {
     hull.corners.push_back(center + reach * (std::cos(i * angle) * u + std::sin(i * angle) * v));
   }
@@ -30,8 +35,8 @@ LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
 LightHull sphere_hull(const visibility::Light& light) {
   const double golden = std::numbers::phi;
   const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2
-  const double scale = light.radius / inradius * kRounding;
-  LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius};
+  const double scale = light.radius * (1 + margin_of(light)) / inradius;
+  LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius, true};
   for (const double one : {-1.0, 1.0}) {
     for (const double other : {-golden, golden}) {
       for (const glm::dvec3& corner :

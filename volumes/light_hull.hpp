@@ -15,7 +15,8 @@ namespace penumbra::volumes {
 struct LightHull {
   std::vector<glm::dvec3> corners;
   glm::dvec3 center{0};
-  double slack = 0;  ///< in the scene's unit
+  double slack = 0;       ///< in the scene's unit
+  bool is_solid = false;  ///< a polyhedron; otherwise a polygon, its corners in order
 };
 
 /// `sides` of a disk's polygon: it sticks out by radius · (1 / cos(π / sides) − 1), 0.5 % for 32.

@@ -19,7 +19,8 @@ enum class Construction {
   /// towards it until both are equally far; front and back plane contain the moved edge and touch the light from either
   /// side; left and right plane contain an endpoint and the direction edge × (centre − endpoint), and touch the light.
   original,
-  /// Ours: the facets of the convex hull of the penumbra, which is e + cone{x − l}: nothing convex is smaller.
+  /// Ours: the facets of the convex hull of the penumbra, e + cone{x − l}: the penumbra's closure, since that is convex
+  /// (wedge_tightness.hpp).
   tight,
 };
 
@@ -54,7 +55,7 @@ struct WedgeEdge {
 /// | --- | --- | --- |
 /// | edge clear of the light | wedge, up to 4 planes | wedge |
 /// | edge points at the light (its moved line meets it) | split, then everywhere | wedge: the nearer endpoint's cone |
-/// | edge longer than its distance | split | wedge |
+/// | edge longer than its distance | wedge or split | wedge |
 /// | edge through the light's plane, beside the light | wedge or split | wedge |
 /// | edge in its own penumbra; adjacent wedges overlap | wedge: wedges are independent | the same |
 /// | edge touches or crosses the light | everywhere | everywhere |

@@ -20,6 +20,10 @@ struct Plane {
   [[nodiscard]] glm::dvec3 normal() const { return {a, b, c}; }
 };
 
+struct Box {
+  glm::dvec3 lower{0}, upper{0};
+};
+
 /// What casts a penumbra: an edge (or a piece of one) and the corners of a light's hull.
 struct EdgeAndLight {
   glm::dvec3 a{0}, b{0};

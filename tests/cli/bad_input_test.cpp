@@ -150,7 +150,7 @@ std::vector<BadUsage> bad_usages() {
       {"UnknownLight", with({"--method", "raytrace", "--light", "moon"}), 2, {"moon", "key"}},
       {"UnknownCamera", with({"--method", "raytrace", "--camera", "drone"}), 2, {"drone"}},
       {"FramesBackwards", with({"--frames", "9-3"}), 2, {"9-3"}},
-      {"WedgesNotThereYet", {"wedges", "SCENE", "--light", "key"}, 2, {"not there yet"}},
+      {"ExplainNotThereYet", {"wedges", "SCENE", "--explain", "1,1"}, 2, {"not there yet"}},
       {"ReferenceThatIsNoJudge", {"compare", "SCENE", "-o", "DIR", "--reference", "pcss"}, 2, {"raytrace or exact"}},
       {"ReferenceThatIsNone", {"compare", "SCENE", "-o", "DIR", "--reference", "magic"}, 2, {"magic"}},
       {"ReferenceSamples",

@@ -31,11 +31,11 @@ class Random {
 };
 
 LightHull rectangle(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v) {
-  return {{center - u - v, center + u - v, center + u + v, center - u + v}, center, 0};
+  return {{center - u - v, center + u - v, center + u + v, center - u + v}, center, 0, false};
 }
 
 LightHull disk(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v, std::uint32_t sides) {
-  LightHull hull{{}, center, 0};
+  LightHull hull{{}, center, 0, false};
   for (std::uint32_t i = 0; i < sides; ++i) {
     const double angle = 2 * M_PI * i / sides;
     hull.corners.push_back(center + std::cos(angle) * u + std::sin(angle) * v);

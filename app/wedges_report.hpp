@@ -1,0 +1,31 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "volumes/wedge_tightness.hpp"
+#include "volumes/wedge_validation.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace penumbra::app {
+
+/// What `wedges` found out.
+struct WedgesResult {
+  const visibility::Light& light;
+  const volumes::LightHull& hull;
+  glm::dvec3 origin{0};
+  std::string construction, from;  ///< as on the command line
+  std::span<const volumes::Wedge> wedges;
+  const volumes::ValidationReport* validation = nullptr;  ///< if it was asked for
+  const volumes::Tightness* tightness = nullptr;
+};
+
+/// The contract's JSON, and beside it "counts", and if they were validated "checks" and "tightness".
+void write_wedges_json(const std::filesystem::path& path, const WedgesResult& result);
+
+/// For people, on stdout: how many of which outcome, what was proved, the first violations.
+void print_wedges(const WedgesResult& result);
+
+}  // namespace penumbra::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// A glTF model as it grows, with one scene and one buffer. Internal to this room: TinyGLTF's types.
+namespace penumbra::scenes {
+
+/// Every index that is handed out is in the model; buffer views are multiples of four bytes.
+class GlbModel {
+ public:
+  GlbModel();
+
+  int add_material(tinygltf::Material material);
+  int add_camera(tinygltf::Camera camera);
+  /// An accessor with its bounds, as POSITION wants it. InputError where the buffer would grow beyond a GLB's 4 GiB.
+  int add_positions(const std::vector<glm::vec3>& positions);
+  /// `mode`: TINYGLTF_MODE_…; indices into the accessor `positions`.
+  tinygltf::Primitive primitive(int mode, int positions, const std::vector<std::uint32_t>& indices, int material);
+  /// The mesh, and a node of its name that shows it.
+  int add_mesh_node(tinygltf::Mesh mesh);
+  int add_node(tinygltf::Node node);
+  void add_root(int node);
+  void uses_extension(const std::string& name) { model_.extensionsUsed.push_back(name); }
+
+  /// The file's bytes.
+  [[nodiscard]] std::string encoded();
+
+ private:
+  int add_accessor(const void* data, std::size_t count, std::size_t stride, int component_type, int type, int target);
+
+  tinygltf::Model model_;
+};
+
+}  // namespace penumbra::scenes
