@@ -32,7 +32,7 @@ set(kept_valijson scenes)
 set(kept_OpenEXR base)
 set(kept_png base)
 set(kept_CLI app)
-set(kept_gmpxx volumes)
+set(kept_gmpxx volumes reference)
 set(libraries vulkan spirv_cross CGAL OpenMesh embree3 assimp tiny_gltf valijson OpenEXR png CLI gmpxx)
 
 # check(root result): a list of complaints, one a wrong include.
