@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 namespace penumbra::volumes {
@@ -75,8 +76,11 @@ TEST(WedgeCorpus, AllClosedMeshesFull) {
   std::uint64_t wedges = 0, meshes = 0;
   for (const auto& file : files) {
     const std::uint64_t some = check(file, true);
+    if (some == 0) continue;
     wedges += some;
-    meshes += some > 0 ? 1 : 0;
+    ++meshes;
+    fmt::print("{}: {} wedges\n", file.filename().string(), some);
+    std::fflush(stdout);  // it takes long
   }
   fmt::print("{} closed meshes, {} wedges\n", meshes, wedges);
   EXPECT_GT(meshes, 50U);
