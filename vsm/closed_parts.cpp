@@ -83,6 +83,18 @@ ClosedPart bounds_of(const SceneFloats& scene, std::span<const std::uint32_t> tr
   return part;
 }
 
+/// Six times the volume that the triangles enclose, wound by `turn`: positive if their normals point outward. In
+/// double: whichever way it comes out, shadows are right, and only speed depends on it.
+double signed_volume(const SceneFloats& scene, std::span<const std::uint32_t> triangles,
+                     const std::vector<std::int8_t>& turn) {
+  double sum = 0;
+  for (const std::uint32_t t : triangles) {
+    const auto [a, b, c] = scene.corners(t);
+    sum += turn[t] * glm::dot(glm::dvec3(a), glm::cross(glm::dvec3(b), glm::dvec3(c)));
+  }
+  return sum;
+}
+
 /// For each plane, the component that alone has triangles on it, or kNone.
 std::vector<std::uint32_t> plane_owners(const SceneFloats& scene, const std::vector<std::uint32_t>& component) {
   constexpr std::uint32_t kUnseen = 0xfffffffeU;
@@ -155,11 +167,15 @@ ClosedParts find_closed_parts(const SceneFloats& scene) {
   if (candidates.empty()) return closed;
   closed.part.resize(scene.triangles.size());
   closed.turn.resize(scene.triangles.size());
+  for (std::size_t i = 0; i < casters.in_scene.size(); ++i) closed.turn[casters.in_scene[i]] = turn[i];
   for (const Candidate& candidate : candidates) {
     closed.parts.push_back(bounds_of(scene, candidate.triangles));
-    for (const std::uint32_t t : candidate.triangles) closed.part[t] = static_cast<std::uint8_t>(closed.parts.size());
+    const bool outward = signed_volume(scene, candidate.triangles, closed.turn) > 0;
+    for (const std::uint32_t t : candidate.triangles) {
+      closed.part[t] = static_cast<std::uint8_t>(closed.parts.size());
+      if (outward) closed.turn[t] = static_cast<std::int8_t>(-closed.turn[t]);
+    }
   }
-  for (std::size_t i = 0; i < casters.in_scene.size(); ++i) closed.turn[casters.in_scene[i]] = turn[i];
   return closed;
 }
 

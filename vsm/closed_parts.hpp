@@ -30,8 +30,7 @@ struct ClosedParts {
 
   std::vector<ClosedPart> parts;
   std::vector<std::uint8_t> part;  ///< for each triangle: its part's number, from 1, or 0. Empty when there is none
-  std::vector<std::int8_t> turn;   ///< for each triangle of a part: ±1, so that turned by it all are wound alike:
-                                  ///< normals all outward or all inward
+  std::vector<std::int8_t> turn;   ///< for each triangle of a part: ±1, so that turned by it all normals point inward
 };
 
 /// Scene floats know no winding, and none is needed: parts are wound here.
