@@ -50,7 +50,8 @@ class InspectCommand : public Command {
                       ->type_name("N")
                       ->default_str("0");
     auto* resolve = cli_.add_flag("--resolve-self-intersections", resolve_,
-                                  "with --repair: cut triangles where they meet each other");
+                                  "with --repair: replace triangles that cross others of their part, moving "
+                                  "the surface by at most 1 % of its size");
     for (auto* option : {holes, static_cast<CLI::Option*>(resolve)}) option->needs("--repair");
     cli_.add_flag("--no-self-intersections", no_intersections_, "do not search them: the search that takes longest");
     cli_.add_option(

@@ -51,7 +51,7 @@ struct Diagnosis {
   std::uint64_t boundary_loops = 0;  ///< sets of boundary edges linked where two end at a vertex in the same fan (see
                                      ///< non_manifold_vertices): two sheets that touch in a vertex have two loops, two
                                      ///< holes of one sheet that touch are one loop, as in a half-edge structure
-  Defect non_manifold_edges;     ///< more than two triangles
+  Defect non_manifold_edges;         ///< more than two triangles
   Defect non_manifold_vertices;  ///< the triangles at the vertex form more than one fan (linked through edges there)
   Defect inconsistent_windings;  ///< edges of exactly two triangles that both run along it the same way
   Defect duplicate_faces;        ///< triangles with the same three (different) vertices and winding as an earlier one

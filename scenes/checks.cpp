@@ -15,7 +15,6 @@
 namespace penumbra::scenes {
 namespace {
 
-
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 std::string show(const glm::dvec3& v) {

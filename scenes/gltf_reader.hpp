@@ -18,7 +18,8 @@ namespace penumbra::scenes {
 ///    counter-clockwise, to both if the material is double-sided. It stays an object, with `emits` set.
 ///
 /// InputError, with a place such as "/accessors/3", for whatever glTF 2.0 forbids and matters here, for a scene
-/// without an area light if `options.needs_light`, and for a buffer outside the file's folder unless `options.allow_outside`.
+/// without an area light if `options.needs_light`, and for a buffer outside the file's folder unless
+/// `options.allow_outside`.
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace penumbra::scenes

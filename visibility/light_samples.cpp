@@ -240,6 +240,22 @@ Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const gl
   return light;
 }
 
+glm::vec3 center_of(const Light& light) {
+  if (light.kind != LightKind::polygon) return light.center;
+  // The mean of the centroids of a fan's triangles, weighted by area.
+  const glm::dvec3 c = light.center, a = light.outline.front();
+  const glm::dvec3 normal = glm::cross(glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c);
+  glm::dvec3 sum{0};
+  double area = 0;
+  for (std::size_t i = 1; i + 1 < light.outline.size(); ++i) {
+    const glm::dvec3 b = glm::dvec3(light.outline[i]) - a, d = glm::dvec3(light.outline[i + 1]) - a;
+    const double weight = glm::dot(glm::cross(b, d), normal);
+    sum += weight * (b + d) / 3.0;
+    area += weight;
+  }
+  return glm::vec3(a + sum / area);
+}
+
 LightAxes light_axes(const Light& light, const glm::vec3& p) {
   if (light.kind != LightKind::sphere) {
     const glm::dvec3 c = light.center;

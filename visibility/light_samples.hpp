@@ -66,6 +66,9 @@ std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
 Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
                  const SampleRequest& request, std::vector<std::string>* notes = nullptr);
 
+/// The point that stands for the whole light: its stored centre; of a polygon, its centroid rounded to float32.
+glm::vec3 center_of(const Light& light);
+
 /// The axes u, v of the light as seen from p: centre → centre + halfU and → centre + halfV of the stored frame; for a
 /// sphere the axes, one radius long, of the disk through its centre that faces p (u × v points to p).
 struct LightAxes {

@@ -54,12 +54,8 @@ LightHull light_hull(const visibility::Light& light, std::uint32_t sides) {
   PENUMBRA_ASSERT(sides >= 3, "{} sides", sides);
   if (light.kind == LightKind::disk) return disk_hull(light, sides);
   if (light.kind == LightKind::sphere) return sphere_hull(light);
-  LightHull hull;
-  for (const glm::vec3& corner : light.outline) {
-    hull.corners.emplace_back(corner);
-    hull.center += glm::dvec3(corner) / static_cast<double>(light.outline.size());
-  }
-  if (light.kind == LightKind::rectangle) hull.center = light.center;
+  LightHull hull{{}, glm::dvec3(visibility::center_of(light))};
+  for (const glm::vec3& corner : light.outline) hull.corners.emplace_back(corner);
   return hull;
 }
 

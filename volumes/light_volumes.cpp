@@ -64,19 +64,6 @@ std::optional<std::int32_t> count(const LightVolumes& volumes, const Inside& ins
   return sum;
 }
 
-glm::dvec3 centroid(const std::vector<glm::vec3>& outline, const glm::dvec3& normal) {
-  const glm::dvec3 a = outline.front();
-  glm::dvec3 sum{0};
-  double area = 0;
-  for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
-    const glm::dvec3 b = glm::dvec3(outline[i]) - a, c = glm::dvec3(outline[i + 1]) - a;
-    const double weight = glm::dot(glm::cross(b, c), normal);
-    sum += weight * (b + c) / 3.0;
-    area += weight;
-  }
-  return a + sum / area;
-}
-
 }  // namespace
 
 ShadowCasters::ShadowCasters(const visibility::SceneFloats& scene)
@@ -110,12 +97,6 @@ LightVolumes ShadowCasters::seen_from(const glm::vec3& l, std::int32_t light_ind
     volumes.edges.push_back({scene_->positions[a], scene_->positions[b], multiplicities[edge]});
   }
   return volumes;
-}
-
-glm::vec3 center_of(const visibility::Light& light) {
-  if (light.kind != visibility::LightKind::polygon) return light.center;
-  const glm::dvec3 c = light.center;
-  return glm::vec3(centroid(light.outline, glm::cross(glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c)));
 }
 
 std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction) {

@@ -50,9 +50,6 @@ class ShadowCasters {
   mesh::EdgeGraph graph_;
 };
 
-/// The point that stands for the whole light: the stored centre; of a polygon, its centroid rounded to float32.
-glm::vec3 center_of(const visibility::Light& light);
-
 /// How many triangles the ray from l in this direction meets; nothing if double cannot tell.
 std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction);
 
