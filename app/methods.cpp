@@ -13,6 +13,7 @@
 #include "vsm/view_sample.hpp"
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+#include "volumes/edge_scatter.hpp"
 #include "volumes/hard_volume.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
@@ -67,6 +68,7 @@ const std::vector<TableRow>& table() {
       on_device<vsm::view_sample_description, vsm::make_view_sample>(),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+      on_device<volumes::edge_scatter_description, volumes::make_edge_scatter>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS

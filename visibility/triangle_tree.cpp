@@ -7,7 +7,9 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <new>
+#include <utility>
 
 namespace penumbra::visibility {
 namespace {
@@ -95,13 +97,15 @@ class Flattener {
   TriangleTree* tree_;
 };
 
-}  // namespace
-
-TriangleTree make_triangle_tree(const SceneFloats& scene) {
+TriangleTree make_tree(std::vector<RTCBuildPrimitive> primitives) {
   TriangleTree tree;
-  std::vector<RTCBuildPrimitive> primitives = primitives_of(scene);
   if (primitives.empty()) return tree;
   const std::size_t count = primitives.size();
+  Bounds bounds_of_all{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
+  for (const RTCBuildPrimitive& p : primitives) {  // before the builder reorders and splits them
+    bounds_of_all.lower = glm::min(bounds_of_all.lower, {p.lower_x, p.lower_y, p.lower_z});
+    bounds_of_all.upper = glm::max(bounds_of_all.upper, {p.upper_x, p.upper_y, p.upper_z});
+  }
 
   const RTCDevice device = rtcNewDevice(nullptr);
   if (device == nullptr)
@@ -130,13 +134,7 @@ TriangleTree make_triangle_tree(const SceneFloats& scene) {
     if (root->leaf) {
       tree.nodes.emplace_back();
       tree.depth = 1;
-      glm::vec3 lower = scene.corners(root->triangles[0])[0], upper = lower;
-      for (std::uint32_t i = 0; i < root->count; ++i) {
-        for (const glm::vec3& corner : scene.corners(root->triangles[i])) {
-          lower = glm::min(lower, corner);
-          upper = glm::max(upper, corner);
-        }
-      }
+      const auto [lower, upper] = bounds_of_all;
       tree.nodes[0][0] = {lower, upper, flattener.leaf(*root)};
     } else {
       flattener.node(*root, 1);
@@ -144,8 +142,24 @@ TriangleTree make_triangle_tree(const SceneFloats& scene) {
   }
   rtcReleaseBVH(bvh);
   rtcReleaseDevice(device);
-  if (root == nullptr) throw ResourceError("no memory for the hierarchy over {} triangles", count);
+  if (root == nullptr) throw ResourceError("no memory for the hierarchy over {} boxes", count);
   return tree;
+}
+
+}  // namespace
+
+TriangleTree make_triangle_tree(const SceneFloats& scene) {
+  return make_tree(primitives_of(scene));
+}
+
+TriangleTree make_tree_over(std::span<const Bounds> boxes) {
+  std::vector<RTCBuildPrimitive> primitives;
+  primitives.reserve(boxes.size());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const auto& [lower, upper] = boxes[i];
+    primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, i});
+  }
+  return make_tree(std::move(primitives));
 }
 
 }  // namespace penumbra::visibility

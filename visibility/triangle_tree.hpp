@@ -4,8 +4,10 @@
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace penumbra::visibility {
@@ -32,9 +34,20 @@ struct TriangleTree {
   /// Calls `visit(triangle)` for each triangle in a leaf whose box touches [lower, upper].
   template <typename Visit>
   void for_each_near(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const;
+
+  /// Does `visit(triangle)` hold for one of the triangles in the leaves whose boxes the segment p→l touches? Stops at
+  /// the first. Boxes are taken a little larger than they are (2⁻⁴⁰ of the segment), which outweighs double rounding.
+  template <typename Visit>
+  bool any_along(const glm::vec3& p, const glm::vec3& l, Visit&& visit) const;
 };
 
 TriangleTree make_triangle_tree(const SceneFloats& scene);
+
+struct Bounds {
+  glm::vec3 lower{0}, upper{0};
+};
+/// The same over any boxes (edges, say): leaves hold their numbers.
+TriangleTree make_tree_over(std::span<const Bounds> boxes);
 
 template <typename Visit>
 void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const {
@@ -58,6 +71,48 @@ void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper,
       }
     }
   }
+}
+
+/// The stretch of a segment from p along `way` (p→l), 0 … 1, that is in a box.
+struct SegmentInBox {
+  glm::dvec3 p, way;
+
+  [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
+    double enter = -0x1p-40, leave = 1 + 0x1p-40;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double from = lower[axis] - p[axis], to = upper[axis] - p[axis];
+      if (way[axis] == 0) {
+        if (from > 0 || to < 0) return false;
+        continue;
+      }
+      const double t0 = from / way[axis], t1 = to / way[axis];
+      enter = std::max(enter, std::min(t0, t1) - 0x1p-40);
+      leave = std::min(leave, std::max(t0, t1) + 0x1p-40);
+    }
+    return enter <= leave;
+  }
+};
+
+template <typename Visit>
+bool TriangleTree::any_along(const glm::vec3& p, const glm::vec3& l, Visit&& visit) const {
+  const SegmentInBox segment{glm::dvec3(p), glm::dvec3(l) - glm::dvec3(p)};
+  std::vector<std::uint32_t> stack;
+  if (!nodes.empty()) stack.push_back(0);
+  while (!stack.empty()) {
+    const Node& node = nodes[stack.back()];
+    stack.pop_back();
+    for (const Child& child : node) {
+      if (child.reference == kNoChild || !segment.touches(child.lower, child.upper)) continue;
+      if ((child.reference & kLeafBit) == 0) {
+        stack.push_back(child.reference);
+        continue;
+      }
+      for (const std::uint32_t triangle : leaves[child.reference & ~kLeafBit]) {
+        if (triangle != kNoTriangle && visit(triangle)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace penumbra::visibility

@@ -14,36 +14,6 @@ namespace penumbra::vsm {
 
 using visibility::TriangleTree;
 
-namespace {
-
-/// Is the normal, as computed in double, right to float32? Not that of a needle whose edges are parallel but for their
-/// last digits: each component of the cross product is off by up to 4 · 2⁻⁵³ |e1| |e2| (1-norms). Where it is not, the
-/// device gets a normal of zero, which leaves every sample of the horizon open.
-bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
-  const glm::dvec3 cross = glm::abs(glm::cross(e1, e2)), size1 = glm::abs(e1), size2 = glm::abs(e2);
-  return cross.x + cross.y + cross.z > 0x1p-25 * (size1.x + size1.y + size1.z) * (size2.x + size2.y + size2.z);
-}
-
-}  // namespace
-
-std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
-  std::vector<Texel> texels;
-  texels.reserve(tree.nodes.size() * 2 * TriangleTree::kWidth);
-  for (const TriangleTree::Node& node : tree.nodes) {
-    for (const TriangleTree::Child& child : node) {
-      const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
-      const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
-      glm::vec3 half = glm::max(upper - middle, middle - lower);
-      for (int axis = 0; axis < 3; ++axis)
-        half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
-      texels.push_back({middle, child.reference});
-      texels.push_back({half, 0});
-    }
-  }
-  return texels;
-}
-
 std::array<std::vector<Texel>, 3> corner_texels(const TriangleTree& tree, const visibility::SceneFloats& scene,
                                                 const ClosedParts& closed, float scale) {
   std::array<std::vector<Texel>, 3> texels;
@@ -119,7 +89,7 @@ std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const vis
                             scene.receives_shadow[static_cast<std::size_t>(carrier)] == 0;  // the host says V = 1
     texels.push_back(
         {samples.p[i] * scale, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
-    const bool known = !background && normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
+    const bool known = !background && render::normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
     const std::uint32_t part = background || closed.parts.empty() ? 0U : closed.part[static_cast<std::size_t>(carrier)];
     const std::uint32_t plane = background ? 0U : scene.plane[static_cast<std::size_t>(carrier)];
     texels.push_back({known ? samples.n[i] : glm::vec3(0), plane | part << kPartShift});
@@ -127,7 +97,7 @@ std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const vis
   return texels;
 }
 
-SampleTable make_sample_table(const LightFrame& frame, bool rows) {
+SampleTable make_sample_table(const visibility::LightFrame& frame, bool rows) {
   constexpr std::uint32_t kCells = 256;
   std::array<std::uint32_t, kCells + 1> first_point{};
   std::vector<glm::vec2> points(1);

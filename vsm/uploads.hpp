@@ -1,10 +1,11 @@
 #pragma once
 
+#include "render/tree_texels.hpp"
+#include "visibility/light_frame.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "visibility/view_samples.hpp"
 #include "vsm/closed_parts.hpp"
-#include "vsm/light_frame.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -16,18 +17,10 @@
 
 namespace penumbra::vsm {
 
-/// One texel of the shaders' buffers: three floats and a number, read as bits so that nothing is flushed to zero.
-struct Texel {
-  glm::vec3 value{0};
-  std::uint32_t number = 0;
-};
-static_assert(sizeof(Texel) == 16);
+using render::Texel;
 
 /// A plane's number shares its word with a closed part's.
 inline constexpr std::uint32_t kPartShift = 27;
-
-/// Two texels a child, eight children a node: (middle, reference), (half extent, 0). Boxes are rounded outward.
-std::vector<Texel> node_texels(const visibility::TriangleTree& tree, float scale);
 
 /// For each slot of each leaf: (a, triangle), (b, plane and closed part), (c, light that the triangle is the body of).
 /// Triangles of closed parts are wound alike.
@@ -52,6 +45,6 @@ struct SampleTable {
   std::vector<std::byte> bytes;
   std::vector<std::uint32_t> bit_of;  ///< for each of the shaders' sample numbers, the light sample
 };
-SampleTable make_sample_table(const LightFrame& frame, bool rows);
+SampleTable make_sample_table(const visibility::LightFrame& frame, bool rows);
 
 }  // namespace penumbra::vsm

@@ -6,7 +6,7 @@
 #include "visibility/triangle_tree.hpp"
 #include "vsm/closed_parts.hpp"
 #include "vsm/find_leaves.comp.spv.hpp"
-#include "vsm/light_frame.hpp"
+#include "visibility/light_frame.hpp"
 #include "vsm/resolve.comp.spv.hpp"
 #include "vsm/settle.comp.spv.hpp"
 #include "vsm/settle.hpp"
@@ -51,15 +51,6 @@ const visibility::MethodDescription& describe() {
   return description;
 }
 
-/// The power of two that brings the scene's largest coordinate into [1, 2): exact, and the float range then fits the
-/// sixth powers of lengths that the shader multiplies.
-float scale_of(const visibility::SceneFloats& scene) {
-  float largest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
-  return largest > 0 ? std::ldexp(1.0F, -std::ilogb(largest)) : 1.0F;
-}
-
 class ViewSampleMapping final : public visibility::Method {
  public:
   ViewSampleMapping(const render::Device& device, const visibility::MethodOptions& options)
@@ -74,14 +65,14 @@ class ViewSampleMapping final : public visibility::Method {
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
-    scale_ = scale_of(scene);
+    scale_ = render::device_scale(scene);
     tree_ = visibility::make_triangle_tree(scene);
     if (scene.triangles.size() >> kPartShift != 0) {
       throw ResourceError("view-sample handles up to 2^{} triangles; this scene has {}", kPartShift,
                           scene.triangles.size());
     }
     closed_ = find_closed_parts(scene);
-    node_texels_ = node_texels(tree_, scale_);
+    node_texels_ = render::node_texels(tree_, scale_);
     const std::array<std::vector<Texel>, 3> corners = corner_texels(tree_, scene, closed_, scale_);
     using render::BufferUse;
     nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", node_texels_, BufferUse::texels));
@@ -96,7 +87,7 @@ class ViewSampleMapping final : public visibility::Method {
     visibility::check_light(describe(), light);
     PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
     light_ = &light;
-    frame_ = make_light_frame(light, scale_);
+    frame_ = visibility::make_light_frame(light, scale_);
     check_proportions();
     counters_.clear();
 
@@ -394,7 +385,7 @@ class ViewSampleMapping final : public visibility::Method {
   std::array<std::optional<render::Buffer>, 3> corners_;
 
   const visibility::Light* light_ = nullptr;
-  LightFrame frame_;
+  visibility::LightFrame frame_;
   std::vector<std::uint32_t> bit_of_;  // the device's sample number → the light sample
   std::optional<render::Buffer> table_;
 

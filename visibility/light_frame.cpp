@@ -1,4 +1,4 @@
-#include "vsm/light_frame.hpp"
+#include "visibility/light_frame.hpp"
 
 #include "base/assert.hpp"
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-namespace penumbra::vsm {
+namespace penumbra::visibility {
 namespace {
 
 /// A rectangle in the light's plane, in double, unscaled: the rectangle itself, or one around any other planar light.
@@ -16,10 +16,10 @@ struct Span {
   glm::dvec3 center, u, v;
 };
 
-Span span_of(const visibility::Light& light) {
+Span span_of(const Light& light) {
   const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center,
                                          to_v = glm::dvec3(light.center_v) - center;
-  if (light.kind == visibility::LightKind::rectangle) return {center, to_u, to_v};
+  if (light.kind == LightKind::rectangle) return {center, to_u, to_v};
   const glm::dvec3 axis_u = glm::normalize(to_u);
   const glm::dvec3 axis_v = glm::normalize(glm::cross(glm::cross(to_u, to_v), axis_u));
   glm::dvec2 lower(0), upper(0);
@@ -50,8 +50,8 @@ double shift_of(std::uint32_t row, std::uint32_t step) {
 }
 
 /// The step that gives the light's row shifts, if the samples form rows that have one.
-std::optional<std::uint32_t> shift_step_of(const visibility::Light& light) {
-  if (light.kind != visibility::LightKind::rectangle || light.rows == 0) return std::nullopt;
+std::optional<std::uint32_t> shift_step_of(const Light& light) {
+  if (light.kind != LightKind::rectangle || light.rows == 0) return std::nullopt;
   if (light.row_shift.size() < 2) return 0;
   const double step = light.row_shift[1] * kShiftUnit;
   const auto whole = static_cast<std::uint32_t>(static_cast<std::int64_t>(step)) % kShiftUnit;
@@ -63,8 +63,8 @@ std::optional<std::uint32_t> shift_step_of(const visibility::Light& light) {
 
 }  // namespace
 
-LightFrame make_light_frame(const visibility::Light& light, float scale) {
-  PENUMBRA_ASSERT(light.kind != visibility::LightKind::sphere, "a sphere has no plane");
+LightFrame make_light_frame(const Light& light, float scale) {
+  PENUMBRA_ASSERT(light.kind != LightKind::sphere, "a sphere has no plane");
   const Span span = span_of(light);
   LightFrame frame{
       glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, false, 0, {}, 0};
@@ -92,4 +92,4 @@ LightFrame make_light_frame(const visibility::Light& light, float scale) {
   return frame;
 }
 
-}  // namespace penumbra::vsm
+}  // namespace penumbra::visibility

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace penumbra::vsm {
+namespace penumbra::visibility {
 
 /// A planar light as device passes see it: its samples lie at center + s·u + t·v with s, t in [−1, 1], up to
 /// `deviation`. u × v points to the emitting side. In float32, scaled by `scale`.
@@ -21,6 +21,6 @@ struct LightFrame {
 };
 
 /// `scale` is a power of two. Not for spheres.
-LightFrame make_light_frame(const visibility::Light& light, float scale);
+LightFrame make_light_frame(const Light& light, float scale);
 
-}  // namespace penumbra::vsm
+}  // namespace penumbra::visibility

@@ -1,0 +1,44 @@
+#include "render/tree_texels.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace penumbra::render {
+
+using visibility::TriangleTree;
+
+float device_scale(const visibility::SceneFloats& scene) {
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
+  return largest > 0 ? std::ldexp(1.0F, -std::ilogb(largest)) : 1.0F;
+}
+
+bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
+  const glm::dvec3 cross = glm::abs(glm::cross(e1, e2)), size1 = glm::abs(e1), size2 = glm::abs(e2);
+  return cross.x + cross.y + cross.z > 0x1p-25 * (size1.x + size1.y + size1.z) * (size2.x + size2.y + size2.z);
+}
+
+std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
+  std::vector<Texel> texels;
+  texels.reserve(tree.nodes.size() * 2 * TriangleTree::kWidth);
+  for (const TriangleTree::Node& node : tree.nodes) {
+    for (const TriangleTree::Child& child : node) {
+      const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
+      const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
+      glm::vec3 half = glm::max(upper - middle, middle - lower);
+      for (int axis = 0; axis < 3; ++axis)
+        half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
+      texels.push_back({middle, child.reference});
+      texels.push_back({half, 0});
+    }
+  }
+  return texels;
+}
+
+}  // namespace penumbra::render

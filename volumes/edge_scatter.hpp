@@ -1,0 +1,20 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+
+#include <memory>
+
+namespace penumbra::volumes {
+
+/// `edge-scatter`: signed silhouette edges scattered into a grid of light samples, one running sum a light row.
+/// Rectangle lights, one- and two-sided, light samples in rows (patterns rows and grid), any triangle soup, no bias.
+/// Every bit is the truth of its pair: rows that float arithmetic leaves open are decided by exact predicates.
+/// docs/edge-scatter.md.
+std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
+                                                      const visibility::MethodOptions& options);
+
+/// What it is; needs no device.
+visibility::MethodDescription edge_scatter_description();
+
+}  // namespace penumbra::volumes

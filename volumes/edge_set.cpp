@@ -1,0 +1,276 @@
+#include "volumes/edge_set.hpp"
+
+#include "mesh/predicates.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace penumbra::volumes {
+namespace {
+
+using visibility::SceneFloats;
+
+/// Scene triangle's normal in double, of its sorted corners.
+glm::dvec3 normal_of(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a(corners[0]);
+  return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
+}
+
+/// Rounded to float with its largest coordinate brought near 1, so that nothing over- or underflows.
+glm::vec3 rounded(const glm::dvec3& n) {
+  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+  return largest == 0 ? glm::vec3(0) : glm::vec3(n * std::ldexp(1.0, -std::ilogb(largest)));
+}
+
+/// The side of the triangle for the edge a→b: in front where (a, b, apex) runs counter-clockwise.
+EdgeSide side_of(const SceneFloats& scene, std::uint32_t triangle, const glm::vec3& a, const glm::vec3& b) {
+  const std::array<glm::vec3, 3> corners = scene.corners(triangle);
+  const auto place = [&](const glm::vec3& x) {
+    return static_cast<int>(std::find(corners.begin(), corners.end(), x) - corners.begin());
+  };
+  const bool along = (place(a) + 1) % 3 == place(b);
+  const glm::vec3 n = rounded(normal_of(corners));
+  return {along ? n : -n, corners[0], scene.plane[triangle]};
+}
+
+/// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
+bool is_flat(const EdgeRecord& record) {
+  const auto& [s, t] = record.sides;
+  return s.plane != SceneFloats::kNoPlane && s.plane == t.plane && glm::dot(s.n, t.n) < 0;
+}
+
+/// Where the edge a b passes through the side's plane. The same for (b, a).
+glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
+  const glm::dvec3 n = glm::cross(side.u, side.v);
+  glm::dvec3 from(a), to(b);
+  double h0 = glm::dot(n, from - side.center), h1 = glm::dot(n, to - side.center);
+  if (std::abs(h1) < std::abs(h0)) {
+    std::swap(from, to);
+    std::swap(h0, h1);
+  }
+  return glm::vec3(h0 == h1 ? from : from + (to - from) * (h0 / (h0 - h1)));
+}
+
+double height_over(const LightSide& side, const glm::vec3& x) {
+  return side.sign * glm::dot(glm::cross(side.u, side.v), glm::dvec3(x) - side.center);
+}
+
+/// May the segment a b in the light's plane touch the light? With an eighth of the light around it.
+bool may_touch_light(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
+  const auto at = [&](const glm::vec3& x) {
+    const glm::dvec3 d = glm::dvec3(x) - side.center;
+    const double uu = glm::dot(side.u, side.u), vv = glm::dot(side.v, side.v), uv = glm::dot(side.u, side.v);
+    const double du = glm::dot(d, side.u), dv = glm::dot(d, side.v), det = uu * vv - uv * uv;
+    return std::pair((du * vv - dv * uv) / det, (dv * uu - du * uv) / det);
+  };
+  const auto [s0, t0] = at(a);
+  const auto [s1, t1] = at(b);
+  constexpr double kAround = 1.125;
+  return std::min(s0, s1) <= kAround && std::max(s0, s1) >= -kAround && std::min(t0, t1) <= kAround &&
+         std::max(t0, t1) >= -kAround;
+}
+
+/// Cuts the record at the side's plane; false: nothing of it is in front.
+bool keep_in_front(EdgeRecord& record, const LightSide& side) {
+  const double ha = height_over(side, record.a), hb = height_over(side, record.b);
+  if (ha <= 0 && hb <= 0) return false;
+  const glm::vec3 x = ha < 0 || hb < 0 ? cut(side, record.a, record.b) : record.a;
+  if (ha < 0) record.a = x;
+  if (hb < 0) record.b = x;
+  return true;
+}
+
+/// The cut edges, in the light's plane, of triangles that may pass through the light.
+void add_cut_edges(const SceneFloats& scene, const EdgeCasters& casters, const LightSide& side,
+                   std::vector<EdgeRecord>& records) {
+  for (const std::uint32_t triangle : casters.triangle) {
+    const std::array<glm::vec3, 3> corners = scene.corners(triangle);
+    // Around the triangle: where it leaves the front, and where it comes back.
+    std::optional<glm::vec3> leaves, returns;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::vec3 &a = corners[i], &b = corners[(i + 1) % 3];
+      const bool from = height_over(side, a) > 0, to = height_over(side, b) > 0;
+      if (from && !to) leaves = height_over(side, b) == 0 ? b : cut(side, a, b);
+      if (!from && to) returns = height_over(side, a) == 0 ? a : cut(side, a, b);
+    }
+    if (!leaves || !returns || *leaves == *returns || !may_touch_light(side, *leaves, *returns)) continue;
+    // Run around as the corners do: in front where those are counter-clockwise.
+    records.push_back(
+        {*leaves, *returns, {EdgeSide{rounded(normal_of(corners)), corners[0], scene.plane[triangle]}, {}}});
+  }
+}
+
+}  // namespace
+
+EdgeCasters edge_casters(const SceneFloats& scene, std::int32_t light_index) {
+  EdgeCasters casters;
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (scene.casts_shadow[i] == 0 || (light_index >= 0 && scene.emits[i] == light_index)) continue;
+    casters.triangle.push_back(i);
+    casters.triangles.push_back(scene.triangles[i]);
+  }
+  casters.positions = mesh::widened(scene.positions);
+  casters.graph = mesh::build_edge_graph({casters.positions, casters.triangles});
+  return casters;
+}
+
+bool reaches_behind(const SceneFloats& scene, const LightSide& side) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 x((corner & 1) != 0 ? scene.upper.x : scene.lower.x,
+                      (corner & 2) != 0 ? scene.upper.y : scene.lower.y,
+                      (corner & 4) != 0 ? scene.upper.z : scene.lower.z);
+    if (height_over(side, x) <= 0) return true;
+  }
+  return false;
+}
+
+std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters,
+                                     const std::optional<LightSide>& side) {
+  std::vector<EdgeRecord> records;
+  records.reserve(casters.graph.edges.size());
+  for (std::uint32_t e = 0; e < casters.graph.edges.size(); ++e) {
+    const mesh::Edge& edge = casters.graph.edges[e];
+    const glm::vec3 a(casters.positions[edge.a]), b(casters.positions[edge.b]);
+    const auto around = casters.graph.around(e);
+    for (std::size_t i = 0; i < around.size(); i += 2) {
+      EdgeRecord record{a, b, {}};
+      for (std::size_t j = i; j < std::min(i + 2, around.size()); ++j) {
+        record.sides[j - i] = side_of(scene, casters.triangle[around[j].triangle], a, b);
+      }
+      if (is_flat(record) || (side && !keep_in_front(record, *side))) continue;
+      records.push_back(record);
+    }
+  }
+  if (side) add_cut_edges(scene, casters, *side, records);
+  return records;
+}
+
+namespace {
+
+/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all.
+struct Cone {
+  glm::dvec3 axis{0};
+  double cosine = 1;
+
+  [[nodiscard]] bool is_all() const { return cosine <= 0; }
+};
+constexpr Cone kAllDirections{{0, 0, 0}, 0};
+
+Cone joined(const Cone& x, Cone y) {
+  if (x.is_all() || y.is_all()) return kAllDirections;
+  if (glm::dot(x.axis, y.axis) < 0) y.axis = -y.axis;
+  const double between = std::acos(std::clamp(glm::dot(x.axis, y.axis), -1.0, 1.0));
+  const double rx = std::acos(std::clamp(x.cosine, -1.0, 1.0)), ry = std::acos(std::clamp(y.cosine, -1.0, 1.0));
+  if (between + ry <= rx) return x;
+  if (between + rx <= ry) return y;
+  const double radius = 0.5 * (between + rx + ry);
+  if (radius >= 1.57) return kAllDirections;
+  // From x's axis towards y's by radius − rx.
+  const double turn = between > 1e-12 ? (radius - rx) / between : 0;
+  const glm::dvec3 axis = glm::normalize(x.axis * (1 - turn) + y.axis * turn);
+  // The chord is not the arc: take the radius that holds both.
+  const double to_x = std::acos(std::clamp(glm::dot(axis, x.axis), -1.0, 1.0)) + rx;
+  const double to_y = std::acos(std::clamp(glm::dot(axis, y.axis), -1.0, 1.0)) + ry;
+  const double reach = std::max(to_x, to_y);
+  return reach >= 1.57 ? kAllDirections : Cone{axis, std::cos(reach)};
+}
+
+/// The record's two normals, the second turned so that k_e = 0 where p is on the same side of both.
+Cone cone_of(const EdgeRecord& record) {
+  const glm::dvec3 n1(record.sides[0].n), n2(-record.sides[1].n);
+  if (n1 == glm::dvec3(0) || n2 == glm::dvec3(0)) return kAllDirections;
+  const glm::dvec3 x = glm::normalize(n1), y = glm::normalize(n2);
+  const glm::dvec3 sum = x + y;
+  if (glm::dot(x, y) < -0.999) return kAllDirections;
+  const glm::dvec3 axis = glm::normalize(sum);
+  return {axis, std::min(glm::dot(axis, x), glm::dot(axis, y))};
+}
+
+using visibility::TriangleTree;
+
+class Cones {
+ public:
+  Cones(const TriangleTree& tree, std::span<const EdgeRecord> records) : tree_(tree), records_(records) {
+    of_child_.resize(tree.nodes.size() * TriangleTree::kWidth);
+    if (!tree.nodes.empty()) of_node(0);
+  }
+  [[nodiscard]] const Cone& of_child(std::size_t node, std::size_t child) const {
+    return of_child_[node * TriangleTree::kWidth + child];
+  }
+
+ private:
+  Cone of_node(std::uint32_t node) {
+    std::optional<Cone> all;
+    for (std::size_t i = 0; i < TriangleTree::kWidth; ++i) {
+      const std::uint32_t reference = tree_.nodes[node][i].reference;
+      if (reference == TriangleTree::kNoChild) continue;
+      const bool leaf = (reference & TriangleTree::kLeafBit) != 0;
+      const Cone cone = leaf ? of_leaf(tree_.leaves[reference & ~TriangleTree::kLeafBit]) : of_node(reference);
+      of_child_[node * TriangleTree::kWidth + i] = cone;
+      all = all ? joined(*all, cone) : cone;
+    }
+    return all.value_or(kAllDirections);
+  }
+  [[nodiscard]] Cone of_leaf(const TriangleTree::Leaf& leaf) const {
+    std::optional<Cone> all;
+    for (const std::uint32_t record : leaf) {
+      if (record == TriangleTree::kNoTriangle) continue;
+      const Cone cone = cone_of(records_[record]);
+      all = all ? joined(*all, cone) : cone;
+    }
+    return all.value_or(kAllDirections);
+  }
+
+  const TriangleTree& tree_;
+  std::span<const EdgeRecord> records_;
+  std::vector<Cone> of_child_;
+};
+
+}  // namespace
+
+EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
+  std::vector<visibility::Bounds> boxes;
+  boxes.reserve(records.size());
+  for (const EdgeRecord& record : records)
+    boxes.push_back({glm::min(record.a, record.b), glm::max(record.a, record.b)});
+  const TriangleTree tree = visibility::make_tree_over(boxes);
+  const Cones cones(tree, records);
+  const std::vector<render::Texel> boxed = render::node_texels(tree, scale);
+
+  EdgeTexels texels;
+  texels.depth = tree.depth;
+  texels.records = static_cast<std::uint32_t>(records.size());
+  texels.nodes.reserve(boxed.size() / 2 * 3);
+  for (std::size_t child = 0; child < boxed.size() / 2; ++child) {
+    const Cone& cone = cones.of_child(child / TriangleTree::kWidth, child % TriangleTree::kWidth);
+    // A little wider than it is: float32 rounds axis and cosine.
+    const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
+    texels.nodes.push_back(boxed[2 * child]);
+    texels.nodes.push_back(boxed[2 * child + 1]);
+    texels.nodes.push_back({glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)});
+  }
+  texels.slots.reserve(tree.leaves.size() * TriangleTree::kWidth * 6);
+  for (const TriangleTree::Leaf& leaf : tree.leaves) {
+    for (const std::uint32_t number : leaf) {
+      const bool used = number != TriangleTree::kNoTriangle;
+      const EdgeRecord record = used ? records[number] : EdgeRecord{};
+      const auto& [s, t] = record.sides;
+      texels.slots.push_back({record.a * scale, s.plane});
+      texels.slots.push_back({record.b * scale, t.plane});
+      texels.slots.push_back({s.n, used ? 1U : 0U});
+      texels.slots.push_back({s.anchor * scale, used ? 1U : 0U});
+      texels.slots.push_back({t.n, used ? 1U : 0U});
+      texels.slots.push_back({t.anchor * scale, used ? 1U : 0U});
+    }
+  }
+  if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty
+  if (texels.slots.empty()) texels.slots.emplace_back();
+  return texels;
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,242 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "volumes/edge_scatter.glsl"
+
+// First pass of edge scatter, a workgroup a block of pixels. The block's view samples fall into clusters where gaps are
+// between them. For each: the edges that the shaft from the cluster to the light meets and that may be silhouettes as seen
+// from it; and the triangles that the much thinner shaft to one corner of the light meets.
+
+layout(constant_id = 2) const uint kStackSize = 64;
+
+layout(binding = 3) uniform usamplerBuffer edge_nodes;      // 3 texels a child: (centre, reference), (half extent, –),
+                                                            // cone of normals (axis, cosine)
+layout(binding = 4) uniform usamplerBuffer triangle_nodes;  // 2 texels a child
+layout(binding = 5) uniform usamplerBuffer slots;           // 6 texels an edge record (EdgeTexels)
+layout(binding = 6) uniform usamplerBuffer corner_texels;   // 3 texels a triangle: (a, triangle), (b, plane), (c, light)
+
+const uint kBatch = 24;                                     // leaves looked into at a time
+
+shared uint stack[kStackSize];
+shared uint leaves[kBatch + kLanes];
+shared uint items[(kBatch + kLanes) * kTeam];
+
+// The cluster's view samples as a box.
+vec3 middle, half_size;
+
+// Is every triangle around the edges below seen from the same side by the whole cluster? Then none is a silhouette: a
+// vector d = p − x lies in D ± e, and all normals within an angle of `cone.xyz`. (bound cone)
+bool same_side(vec3 center, vec3 extent, vec4 cone) {
+  const vec3 d = middle - center, e = half_size + extent;
+  const float straight = abs(dot(cone.xyz, d)), squared = dot(d, d);
+  const float aside = sqrt(max(squared - straight * straight, 0.0)), sine = sqrt(max(1.0 - cone.w * cone.w, 0.0));
+  const float spread = dot(abs(cone.xyz), e) * cone.w + length(e) * sine;
+  return straight * cone.w - aside * sine > 1.01 * spread + 0.0001 * sqrt(squared) + 64.0 * kRound * push.reach;
+}
+
+// k_e's share of one triangle for the whole cluster: −1, 0, 1, or 2: not the same for all. (bound side)
+int side_for_all(vec3 n, vec3 anchor) {
+  const vec3 d = middle - anchor;
+  const float f = dot(n, d), spread = dot(abs(n), half_size) * 1.001 + 32.0 * kRound * dot(abs(n), abs(d) + half_size);
+  return n == vec3(0.0) ? 0 : f > spread ? 1 : f < -spread ? -1 : 2;
+}
+
+bool meets(Shaft shaft, vec3 level, vec4 least) {
+  return min(level.x, min(level.y, level.z)) <= shaft.highest && max(level.x, max(level.y, level.z)) >= shaft.lowest &&
+         all(lessThanEqual(least, shaft.beyond));
+}
+
+vec4 along_shaft(Shaft shaft, vec3 x) { return shaft.nx * x.x + shaft.ny * x.y + shaft.nz * x.z; }
+
+bool edge_matters(Shaft shaft, uint slot) {
+  const int texel = int(6 * slot);
+  const uvec4 t0 = texelFetch(slots, texel), t1 = texelFetch(slots, texel + 1), t2 = texelFetch(slots, texel + 2);
+  const uvec4 t3 = texelFetch(slots, texel + 3), t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
+  const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz);
+  const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz));
+  const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz));
+  const bool silhouette = side1 == 2 || side2 == 2 || side1 + side2 != 0;
+  const vec2 level = vec2(dot(axis, a), dot(axis, b));
+  return t2.w != 0 && silhouette && meets(shaft, level.xyy, min(along_shaft(shaft, a), along_shaft(shaft, b)));
+}
+
+bool triangle_matters(Shaft shaft, uint slot) {
+  const int texel = int(3 * slot);
+  const uvec4 t0 = texelFetch(corner_texels, texel), t1 = texelFetch(corner_texels, texel + 1), t2 = texelFetch(corner_texels, texel + 2);
+  const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz), c = uintBitsToFloat(t2.xyz);
+  const vec4 least = min(along_shaft(shaft, a), min(along_shaft(shaft, b), along_shaft(shaft, c)));
+  return t0.w != kNone && t2.w != push.light && meets(shaft, vec3(dot(axis, a), dot(axis, b), dot(axis, c)), least);
+}
+
+// Writes the collected items as a piece in front of the list.
+uint emit(uint next, uint count) {
+  uint first = 0;
+  if (subgroupElect()) first = atomicAdd(list_words, count + 2);
+  first = subgroupBroadcastFirst(first);
+  if (first + count + 2 > push.list_capacity) return kNone;
+  if (gl_SubgroupInvocationID == 0) {
+    lists[first] = next;
+    lists[first + 1] = count;
+  }
+  for (uint i = gl_SubgroupInvocationID; i < count; i += kLanes) lists[first + 2 + i] = items[i];
+  return first;
+}
+
+// Returns the list.
+uint walk(Shaft shaft, bool edges) {
+  const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
+  uint stack_size = 1, head = kNone;
+  stack[0] = 0;                                           // every lane writes the same
+  while (stack_size > 0) {
+    uint leaf_count = 0, item_count = 0, i = 0;
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+    // Short, because some devices run all of a loop's body whatever its branches say.
+    while (stack_size > 0 && leaf_count < kBatch) {
+      const uint taken = min(stack_size, teams);
+      const uint node = team < taken ? stack[stack_size - 1 - team] : 0;
+      stack_size -= taken;
+      const int child = int(node * kTeam + member);
+      const uvec4 first = edges ? texelFetch(edge_nodes, 3 * child) : texelFetch(triangle_nodes, 2 * child);
+      const uvec4 second = edges ? texelFetch(edge_nodes, 3 * child + 1) : texelFetch(triangle_nodes, 2 * child + 1);
+      const uvec4 third = edges ? texelFetch(edge_nodes, 3 * child + 2) : uvec4(0);
+      const vec3 center = uintBitsToFloat(first.xyz), extent = uintBitsToFloat(second.xyz);
+      const float at = dot(axis, center), spread = dot(abs(axis), extent);
+      const vec4 least = along_shaft(shaft, center) - (abs(shaft.nx) * extent.x + abs(shaft.ny) * extent.y + abs(shaft.nz) * extent.z);
+      const bool met = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
+                       all(lessThanEqual(least, shaft.beyond));
+      const bool hit = met && !(edges && same_side(center, extent, uintBitsToFloat(third)));
+      const bool leaf = (first.w & kLeafBit) != 0;
+      const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
+      subgroupMemoryBarrierShared();
+      subgroupBarrier();
+      if (hit && !leaf) stack[stack_size + subgroupBallotExclusiveBitCount(inner_hits)] = first.w;
+      if (hit && leaf) leaves[leaf_count + subgroupBallotExclusiveBitCount(leaf_hits)] = first.w & ~kLeafBit;
+      stack_size += subgroupBallotBitCount(inner_hits);
+      leaf_count += subgroupBallotBitCount(leaf_hits);
+      subgroupMemoryBarrierShared();
+      subgroupBarrier();
+    }
+    for (; i < leaf_count; i += teams) {
+      const bool used = i + team < leaf_count;
+      const uint slot = (used ? leaves[i + team] : 0) * kTeam + member;
+      const bool kept = used && (edges ? edge_matters(shaft, slot) : triangle_matters(shaft, slot));
+      const uvec4 all_kept = subgroupBallot(kept);
+      if (kept) items[item_count + subgroupBallotExclusiveBitCount(all_kept)] = slot;
+      item_count += subgroupBallotBitCount(all_kept);
+    }
+    subgroupMemoryBarrierShared();
+    subgroupBarrier();
+    if (item_count > 0) head = emit(head, item_count);
+    // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
+    if (i < leaf_count || (stack_size > 0 && leaf_count < kBatch)) {
+      atomicOr(unfinished, 1u);
+      break;
+    }
+  }
+  if (stack_size > 0) atomicOr(unfinished, 1u);
+  return head;
+}
+
+// This lane's view samples of the block are numbers lane, lane + kLanes …; their clusters, two bits each.
+const uint kEach = kBlock * kBlock / kLanes;
+uint cluster_of_each, on_each;
+
+uint cluster_of(uint i) { return cluster_of_each >> (2 * i) & 3; }
+bool is_on(uint i) { return (on_each >> i & 1) != 0; }
+
+uint pixel_of(uint i, uint block) {
+  const uint blocks_across = (push.width + kBlock - 1) / kBlock, number = i * kLanes + gl_SubgroupInvocationID;
+  const uvec2 at = uvec2(block % blocks_across, block / blocks_across) * kBlock + uvec2(number % kBlock, number / kBlock);
+  return at.x < push.width && at.y < push.row_count ? at.y * push.width + at.x : kNone;
+}
+
+// Cuts a cluster in two in the middle of its box, if a gap is there of more than a third of it. Returns whether it did.
+bool split(uint cluster, uint new_cluster, uint block) {
+  vec3 lower = vec3(1e30), upper = vec3(-1e30);
+  for (uint i = 0; i < kEach; ++i) {
+    if (!is_on(i) || cluster_of(i) != cluster) continue;
+    const vec3 p = fetch_view_sample(pixel_of(i, block)).p;
+    lower = min(lower, p);
+    upper = max(upper, p);
+  }
+  lower = subgroupMin(lower);
+  upper = subgroupMax(upper);
+  const vec3 size = upper - lower;
+  const vec3 pick = size.x >= size.y && size.x >= size.z ? vec3(1, 0, 0) : size.y >= size.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+  const float extent = dot(pick, size), cut = dot(pick, 0.5 * lower + 0.5 * upper);
+  float below = -1e30, above = 1e30;
+  for (uint i = 0; i < kEach; ++i) {
+    if (!is_on(i) || cluster_of(i) != cluster) continue;
+    const float x = dot(pick, fetch_view_sample(pixel_of(i, block)).p);
+    if (x < cut) below = max(below, x);
+    if (x >= cut) above = min(above, x);
+  }
+  below = subgroupMax(below);
+  above = subgroupMin(above);
+  if (!(above - below > 0.34 * extent) || below < -1e29 || above > 1e29) return false;
+  for (uint i = 0; i < kEach; ++i) {
+    if (!is_on(i) || cluster_of(i) != cluster) continue;
+    if (dot(pick, fetch_view_sample(pixel_of(i, block)).p) >= cut) {
+      cluster_of_each = (cluster_of_each & ~(3u << (2 * i))) | new_cluster << (2 * i);
+    }
+  }
+  return true;
+}
+
+void list_for(uint cluster, uint block) {
+  const vec2 low = -half_cells;
+  vec3 lower = vec3(1e30), upper = vec3(-1e30);
+  vec4 slopes = vec4(-1e18), corner_slopes = vec4(-1e18);
+  float height = 0.0;
+  for (uint i = 0; i < kEach; ++i) {
+    if (!is_on(i) || cluster_of(i) != cluster) continue;
+    const ViewSample it = fetch_view_sample(pixel_of(i, block));
+    lower = min(lower, it.p);
+    upper = max(upper, it.p);
+    slopes = max(slopes, slopes_of(low, half_cells, it.foot, it.height));
+    corner_slopes = max(corner_slopes, slopes_of(low, low, it.foot, it.height));
+    height = max(height, it.height);
+  }
+  lower = subgroupMin(lower);
+  upper = subgroupMax(upper);
+  slopes = subgroupMax(slopes);
+  corner_slopes = subgroupMax(corner_slopes);
+  height = subgroupMax(height);
+  middle = 0.5 * lower + 0.5 * upper;
+  half_size = (0.5 * upper - 0.5 * lower) * (1.0 + 8.0 * kRound);
+  uint edges = kNone, triangles = kNone;
+  if (push.edge_depth > 0) edges = walk(make_shaft(low, half_cells, slopes, height), true);
+  if (push.triangle_depth > 0) triangles = walk(make_shaft(low, low, corner_slopes, height), false);
+  if (gl_SubgroupInvocationID == 0) {
+    heads[2 * (block * kClusters + cluster)] = edges;
+    heads[2 * (block * kClusters + cluster) + 1] = triangles;
+  }
+}
+
+void main() {
+  make_frame();
+  const uint block = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  cluster_of_each = 0;
+  on_each = 0;
+  for (uint i = 0; i < kEach; ++i) {
+    const uint pixel = pixel_of(i, block);
+    const ViewSample it = fetch_view_sample(pixel == kNone ? 0 : pixel);
+    if (pixel != kNone && it.carrier != kNone && it.height > level_error(it.p)) on_each |= 1u << i;
+  }
+  if (!subgroupAny(on_each != 0)) return;
+  uint clusters = 1;
+  if (split(0, 1, block)) {
+    clusters = 2;
+    if (split(0, 2, block)) clusters = 3;
+    if (clusters == 3) {
+      if (split(1, 3, block)) clusters = 4;
+    } else if (split(1, 2, block)) {
+      clusters = 3;
+    }
+  }
+  for (uint i = 0; i < kEach; ++i) {
+    const uint pixel = pixel_of(i, block);
+    if (pixel != kNone) heads[2 * kClusters * push.block_count + pixel] = cluster_of(i);
+  }
+  for (uint cluster = 0; cluster < clusters; ++cluster) list_for(cluster, block);
+}
