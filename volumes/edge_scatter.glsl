@@ -103,3 +103,12 @@ vec4 slopes_of(vec2 low, vec2 high, vec2 foot, float height) {
   const vec4 over = vec4(from_middle.x - high.x, low.x - from_middle.x, from_middle.y - high.y, low.y - from_middle.y);
   return over / height;
 }
+
+// What one triangle adds to k_e for all view samples in the box middle ± half_size: −1, 0, 1; or 2: not the same for all, or
+// not certain, or one of them may lie on it: p is off its carrier's plane by its own rounding. (bound side)
+int side_for_all(vec3 n, vec3 anchor, vec3 middle, vec3 half_size) {
+  const vec3 d = middle - anchor;
+  const float f = dot(n, d);
+  const float spread = dot(abs(n), half_size) * 1.001 + kRound * (32.0 * dot(abs(n), abs(d) + half_size) + 4.0 * size1(n) * push.reach);
+  return n == vec3(0.0) ? 0 : f > spread ? 1 : f < -spread ? -1 : 2;
+}

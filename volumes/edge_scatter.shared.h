@@ -30,22 +30,24 @@ struct ScatterPush {
   uint edge_depth, triangle_depth;  // levels of the hierarchies; 0: empty
 };
 
-// Light rows of a pixel (of the tile) that float arithmetic left open: bit i of (low, high) is row first_row + i.
+// What float arithmetic left open of a pixel (of the tile): light rows, bit i of (low, high) is row first_row + i; and up
+// to two more light samples, row · columns + column.
 struct RowQuestion {
   uint pixel;                // | kWholePixel: all rows of the band, and nothing of it is in the mask yet
   uint first_row;
   uint low, high;
+  uint sample_1, sample_2;   // or kNoSample
 };
 
 // Words of a mask that the host decided.
 struct MaskWord {
   uint pixel;                // | kWholePixel: the old word says nothing
   uint word;
-  uint rows;                 // 0xff in the bytes that are decided
+  uint decided;              // those bits of the word
   uint bits;
 };
 
-const uint kWholePixel = 0x80000000u;
+const uint kWholePixel = 0x80000000u, kNoSample = 0xffffffffu;
 
 #ifdef __cplusplus
 }  // namespace penumbra::volumes::gpu

@@ -33,13 +33,6 @@ bool same_side(vec3 center, vec3 extent, vec4 cone) {
   return straight * cone.w - aside * sine > 1.01 * spread + 0.0001 * sqrt(squared) + 64.0 * kRound * push.reach;
 }
 
-// k_e's share of one triangle for the whole cluster: −1, 0, 1, or 2: not the same for all. (bound side)
-int side_for_all(vec3 n, vec3 anchor) {
-  const vec3 d = middle - anchor;
-  const float f = dot(n, d), spread = dot(abs(n), half_size) * 1.001 + 32.0 * kRound * dot(abs(n), abs(d) + half_size);
-  return n == vec3(0.0) ? 0 : f > spread ? 1 : f < -spread ? -1 : 2;
-}
-
 bool meets(Shaft shaft, vec3 level, vec4 least) {
   return min(level.x, min(level.y, level.z)) <= shaft.highest && max(level.x, max(level.y, level.z)) >= shaft.lowest &&
          all(lessThanEqual(least, shaft.beyond));
@@ -52,8 +45,8 @@ bool edge_matters(Shaft shaft, uint slot) {
   const uvec4 t0 = texelFetch(slots, texel), t1 = texelFetch(slots, texel + 1), t2 = texelFetch(slots, texel + 2);
   const uvec4 t3 = texelFetch(slots, texel + 3), t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
   const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz);
-  const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz));
-  const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz));
+  const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), middle, half_size);
+  const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), middle, half_size);
   const bool silhouette = side1 == 2 || side2 == 2 || side1 + side2 != 0;
   const vec2 level = vec2(dot(axis, a), dot(axis, b));
   return t2.w != 0 && silhouette && meets(shaft, level.xyy, min(along_shaft(shaft, a), along_shaft(shaft, b)));

@@ -30,6 +30,7 @@ vec3 from_center;
 int first_row, last_row;                                  // of the band
 uint left_changes[kWordsPerColumn];                       // where edges cross the light's left side, a byte a row
 uvec2 open_rows;                                          // light rows of the band for the host
+uvec2 open_samples;                                       // and two more light samples, or kNone
 bool open_pixel;                                          // all of them
 uint out_of_range;                                        // bytes of changes on the light's left side: open all rows
 
@@ -42,6 +43,30 @@ void open_row(float row, bool when) {
       open_rows.y |= 1u << (bit - 32);
     }
   }
+}
+
+float row_shift(int row) {
+  return float(int((uint(row) * push.shift_step + 32768u) & 0xffffu) - 32768) / 65536.0;
+}
+
+// A light sample that is open. If there are more than two of the pixel, its row is.
+void open_sample(float row, float column, bool when) {
+  const uint light_sample = uint(int(row)) * kColumns + uint(int(column));
+  const bool known = open_samples.x == light_sample || open_samples.y == light_sample;
+  const bool full = when && !known && open_samples.x != kNone && open_samples.y != kNone;
+  if (when && !known && !full) open_samples = open_samples.x == kNone ? uvec2(light_sample, open_samples.y) : uvec2(open_samples.x, light_sample);
+  open_row(row, full);
+}
+
+// What is open where the changes at (row, x) may be anywhere within `error` of x: the nearest light sample, if it is that
+// near; the row, if others are too, or if x may be on either side of where the row begins.
+void open_near(float row, float x, float error, bool when) {
+  const bool in_band = row >= float(first_row) && row <= float(last_row);
+  const float column = x - row_shift(int(clamp(row, 0.0, float(push.rows - 1)))), nearest = round(column);
+  const bool on_light = nearest >= 0.0 && nearest < float(kColumns);
+  const bool wide = error >= 0.5 && column > -1.0 - error && column < float(kColumns) + error;
+  open_row(row, when && in_band && (wide || abs(x + 0.5) < error));
+  open_sample(row, nearest, when && in_band && !wide && on_light && abs(column - nearest) < error);
 }
 
 // Where p + d appears on the light, and its height over p.
@@ -60,10 +85,6 @@ float error_of(float far, float w, float height, float from_foot, float away) {
          per_length * push.deviation;
 }
 
-float row_shift(int row) {
-  return float(int((uint(row) * push.shift_step + 32768u) & 0xffffu) - 32768) / 65536.0;
-}
-
 // Adds one projected edge to the histogram, k times. `error_a`, `error_b`: of its ends' coordinates.
 // Returns whether anything was added.
 bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
@@ -77,10 +98,10 @@ bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   const vec2 way = far - near, low = min(a, b), high = max(a, b);
   const float slope = way.x / way.y, steep = abs(slope);
 
-  // Ends within their error of a row: on which side they are is open, and so is that row.
+  // Ends within their error of a row: on which side they are is open, and so is what that row has there.
   const vec2 rows = vec2(round(near.y), round(far.y));
-  open_row(rows.x, abs(near.y - rows.x) < error_near);
-  open_row(rows.y, abs(far.y - rows.y) < error_far);
+  open_near(rows.x, near.x, 1.2 * error_near * (1.0 + steep), abs(near.y - rows.x) < error_near);
+  open_near(rows.y, far.x, 1.2 * error_far * (1.0 + steep), abs(far.y - rows.y) < error_far);
 
   // What the far end's error makes of a crossing on the light.
   const float weight = min(1.0, (abs(near.y - first_cell.y) + 2.0 * half_cells.y) / abs(way.y));
@@ -95,16 +116,18 @@ bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     const bool counts = x >= -0.5;                        // else it crosses left of the light
     const float first = max(ceil(column), 0.0);
     const bool lands = counts && first < float(kColumns);
-    bool open = (abs(column - nearest) < error_x && nearest >= 0.0 && nearest < float(kColumns)) || abs(x + 0.5) < error_x;
+    const bool open_one = abs(column - nearest) < error_x && nearest >= 0.0 && nearest < float(kColumns);
+    bool open = (open_one && error_x >= 0.5) || abs(x + 0.5) < error_x;
     const uint band_row = uint(row - first_row);
     if (lands) {
       const uint word = (uint(first) * kWordsPerColumn + (band_row >> 2)) * kLanes + gl_SubgroupInvocationID;
       const int shift = int(band_row & 3) * 8;
       const uint old = histogram[word];
       const int changed = bitfieldExtract(int(old), shift, 8) + jump;
-      open = open || abs(changed) > 127;                  // more layers than a byte holds
+      open = open || abs(changed) > 63;                   // many layers at once
       histogram[word] = bitfieldInsert(old, uint(changed), shift, 8);
     }
+    open_sample(float(row), nearest, open_one && error_x < 0.5);
     const uint bit = open ? 1u << (band_row & 31) : 0;
     open_rows |= band_row < 32 ? uvec2(bit, 0) : uvec2(0, bit);
     any = any || lands;
@@ -125,7 +148,7 @@ bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
         const int shift = int(band_row & 3) * 8;
         const uint old = left_changes[band_row >> 2];
         const int changed = bitfieldExtract(int(old), shift, 8) + up;
-        out_of_range |= uint(abs(changed) > 127);
+        out_of_range |= uint(abs(changed) > 63);
         left_changes[band_row >> 2] = bitfieldInsert(old, uint(changed), shift, 8);
         any = true;
       }
@@ -142,6 +165,13 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
+// The segment from x0 to x1, offsets from p in cells, no higher than w over p: does all of it appear beyond the light?
+bool beyond_light(vec2 x0, vec2 x1, float w) {
+  const vec2 way = x1 - x0;
+  const vec2 nearest = x0 + way * clamp(-dot(x0, way) / max(dot(way, way), 1e-30), 0.0, 1.0);
+  return length(nearest) * at.height > w * 1.01 * (length(abs(at.foot - first_cell) + half_cells) + 2.0);
+}
+
 // An edge that comes near p's height, or whose k_e is open for some view sample.
 void scatter_carefully(vec3 a, vec3 b, int k, bool open, bool on) {
   vec3 da = a - at.p, db = b - at.p;
@@ -149,14 +179,16 @@ void scatter_carefully(vec3 a, vec3 b, int k, bool open, bool on) {
   if (!on || (k == 0 && !open) || (wa <= 0.0 && wb <= 0.0)) return;
   // What reaches behind p is cut just before it: the rest appears beyond the light.
   const float least = max(wa, wb) * (1.0 / 1024.0);
+  float far_a = length(da), far_b = length(db);
   if (min(wa, wb) < least) {
     const float t = (least - wa) / (wb - wa), t0 = -wa / (wb - wa);
     const vec3 cut = mix(da, db, t), horizon = mix(da, db, t0);
-    const float q = at.height / least;
+    const vec2 xa = vec2(dot(across, da), dot(along, da)), xb = vec2(dot(across, db), dot(along, db));
+    if (beyond_light(xa, xb, max(wa, wb))) return;
     const vec2 x = vec2(dot(across, cut), dot(along, cut)), x0 = vec2(dot(across, horizon), dot(along, horizon));
-    const vec2 leaving = min(abs(x), abs(x0)) * q, beyond = abs(at.foot - first_cell) + 2.0 * half_cells + 2.0;
-    const bool leaves = (leaving.x > beyond.x && x.x * x0.x > 0.0) || (leaving.y > beyond.y && x.y * x0.y > 0.0);
-    if (!leaves) open_pixel = true;                       // the edge passes p so closely that it may still be seen
+    if (!beyond_light(x, x0, least)) open_pixel = true;   // the edge passes p so closely that it may still be seen
+    far_a = max(far_a, far_b);
+    far_b = far_a;
     if (wa < least) {
       da = cut;
     } else {
@@ -165,8 +197,8 @@ void scatter_carefully(vec3 a, vec3 b, int k, bool open, bool on) {
   }
   const vec3 seen_a = project(da), seen_b = project(db);
   const float away = length(from_center);
-  const float error_a = error_of(length(da), seen_a.z, at.height, length(seen_a.xy - at.foot), away);
-  const float error_b = error_of(length(db), seen_b.z, at.height, length(seen_b.xy - at.foot), away);
+  const float error_a = error_of(far_a, seen_a.z, at.height, length(seen_a.xy - at.foot), away);
+  const float error_b = error_of(far_b, seen_b.z, at.height, length(seen_b.xy - at.foot), away);
   if (seen_a.z <= 0.0 || seen_b.z <= 0.0) {               // rounding: cannot tell
     open_pixel = true;
     return;
@@ -221,14 +253,6 @@ Range range_of(vec3 x, GroupBounds g) {
   range.low = low - 4.0 * range.error;
   range.high = high + 4.0 * range.error;
   return range;
-}
-
-// k_e's share of one triangle for the whole group: −1, 0, 1, or 2: not the same for all, or not certain.
-int side_for_all(vec3 n, vec3 anchor, GroupBounds g) {
-  if (n == vec3(0.0)) return 0;
-  const vec3 d = g.middle - anchor;
-  const float f = dot(n, d), spread = dot(abs(n), g.half_size) * 1.001 + 32.0 * kRound * dot(abs(n), abs(d) + g.half_size);
-  return f > spread ? 1 : f < -spread ? -1 : 2;
 }
 
 // Of one edge for each of the group's view samples, a bit a lane: k_e > 0, k_e < 0, |k_e| = 2, and whether rounding leaves
@@ -330,8 +354,8 @@ void scatter_list(uint head, bool on) {
       const int texel = int(6 * slot);
       const uvec4 t2 = texelFetch(slots, texel + 2), t3 = texelFetch(slots, texel + 3);
       const uvec4 t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
-      const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), g);
-      const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), g);
+      const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), g.middle, g.half_size);
+      const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), g.middle, g.half_size);
       const bool silhouette = used && (side1 == 2 || side2 == 2 || side1 + side2 != 0);
       const uvec4 all_silhouettes = subgroupBallot(silhouette);
       if (silhouette) queue[queued + subgroupBallotExclusiveBitCount(all_silhouettes)] = slot;
@@ -390,7 +414,8 @@ uint count_to_corner(uint head, bool on) {
           const vec3 f = vec3(xa.x * xb.y - xa.y * xb.x, xb.x * xc.y - xb.y * xc.x, xc.x * xa.y - xc.y * xa.x);
           // (bound corner)
           const float far = max(length(da), max(length(db), length(dc)));
-          const float error_x = 16.0 * kRound * far * (length(lean) + per_length * (1.0 + length(from_center) / at.height));
+          const float away = length(from_center) / at.height;
+          const float error_x = kRound * far * (5.0 * per_length * (1.0 + away) + (8.0 + 5.0 * away) * length(lean));
           const float size = max(max(size1(vec3(xa, 0.0)), size1(vec3(xb, 0.0))), size1(vec3(xc, 0.0)));
           const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
           const bool all_above = all(greaterThan(f, vec3(error))), all_below = all(lessThan(f, vec3(-error)));
@@ -434,11 +459,13 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   uint visible = 0;
   const uint first_word = uint(first_row) >> 2;
   for (uint word = 0; word < kWordsPerColumn; ++word) {
-    uint depths = 0, outside = 0;                         // depths are in 0 … 127; anything else has bit 7 of its byte
+    // Depths are in 0 … 127. More than that: 128 … 190, since none of the changes exceeds 63. Negative, −63 … −1, are those
+    // of light samples that are open anyway.
+    uint depths = 0, outside = 0;
     const uint changes = left_changes[word];
     for (int row = 0; row < 4; ++row) {
       depth += bitfieldExtract(int(changes), row * 8, 8);
-      outside |= (depth & ~127) != 0 ? 0x80u << (row * 8) : 0;
+      outside |= depth > 127 ? 0x80u << (row * 8) : 0;
       depths |= uint(depth & 0xff) << (row * 8);
     }
     const int rows_left = int(last_row) + 1 - first_row - int(word) * 4;
@@ -449,14 +476,13 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
         const uint column = column_word * 8 + i;
         if (column < kColumns) {
           depths = bytes_sum(depths, histogram[(column * kWordsPerColumn + word) * kLanes + gl_SubgroupInvocationID]);
-          outside |= depths;
+          outside |= depths & ~(depths << 1);
           bits |= (zero_bytes(depths) & used) << i;
         }
       }
       visible += bitCount(bits);
       if (used != 0 && on) masks[mask_word(pixel, column_word, first_word + word)] = bits;
     }
-    // More layers than a byte holds, or fewer than none, which rounding makes of rows that are open anyway.
     const uint rows = (outside >> 7 & 1) | (outside >> 14 & 2) | (outside >> 21 & 4) | (outside >> 28 & 8);
     const uint found = (rows & ((1u << clamp(rows_left, 0, 4)) - 1)) << (4 * (word & 7));
     open_rows |= word < 8 ? uvec2(found, 0) : uvec2(0, found);
@@ -503,6 +529,7 @@ void main() {
   last_row = min(first_row + int(band_rows), int(push.rows)) - 1;
   for (uint word = 0; word < kWordsPerColumn; ++word) left_changes[word] = 0;
   open_rows = uvec2(0);
+  open_samples = uvec2(kNone);
   open_pixel = false;
   out_of_range = 0;
   const uint all_samples = uint(last_row - first_row + 1) * kColumns;
@@ -556,10 +583,10 @@ void main() {
   const bool mine = inside && !(other_side && push.keeps_rest != 0) && (receives || push.side > 0.0);
   if (mine && visible != 0) atomicAdd(counts[pixel], visible);
   if (!on) open_rows = uvec2(0);
-  if (receives && (open_pixel || (open_rows.x | open_rows.y) != 0)) {
+  if (receives && (open_pixel || (open_rows.x | open_rows.y) != 0 || open_samples.x != kNone)) {
     const uint question = atomicAdd(question_count, 1);
     const int band = last_row + 1 - first_row;
     if (open_pixel) open_rows = uvec2(band >= 32 ? 0xffffffffu : (1u << band) - 1, band >= 64 ? 0xffffffffu : band > 32 ? (1u << (band - 32)) - 1 : 0);
-    if (question < push.question_capacity) questions[question] = RowQuestion(pixel | (open_pixel ? kWholePixel : 0), uint(first_row), open_rows.x, open_rows.y);
+    if (question < push.question_capacity) questions[question] = RowQuestion(pixel | (open_pixel ? kWholePixel : 0), uint(first_row), open_rows.x, open_rows.y, open_samples.x, open_samples.y);
   }
 }

@@ -15,7 +15,7 @@ void main() {
   const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   if (i >= word_count) return;
   const MaskWord word = words[i];
-  const uint old = (word.pixel & kWholePixel) != 0 ? 0 : masks[word.word], bits = (old & ~word.rows) | word.bits;
+  const uint old = (word.pixel & kWholePixel) != 0 ? 0 : masks[word.word], bits = (old & ~word.decided) | word.bits;
   masks[word.word] = bits;
   atomicAdd(counts[word.pixel & ~kWholePixel], uint(bitCount(bits) - bitCount(old)));
 }
