@@ -86,8 +86,7 @@ float error_of(float far, float w, float height, float from_foot, float away) {
 }
 
 // Adds one projected edge to the histogram, k times. `error_a`, `error_b`: of its ends' coordinates.
-// Returns whether anything was added.
-bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
+void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   k = push.side < 0.0 ? -k : k;                           // seen from behind, counter-clockwise is clockwise in (X, Y)
   // From the end nearer to the light's middle, so that far ends' errors, which grow with their distance, stay small.
   const vec2 to_a = abs(a - first_cell), to_b = abs(b - first_cell);
@@ -109,7 +108,6 @@ bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
 
   int row = int(clamp(ceil(low.y), float(first_row), float(last_row + 1)));
   const int end = int(clamp(ceil(high.y), float(first_row), float(last_row + 1)));
-  bool any = false;
   for (; row < end; ++row) {
     const float x = clamp(near.x + (float(row) - near.y) * slope, low.x, high.x);
     const float column = x - row_shift(row), nearest = round(column);
@@ -130,7 +128,6 @@ bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     open_sample(float(row), nearest, open_one && error_x < 0.5);
     const uint bit = open ? 1u << (band_row & 31) : 0;
     open_rows |= band_row < 32 ? uvec2(bit, 0) : uvec2(0, bit);
-    any = any || lands;
   }
 
   if ((a.x < -0.5) != (b.x < -0.5)) {
@@ -150,11 +147,9 @@ bool scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
         const int changed = bitfieldExtract(int(old), shift, 8) + up;
         out_of_range |= uint(abs(changed) > 63);
         left_changes[band_row >> 2] = bitfieldInsert(old, uint(changed), shift, 8);
-        any = true;
       }
     }
   }
-  return any;
 }
 
 // sgn(n · (p − anchor)); `open` if that is within its error.
@@ -165,48 +160,38 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// The segment from x0 to x1, offsets from p in cells, no higher than w over p: does all of it appear beyond the light?
-bool beyond_light(vec2 x0, vec2 x1, float w) {
-  const vec2 way = x1 - x0;
-  const vec2 nearest = x0 + way * clamp(-dot(x0, way) / max(dot(way, way), 1e-30), 0.0, 1.0);
-  return length(nearest) * at.height > w * 1.01 * (length(abs(at.foot - first_cell) + half_cells) + 2.0);
-}
-
-// An edge that comes near p's height, or whose k_e is open for some view sample.
-void scatter_carefully(vec3 a, vec3 b, int k, bool open, bool on) {
-  vec3 da = a - at.p, db = b - at.p;
+// An edge that comes near p's height, or whose k_e is open for some view sample. What appears beyond a window of about
+// twice the light is cut away, so that ends near p's height, or behind p, do not spoil what is in it. Where p is within
+// rounding of one of the triangles' planes, that triangle is a sliver: samples it may hide are as near to its edges as if
+// the edges were off their places by `sliver`. (bound sliver)
+void scatter_carefully(vec3 a, vec3 b, int k, bool open, float sliver) {
+  if (k == 0 && !open) return;
+  const vec3 da = a - at.p, db = b - at.p;
+  const vec2 window = 2.0 * half_cells + 2.0;
   const float wa = -dot(axis, da), wb = -dot(axis, db);
-  if (!on || (k == 0 && !open) || (wa <= 0.0 && wb <= 0.0)) return;
-  // What reaches behind p is cut just before it: the rest appears beyond the light.
-  const float least = max(wa, wb) * (1.0 / 1024.0);
-  float far_a = length(da), far_b = length(db);
-  if (min(wa, wb) < least) {
-    const float t = (least - wa) / (wb - wa), t0 = -wa / (wb - wa);
-    const vec3 cut = mix(da, db, t), horizon = mix(da, db, t0);
-    const vec2 xa = vec2(dot(across, da), dot(along, da)), xb = vec2(dot(across, db), dot(along, db));
-    if (beyond_light(xa, xb, max(wa, wb))) return;
-    const vec2 x = vec2(dot(across, cut), dot(along, cut)), x0 = vec2(dot(across, horizon), dot(along, horizon));
-    if (!beyond_light(x, x0, least)) open_pixel = true;   // the edge passes p so closely that it may still be seen
-    far_a = max(far_a, far_b);
-    far_b = far_a;
-    if (wa < least) {
-      da = cut;
-    } else {
-      db = cut;
-    }
+  const vec2 xa = vec2(dot(across, da), dot(along, da)) * at.height + (at.foot - first_cell) * wa;
+  const vec2 xb = vec2(dot(across, db), dot(along, db)) * at.height + (at.foot - first_cell) * wb;
+  const vec4 inside_a = vec4(window * wa - xa, window * wa + xa), inside_b = vec4(window * wb - xb, window * wb + xb);
+  float from = 0.0, to = 1.0;
+  for (int i = 0; i < 4; ++i) {
+    const float t = inside_a[i] / (inside_a[i] - inside_b[i]);
+    if (inside_a[i] < 0.0) from = max(from, inside_b[i] < 0.0 ? 2.0 : t);
+    if (inside_a[i] >= 0.0 && inside_b[i] < 0.0) to = min(to, t);
   }
-  const vec3 seen_a = project(da), seen_b = project(db);
-  const float away = length(from_center);
-  const float error_a = error_of(far_a, seen_a.z, at.height, length(seen_a.xy - at.foot), away);
-  const float error_b = error_of(far_b, seen_b.z, at.height, length(seen_b.xy - at.foot), away);
-  if (seen_a.z <= 0.0 || seen_b.z <= 0.0) {               // rounding: cannot tell
+  if (from > to) return;
+  const float far_a = length(da), far_b = length(db);
+  const bool cut = from > 0.0 || to < 1.0;
+  const vec3 start = from > 0.0 ? mix(da, db, from) : da, end = to < 1.0 ? mix(da, db, to) : db;
+  const vec3 seen_a = project(start), seen_b = project(end);
+  const float far = max(far_a, far_b), away = length(from_center);
+  if (min(seen_a.z, seen_b.z) < 64.0 * kRound * far) {    // it passes through p, but for rounding
     open_pixel = true;
     return;
   }
-  const bool touched = scatter(seen_a.xy, seen_b.xy, k, error_a, error_b);
-  const vec2 low = min(seen_a.xy, seen_b.xy), high = max(seen_a.xy, seen_b.xy);
-  const bool near = all(lessThan(low, first_cell + half_cells + 1.0)) && all(greaterThan(high, first_cell - half_cells - 1.0));
-  if (open && (touched || near)) open_pixel = true;       // p is within rounding of a plane whose edge it sees on the light
+  const float foot_a = length(seen_a.xy - at.foot), foot_b = length(seen_b.xy - at.foot), off = open ? sliver : 0.0;
+  const float error_a = error_of(cut ? far : far_a, seen_a.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / seen_a.z * off;
+  const float error_b = error_of(cut ? far : far_b, seen_b.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / seen_b.z * off;
+  scatter(seen_a.xy, seen_b.xy, k, error_a, error_b);
 }
 
 // The box of the group's view samples in each frame that edges are tested in.
@@ -311,6 +296,7 @@ void drain(bool on, GroupBounds g) {
     const bool needed = used && !behind && !(bounded && (beside || !crosses));
     const Multiplicities m = multiplicities(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), t0.w, uintBitsToFloat(t4.xyz),
                                             uintBitsToFloat(t5.xyz), t1.w, on);
+    const float sliver = 16.0 * kRound * (max(length(uintBitsToFloat(t3.xyz) - g.middle), length(uintBitsToFloat(t5.xyz) - g.middle)) + length(g.half_size));
     const bool any_open = (m.open.x | m.open.y) != 0;
     const bool seen = any_open || (m.positive.x | m.positive.y | m.negative.x | m.negative.y) != 0;
     const uvec4 quick = subgroupBallot(needed && seen && bounded && !any_open);
@@ -332,7 +318,10 @@ void drain(bool on, GroupBounds g) {
         const uint from = word * 32 + uint(findLSB(left));
         const bool positive = has_bit(subgroupShuffle(m.positive, from)), negative = has_bit(subgroupShuffle(m.negative, from));
         const int size = has_bit(subgroupShuffle(m.two, from)) ? 2 : 1, k = positive ? size : negative ? -size : 0;
-        scatter_carefully(subgroupShuffle(a, from), subgroupShuffle(b, from), k, has_bit(subgroupShuffle(m.open, from)), on);
+        const bool open = has_bit(subgroupShuffle(m.open, from));
+        const vec3 a1 = subgroupShuffle(a, from), b1 = subgroupShuffle(b, from);
+        const float sliver1 = subgroupShuffle(sliver, from);
+        if (on) scatter_carefully(a1, b1, k, open, sliver1);
       }
       cut_off = cut_off || left != 0;
     }
