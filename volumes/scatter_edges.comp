@@ -19,10 +19,10 @@ layout(scalar, binding = 5) buffer Masks { uint masks[]; };    // visible: 8 col
 layout(scalar, binding = 6) buffer Counts { uint counts[]; };  // visible light samples of a pixel
 layout(scalar, binding = 7) writeonly buffer Questions { RowQuestion questions[]; };
 
-const uint kQueue = 128;                                  // edges
+// Some devices run a loop's body once even for no turn at all, and once more than a `for` asks: loops that count are
+// written do … while, their bodies harmless where there is nothing to do.
 
 shared uint histogram[kHistogramWords * kLanes];
-shared uint queue[kQueue];
 
 // This lane's view sample.
 ViewSample at;
@@ -108,14 +108,15 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
 
   int row = int(clamp(ceil(low.y), float(first_row), float(last_row + 1)));
   const int end = int(clamp(ceil(high.y), float(first_row), float(last_row + 1)));
-  for (; row < end; ++row) {
+  do {
+    const bool crossed = row < end;
     const float x = clamp(near.x + (float(row) - near.y) * slope, low.x, high.x);
     const float column = x - row_shift(row), nearest = round(column);
-    const bool counts = x >= -0.5;                        // else it crosses left of the light
+    const bool counts = crossed && x >= -0.5;             // else it crosses left of the light
     const float first = max(ceil(column), 0.0);
     const bool lands = counts && first < float(kColumns);
-    const bool open_one = abs(column - nearest) < error_x && nearest >= 0.0 && nearest < float(kColumns);
-    bool open = (open_one && error_x >= 0.5) || abs(x + 0.5) < error_x;
+    const bool open_one = crossed && abs(column - nearest) < error_x && nearest >= 0.0 && nearest < float(kColumns);
+    bool open = (open_one && error_x >= 0.5) || (crossed && abs(x + 0.5) < error_x);
     const uint band_row = uint(row - first_row);
     if (lands) {
       const uint word = (uint(first) * kWordsPerColumn + (band_row >> 2)) * kLanes + gl_SubgroupInvocationID;
@@ -128,7 +129,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     open_sample(float(row), nearest, open_one && error_x < 0.5);
     const uint bit = open ? 1u << (band_row & 31) : 0;
     open_rows |= band_row < 32 ? uvec2(bit, 0) : uvec2(0, bit);
-  }
+  } while (++row < end);
 
   if ((a.x < -0.5) != (b.x < -0.5)) {
     const float inverse = way.y / way.x, flat_error = 1.2 * (error_near + error_far * min(1.0, (abs(near.x - first_cell.x) + 2.0 * half_cells.x) / abs(way.x))) * (1.0 + abs(inverse)) +
@@ -160,38 +161,33 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// An edge that comes near p's height, or whose k_e is open for some view sample. What appears beyond a window of about
-// twice the light is cut away, so that ends near p's height, or behind p, do not spoil what is in it. Where p is within
-// rounding of one of the triangles' planes, that triangle is a sliver: samples it may hide are as near to its edges as if
-// the edges were off their places by `sliver`. (bound sliver)
-void scatter_carefully(vec3 a, vec3 b, int k, bool open, float sliver) {
-  if (k == 0 && !open) return;
+// One edge, k times. `settled`: it stays well above p for the whole group, which knows `errors` of its ends, and k_e is
+// certain. Otherwise what appears beyond a window of about twice the light is cut away, so that ends near p's height, or
+// behind p, do not spoil what is in it. Where p is within rounding of one of the triangles' planes (`open`), that triangle
+// is a sliver: samples it may hide are as near to its edges as if the edges were off their places by `sliver`. (bound sliver)
+void scatter_seen(vec3 a, vec3 b, int k, bool open, vec2 errors, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
   const vec2 window = 2.0 * half_cells + 2.0;
   const float wa = -dot(axis, da), wb = -dot(axis, db);
   const vec2 xa = vec2(dot(across, da), dot(along, da)) * at.height + (at.foot - first_cell) * wa;
   const vec2 xb = vec2(dot(across, db), dot(along, db)) * at.height + (at.foot - first_cell) * wb;
   const vec4 inside_a = vec4(window * wa - xa, window * wa + xa), inside_b = vec4(window * wb - xb, window * wb + xb);
-  float from = 0.0, to = 1.0;
-  for (int i = 0; i < 4; ++i) {
-    const float t = inside_a[i] / (inside_a[i] - inside_b[i]);
-    if (inside_a[i] < 0.0) from = max(from, inside_b[i] < 0.0 ? 2.0 : t);
-    if (inside_a[i] >= 0.0 && inside_b[i] < 0.0) to = min(to, t);
-  }
-  if (from > to) return;
-  const float far_a = length(da), far_b = length(db);
+  const vec4 t = inside_a / (inside_a - inside_b);
+  const vec4 froms = mix(vec4(0.0), mix(t, vec4(2.0), lessThan(inside_b, vec4(0.0))), lessThan(inside_a, vec4(0.0)));
+  const vec4 tos = mix(vec4(1.0), t, bvec4(ivec4(greaterThanEqual(inside_a, vec4(0.0))) * ivec4(lessThan(inside_b, vec4(0.0)))));
+  const float from = settled ? 0.0 : max(max(froms.x, froms.y), max(froms.z, froms.w));
+  const float to = settled ? 1.0 : min(min(tos.x, tos.y), min(tos.z, tos.w));
   const bool cut = from > 0.0 || to < 1.0;
   const vec3 start = from > 0.0 ? mix(da, db, from) : da, end = to < 1.0 ? mix(da, db, to) : db;
   const vec3 seen_a = project(start), seen_b = project(end);
-  const float far = max(far_a, far_b), away = length(from_center);
-  if (min(seen_a.z, seen_b.z) < 64.0 * kRound * far) {    // it passes through p, but for rounding
-    open_pixel = true;
-    return;
-  }
+  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b), away = length(from_center);
   const float foot_a = length(seen_a.xy - at.foot), foot_b = length(seen_b.xy - at.foot), off = open ? sliver : 0.0;
   const float error_a = error_of(cut ? far : far_a, seen_a.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / seen_a.z * off;
   const float error_b = error_of(cut ? far : far_b, seen_b.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / seen_b.z * off;
-  scatter(seen_a.xy, seen_b.xy, k, error_a, error_b);
+  const bool matters = (k != 0 || open) && from <= to;
+  const bool through_p = !settled && min(seen_a.z, seen_b.z) < 64.0 * kRound * far;
+  if (matters && through_p) open_pixel = true;            // it passes through p, but for rounding
+  if (matters && !through_p) scatter(seen_a.xy, seen_b.xy, k, settled ? errors.x : error_a, settled ? errors.y : error_b);
 }
 
 // The box of the group's view samples in each frame that edges are tested in.
@@ -273,7 +269,9 @@ Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 
   return m;
 }
 
-uint queued;                                              // edges in `queue`
+const uint kQueue = 64;
+uint queue[kQueue];                                       // edges; every lane has all of it: shared memory is the histogram's
+uint queued;
 bool cut_off;                                             // a loop did not run to its end
 
 // Projects and scatters the queued edges.
@@ -299,31 +297,20 @@ void drain(bool on, GroupBounds g) {
     const float sliver = 16.0 * kRound * (max(length(uintBitsToFloat(t3.xyz) - g.middle), length(uintBitsToFloat(t5.xyz) - g.middle)) + length(g.half_size));
     const bool any_open = (m.open.x | m.open.y) != 0;
     const bool seen = any_open || (m.positive.x | m.positive.y | m.negative.x | m.negative.y) != 0;
-    const uvec4 quick = subgroupBallot(needed && seen && bounded && !any_open);
-    const uvec4 careful = subgroupBallot(needed && seen && !(bounded && !any_open));
+    const bool settled = bounded && !any_open;
+    const uvec4 all_needed = subgroupBallot(needed && seen);
     for (uint word = 0; word < (kLanes + 31) / 32; ++word) {
-      uint left = quick[word];
-      for (; left != 0; left &= left - 1) {
-        const uint from = word * 32 + uint(findLSB(left));
-        const vec3 a1 = subgroupShuffle(a, from), b1 = subgroupShuffle(b, from);
-        const float error_a = subgroupShuffle(at_a.error, from), error_b = subgroupShuffle(at_b.error, from);
+      uint left = all_needed[word];
+      do {
+        const uint from = word * 32 + (left != 0 ? uint(findLSB(left)) : 0);
         const bool positive = has_bit(subgroupShuffle(m.positive, from)), negative = has_bit(subgroupShuffle(m.negative, from));
-        const int size = has_bit(subgroupShuffle(m.two, from)) ? 2 : 1, k = positive ? size : -size;
-        const vec3 seen_a = project(a1 - at.p), seen_b = project(b1 - at.p);
-        if (positive || negative) scatter(seen_a.xy, seen_b.xy, k, error_a, error_b);
-      }
-      cut_off = cut_off || left != 0;
-      left = careful[word];
-      for (; left != 0; left &= left - 1) {
-        const uint from = word * 32 + uint(findLSB(left));
-        const bool positive = has_bit(subgroupShuffle(m.positive, from)), negative = has_bit(subgroupShuffle(m.negative, from));
-        const int size = has_bit(subgroupShuffle(m.two, from)) ? 2 : 1, k = positive ? size : negative ? -size : 0;
-        const bool open = has_bit(subgroupShuffle(m.open, from));
+        const bool open = has_bit(subgroupShuffle(m.open, from)) && left != 0;
+        const int size = has_bit(subgroupShuffle(m.two, from)) ? 2 : 1, k = left == 0 ? 0 : positive ? size : negative ? -size : 0;
         const vec3 a1 = subgroupShuffle(a, from), b1 = subgroupShuffle(b, from);
-        const float sliver1 = subgroupShuffle(sliver, from);
-        if (on) scatter_carefully(a1, b1, k, open, sliver1);
-      }
-      cut_off = cut_off || left != 0;
+        const vec2 errors = subgroupShuffle(vec2(at_a.error, at_b.error), from);
+        scatter_seen(a1, b1, k, open && on, errors, subgroupShuffle(settled, from), subgroupShuffle(sliver, from));
+        left &= left - 1;
+      } while (left != 0);
     }
   }
   cut_off = cut_off || i < queued;
@@ -337,7 +324,7 @@ void scatter_list(uint head, bool on) {
   uint i = 0, piece = head;
   uint count = piece == kNone ? 0 : lists[piece + 1];
   while (piece != kNone) {
-    for (; i < count && queued + kLanes <= kQueue; i += kLanes) {
+    for (; i < count && queued + kLanes < kQueue; i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
       const uint slot = lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)];
       const int texel = int(6 * slot);
@@ -347,10 +334,16 @@ void scatter_list(uint head, bool on) {
       const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), g.middle, g.half_size);
       const bool silhouette = used && (side1 == 2 || side2 == 2 || side1 + side2 != 0);
       const uvec4 all_silhouettes = subgroupBallot(silhouette);
-      if (silhouette) queue[queued + subgroupBallotExclusiveBitCount(all_silhouettes)] = slot;
-      queued += subgroupBallotBitCount(all_silhouettes);
+      for (uint word = 0; word < (kLanes + 31) / 32; ++word) {
+        uint left = all_silhouettes[word];
+        do {
+          queue[queued] = subgroupShuffle(slot, word * 32 + (left != 0 ? uint(findLSB(left)) : 0));
+          queued += left != 0 ? 1 : 0;
+          left &= left - 1;
+        } while (left != 0);
+      }
     }
-    const bool room = queued + kLanes <= kQueue;
+    const bool room = queued + kLanes < kQueue;
     if (i >= count) {
       piece = lists[piece];
       i = 0;
@@ -359,11 +352,7 @@ void scatter_list(uint head, bool on) {
       cut_off = true;                                     // the loop above was
       break;
     }
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
     if (!room || piece == kNone) drain(on, g);
-    subgroupMemoryBarrierShared();
-    subgroupBarrier();
   }
   cut_off = cut_off || piece != kNone;
 }
