@@ -30,7 +30,7 @@ LightTexture make_light_texture(const scenes::Texture& source);
 
 /// The weight of each light sample in V: the luminance of its texel over the sum of them all. Every weight is a
 /// multiple of 2⁻⁵² and they add up to exactly 1, so that sums of weights do not depend on their order; each is off by
-/// at most 2⁻⁵⁰. InputError if all samples see black texels; `light` is its name in the message.
+/// less than 2⁻⁴⁰. InputError if all samples see black texels; `light` is its name in the message.
 std::vector<double> sample_weights(const LightTexture& texture, const std::vector<glm::dvec2>& coordinates,
                                    const std::string& light);
 
