@@ -72,24 +72,26 @@ TEST_F(TexturedLightMethods, AConstantTextureGivesTheBytesOfNone) {
   }
 }
 
-/// The light of the scene, or the half of it at −halfU or at +halfU (side −1 or 1).
-scenes::Scene half_light_scene(int side) {
+/// The half of the scene's light at −axis or at +axis (side −1 or 1), axis its halfU or halfV.
+scenes::Scene half_light_scene(glm::dvec3 scenes::Rectangle::*axis, int side) {
   scenes::Scene scene = board_under_light({});
   auto& rectangle = std::get<scenes::Rectangle>(scene.lights[0].shape);
-  rectangle.half_u *= 0.5;
-  rectangle.center += static_cast<double>(side) * rectangle.half_u;
+  rectangle.*axis *= 0.5;
+  rectangle.center += static_cast<double>(side) * rectangle.*axis;
   return scene;
 }
 
 // Sixteen by sixteen cell-centred samples, of which eight by sixteen are on a half: the very points of the half light's
 // own samples, so that V is equal, not nearly so.
-const SampleRequest kWhole{256, 16, 16, SamplePattern::grid, 0}, kHalf{128, 16, 8, SamplePattern::grid, 0};
+const SampleRequest kWhole{256, 16, 16, SamplePattern::grid, 0}, kHalfU{128, 16, 8, SamplePattern::grid, 0},
+    kHalfV{128, 8, 16, SamplePattern::grid, 0};
 
 TEST_F(TexturedLightMethods, HalfBlackIsHalfALight) {
   for (const int side : {-1, 1}) {
     const auto texture = texture_of(
         2, 1, [&](std::uint32_t x, std::uint32_t) { return glm::vec3((x == 0) == (side < 0) ? 1.0f : 0.0f); });
-    const Stage whole = stage_with(texture, kWhole), half(half_light_scene(side), 40, 30, kHalf);
+    const Stage whole = stage_with(texture, kWhole),
+                half(half_light_scene(&scenes::Rectangle::half_u, side), 40, 30, kHalfU);
     for (const Make& make : {makers()[0], makers()[1]}) {  // accumulate's maps are fitted to the whole light
       EXPECT_EQ(run_on(make, whole).visibility, run_on(make, half).visibility);
     }
@@ -102,21 +104,23 @@ std::vector<glm::vec3> beauty_of(const Stage& stage, const compare::LightVisibil
 }
 
 TEST_F(TexturedLightMethods, BeautyTakesEachSamplesColour) {
-  // Left red, right blue: red is what the left half gives, blue the right one. Sums in another order: 1e-6.
+  // Red above, blue below: red is what the upper half gives, blue the lower one, but for the order of sums in double
+  // and one rounding to float.
   const auto texture =
-      texture_of(2, 1, [](std::uint32_t x, std::uint32_t) { return x == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1); });
+      texture_of(1, 2, [](std::uint32_t, std::uint32_t y) { return y == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1); });
   const Stage whole = stage_with(texture, kWhole);
-  const Stage left(half_light_scene(-1), 40, 30, kHalf), right(half_light_scene(1), 40, 30, kHalf);
-  const Masks seen = trace(whole), seen_left = trace(left), seen_right = trace(right);
+  const Stage upper(half_light_scene(&scenes::Rectangle::half_v, 1), 40, 30, kHalfV),
+      lower(half_light_scene(&scenes::Rectangle::half_v, -1), 40, 30, kHalfV);
+  const Masks seen = trace(whole), seen_upper = trace(upper), seen_lower = trace(lower);
   const std::vector<float> third(whole.samples.size(), 1.0f / 3);
   const auto masked = beauty_of(whole, {seen.words, {}}), scaled = beauty_of(whole, {{}, third});
-  const auto red = beauty_of(left, {seen_left.words, {}}), blue = beauty_of(right, {seen_right.words, {}});
-  const auto scaled_red = beauty_of(left, {{}, third});
+  const auto red = beauty_of(upper, {seen_upper.words, {}}), blue = beauty_of(lower, {seen_lower.words, {}});
+  const auto scaled_red = beauty_of(upper, {{}, third});
   for (std::size_t i = 0; i < masked.size(); ++i) {
-    ASSERT_NEAR(masked[i].r, red[i].r, 1e-6 * red[i].r);
-    ASSERT_NEAR(masked[i].b, blue[i].b, 1e-6 * blue[i].b);
+    ASSERT_FLOAT_EQ(masked[i].r, red[i].r);
+    ASSERT_FLOAT_EQ(masked[i].b, blue[i].b);
     ASSERT_EQ(masked[i].g, 0);
-    ASSERT_NEAR(scaled[i].r, scaled_red[i].r, 1e-6 * scaled_red[i].r);
+    ASSERT_FLOAT_EQ(scaled[i].r, scaled_red[i].r);
   }
 }
 
