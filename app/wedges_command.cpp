@@ -106,14 +106,17 @@ class WedgesCommand : public Command {
     const std::vector<volumes::Wedge> wedges = chosen.fault
                                                    ? volumes::build_faulty_wedges(casting.wedges, hull, *chosen.fault)
                                                    : volumes::build_wedges(casting.wedges, hull, chosen.construction);
-    WedgesResult result{light, hull, floats.origin, construction_, from_, wedges, nullptr, nullptr};
+    WedgesResult result{light, hull, floats.origin, construction_, from_, wedges};
     std::optional<volumes::ValidationReport> report;
     std::optional<volumes::Tightness> tightness;
+    std::optional<CoverageOutcome> coverage;
     if (validate_) {
       report = volumes::validate({casters, casting, hull, wedges, tight});
       tightness = volumes::tightness_of(wedges, hull, shape_of(light, hull));
+      coverage = check_scene_coverage(scene, floats, light, casters, *report);
       result.validation = &*report;
       result.tightness = &*tightness;
+      result.coverage = &*coverage;
     }
     at_once.reset();
     if (!json_.empty()) write_wedges_json(json_, result);

@@ -125,6 +125,10 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::receiver_silhouettes(con
   return result;
 }
 
+std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoint& sample, Viewer viewer) const {
+  return viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample);
+}
+
 /// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner.
 glm::vec3 SoftVisibility::choose_reference(const LightProjection& projection, std::span<const Candidate> edges) const {
   const auto clear = [&](const glm::vec3& l) {
@@ -197,7 +201,7 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   if (!result.in_front) return result;
   const LightProjection projection(light_, sample.p);
   std::vector<Candidate> candidates;
-  for (const auto& [edge, k] : viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample)) {
+  for (const auto& [edge, k] : silhouettes(sample, viewer)) {
     const auto [a, b] = casters_.graph.edges[edge];
     const auto clipped = clip_to_light(outline_, projection(casters_.positions[a]), projection(casters_.positions[b]));
     if (clipped) candidates.push_back({edge, k, *clipped});
