@@ -210,6 +210,7 @@ void write_wedges_json(const std::filesystem::path& path, const WedgesResult& re
   }
   if (result.tightness != nullptr) put(",\n\"tightness\":" + tightness_json(*result.tightness).dump());
   if (result.coverage != nullptr) put(",\n\"coverage\":" + coverage_json(*result.coverage).dump());
+  if (result.explanation != nullptr) put(",\n\"explain\":" + explain_json(*result.explanation, result.svg).dump());
   put("}\n");
   write_file_atomically(path, std::string_view(text.data(), text.size()));
 }
@@ -225,6 +226,7 @@ void print_wedges(const WedgesResult& result) {
              result.construction, result.from, roots, wedges,
              wedges == 0 ? 0.0 : static_cast<double>(planes) / static_cast<double>(wedges), split, everywhere, empty);
   if (result.tightness != nullptr) print_tightness(*result.tightness);
+  if (result.explanation != nullptr) print_explanation(*result.explanation, result.svg);
   if (result.coverage != nullptr) print_coverage(*result.coverage);
   if (result.validation != nullptr) print_validation(*result.validation, result.wedges);
 }
