@@ -16,7 +16,7 @@ constexpr std::uint32_t kGrid = 32;
 constexpr std::size_t kMost = 64;
 
 std::vector<std::uint32_t> grid_of_pixels(std::uint32_t width, std::uint32_t height) {
-  const std::uint32_t columns = std::min(kGrid, width), rows = std::min(kGrid, height);
+  const std::uint64_t columns = std::min(kGrid, width), rows = std::min(kGrid, height);
   std::vector<std::uint32_t> pixels;
   for (std::uint64_t row = 0; row < rows; ++row) {
     for (std::uint64_t column = 0; column < columns; ++column) {

@@ -10,6 +10,15 @@ target_link_libraries(coverage_tests PRIVATE penumbra_wedges penumbra_reference 
                                              ${RAPIDCHECK} GTest::gtest_main)
 gtest_discover_tests(coverage_tests PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
 
+include(${PROJECT_SOURCE_DIR}/cmake/cgal_corpus.cmake)
+add_executable(coverage_mesh_tests ${CMAKE_CURRENT_LIST_DIR}/agreement/coverage_meshes.cpp)
+target_link_libraries(coverage_mesh_tests PRIVATE penumbra_wedges penumbra_reference penumbra_scenes penumbra_warnings
+                                                  GTest::gtest_main)
+penumbra_cgal_corpus(coverage_mesh_tests)
+gtest_discover_tests(coverage_mesh_tests TEST_FILTER "-*Full" PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+gtest_discover_tests(coverage_mesh_tests TEST_FILTER "*Full" TEST_LIST coverage_mesh_full_tests
+                     PROPERTIES LABELS full DISCOVERY_TIMEOUT 120 TIMEOUT 7200)
+
 find_package(nlohmann_json REQUIRED)
 add_executable(explain_cli_test ${CMAKE_CURRENT_LIST_DIR}/cli/explain_test.cpp ${CMAKE_CURRENT_LIST_DIR}/cli/program.cpp)
 target_compile_definitions(explain_cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
