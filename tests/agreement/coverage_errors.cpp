@@ -78,6 +78,44 @@ TEST(CoverageErrors, OfACubeAreLarge) {
   }
 }
 
+/// What triangles that p and the light's centre see from one side hide, each by itself: of closed parts once, of open
+/// ones twice (docs/coverage.md, Centre silhouettes).
+double predicted_error(const CoverageStage& stage, const glm::vec3& p, int times) {
+  std::vector<std::array<glm::vec3, 3>> same_side;
+  for (const std::uint32_t triangle : stage.casters.triangle) {
+    const auto corners = stage.floats.corners(triangle);
+    const auto [a, b, c] = corners;
+    if (stage.floats.object[triangle] != 2) continue;  // the floor hides nothing from itself
+    if (mesh::side_of_plane(a, b, c, p) == mesh::side_of_plane(a, b, c, stage.light.center)) {
+      same_side.push_back(corners);
+    }
+  }
+  const ProjectedLayers layers = projected_layers(stage.light, p, same_side);
+  return times * sum_of_layers(stage.soft.outline(), layers.polygons);
+}
+
+TEST(CoverageErrors, OfTheCentreAreWhatIsSeenFromOneSideByBoth) {
+  const auto sphere = tests::corners_of(mesh::make_sphere({{0.25, 1, 0.125}, 0.5, 24, 12}));
+  const auto box = tests::corners_of(mesh::make_box({1, 1, 0.25}, {0.5, 0.5, 0.5}));  // no face is edge-on
+  const auto fin = tests::quad({0.25, 2, 0}, {0.0625, 1, 0}, {0, 0, 1});  // edge-on below the light
+  int wrong = 0;
+  for (const bool disk : {false, true}) {
+    for (const auto& [occluder, times] : {std::pair{sphere, 1}, std::pair{box, 1}, std::pair{fin, 2}}) {
+      scenes::Scene scene = tests::area_scene(occluder);
+      scene.lights.push_back(tests::ceiling_light(4, 0.75));
+      if (disk) scene.lights[0].shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 0.75};
+      const CoverageStage stage(scene);
+      for (int i = 0; i < 400; ++i) {
+        const glm::vec3 p(0.2F * static_cast<float>(i % 20) - 1.9F, 0, 0.2F * static_cast<float>(i / 20) - 1.9F);
+        const double error = stage.receiver(p).blocked - stage.center(p).blocked;
+        ASSERT_NEAR(error, predicted_error(stage, p, times), 1e-9);
+        wrong += error > 0.001 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(wrong, 200);
+}
+
 TEST(CoverageErrors, OfOverlappingOccludersAreWhatTheyHaveInCommon) {
   // Boards at heights 1 and 2 under a light at 4: the sum takes A₁ + A₂, the union A₁ + A₂ − A₁₂. Tolerance: a few
   // ulps of 1.
