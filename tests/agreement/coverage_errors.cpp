@@ -3,6 +3,7 @@
 
 #include "mesh/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
+#include "tests/unit/exact_area_soups.hpp"
 #include "volumes/coverage_validation.hpp"
 
 #include <fmt/format.h>
@@ -66,16 +67,48 @@ TEST(CoverageErrors, OfASphereGrowWithTheLightAndVanishWithTheReceiversSilhouett
 }
 
 TEST(CoverageErrors, OfACubeAreLarge) {
-  // Beside the light: right below it, a light no larger than the cube sees the top alone, and nothing is wrong.
   for (const double half : {0.25, 0.5, 1.0}) {
-    scenes::Scene scene = tests::area_scene(tests::corners_of(mesh::make_box({1, 1, 0.5}, {0.5, 0.5, 0.5})));
-    scene.lights.push_back(tests::ceiling_light(4, half));
-    const Errors errors = errors_on_the_floor(CoverageStage(scene), 3);
-    record(fmt::format("cube, light of half-size {}", half), errors);
-    EXPECT_LT(errors.receiver_max, 1e-9);
-    EXPECT_GT(errors.center_max, 0.05);
-    EXPECT_LT(errors.center_max, 0.35);
+    for (const bool below : {true, false}) {
+      const glm::dvec3 center = below ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 1, 0.5);
+      scenes::Scene scene = tests::area_scene(tests::corners_of(mesh::make_box(center, {0.5, 0.5, 0.5})));
+      scene.lights.push_back(tests::ceiling_light(4, half));
+      const Errors errors = errors_on_the_floor(CoverageStage(scene), below ? 0.75 + 0.75 * half : 3);
+      record(fmt::format("cube {}, light of half-size {}", below ? "below" : "beside", half), errors);
+      EXPECT_LT(errors.receiver_max, 1e-9);
+      EXPECT_GT(errors.partly, 30);
+      // Right below it, a light no larger than the cube looks past its top alone, as every p does.
+      const bool sees_top_alone = below && half <= 0.5;
+      EXPECT_EQ(errors.center_max > 0.05, !sees_top_alone);
+      EXPECT_LT(errors.center_max, sees_top_alone ? 1e-9 : 0.35);
+    }
   }
+}
+
+TEST(CoverageErrors, OfConvexSheetsInOnePlaneAreNone) {
+  // A quad and a hexagon that do not overlap, on a plane that misses the light: right by the centre's silhouettes.
+  std::mt19937 random(11);
+  int partly = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double slope = tests::random_dyadic(random, -0.25, 0.25), height = tests::random_dyadic(random, 0, 1.25);
+    const auto at = [&](double x, double z) { return glm::dvec3(x, height + slope * x, z); };
+    std::vector<tests::Corners> sheets = {{at(-0.75, -0.5), at(-0.125, -0.25), at(-0.25, 0.375)},
+                                          {at(-0.75, -0.5), at(-0.25, 0.375), at(-0.625, 0.25)}};
+    const std::array<glm::dvec2, 6> hexagon = {glm::dvec2(0, 0.125),    {0.25, -0.25}, {0.625, -0.375},
+                                               glm::dvec2(0.75, 0.125), {0.5, 0.5},    {0.125, 0.5}};
+    for (std::size_t k = 1; k + 1 < hexagon.size(); ++k) {
+      sheets.push_back(
+          {at(hexagon[0].x, hexagon[0].y), at(hexagon[k].x, hexagon[k].y), at(hexagon[k + 1].x, hexagon[k + 1].y)});
+    }
+    const auto lamp = static_cast<tests::Lamp>(i % 4);
+    const CoverageStage stage(tests::soup_scene(sheets, lamp));
+    for (int j = 0; j < 20; ++j) {
+      const glm::vec3 p = tests::soup_receiver(random);
+      const double exact = stage.exact(p);
+      ASSERT_NEAR(stage.center(p).visibility, exact, lamp == tests::Lamp::disk ? 1e-7 : 1e-9);
+      partly += exact > 0 && exact < 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(partly, 300);
 }
 
 /// What triangles that p and the light's centre see from one side hide, each by itself: of closed parts once, of open
@@ -97,7 +130,7 @@ double predicted_error(const CoverageStage& stage, const glm::vec3& p, int times
 TEST(CoverageErrors, OfTheCentreAreWhatIsSeenFromOneSideByBoth) {
   const auto sphere = tests::corners_of(mesh::make_sphere({{0.25, 1, 0.125}, 0.5, 24, 12}));
   const auto box = tests::corners_of(mesh::make_box({1, 1, 0.25}, {0.5, 0.5, 0.5}));  // no face is edge-on
-  const auto fin = tests::quad({0.25, 2, 0}, {0.0625, 1, 0}, {0, 0, 1});  // edge-on below the light
+  const auto fin = tests::quad({0.25, 2, 0}, {0.0625, 1, 0}, {0, 0, 1});              // edge-on below the light
   int wrong = 0;
   for (const bool disk : {false, true}) {
     for (const auto& [occluder, times] : {std::pair{sphere, 1}, std::pair{box, 1}, std::pair{fin, 2}}) {
