@@ -154,6 +154,17 @@ Projected LightProjection::operator()(const glm::dvec3& x) const {
           glm::dot(size_x_, size), glm::dot(size_y_, size), glm::dot(size_w_, size)};
 }
 
+bool LightProjection::misses(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec2& lower,
+                             const glm::dvec2& upper) const {
+  const glm::dvec3 to_a = a - p_, to_b = b - p_;
+  const double w_a = glm::dot(row_w_, to_a), w_b = glm::dot(row_w_, to_b);
+  if ((w_a <= 0 && w_b <= 0) || (w_a >= 1 && w_b >= 1)) return true;
+  const double x_a = glm::dot(row_x_, to_a), x_b = glm::dot(row_x_, to_b);
+  if ((x_a < lower.x * w_a && x_b < lower.x * w_b) || (x_a > upper.x * w_a && x_b > upper.x * w_b)) return true;
+  const double y_a = glm::dot(row_y_, to_a), y_b = glm::dot(row_y_, to_b);
+  return (y_a < lower.y * w_a && y_b < lower.y * w_b) || (y_a > upper.y * w_a && y_b > upper.y * w_b);
+}
+
 std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Projected& a, const Projected& b) {
   static const std::vector<glm::dvec2> kSquare = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   const bool is_disk = outline.corners.empty();
