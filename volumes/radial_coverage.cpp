@@ -11,12 +11,16 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace penumbra::volumes {
 namespace {
+
+constexpr std::array kSquare = {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)};
 
 double cross2(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
@@ -166,9 +170,8 @@ bool LightProjection::misses(const glm::dvec3& a, const glm::dvec3& b, const glm
 }
 
 std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Projected& a, const Projected& b) {
-  static const std::vector<glm::dvec2> kSquare = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   const bool is_disk = outline.corners.empty();
-  const std::vector<glm::dvec2>& corners = is_disk ? kSquare : outline.corners;
+  const std::span<const glm::dvec2> corners = is_disk ? std::span<const glm::dvec2>(kSquare) : outline.corners;
   Range range;
   if (!range.cut(a.w, b.w) || !range.cut(1 - a.w, 1 - b.w)) return std::nullopt;
   for (std::size_t i = 0; i < corners.size(); ++i) {
