@@ -9,6 +9,7 @@
 #include "render/tree_texels.hpp"
 #include "visibility/light_frame.hpp"
 #include "visibility/triangle_tree.hpp"
+#include "visibility/visible_share.hpp"
 #include "volumes/edge_scatter.shared.h"
 #include "volumes/edge_set.hpp"
 #include "volumes/find_edges.comp.spv.hpp"
@@ -153,6 +154,12 @@ class EdgeScatter final : public visibility::Method {
   }
 
   void read_visibility(std::span<float> visibility) override {
+    if (!light_->weights.empty()) {
+      std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
+      read_masks(masks);
+      visibility::visible_shares(*light_, masks, visibility);
+      return;
+    }
     std::vector<std::uint32_t> counts(visibility.size());
     visible_->read(std::span(counts));
     const auto all = static_cast<double>(light_->sample_count());
