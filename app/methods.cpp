@@ -14,6 +14,7 @@
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
 #include "volumes/hard_volume.hpp"
+#include "volumes/soft_volume.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/accumulate.hpp"
@@ -67,6 +68,7 @@ const std::vector<TableRow>& table() {
       on_device<vsm::view_sample_description, vsm::make_view_sample>(),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+      on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
@@ -85,7 +87,6 @@ const std::vector<TableRow>& table() {
 /// Names that the program will understand some day; they mean nothing else until then.
 constexpr std::array kNotThereYet = {"exact",
                                      "wedge-ramp",
-                                     "soft-volume",
                                      "soft-volume-blend",
                                      "depth-complexity",
                                      "alias-free",

@@ -74,15 +74,17 @@ bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& ca
 }  // namespace
 
 struct VolumeCount::State {
-  State(const render::Device& on, CountVariant which)
+  State(const render::Device& on, CountVariant which, Layers of)
       : device(&on),
         variant(which),
+        layers(of),
         sides(make_pass(on, "volume sides", kSide, which)),
         fans(make_pass(on, "volume far ends", kFan, which)),
         caps(make_pass(on, "volume caps", kCap, which)) {}
 
   const render::Device* device;
   CountVariant variant;
+  Layers layers;
   render::RasterPass sides, fans, caps;
 
   const SceneFloats* scene = nullptr;
@@ -121,8 +123,8 @@ struct VolumeCount::State {
   [[nodiscard]] std::int32_t count_exactly(std::size_t pixel) const;
 };
 
-VolumeCount::VolumeCount(const render::Device& device, CountVariant variant)
-    : state_(std::make_unique<State>(device, variant)) {}
+VolumeCount::VolumeCount(const render::Device& device, CountVariant variant, Layers layers)
+    : state_(std::make_unique<State>(device, variant, layers)) {}
 VolumeCount::~VolumeCount() = default;
 VolumeCount::VolumeCount(VolumeCount&&) noexcept = default;
 VolumeCount& VolumeCount::operator=(VolumeCount&&) noexcept = default;
@@ -133,7 +135,7 @@ void VolumeCount::prepare_mesh(const SceneFloats& scene) {
   s.light = nullptr;
   s.samples = nullptr;
   s.tree.reset();
-  s.casters.emplace(scene);
+  s.casters.emplace(scene, s.layers);
   // Counts are sums of at most three faces a triangle and edge; far from what 32 bits hold.
   PENUMBRA_ASSERT(s.casters->size() < (1u << 28), "{} triangles", s.casters->size());
 }
@@ -142,7 +144,7 @@ void VolumeCount::prepare_light(const visibility::Light& light) {
   State& s = *state_;
   PENUMBRA_ASSERT(s.casters.has_value(), "prepare_light before prepare_mesh");
   s.light = &light;
-  s.volumes = s.casters->seen_from(center_of(light), light.index);
+  s.volumes = s.casters->seen_from(center_of(light), light);
   s.boxes_found = false;
   s.totals = {.silhouette_edges = s.volumes.edges.size(), .caps = s.volumes.caps.size()};
 }
@@ -304,6 +306,7 @@ std::int32_t VolumeCount::State::count_exactly(std::size_t pixel) const {
   const glm::vec3 &p = samples->p[pixel], &l = volumes.l;
   std::int32_t count = 0;
   tree->for_each_near(glm::min(p, l), glm::max(p, l), [&](std::uint32_t triangle) {
+    if (!volumes.left_out.empty() && volumes.left_out[triangle] != 0) return;
     if (!visibility::may_occlude(*scene, *light, carrier, triangle)) return;
     count += visibility::segment_meets_triangle(p, l, scene->corners(triangle), *light).meets ? 1 : 0;
   });
@@ -349,6 +352,9 @@ std::span<const VolumeCount::Kind> VolumeCount::kinds() const {
 }
 glm::vec3 VolumeCount::center() const {
   return state_->volumes.l;
+}
+const LightVolumes& VolumeCount::volumes() const {
+  return state_->volumes;
 }
 const VolumeCount::Totals& VolumeCount::totals() const {
   return state_->totals;

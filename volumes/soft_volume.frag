@@ -1,0 +1,67 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#include "volumes/volume_count.shared.h"
+#include "volumes/wedge_raster.shared.h"
+#include "volumes/determinant.glsl"
+#include "volumes/radial_coverage.glsl"
+
+// What one silhouette edge adds to the part of the light that is hidden from p. Outside the edge's penumbra nothing of it
+// is left once it is cut by the light: no plane of the wedge is looked at again.
+
+layout(constant_id = 0) const uint kShape = 0;
+
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // the vertex shader's; one set for both
+layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
+layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
+layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
+layout(scalar, push_constant) uniform Push { WedgePush push; };
+
+layout(location = 0) flat in vec3 face_a;
+layout(location = 1) flat in vec3 face_b;
+layout(location = 2) flat in int face_weight;
+
+/// p's foot on the light's plane, and 1 over the light's height.
+struct Foot {
+  dvec2 at;
+  double inverse;
+};
+
+/// x, taken from p, as it appears. The same for all edges that end in x: their parts along the ray to x must cancel.
+dvec3 project(dvec3 x, Foot foot) {
+  precise const double w = dot(push.n, x) * foot.inverse;
+  precise const double u = dot(push.u_dual, x) + foot.at.x * w;
+  precise const double v = dot(push.v_dual, x) + foot.at.y * w;
+  return dvec3(u, v, w);
+}
+
+void main() {
+  const uvec2 pixel = uvec2(gl_FragCoord.xy);
+  const uint slot = pixel.y * push.width + pixel.x;
+  const WedgeReceiver receiver = receivers[slot];
+  if (receiver.counted == 0) return;
+  const dvec3 p = dvec3(receiver.p), a = dvec3(face_a), b = dvec3(face_b), P = p - push.c;
+  const double height = dot(push.n, P);
+  const Foot foot = Foot(dvec2(dot(push.u_dual, P), dot(push.v_dual, P)), -1.0LF / height);
+  const dvec3 from = project(a - p, foot), to = project(b - p, foot);
+  const Segment cut = kShape == kDisk ? cut_by_disk(from, to) : cut_by_square(from, to);
+  if (!cut.any) return;
+
+  // The side of the plane (c, a, b) that p is on: the sign that decides whether the count at c changes at this edge.
+  const Value side = det(a - push.c, b - push.c, P);
+  const int facing = height > 0.0LF ? 1 : -1;
+  const int turn = side.value > side.bound ? facing : side.value < -side.bound ? -facing : kNoTurn;
+  const double size = (norm1(push.u_dual) + norm1(push.v_dual)) *
+                      (norm1(a - p) + norm1(b - p) + norm1(P) * (abs(from.z) + abs(to.z)));
+  const Coverage coverage = coverage_of(cut, turn, size, kShape == kDisk);
+  if (coverage.doubtful) {
+    doubts[slot] = 1;
+    return;
+  }
+  const double whole = kShape == kDisk ? 2.0LF * kHalfPi : 4.0LF;
+  const double share = coverage.area / whole * double(facing * face_weight);
+  atomicAdd(sums[slot], int64_t(round(share / kSumUnit)));
+}
