@@ -72,9 +72,14 @@ double area_within(const LightOutline& outline, const Polygon& polygon) {
 
 const auto kMix = [](const auto& a, const auto& b, double t) { return a + t * (b - a); };
 
+/// Sides shorter than this are no sides: rounding to 2⁻⁴⁸ may turn them by their own length. That moves an area by as
+/// little as the side is long.
+constexpr double kShortestSide = 0x1p-24;
+
 double common_area(Polygon one, const Polygon& other) {
   for (std::size_t i = 0; i < other.size() && one.size() > 2; ++i) {
     const glm::dvec2 corner = other[i], side = other[(i + 1) % other.size()] - corner;
+    if (glm::length(side) < kShortestSide) continue;
     one = cut(
         one, [&](const glm::dvec2& q) { return cross2(side, q - corner); }, kMix);
   }
