@@ -15,6 +15,7 @@
 #ifdef PENUMBRA_HAS_VOLUMES
 #include "volumes/hard_volume.hpp"
 #include "volumes/soft_volume.hpp"
+#include "volumes/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/accumulate.hpp"
@@ -69,6 +70,7 @@ const std::vector<TableRow>& table() {
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
       on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
+      on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
@@ -86,7 +88,6 @@ const std::vector<TableRow>& table() {
 
 /// Names that the program will understand some day; they mean nothing else until then.
 constexpr std::array kNotThereYet = {"exact",
-                                     "wedge-ramp",
                                      "soft-volume-blend",
                                      "depth-complexity",
                                      "alias-free",

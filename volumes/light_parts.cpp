@@ -1,6 +1,7 @@
 #include "volumes/light_parts.hpp"
 
 #include "base/assert.hpp"
+#include "volumes/texture_weights.hpp"
 
 namespace penumbra::volumes {
 
@@ -24,6 +25,9 @@ std::vector<visibility::Light> light_parts(const visibility::Light& light, std::
       part.row_shift.clear();
       part.points.clear();
       part.coordinates.clear();
+      part.weights.clear();
+      part.sample_colors.clear();
+      if (light.texture) part.texture = texture_part(*light.texture, n, {column, row});
       parts.push_back(part);
     }
   }

@@ -89,28 +89,33 @@ Segment cut_by_disk(dvec3 a, dvec3 b) {
 
 const int kNoTurn = 2;  // within rounding
 
-struct Coverage {
-  double area;  // in the light's coordinates; positive: counter-clockwise about the centre from a to b
+/// The cone from the centre over what is left of an edge.
+struct Cone {
+  double from, to;  // of the square: the fans of both ends, in [−1/2, 7/2]
+  double sector;    // its area within the light; positive: counter-clockwise. to − from, and perhaps the whole light
+  double triangle;  // the part before the edge, likewise
   bool doubtful;
 };
 
 /// `turn` is the exact sign of the turn from a to b, or kNoTurn; `size` what X and Y are sums of, at most.
-Coverage coverage_of(Segment cut, int turn, double size, bool disk) {
-  if (!cut.any) return Coverage(0.0LF, false);
+Cone cone_of(Segment cut, int turn, double size, bool disk) {
   const dvec3 from = cut.from, to = cut.to;
   const double near = kNearCenter * size;
   const bool at_center = max(abs(from.x), abs(from.y)) <= near || max(abs(to.x), abs(to.y)) <= near;
-  const double wedge = from.x * to.y - from.y * to.x, along = from.x * to.x + from.y * to.y;
-  const double half_light = disk ? kHalfPi : 2.0LF;
-  double sector;
+  const double across = from.x * to.y - from.y * to.x, along = from.x * to.x + from.y * to.y;
+  const double half_light = disk ? kHalfPi : 2.0LF, weight = from.z * to.z;
+  Cone cone;
+  cone.from = square_fan(from.y, from.x);
+  cone.to = square_fan(to.y, to.x);
   if (disk) {
-    sector = 0.5LF * angle_of(wedge, along);
+    cone.sector = 0.5LF * angle_of(across, along);
   } else {
-    sector = square_fan(to.y, to.x) - square_fan(from.y, from.x);
-    sector += sector > 2.0LF ? -4.0LF : sector < -2.0LF ? 4.0LF : 0.0LF;
+    cone.sector = cone.to - cone.from;
+    cone.sector += cone.sector > 2.0LF ? -4.0LF : cone.sector < -2.0LF ? 4.0LF : 0.0LF;
   }
-  // Nearly half a turn: which way round is what D(c) hangs on, too, and must be decided by the same sign.
-  if (along < 0.0LF && double(turn) * sector < 0.0LF) sector += 2.0LF * half_light * double(turn);
-  const double weight = from.z * to.z;
-  return Coverage(sector - 0.5LF * wedge / weight, at_center || (along < 0.0LF && turn == kNoTurn) || !(weight > 0.0LF));
+  // Nearly half a turn: which way round is what the count at c hangs on, too, and must be decided by the same sign.
+  if (along < 0.0LF && double(turn) * cone.sector < 0.0LF) cone.sector += 2.0LF * half_light * double(turn);
+  cone.triangle = 0.5LF * across / weight;
+  cone.doubtful = at_center || (along < 0.0LF && turn == kNoTurn) || !(weight > 0.0LF);
+  return cone;
 }

@@ -9,9 +9,11 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "mesh/parallel.hpp"
+#include "volumes/coverage_table.hpp"
 #include "volumes/light_parts.hpp"
 #include "volumes/soft_visibility.hpp"
 #include "volumes/soft_volume.frag.spv.hpp"
+#include "volumes/texture_weights.hpp"
 #include "volumes/volume_count.hpp"
 #include "volumes/wedge_casters.hpp"
 #include "volumes/wedge_raster.hpp"
@@ -53,7 +55,11 @@ visibility::MethodDescription describe() {
           .lights = {LightKind::rectangle, LightKind::disk},
           .options = {{"split", "1|2|3", "1",
                        "cut a rectangle in split² lights, each with silhouettes and a count of its own"},
-                      {"construction", "original|tight", "original", "of the wedges, which say where to look"}},
+                      {"coverage", "analytic|table", "analytic",
+                       "integrate the light beyond each edge, or look it up between 1024 points of the light"},
+                      {"construction", "original|tight", "original", "of the wedges, which say where to look"},
+                      {"tests", "none|z|both", "both",
+                       "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"}},
           .verdict_on = verdict_on};
 }
 
@@ -70,11 +76,20 @@ std::uint32_t split_of(const visibility::MethodOptions& options) {
   throw UsageError("method soft-volume: split={} is none of 1, 2, 3", split);
 }
 
-Construction construction_of(const visibility::MethodOptions& options) {
-  const std::string construction = option(options, "construction", "original");
-  if (construction == "original") return Construction::original;
-  if (construction == "tight") return Construction::tight;
-  throw UsageError("method soft-volume: construction={} is neither original nor tight", construction);
+/// Is the option the second of the two values that it has?
+bool second_of(const visibility::MethodOptions& options, const std::string& key,
+               const std::pair<std::string, std::string>& values) {
+  const std::string value = option(options, key, values.first);
+  if (value == values.first || value == values.second) return value == values.second;
+  throw UsageError("method soft-volume: {}={} is neither {} nor {}", key, value, values.first, values.second);
+}
+
+WedgeTests tests_of(const visibility::MethodOptions& options) {
+  const std::string value = option(options, "tests", name_of(WedgeTests::both));
+  for (const WedgeTests tests : {WedgeTests::none, WedgeTests::z, WedgeTests::both}) {
+    if (value == name_of(tests)) return tests;
+  }
+  throw UsageError("method soft-volume: tests={} is none of none, z, both", value);
 }
 
 /// The light, or one of the parts it is cut in.
@@ -84,6 +99,9 @@ struct Part {
   VolumeCount count;
   Light light;
   LightOutline outline;
+  std::optional<TextureWeights> texture;
+  std::vector<double> table;  // what the shader reads of this light
+  double weight = 1;          // of the whole light, which is 1
   LightWedges wedges;
   std::optional<std::vector<gpu::WedgeFace>> faces;  // for this view
   struct Host {
@@ -98,7 +116,13 @@ struct Part {
 class SoftVolume final : public visibility::Method {
  public:
   SoftVolume(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(describe()), device_(&device), split_(split_of(options)), construction_(construction_of(options)) {
+      : description_(describe()),
+        device_(&device),
+        split_(split_of(options)),
+        table_(second_of(options, "coverage", {"analytic", "table"})),
+        construction_(second_of(options, "construction", {"original", "tight"}) ? Construction::tight
+                                                                                : Construction::original),
+        tests_(tests_of(options)) {
     visibility::check_options(description_, options);
     for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<Part>(device));
   }
@@ -116,21 +140,13 @@ class SoftVolume final : public visibility::Method {
       throw InputError("light \"{}\" is a {}; method soft-volume cuts only rectangles in parts: take split=1",
                        light.name, name_of(light.kind));
     }
-    const gpu::uint shape = light.kind == LightKind::disk ? gpu::kDisk : gpu::kRectangle;
-    if (!raster_ || shape != shape_) {
-      raster_ = std::make_unique<WedgeRaster>(*device_, WedgeShader{"wedges", shaders::kSoftVolumeFrag, {shape}});
-    }
-    shape_ = shape;
+    make_raster(light);
     const std::vector<Light> lights = light_parts(light, split_);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      Part& part = *parts_[i];
-      part.light = lights[i];
-      part.outline = light_outline(part.light);
-      part.count.prepare_light(part.light);
-      part.wedges = wedges_of(part.count.volumes(), part.light, construction_);
-      part.faces.reset();
-      part.host.reset();
-    }
+    for (std::size_t i = 0; i < parts_.size(); ++i) prepare(*parts_[i], lights[i]);
+    double whole = 0;
+    for (const auto& part : parts_) whole += part->weight;
+    for (const auto& part : parts_) part->weight /= whole;
+    prepared_ = nullptr;
     doubtful_ = 0;
   }
 
@@ -156,7 +172,7 @@ class SoftVolume final : public visibility::Method {
     PENUMBRA_ASSERT(visibility.size() == sums_.size(), "{} values for a tile of {} pixels", visibility.size(),
                     sums_.size());
     for (std::size_t i = 0; i < sums_.size(); ++i) {
-      visibility[i] = static_cast<float>(sums_[i] / static_cast<double>(parts_.size()));
+      visibility[i] = static_cast<float>(std::min(sums_[i], 1.0));
     }
   }
 
@@ -169,6 +185,8 @@ class SoftVolume final : public visibility::Method {
   }
 
  private:
+  void make_raster(const Light& light);
+  void prepare(Part& part, const Light& light);
   void add(Part& part);
   void add_doubtful(Part& part, const std::vector<std::size_t>& pixels);
   [[nodiscard]] double share_above(const Part& part, std::size_t pixel) const;
@@ -176,8 +194,11 @@ class SoftVolume final : public visibility::Method {
   visibility::MethodDescription description_;
   const render::Device* device_;
   std::uint32_t split_;
+  bool table_;
   Construction construction_;
-  gpu::uint shape_ = 0;
+  WedgeTests tests_;
+  std::vector<gpu::uint> kind_;     // of raster_: shape and measure
+  const Part* prepared_ = nullptr;  // whose table raster_ has
   std::unique_ptr<WedgeRaster> raster_;
   std::vector<std::unique_ptr<Part>> parts_;
   const SceneFloats* scene_ = nullptr;
@@ -187,10 +208,39 @@ class SoftVolume final : public visibility::Method {
   std::uint64_t doubtful_ = 0;
 };
 
+/// What its shader does hangs on the light.
+void SoftVolume::make_raster(const Light& light) {
+  const gpu::uint shape = light.kind == LightKind::disk ? gpu::kDisk : gpu::kRectangle;
+  const gpu::uint measure = table_ ? gpu::kTable : light.texture ? gpu::kTexture : gpu::kArea;
+  const std::vector<gpu::uint> kind{shape, measure};
+  if (raster_ && kind == kind_) return;
+  raster_ = std::make_unique<WedgeRaster>(*device_, WedgeShader{"wedges", shaders::kSoftVolumeFrag, kind});
+  kind_ = kind;
+}
+
+void SoftVolume::prepare(Part& part, const Light& light) {
+  part.light = light;
+  part.outline = light_outline(light);
+  part.texture.reset();
+  part.weight = 1;
+  part.table.assign(1, 0.0);
+  if (light.texture) {
+    part.weight = light.texture->mean_luminance;
+    if (part.weight > 0) part.texture.emplace(*light.texture);  // a part may be black
+    if (part.texture) part.table = part.texture->words();
+  }
+  if (table_ && part.weight > 0) part.table = coverage_table(part.outline, part.texture ? &*part.texture : nullptr);
+  part.count.prepare_light(part.light);
+  part.wedges = wedges_of(part.count.volumes(), part.light, construction_);
+  part.faces.reset();
+  part.host.reset();
+}
+
 /// Adds each pixel's V for this part.
 void SoftVolume::add(Part& part) {
   using Kind = VolumeCount::Kind;
-  if (!part.faces) part.faces = faces_of(part.wedges, *samples_);
+  if (!(part.weight > 0)) return;
+  if (!part.faces) part.faces = faces_of(part.wedges, *samples_, tests_, glm::dvec3(part.count.center()));
   part.count.count(tile_);
   const std::span<const Kind> kinds = part.count.kinds();
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
@@ -202,7 +252,11 @@ void SoftVolume::add(Part& part) {
     away[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;
     receivers[i] = {p, away[i] == 0 ? 1u : 0u};
   });
-  raster_->add(*part.faces, receivers, frame_of(part.light), tile_, samples_->width);
+  gpu::WedgePush push = frame_of(part.light);
+  if (part.texture) push.texels = part.texture->texels();
+  if (prepared_ != &part) raster_->set_table(part.table);
+  prepared_ = &part;
+  raster_->add(*part.faces, receivers, push, tile_, samples_->width);
 
   std::vector<std::size_t> doubtful;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
@@ -211,10 +265,10 @@ void SoftVolume::add(Part& part) {
   add_doubtful(part, doubtful);
   for (const std::size_t i : doubtful) away[i] = 1;
   mesh::for_each_index(kinds.size(), [&](std::size_t i) {
-    if (kinds[i] == Kind::lit) sums_[i] += 1;
+    if (kinds[i] == Kind::lit) sums_[i] += part.weight;
     if (kinds[i] != Kind::counted || away[i] != 0) return;
     const double blocked = part.count.counts()[i] + gpu::kSumUnit * static_cast<double>(raster_->sums()[i]);
-    sums_[i] += std::clamp(1 - blocked, 0.0, share_above(part, first + i));
+    sums_[i] += part.weight * std::clamp(1 - blocked, 0.0, share_above(part, first + i));
   });
 }
 
@@ -228,7 +282,8 @@ void SoftVolume::add_doubtful(Part& part, const std::vector<std::size_t>& pixels
     const std::size_t pixel = first + pixels[i];
     const LitPoint point{samples_->p[pixel], static_cast<std::uint32_t>(samples_->triangle[pixel]),
                          samples_->facing[pixel]};
-    sums_[pixels[i]] += part.host->visibility.at(point, Viewer::center).visibility;
+    const LayerSum layers = part.host->visibility.at(point, Viewer::center);
+    sums_[pixels[i]] += part.weight * (part.texture ? textured_visibility(*part.texture, layers) : layers.visibility);
   });
 }
 

@@ -42,9 +42,22 @@ Loop cap_of(Loop corners, const glm::dvec3& normal) {
   return corners;
 }
 
+double margin_of(const Plane& plane, double reach) {
+  return 0x1p-40 * (3 * largest(plane.normal()) * reach + std::abs(plane.d));
+}
+
+/// Is no point of the box in the half-space?
+bool is_beyond(const Box& box, const Plane& plane) {
+  const double reach = std::max(largest(box.lower), largest(box.upper));
+  double highest = plane.d + margin_of(plane, reach);
+  const glm::dvec3 normal = plane.normal();
+  for (int i = 0; i < 3; ++i) highest += std::max(normal[i] * box.lower[i], normal[i] * box.upper[i]);
+  return highest < 0;
+}
+
 void clip(std::vector<Loop>& faces, const Plane& plane, double reach) {
   const glm::dvec3 normal = plane.normal();
-  const double margin = 0x1p-40 * (3 * largest(normal) * reach + std::abs(plane.d));
+  const double margin = margin_of(plane, reach);
   const auto height = [&](const glm::dvec3& x) { return glm::dot(normal, x) + plane.d + margin; };
   Loop cut;
   for (Loop& face : faces) {
@@ -62,6 +75,23 @@ void clip(std::vector<Loop>& faces, const Plane& plane, double reach) {
   }
   std::erase_if(faces, [](const Loop& face) { return face.empty(); });
   if (cut.size() > 2) faces.push_back(cap_of(std::move(cut), normal));
+}
+
+std::vector<Loop> faces_of(const Box& box) {
+  const auto corner = [&](unsigned i) {
+    return glm::dvec3((i & 1) != 0 ? box.upper.x : box.lower.x, (i & 2) != 0 ? box.upper.y : box.lower.y,
+                      (i & 4) != 0 ? box.upper.z : box.lower.z);
+  };
+  std::vector<Loop> faces;
+  for (const auto& [a, b, c, d] : {std::array{0u, 4u, 6u, 2u},
+                                   {1u, 3u, 7u, 5u},
+                                   {0u, 1u, 5u, 4u},
+                                   {2u, 6u, 7u, 3u},
+                                   {0u, 2u, 3u, 1u},
+                                   {4u, 5u, 7u, 6u}}) {
+    faces.push_back({corner(a), corner(b), corner(c), corner(d)});
+  }
+  return faces;
 }
 
 using Points = std::vector<glm::dvec2>;
@@ -82,16 +112,20 @@ Points hull_of(Points points) {
   return hull;
 }
 
-/// The part where sign · p[axis] ≤ limit.
-Points clip(const Points& polygon, int axis, double sign, double limit) {
-  Points kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const double d = limit - sign * from[axis], e = limit - sign * to[axis];
-    if (d >= 0) kept.push_back(from);
-    if ((d < 0 && e > 0) || (d > 0 && e < 0)) kept.push_back(from + (to - from) * (d / (d - e)));
+/// What two convex polygons have in common.
+Points clip(Points polygon, const Points& by) {
+  for (std::size_t side = 0; side < by.size(); ++side) {
+    const glm::dvec2 &start = by[side], way = by[(side + 1) % by.size()] - start;
+    Points kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const glm::dvec2 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
+      const double d = cross(way, from - start), e = cross(way, to - start);
+      if (d >= 0) kept.push_back(from);
+      if ((d < 0 && e > 0) || (d > 0 && e < 0)) kept.push_back(from + (to - from) * (d / (d - e)));
+    }
+    polygon = std::move(kept);
   }
-  return kept;
+  return polygon;
 }
 
 /// Takes away the edge that adds least when its neighbours are extended until they meet. False: none do.
@@ -121,76 +155,96 @@ bool drop_edge(Points& polygon) {
 
 }  // namespace
 
-std::optional<Receivers> receivers_of(const visibility::ViewSamples& samples) {
+const char* name_of(WedgeTests tests) {
+  return tests == WedgeTests::none ? "none" : tests == WedgeTests::z ? "z" : "both";
+}
+
+Receivers::Receivers(const visibility::ViewSamples& samples, const std::optional<glm::dvec3>& center)
+    : columns_((samples.width + kBlock - 1) / kBlock), rows_((samples.height + kBlock - 1) / kBlock) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Receivers receivers{{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)}, kInfinity};
+  blocks_.assign(std::size_t{columns_} * rows_, {glm::dvec3(kInfinity), glm::dvec3(-kInfinity)});
+  double nearest = kInfinity;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
     const glm::dvec3 p(samples.p[i]);
-    receivers.bounds = {glm::min(receivers.bounds.lower, p), glm::max(receivers.bounds.upper, p)};
-    receivers.nearest = std::min(receivers.nearest, glm::dot(samples.camera.forward, p - samples.camera.eye));
+    if (center) {
+      // n is a unit vector in float32, off by some 2⁻²²; p off its plane by an ulp of its coordinates.
+      const glm::dvec3 way = *center - p;
+      const double size = largest(way) + largest(p) + largest(*center);
+      if (glm::dot(glm::dvec3(samples.n[i]), way) < -0x1p-18 * size) continue;
+    }
+    const std::size_t x = i % samples.width / kBlock, y = i / samples.width / kBlock;
+    Box& block = blocks_[y * columns_ + x];
+    block = {glm::min(block.lower, p), glm::max(block.upper, p)};
+    nearest = std::min(nearest, glm::dot(samples.camera.forward, p - samples.camera.eye));
+    reach_ = std::max(reach_, largest(p));
   }
-  if (!(receivers.nearest < kInfinity)) return std::nullopt;
-  // Half: nothing that is seen is cut off, and nothing projects to infinity.
-  receivers.nearest = std::max(receivers.nearest / 2, std::numeric_limits<double>::min());
-  return receivers;
+  bounds_ = blocks_.empty() ? Box{} : blocks_.front();
+  for (const Box& block : blocks_) {
+    bounds_ = {glm::min(bounds_.lower, block.lower), glm::max(bounds_.upper, block.upper)};
+  }
+  if (nearest < kInfinity) nearest_ = std::max(nearest / 2, std::numeric_limits<double>::min());
 }
 
-FootprintFinder::FootprintFinder(const visibility::PinholeCamera& camera, const Receivers& receivers)
-    : camera_(camera),
-      receivers_(receivers),
-      reach_(std::max(largest(receivers.bounds.lower), largest(receivers.bounds.upper))) {}
+FootprintFinder::FootprintFinder(const visibility::PinholeCamera& camera, const Receivers& receivers, WedgeTests tests)
+    : camera_(camera), receivers_(&receivers), tests_(tests) {}
 
-std::vector<Loop> FootprintFinder::box() const {
-  const auto corner = [&](unsigned i) {
-    const Box& b = receivers_.bounds;
-    return glm::dvec3((i & 1) != 0 ? b.upper.x : b.lower.x, (i & 2) != 0 ? b.upper.y : b.lower.y,
-                      (i & 4) != 0 ? b.upper.z : b.lower.z);
-  };
-  std::vector<Loop> faces;
-  for (const auto& [a, b, c, d] : {std::array{0u, 4u, 6u, 2u},
-                                   {1u, 3u, 7u, 5u},
-                                   {0u, 1u, 5u, 4u},
-                                   {2u, 6u, 7u, 3u},
-                                   {0u, 2u, 3u, 1u},
-                                   {4u, 5u, 7u, 6u}}) {
-    faces.push_back({corner(a), corner(b), corner(c), corner(d)});
-  }
-  return faces;
-}
-
-std::optional<Footprint> FootprintFinder::around(std::span<const Wedge> pieces) const {
+void FootprintFinder::add_projection(const Wedge& wedge, Points& points) const {
   const glm::dvec2 half(0.5 * camera_.width, 0.5 * camera_.height);
   const glm::dvec3 across = camera_.right / (camera_.tan_half_fov * camera_.width / camera_.height);
   const glm::dvec3 upward = camera_.up / camera_.tan_half_fov, &forward = camera_.forward;
-  const Plane in_front{forward.x, forward.y, forward.z, -glm::dot(forward, camera_.eye) - receivers_.nearest};
-  Points points;
-  for (const Wedge& wedge : pieces) {
-    if (wedge.outcome == WedgeOutcome::empty || wedge.outcome == WedgeOutcome::split) continue;
-    std::vector<Loop> faces = box();
-    clip(faces, in_front, reach_);
-    for (const Plane& plane : wedge.planes) clip(faces, plane, reach_);
-    for (const Loop& face : faces) {
-      for (const glm::dvec3& x : face) {
-        const glm::dvec3 d = x - camera_.eye;
-        const double w = glm::dot(forward, d);
-        const glm::dvec2 at = half + glm::dvec2(glm::dot(across, d), -glm::dot(upward, d)) / w * half;
-        for (const glm::dvec2& pad : {glm::dvec2(kPad, kPad), {-kPad, kPad}, {kPad, -kPad}, {-kPad, -kPad}}) {
-          points.push_back(at + pad);
-        }
+  std::vector<Loop> faces = faces_of(receivers_->bounds());
+  clip(faces, {forward.x, forward.y, forward.z, -glm::dot(forward, camera_.eye) - receivers_->nearest()},
+       receivers_->reach());
+  for (const Plane& plane : wedge.planes) clip(faces, plane, receivers_->reach());
+  for (const Loop& face : faces) {
+    for (const glm::dvec3& x : face) {
+      const glm::dvec3 d = x - camera_.eye;
+      const double w = glm::dot(forward, d);
+      const glm::dvec2 at = half + glm::dvec2(glm::dot(across, d), -glm::dot(upward, d)) / w * half;
+      for (const glm::dvec2& pad : {glm::dvec2(kPad, kPad), {-kPad, kPad}, {kPad, -kPad}, {-kPad, -kPad}}) {
+        points.push_back(at + pad);
       }
     }
   }
+}
+
+/// Corners of the blocks in the polygon that may have a receiver in one of the wedges.
+Points FootprintFinder::blocks_in(std::span<const Wedge> pieces, const Points& polygon) const {
+  glm::dvec2 lower = polygon.front(), upper = lower;
+  for (const glm::dvec2& p : polygon) {
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
+  }
+  Points points;
+  receivers_->for_each_block(lower, upper, [&](const glm::dvec2& low, const glm::dvec2& high, const Box& box) {
+    const bool reached = std::ranges::any_of(pieces, [&](const Wedge& wedge) {
+      if (wedge.outcome == WedgeOutcome::empty || wedge.outcome == WedgeOutcome::split) return false;
+      return std::ranges::none_of(wedge.planes, [&](const Plane& plane) { return is_beyond(box, plane); });
+    });
+    if (reached)
+      points.insert(points.end(),
+                    {low - kPad, high + kPad, {low.x - kPad, high.y + kPad}, {high.x + kPad, low.y - kPad}});
+  });
+  return points;
+}
+
+std::optional<Footprint> FootprintFinder::around(std::span<const Wedge> pieces) const {
+  Points points;
+  for (const Wedge& wedge : pieces) {
+    if (wedge.outcome != WedgeOutcome::empty && wedge.outcome != WedgeOutcome::split) add_projection(wedge, points);
+  }
   if (points.empty()) return std::nullopt;
-  Points polygon = hull_of(std::move(points));
-  for (int axis = 0; axis < 2; ++axis) {
-    polygon = clip(clip(polygon, axis, 1, 2 * half[axis] + 1), axis, -1, 1);
+  const glm::dvec2 size(camera_.width, camera_.height);
+  const Points screen{{-1, -1}, {size.x + 1, -1}, size + 1.0, {-1, size.y + 1}};
+  Points polygon = clip(hull_of(std::move(points)), screen);
+  if (tests_ != WedgeTests::none && polygon.size() >= 3) {
+    Points blocks = blocks_in(pieces, polygon);
+    polygon = blocks.empty() ? Points{} : clip(polygon, hull_of(std::move(blocks)));
   }
   if (polygon.size() < 3) return std::nullopt;
   while (polygon.size() > Footprint::kMost) {
-    if (!drop_edge(polygon)) {
-      polygon = {{-1, -1}, {2 * half.x + 1, -1}, 2.0 * half + 1.0, {-1, 2 * half.y + 1}};
-    }
+    if (!drop_edge(polygon)) polygon = screen;
   }
   Footprint footprint;
   footprint.size = polygon.size();

@@ -13,11 +13,13 @@ layout(scalar, push_constant) uniform Push { WedgePush push; };
 layout(location = 0) flat out vec3 a;
 layout(location = 1) flat out vec3 b;
 layout(location = 2) flat out int weight;
+layout(location = 3) flat out uint number;
 
 void main() {
   a = faces[gl_InstanceIndex].a;
   b = faces[gl_InstanceIndex].b;
   weight = faces[gl_InstanceIndex].weight;
+  number = faces[gl_InstanceIndex].number;
   // Triangle t of the fan has corners 0, t + 1, t + 2; those beyond the last are the last, so without area.
   const uint triangle = gl_VertexIndex / 3, which = gl_VertexIndex % 3;
   const uint corner = min(which == 0 ? 0 : triangle + which, faces[gl_InstanceIndex].corner_count - 1);

@@ -7,13 +7,13 @@
 #include "render/raster_pass.hpp"
 #include "volumes/light_hull.hpp"
 #include "volumes/screen_box.hpp"
-#include "volumes/wedge_footprint.hpp"
 #include "volumes/wedge_footprint.vert.spv.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -41,11 +41,12 @@ LightWedges wedges_of(const LightVolumes& volumes, const visibility::Light& ligh
   return {volumes.edges, build_wedges(edges, light_hull(light), construction)};
 }
 
-std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const ViewSamples& samples) {
+std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const ViewSamples& samples, WedgeTests tests,
+                                     const glm::dvec3& center) {
   static_assert(std::size(gpu::WedgeFace{}.corners) == Footprint::kMost);
-  const std::optional<Receivers> receivers = receivers_of(samples);
-  if (!receivers) return {};
-  const FootprintFinder finder(samples.camera, *receivers);
+  const Receivers receivers(samples, tests == WedgeTests::both ? std::optional(center) : std::nullopt);
+  if (receivers.empty()) return {};
+  const FootprintFinder finder(samples.camera, receivers, tests);
   std::vector<std::size_t> first(wedges.edges.size() + 1, wedges.wedges.size());
   for (std::size_t i = wedges.wedges.size(); i-- > 0;) first[wedges.wedges[i].source] = i;
   std::vector<gpu::WedgeFace> faces(wedges.edges.size());
@@ -54,7 +55,9 @@ std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const ViewSample
     const std::optional<Footprint> footprint = finder.around(pieces);
     if (!footprint) return;
     const VolumeEdge& edge = wedges.edges[i];
-    faces[i] = {edge.a, edge.b, edge.multiplicity, static_cast<std::uint32_t>(footprint->size), {}};
+    faces[i] = {
+        edge.a, edge.b, edge.multiplicity, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(footprint->size),
+        {}};
     std::ranges::copy(footprint->corners, std::begin(faces[i].corners));
   });
   std::erase_if(faces, [](const gpu::WedgeFace& face) { return face.corner_count == 0; });
@@ -100,10 +103,14 @@ struct WedgeRaster::State {
                   .vertex = shaders::kWedgeFootprintVert,
                   .fragment = shader.fragment,
                   .push_bytes = sizeof(gpu::WedgePush),
-                  .constants = shader.constants}) {}
+                  .constants = shader.constants}),
+        table_buffer(render::make_buffer<double>(on, "wedge table", {})) {
+    table_buffer.write<double>(std::array{0.0});
+  }
 
   const render::Device* device;
   render::RasterPass pass;
+  render::Buffer table_buffer;
   std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, sum_buffer, doubt_buffer;
   std::vector<std::int64_t> sums;
   std::vector<std::uint32_t> doubts;
@@ -115,6 +122,10 @@ WedgeRaster::WedgeRaster(const render::Device& device, const WedgeShader& shader
 WedgeRaster::~WedgeRaster() = default;
 WedgeRaster::WedgeRaster(WedgeRaster&&) noexcept = default;
 WedgeRaster& WedgeRaster::operator=(WedgeRaster&&) noexcept = default;
+
+void WedgeRaster::set_table(std::span<const double> table) {
+  state_->table_buffer = render::make_buffer(*state_->device, "wedge table", table);
+}
 
 void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu::WedgeReceiver> receivers,
                       gpu::WedgePush push, const Tile& tile, std::uint32_t width) {
@@ -139,7 +150,7 @@ void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu
     const std::span<const gpu::WedgeFace> batch = faces.subspan(first, std::min(most, faces.size() - first));
     render::grow(*s.device, s.face_buffer, "wedge faces", batch.size_bytes());
     s.face_buffer->write(batch);
-    s.pass.record(commands, push, {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer},
+    s.pass.record(commands, push, {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer, s.table_buffer},
                   {.width = width,
                    .height = tile.row_count,
                    .vertices = kFanVertices,
@@ -170,7 +181,7 @@ std::vector<visibility::PassTime> WedgeRaster::take_pass_times() {
 
 std::uint64_t WedgeRaster::memory_bytes() const {
   const State& s = *state_;
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = s.table_buffer.bytes();
   for (const auto* buffer : {&s.face_buffer, &s.receiver_buffer, &s.sum_buffer, &s.doubt_buffer}) {
     if (*buffer) bytes += (*buffer)->bytes();
   }

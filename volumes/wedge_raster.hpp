@@ -6,6 +6,7 @@
 #include "visibility/view_samples.hpp"
 #include "volumes/light_volumes.hpp"
 #include "volumes/penumbra_wedge.hpp"
+#include "volumes/wedge_footprint.hpp"
 #include "volumes/wedge_raster.shared.h"
 
 #include <cstdint>
@@ -23,8 +24,9 @@ struct LightWedges {
 };
 LightWedges wedges_of(const LightVolumes& volumes, const visibility::Light& light, Construction construction);
 
-/// Their faces that may have a receiver on the screen.
-std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const visibility::ViewSamples& samples);
+/// Their faces that may have a receiver on the screen. `center` is the light's.
+std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const visibility::ViewSamples& samples,
+                                     WedgeTests tests, const glm::dvec3& center);
 
 /// How many pixels the faces propose, about: the areas of their footprints.
 std::uint64_t fragments_of(std::span<const gpu::WedgeFace> faces);
@@ -50,7 +52,11 @@ class WedgeRaster {
   WedgeRaster(WedgeRaster&&) noexcept;
   WedgeRaster& operator=(WedgeRaster&&) noexcept;
 
-  /// The tile's receivers, row by row; `push.width` and the tile's rows are filled in.
+  /// What the shader reads at its last binding; one 0 until then.
+  void set_table(std::span<const double> table);
+
+  /// The tile's receivers, row by row; `push.width` and the tile's rows are filled
+  /// in.
   void add(std::span<const gpu::WedgeFace> faces, std::span<const gpu::WedgeReceiver> receivers, gpu::WedgePush push,
            const visibility::Tile& tile, std::uint32_t width);
 

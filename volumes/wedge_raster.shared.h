@@ -17,6 +17,7 @@ using glm::vec3;
 struct WedgeFace {
   vec3 a, b;
   int weight;
+  uint number;  // of the edge, in LightWedges
   uint corner_count;
   vec2 corners[8];
 };
@@ -35,7 +36,7 @@ struct WedgePush {
   DOUBLE3(n);
   uint width;                 // of the whole picture
   uint first_row, row_count;  // the tile
-  uint texels;                // along either side of a table
+  uint texels;                // of a texture: width, and height · 2¹⁶
 };
 
 /// Sums are whole multiples of 2⁻³² of the light, in 64 bits. A term is off by 2⁻³³: 2¹⁶ of them by less than 10⁻⁵.
@@ -43,6 +44,9 @@ struct WedgePush {
 const double kSumUnit = 1.0 / 4294967296.0;
 
 const uint kRectangle = 0, kDisk = 1;
+
+/// How much of the light is on a side of an edge: its area; by a table; of a texture, texel by texel.
+const uint kArea = 0, kTable = 1, kTexture = 2;
 
 #ifdef __cplusplus
 }  // namespace penumbra::volumes::gpu

@@ -19,7 +19,7 @@ namespace penumbra::tests {
 struct SoftStage {
   SoftStage(const scenes::Scene& scene, const render::Device& device, std::uint32_t width, std::uint32_t height)
       : floats(visibility::make_scene_floats(scene)),
-        light(visibility::make_light(scene, 0, floats.origin, {1, 0, 0, visibility::SamplePattern::grid, 0})),
+        light(visibility::make_light(scene, 0, floats.origin, {64, 0, 0, visibility::SamplePattern::grid, 0})),
         samples(render::VisibilityBuffer(device, floats)
                     .render(visibility::make_camera(scene.cameras.at(0), floats.origin, width, height))),
         classes(visibility::classify_pixels(floats, samples, light)) {}

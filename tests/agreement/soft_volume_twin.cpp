@@ -113,6 +113,22 @@ TEST_F(SoftVolumeTwin, TheOrderOfTrianglesChangesNoByte) {
   }
 }
 
+TEST_F(SoftVolumeTwin, SmallerFootprintsLoseNothing) {
+  for (const char* name : {"fusion", "room"}) {
+    const SoftStage stage(tests::shipped_scene(name), device(), 80, 60);
+    const auto all = make_soft_volume(device(), {{"tests", "none"}});
+    const std::vector<float> expected = stage.run(*all);
+    std::uint64_t fragments = all->counters().at("fragments");
+    for (const char* tests : {"z", "both"}) {
+      const auto method = make_soft_volume(device(), {{"tests", tests}});
+      EXPECT_EQ(stage.run(*method), expected) << name << ", " << tests;
+      EXPECT_LE(method->counters().at("fragments"), fragments) << name << ", " << tests;
+      fragments = method->counters().at("fragments");
+    }
+    EXPECT_LT(fragments, all->counters().at("fragments")) << name;
+  }
+}
+
 TEST_F(SoftVolumeTwin, RefusesWhatItCannotDo) {
   EXPECT_THROW(make_soft_volume(device(), {{"split", "4"}}), UsageError);
   EXPECT_THROW(make_soft_volume(device(), {{"construction", "loose"}}), UsageError);
