@@ -15,6 +15,7 @@
 #ifdef PENUMBRA_HAS_VOLUMES
 #include "volumes/hard_volume.hpp"
 #include "volumes/soft_volume.hpp"
+#include "volumes/soft_volume_blend.hpp"
 #include "volumes/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
@@ -70,6 +71,7 @@ const std::vector<TableRow>& table() {
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
       on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
+      on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
       on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
@@ -88,7 +90,6 @@ const std::vector<TableRow>& table() {
 
 /// Names that the program will understand some day; they mean nothing else until then.
 constexpr std::array kNotThereYet = {"exact",
-                                     "soft-volume-blend",
                                      "depth-complexity",
                                      "alias-free",
                                      "view-sample-planar",

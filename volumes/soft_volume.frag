@@ -26,22 +26,9 @@ layout(location = 1) flat in vec3 face_b;
 layout(location = 2) flat in int face_weight;
 
 #include "volumes/radial_coverage.glsl"
+#include "volumes/foot.glsl"
 #include "volumes/coverage_table.glsl"
 #include "volumes/texture_weights.glsl"
-
-/// p's foot on the light's plane, and 1 over the light's height.
-struct Foot {
-  dvec2 at;
-  double inverse;
-};
-
-/// x, taken from p, as it appears. The same for all edges that end in x: their parts along the ray to x must cancel.
-dvec3 project(dvec3 x, Foot foot) {
-  precise const double w = dot(push.n, x) * foot.inverse;
-  precise const double u = dot(push.u_dual, x) + foot.at.x * w;
-  precise const double v = dot(push.v_dual, x) + foot.at.y * w;
-  return dvec3(u, v, w);
-}
 
 /// Of the light, what lies beyond the edge from q0 to q1.
 double share_of(Cone cone, dvec2 q0, dvec2 q1) {
@@ -68,24 +55,16 @@ void main() {
   const uint slot = pixel.y * push.width + pixel.x;
   const WedgeReceiver receiver = receivers[slot];
   if (receiver.counted == 0) return;
-  const dvec3 p = dvec3(receiver.p), a = dvec3(face_a), b = dvec3(face_b), P = p - push.c;
-  const double height = dot(push.n, P);
-  const Foot foot = Foot(dvec2(dot(push.u_dual, P), dot(push.v_dual, P)), -1.0LF / height);
+  const dvec3 p = dvec3(receiver.p), a = dvec3(face_a), b = dvec3(face_b);
+  const Foot foot = foot_of(p);
   const dvec3 from = project(a - p, foot), to = project(b - p, foot);
   const Segment cut = kShape == kDisk ? cut_by_disk(from, to) : cut_by_square(from, to);
   if (!cut.any) return;
-
-  // The side of the plane (c, a, b) that p is on: the sign that decides whether the count at c changes at this edge.
-  const Value side = det(a - push.c, b - push.c, P);
-  const int facing = height > 0.0LF ? 1 : -1;
-  const int turn = side.value > side.bound ? facing : side.value < -side.bound ? -facing : kNoTurn;
-  const double size = (norm1(push.u_dual) + norm1(push.v_dual)) *
-                      (norm1(a - p) + norm1(b - p) + norm1(P) * (abs(from.z) + abs(to.z)));
-  const Cone cone = cone_of(cut, turn, size, kShape == kDisk);
+  const Cone cone = cone_of(cut, turn_of(a, b, p, foot), size_of(a, b, p, from, to), kShape == kDisk);
   if (cone.doubtful) {
     doubts[slot] = 1;
     return;
   }
-  const double share = share_of(cone, cut.from.xy / cut.from.z, cut.to.xy / cut.to.z) * double(facing * face_weight);
-  atomicAdd(sums[slot], int64_t(round(share / kSumUnit)));
+  const double share = share_of(cone, cut.from.xy / cut.from.z, cut.to.xy / cut.to.z);
+  atomicAdd(sums[slot], int64_t(round(share * double(facing_of(foot) * face_weight) / kSumUnit)));
 }

@@ -104,12 +104,16 @@ struct WedgeRaster::State {
                   .fragment = shader.fragment,
                   .push_bytes = sizeof(gpu::WedgePush),
                   .constants = shader.constants}),
+        words(shader.words),
+        table(shader.table),
         table_buffer(render::make_buffer<double>(on, "wedge table", {})) {
     table_buffer.write<double>(std::array{0.0});
   }
 
   const render::Device* device;
   render::RasterPass pass;
+  std::uint32_t words;
+  bool table;
   render::Buffer table_buffer;
   std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, sum_buffer, doubt_buffer;
   std::vector<std::int64_t> sums;
@@ -132,11 +136,11 @@ void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu
   State& s = *state_;
   PENUMBRA_ASSERT(receivers.size() == std::size_t{tile.row_count} * width, "{} receivers in {} rows of {}",
                   receivers.size(), tile.row_count, width);
-  s.sums.resize(receivers.size());
+  s.sums.resize(receivers.size() * s.words);
   s.doubts.resize(receivers.size());
   if (receivers.empty()) return;
   render::grow(*s.device, s.receiver_buffer, "wedge receivers", receivers.size_bytes());
-  render::grow(*s.device, s.sum_buffer, "wedge sums", receivers.size() * sizeof(std::int64_t));
+  render::grow(*s.device, s.sum_buffer, "wedge sums", s.sums.size() * sizeof(std::int64_t));
   render::grow(*s.device, s.doubt_buffer, "wedge doubts", receivers.size() * sizeof(std::uint32_t));
   s.receiver_buffer->write(receivers);
   push.width = width;
@@ -150,11 +154,16 @@ void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu
     const std::span<const gpu::WedgeFace> batch = faces.subspan(first, std::min(most, faces.size() - first));
     render::grow(*s.device, s.face_buffer, "wedge faces", batch.size_bytes());
     s.face_buffer->write(batch);
-    s.pass.record(commands, push, {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer, s.table_buffer},
-                  {.width = width,
-                   .height = tile.row_count,
-                   .vertices = kFanVertices,
-                   .instances = static_cast<std::uint32_t>(batch.size())});
+    const render::RasterPass::Draw draw{.width = width,
+                                        .height = tile.row_count,
+                                        .vertices = kFanVertices,
+                                        .instances = static_cast<std::uint32_t>(batch.size())};
+    if (s.table) {
+      s.pass.record(commands, push,
+                    {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer, s.table_buffer}, draw);
+    } else {
+      s.pass.record(commands, push, {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer}, draw);
+    }
     for (const render::PassMilliseconds& time : commands.submit()) s.times.push_back({time.name, time.milliseconds});
   }
   commands.submit();  // the fills, where there was no face
@@ -170,7 +179,8 @@ std::span<const std::uint32_t> WedgeRaster::doubts() const {
 }
 
 std::uint32_t WedgeRaster::max_tile_rows(const ViewSamples& samples) const {
-  const std::uint64_t row = std::max<std::uint64_t>(samples.width, 1) * sizeof(gpu::WedgeReceiver);
+  const std::uint64_t row = std::max<std::uint64_t>(samples.width, 1) *
+                            std::max(sizeof(gpu::WedgeReceiver), state_->words * sizeof(std::int64_t));
   const std::uint64_t rows = state_->device->limits().max_storage_buffer_range / row;
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, 1, std::max(samples.height, 1u)));
 }

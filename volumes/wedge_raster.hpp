@@ -41,7 +41,9 @@ bool appears_in_place(const visibility::PinholeCamera& camera, const glm::vec3& 
 struct WedgeShader {
   std::string name;
   std::span<const std::uint32_t> fragment;
-  std::vector<std::uint32_t> constants;
+  std::vector<std::uint32_t> constants{};
+  std::uint32_t words = 1;  ///< of sums, for each receiver
+  bool table = true;        ///< does it read one?
 };
 
 /// Rasterises wedges and adds up what a fragment shader makes of each at each receiver: in integers, so in any order.
@@ -60,7 +62,8 @@ class WedgeRaster {
   void add(std::span<const gpu::WedgeFace> faces, std::span<const gpu::WedgeReceiver> receivers, gpu::WedgePush push,
            const visibility::Tile& tile, std::uint32_t width);
 
-  /// For each receiver of the last add: the sum in units of gpu::kSumUnit, and whether the host must see to it.
+  /// For each receiver of the last add: its sums, mostly in units of gpu::kSumUnit, and whether the host must see to
+  /// it.
   [[nodiscard]] std::span<const std::int64_t> sums() const;
   [[nodiscard]] std::span<const std::uint32_t> doubts() const;
 
