@@ -86,6 +86,9 @@ double common_area(Polygon one, const Polygon& other) {
   return one.size() > 2 ? area_of(one) : 0;
 }
 
+/// A corner whose W is this near to 1 was cut off by the light's plane, or lies on it; rounding makes 2⁻⁴⁸ of W.
+constexpr double kAtLight = 0x1p-40;
+
 struct Bounds {
   glm::dvec2 lower, upper;
 };
@@ -97,11 +100,11 @@ Bounds bounds_of(const Polygon& polygon) {
 
 }  // namespace
 
-std::vector<Polygon> projected_layers(const visibility::Light& light, const glm::vec3& p,
-                                      std::span<const std::array<glm::vec3, 3>> triangles) {
+ProjectedLayers projected_layers(const visibility::Light& light, const glm::vec3& p,
+                                 std::span<const std::array<glm::vec3, 3>> triangles) {
   const LightProjection projection(light, p);
   const Polygon frame = frame_of(light_outline(light));
-  std::vector<Polygon> layers;
+  ProjectedLayers layers;
   for (const std::array<glm::vec3, 3>& corners : triangles) {
     std::vector<glm::dvec3> seen;
     for (const glm::vec3& corner : corners) seen.push_back(homogeneous(projection(glm::dvec3(corner))));
@@ -116,11 +119,13 @@ std::vector<Polygon> projected_layers(const visibility::Light& light, const glm:
     }
     Polygon layer;
     for (const glm::dvec3& q : seen) {
-      if (q.z > 0) layer.push_back(glm::dvec2(q) / q.z);
+      if (!(q.z > 0)) continue;
+      layer.push_back(glm::dvec2(q) / q.z);
+      layers.touch_light = layers.touch_light || q.z > 1 - kAtLight;
     }
     const double area = area_of(layer);
     if (area < 0) std::ranges::reverse(layer);
-    if (area != 0) layers.push_back(std::move(layer));
+    if (area != 0) layers.polygons.push_back(std::move(layer));
   }
   return layers;
 }

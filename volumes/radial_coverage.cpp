@@ -49,29 +49,26 @@ struct Range {
   }
 };
 
-/// X² + Y² ≤ W² of the part with W ≥ 0, which is convex: f = α t² + 2 β t + γ ≥ 0 there is one interval.
-bool cut_by_disk(const Projected& a, const Projected& b, Range& range) {
-  const double dx = b.x - a.x, dy = b.y - a.y, dw = b.w - a.w;
-  const double alpha = dw * dw - dx * dx - dy * dy, beta = a.w * dw - a.x * dx - a.y * dy,
-               gamma = a.w * a.w - a.x * a.x - a.y * a.y;
-  const auto f = [&](double t) { return (alpha * t + 2 * beta) * t + gamma; };
-  const bool from_outside = f(range.from) < 0, to_outside = f(range.to) < 0;
-  if (!from_outside && !to_outside) return true;
-  const double discriminant = beta * beta - alpha * gamma;
-  if (discriminant < 0) return !(from_outside && to_outside);
-  const double q = -(beta + std::copysign(std::sqrt(discriminant), beta));
-  double low = q / alpha, high = gamma / q;
-  if (!(low <= high)) std::swap(low, high);  // also where alpha is 0
-  if (from_outside && to_outside && !(low > range.from && high < range.to)) return false;
-  const auto inside = [&](double t) { return t > range.from && t < range.to; };
-  if (from_outside && to_outside) {
-    range = {low, high};
-  } else if (from_outside) {
-    range.from = inside(low) ? low : inside(high) ? high : range.to;
-  } else {
-    range.to = inside(high) ? high : inside(low) ? low : range.from;
-  }
-  return range.from < range.to;
+/// What of an edge within the square around it is within the disk. On the light's plane, not before: where an edge
+/// passes p closely, X² + Y² ≤ W² would be decided by the squares of small differences.
+std::optional<ClippedEdge> cut_by_disk(const ClippedEdge& edge) {
+  const glm::dvec2 way = edge.to - edge.from;
+  const double size = glm::dot(way, way), half = glm::dot(edge.from, way), rest = glm::dot(edge.from, edge.from) - 1;
+  const bool from_inside = rest <= 0, to_inside = glm::dot(edge.to, edge.to) <= 1;
+  if (from_inside && to_inside) return edge;
+  const double discriminant = half * half - size * rest;
+  if (!(discriminant > 0)) return std::nullopt;
+  const double q = -(half + std::copysign(std::sqrt(discriminant), half));
+  const double low = std::min(q / size, rest / q), high = std::max(q / size, rest / q);
+  Range range;
+  if (!from_inside) range.from = std::max(0.0, low);
+  if (!to_inside) range.to = std::min(1.0, high);
+  if (!(range.from < range.to)) return std::nullopt;
+  ClippedEdge inside = edge;
+  if (!from_inside) inside.from = edge.from + range.from * way;
+  if (!to_inside) inside.to = edge.from + range.to * way;
+  inside.from_error = inside.to_error = std::max(edge.from_error, edge.to_error);
+  return inside;
 }
 
 Projected mix(const Projected& a, const Projected& b, double t) {
@@ -158,19 +155,22 @@ Projected LightProjection::operator()(const glm::dvec3& x) const {
 }
 
 std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Projected& a, const Projected& b) {
+  static const std::vector<glm::dvec2> kSquare = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  const bool is_disk = outline.corners.empty();
+  const std::vector<glm::dvec2>& corners = is_disk ? kSquare : outline.corners;
   Range range;
   if (!range.cut(a.w, b.w) || !range.cut(1 - a.w, 1 - b.w)) return std::nullopt;
-  for (std::size_t i = 0; i < outline.corners.size(); ++i) {
-    const glm::dvec2 &corner = outline.corners[i], side = outline.corners[(i + 1) % outline.corners.size()] - corner;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec2 &corner = corners[i], side = corners[(i + 1) % corners.size()] - corner;
     const auto height = [&](const Projected& q) {
       return cross2(side, glm::dvec2(q.x - q.w * corner.x, q.y - q.w * corner.y));
     };
     if (!range.cut(height(a), height(b))) return std::nullopt;
   }
-  if (outline.corners.empty() && !cut_by_disk(a, b, range)) return std::nullopt;
   const Projected from = range.from == 0 ? a : mix(a, b, range.from), to = range.to == 1 ? b : mix(a, b, range.to);
   if (!(from.w > 0) || !(to.w > 0)) return std::nullopt;  // p is on the edge: it has no extent
-  return ClippedEdge{from.point(), to.point(), from.error(), to.error()};
+  const ClippedEdge edge{from.point(), to.point(), from.error(), to.error()};
+  return is_disk ? cut_by_disk(edge) : edge;
 }
 
 RadialCoverage::RadialCoverage(const LightOutline& outline, const glm::dvec2& reference)

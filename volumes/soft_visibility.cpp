@@ -27,6 +27,12 @@ int sign_of(Side side) {
   return static_cast<int>(side);
 }
 
+bool box_misses(const std::array<glm::vec3, 3>& corners, const glm::vec3& lower, const glm::vec3& upper) {
+  const auto& [a, b, c] = corners;
+  return glm::any(glm::lessThan(glm::max(a, glm::max(b, c)), lower)) ||
+         glm::any(glm::greaterThan(glm::min(a, glm::min(b, c)), upper));
+}
+
 /// What a triangle seen from `side` gives to k of one of its edges (mesh/silhouettes.hpp).
 int share_of(const mesh::EdgeGraph& graph, std::uint32_t edge, std::uint32_t triangle, Side side) {
   int sum = 0;
@@ -64,12 +70,9 @@ SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light
 bool SoftVisibility::is_left_out(std::uint32_t caster, const LitPoint& sample) const {
   const std::uint32_t triangle = casters_.triangle[caster];
   if (scene_.plane[triangle] == scene_.plane[sample.carrier]) return true;
-  const auto [a, b, c] = scene_.corners(triangle);
-  if (glm::any(glm::lessThan(sample.p, glm::min(a, glm::min(b, c)))) ||
-      glm::any(glm::greaterThan(sample.p, glm::max(a, glm::max(b, c))))) {
-    return false;
-  }
-  return mesh::side_of_plane(a, b, c, sample.p) == Side::on;
+  const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
+  if (box_misses(corners, sample.p, sample.p)) return false;
+  return mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p) == Side::on;
 }
 
 /// As keep_one_layer does, for one triangle.
@@ -125,6 +128,10 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::receiver_silhouettes(con
   return result;
 }
 
+std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoint& sample, Viewer viewer) const {
+  return viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample);
+}
+
 /// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner.
 glm::vec3 SoftVisibility::choose_reference(const LightProjection& projection, std::span<const Candidate> edges) const {
   const auto clear = [&](const glm::vec3& l) {
@@ -148,11 +155,12 @@ glm::vec3 SoftVisibility::choose_reference(const LightProjection& projection, st
 /// D at a point of the light: the triangles that p→l meets, each with the sign that its edges have been given.
 std::int32_t SoftVisibility::layers_at(const LitPoint& sample, const glm::vec3& l, Viewer viewer) const {
   std::int32_t layers = 0;
-  tree_.for_each_near(glm::min(sample.p, l), glm::max(sample.p, l), [&](std::uint32_t triangle) {
+  const glm::vec3 lower = glm::min(sample.p, l), upper = glm::max(sample.p, l);
+  tree_.for_each_near(lower, upper, [&](std::uint32_t triangle) {
     const std::uint32_t caster = caster_of_[triangle];
-    if (caster == kNone || is_left_out(caster, sample)) return;
-    if (viewer == Viewer::center && center_facings_[caster] == Side::on) return;
+    if (caster == kNone || (viewer == Viewer::center && center_facings_[caster] == Side::on)) return;
     const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
+    if (box_misses(corners, lower, upper) || is_left_out(caster, sample)) return;
     if (!visibility::segment_meets_triangle(sample.p, l, corners, light_).meets) return;
     // By the casters' own order of corners, which facings speak of: it is the scene's.
     const Side seen = mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p);
@@ -197,7 +205,7 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   if (!result.in_front) return result;
   const LightProjection projection(light_, sample.p);
   std::vector<Candidate> candidates;
-  for (const auto& [edge, k] : viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample)) {
+  for (const auto& [edge, k] : silhouettes(sample, viewer)) {
     const auto [a, b] = casters_.graph.edges[edge];
     const auto clipped = clip_to_light(outline_, projection(casters_.positions[a]), projection(casters_.positions[b]));
     if (clipped) candidates.push_back({edge, k, *clipped});

@@ -77,9 +77,9 @@ class SoftVisibility {
   [[nodiscard]] std::vector<std::array<glm::vec3, 3>> layers(const LitPoint& sample) const;
 
   [[nodiscard]] const LightOutline& outline() const { return outline_; }
-  /// The silhouettes from the light's centre: edge and k_e, by edge.
+  /// Edges of what counts, with their k_e, by number.
   using Silhouette = std::pair<std::uint32_t, std::int32_t>;
-  [[nodiscard]] std::span<const Silhouette> silhouettes() const { return silhouettes_; }
+  [[nodiscard]] std::vector<Silhouette> silhouettes(const LitPoint& sample, Viewer viewer) const;
 
  private:
   struct Candidate {
