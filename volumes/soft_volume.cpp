@@ -11,6 +11,7 @@
 #include "mesh/parallel.hpp"
 #include "volumes/coverage_table.hpp"
 #include "volumes/light_parts.hpp"
+#include "volumes/pass_times.hpp"
 #include "volumes/soft_visibility.hpp"
 #include "volumes/soft_volume.frag.spv.hpp"
 #include "volumes/texture_weights.hpp"
@@ -300,18 +301,8 @@ double SoftVolume::share_above(const Part& part, std::size_t pixel) const {
 
 std::vector<visibility::PassTime> SoftVolume::take_pass_times() {
   std::vector<visibility::PassTime> sums;
-  const auto take = [&](const std::vector<visibility::PassTime>& times) {
-    for (const visibility::PassTime& time : times) {
-      const auto sum = std::ranges::find(sums, time.name, &visibility::PassTime::name);
-      if (sum == sums.end()) {
-        sums.push_back(time);
-      } else {
-        sum->milliseconds += time.milliseconds;
-      }
-    }
-  };
-  for (const auto& part : parts_) take(part->count.take_pass_times());
-  if (raster_) take(raster_->take_pass_times());
+  for (const auto& part : parts_) add_times(sums, part->count.take_pass_times());
+  if (raster_) add_times(sums, raster_->take_pass_times());
   return sums;
 }
 

@@ -9,6 +9,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "mesh/parallel.hpp"
+#include "volumes/pass_times.hpp"
 #include "volumes/soft_visibility.hpp"
 #include "volumes/soft_volume_blend.frag.spv.hpp"
 #include "volumes/soft_volume_blend.shared.h"
@@ -123,10 +124,9 @@ class SoftVolumeBlend final : public visibility::Method {
     std::ranges::copy(visibility_, visibility.begin());
   }
   std::vector<visibility::PassTime> take_pass_times() override {
-    std::vector<visibility::PassTime> times = raster_.take_pass_times();
-    for (const auto& occluder : occluders_) {
-      for (const visibility::PassTime& time : occluder->count.take_pass_times()) times.push_back(time);
-    }
+    std::vector<visibility::PassTime> times;
+    for (const auto& occluder : occluders_) add_times(times, occluder->count.take_pass_times());
+    add_times(times, raster_.take_pass_times());
     return times;
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;

@@ -15,6 +15,7 @@
 #include "visibility/pair_truth.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "volumes/light_volumes.hpp"
+#include "volumes/pass_times.hpp"
 #include "volumes/screen_box.hpp"
 #include "volumes/volume_count.frag.spv.hpp"
 #include "volumes/volume_count.shared.h"
@@ -361,14 +362,7 @@ const VolumeCount::Totals& VolumeCount::totals() const {
 }
 std::vector<visibility::PassTime> VolumeCount::take_pass_times() {
   std::vector<visibility::PassTime> sums;
-  for (const visibility::PassTime& time : std::exchange(state_->times, {})) {
-    const auto sum = std::ranges::find(sums, time.name, &visibility::PassTime::name);
-    if (sum == sums.end()) {
-      sums.push_back(time);
-    } else {
-      sum->milliseconds += time.milliseconds;
-    }
-  }
+  add_times(sums, std::exchange(state_->times, {}));
   return sums;
 }
 std::uint64_t VolumeCount::memory_bytes() const {

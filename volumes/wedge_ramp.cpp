@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "mesh/parallel.hpp"
+#include "volumes/pass_times.hpp"
 #include "volumes/ramp_wedges.hpp"
 #include "volumes/volume_count.hpp"
 #include "volumes/wedge_raster.hpp"
@@ -84,7 +85,7 @@ class WedgeRamp final : public visibility::Method {
   }
   std::vector<visibility::PassTime> take_pass_times() override {
     std::vector<visibility::PassTime> times = count_.take_pass_times();
-    for (const visibility::PassTime& time : raster_.take_pass_times()) times.push_back(time);
+    add_times(times, raster_.take_pass_times());
     return times;
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {

@@ -6,6 +6,7 @@
 #include "render/commands.hpp"
 #include "render/raster_pass.hpp"
 #include "volumes/light_hull.hpp"
+#include "volumes/pass_times.hpp"
 #include "volumes/screen_box.hpp"
 #include "volumes/wedge_footprint.vert.spv.hpp"
 
@@ -186,7 +187,9 @@ std::uint32_t WedgeRaster::max_tile_rows(const ViewSamples& samples) const {
 }
 
 std::vector<visibility::PassTime> WedgeRaster::take_pass_times() {
-  return std::exchange(state_->times, {});
+  std::vector<visibility::PassTime> sums;
+  add_times(sums, std::exchange(state_->times, {}));
+  return sums;
 }
 
 std::uint64_t WedgeRaster::memory_bytes() const {
