@@ -103,7 +103,9 @@ class Builder {
 
   /// The one other silhouette edge at this end, if there is just one and it is as strong.
   [[nodiscard]] std::optional<std::size_t> neighbour(std::size_t edge, const glm::vec3& end) const {
-    const auto [first, last] = std::ranges::equal_range(ends_, End{end, 0}.key(), {}, &End::key);
+    const auto key = End{end, 0}.key();
+    const auto first = std::ranges::lower_bound(ends_, key, {}, &End::key);
+    const auto last = std::ranges::upper_bound(ends_, key, {}, &End::key);
     if (last - first != 2) return std::nullopt;
     const std::size_t next = first->edge == edge ? (first + 1)->edge : first->edge;
     if (std::abs(volumes_.edges[next].multiplicity) != std::abs(volumes_.edges[edge].multiplicity)) return std::nullopt;

@@ -5,6 +5,7 @@
 #include "volumes/wedge_ramp.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 #include "mesh/parallel.hpp"
 #include "volumes/pass_times.hpp"
 #include "volumes/ramp_wedges.hpp"
@@ -60,6 +61,9 @@ class WedgeRamp final : public visibility::Method {
   }
   void prepare_light(const Light& light) override {
     visibility::check_light(description_, light);
+    if (light.texture) {
+      throw InputError("light \"{}\" has a texture, which method wedge-ramp cannot do; soft-volume can", light.name);
+    }
     light_ = &light;
     count_.prepare_light(light);
     wedges_ = ramp_wedges_of(count_.volumes(), light);

@@ -68,6 +68,11 @@ TEST_F(SoftVolumeBlend, OverlapIsLessThanTheSum) {
   }
 }
 
+TEST_F(SoftVolumeBlend, RefusesWhatItCannotDo) {
+  EXPECT_THROW(static_cast<void>(make_soft_volume_blend(device(), {{"split", "2"}})), UsageError);
+  EXPECT_THROW(static_cast<void>(run(SoftStage(tests::shipped_scene("textured-light"), device(), 8, 8))), InputError);
+}
+
 TEST_F(SoftVolumeBlend, WithoutOccludersOnlyTheHorizonIsDark) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   scene.objects[0].casts_shadow = false;

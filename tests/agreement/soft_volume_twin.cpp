@@ -130,13 +130,13 @@ TEST_F(SoftVolumeTwin, SmallerFootprintsLoseNothing) {
 }
 
 TEST_F(SoftVolumeTwin, RefusesWhatItCannotDo) {
-  EXPECT_THROW(make_soft_volume(device(), {{"split", "4"}}), UsageError);
-  EXPECT_THROW(make_soft_volume(device(), {{"construction", "loose"}}), UsageError);
+  EXPECT_THROW(static_cast<void>(make_soft_volume(device(), {{"split", "4"}})), UsageError);
+  EXPECT_THROW(static_cast<void>(make_soft_volume(device(), {{"construction", "loose"}})), UsageError);
   scenes::Scene scene = tests::floor_and_light(1);
   scene.lights[0].shape = scenes::Sphere{{0, 4, 0}, 1};
-  EXPECT_THROW(SoftStage(scene, device(), 8, 8).run(*make_soft_volume(device(), {})), InputError);
-  EXPECT_THROW(SoftStage(with_disk(tests::floor_and_light(1)), device(), 8, 8)
-                   .run(*make_soft_volume(device(), {{"split", "2"}})),
+  EXPECT_THROW(static_cast<void>(SoftStage(scene, device(), 8, 8).run(*make_soft_volume(device(), {}))), InputError);
+  EXPECT_THROW(static_cast<void>(SoftStage(with_disk(tests::floor_and_light(1)), device(), 8, 8)
+                                     .run(*make_soft_volume(device(), {{"split", "2"}}))),
                InputError);
 }
 

@@ -53,6 +53,14 @@ TEST_F(WedgeRamp, IsExactUnderALongEdge) {
   EXPECT_GT(errors.penumbra, 500U);
 }
 
+TEST_F(WedgeRamp, RefusesWhatItCannotDo) {
+  EXPECT_THROW(static_cast<void>(make_wedge_ramp(device(), {{"split", "2"}})), UsageError);
+  EXPECT_THROW(
+      static_cast<void>(
+          SoftStage(tests::shipped_scene("textured-light"), device(), 8, 8).run(*make_wedge_ramp(device(), {}))),
+      InputError);
+}
+
 /// What a ramp an edge cannot do: corners, where it is not the area, and meshes finer than their penumbra is wide.
 TEST_F(WedgeRamp, ItsFailuresAreShown) {
   for (const auto& [name, least] : {std::pair{"parallel-square", 0.01}, {"bunny", 0.05}}) {
