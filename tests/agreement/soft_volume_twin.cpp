@@ -4,6 +4,7 @@
 // terms of a few ulps of 1 in double, below that; V is stored in float, 2⁻²⁵. n is at most the number of silhouette
 // edges.
 
+#include "tests/agreement/lattice.hpp"
 #include "tests/agreement/soft_stage.hpp"
 
 #include "volumes/soft_volume.hpp"
@@ -92,6 +93,44 @@ TEST_F(SoftVolumeTwin, EdgesAndVerticesAtTheCentre) {
   scene.cameras[0].up = {0, 0, -1};
   expect_twin("below the middle", scene, 65, 65, {}, 0.04);  // one row and one column of 65: 129 pixels
   expect_twin("below the middle, disk", with_disk(scene), 65, 65, {}, 0.04);
+}
+
+/// Soups of a tiny lattice, where p lies on triangles and in their planes, and everything coincides. The light is
+/// beyond them: edges in its plane are a known failure.
+TEST_F(SoftVolumeTwin, WhereEverythingCoincides) {
+  std::size_t pixels = 0, differing = 0, on_host = 0;
+  const auto method = make_soft_volume(device(), {});
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    tests::LatticeSoup soup(seed, 2);
+    visibility::SampleRequest request;
+    scenes::Scene scene = tests::lattice_scene(soup, request);
+    const double x = soup.coordinate(), z = soup.coordinate();
+    scene.lights[0].shape = scenes::Rectangle{{x, 3, z}, {1, 0, 0}, {0, 0, 1}};
+    if (seed % 2 == 0) scene = with_disk(scene);
+    const SoftStage stage(scene, device(), 33, 25);
+    const std::vector<float> found = stage.run(*method);
+    const std::vector<double> expected = stage.twin(Viewer::center);
+    on_host += method->counters().at("pixelsOnHost");
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (std::isnan(expected[i])) continue;
+      ++pixels;
+      if (std::abs(found[i] - expected[i]) <= tolerance(*method)) continue;
+      if (differing++ < 5) {
+        ADD_FAILURE() << "seed " << seed << ", pixel " << i << ": " << found[i] << ", the twin " << expected[i];
+      }
+    }
+  }
+  fmt::print("{} pixels, {} on the host, {} differ\n", pixels, on_host, differing);
+  EXPECT_GT(pixels, 100U);
+}
+
+TEST_F(SoftVolumeTwin, ATwoSidedLightFromBehind) {
+  scenes::Scene scene = tests::floor_and_light(1);
+  std::get<scenes::Rectangle>(scene.lights[0].shape).half_v *= -1;
+  scene.lights[0].two_sided = true;
+  tests::add_object(scene, "board", tests::quad({0.2, 1, 0}, {0.8, 0, 0.1}, {0, 0.1, -0.7}));
+  expect_twin("from behind", scene);
+  expect_twin("from behind, disk", with_disk(scene));
 }
 
 TEST_F(SoftVolumeTwin, TheOrderOfTrianglesChangesNoByte) {
