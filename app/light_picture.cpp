@@ -172,7 +172,7 @@ class Drawing {
     put("<g clip-path=\"url(#light{0:.0f})\" fill=\"{1}\" stroke=\"{1}\" stroke-width=\"0.4\">\n", left, kHidden);
     const auto layers =
         volumes::projected_layers(picture_.light, picture_.sample.p, picture_.soft.layers(picture_.sample));
-    for (const auto& layer : layers.polygons) polygon(layer, "");
+    for (const auto& layer : layers) polygon(layer, "");
     put("</g>\n");
     for (const CoveredEdge& edge : sum.edges) {
       polygon(region_beyond(boundary_, sum, edge),

@@ -134,6 +134,7 @@ Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y) {
   result.center = soft.at(result.sample, volumes::Viewer::center);
   result.receiver = soft.at(result.sample, volumes::Viewer::receiver);
   result.exact = exact_visibility(input, result.sample);
+  result.touching = soft.something_touches_light();
   explain_wedges(input, soft, result);
   result.picture = svg_of({input.light, input.casters, soft, result.sample, *result.center, *result.receiver,
                            result.exact, title_of(input, result)});
@@ -157,6 +158,7 @@ ordered_json explain_json(const Explanation& explanation, const std::filesystem:
     one["seen"] = wedge.seen ? ordered_json{array_of(wedge.seen->from), array_of(wedge.seen->to)} : ordered_json();
     entry["wedges"].push_back(one);
   }
+  entry["touchingLight"] = explanation.touching;
   entry["edgesOutsideTheirWedges"] = explanation.outside.size();
   entry["centre"] = sum_json(*explanation.center);
   entry["receiver"] = sum_json(*explanation.receiver);
@@ -190,6 +192,7 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
   if (explanation.kind == PixelClass::horizon) {
     fmt::print("{:.6f} of the light is above the tangent plane: no sum gives more\n", explanation.center->above);
   }
+  if (explanation.touching) fmt::print("something touches the light itself: no sum over edges is exact\n");
   fmt::print("in {} wedges:\n", explanation.wedges.size());
   for (const ExplainedWedge& wedge : explanation.wedges) {
     fmt::print("  wedge {:>6}  {} to {}  k {:+d}  area {:+.9f}{}\n", wedge.wedge, text_of(wedge.a), text_of(wedge.b),

@@ -35,6 +35,7 @@ struct Explanation {
   std::vector<std::uint32_t> outside;  ///< edges that appear on the light, yet p is in none of their wedges: a flaw
   std::optional<volumes::LayerSum> center, receiver;  ///< nothing where V is `given`
   std::optional<double> exact;                        ///< V
+  bool touching = false;                              ///< something meets the light itself: no sum is exact
   std::string picture;                                ///< SVG, where there is something to see
 };
 

@@ -128,13 +128,16 @@ void print_coverage(const CoverageOutcome& coverage) {
     return;
   }
   const CoverageFigures figures = figures_of(coverage);
-  const std::string against_union = coverage.hidden.empty()
-                                        ? std::string("no exact areas in this build")
-                                        : fmt::format("{:.1e} from the exact area at most", figures.worst_union);
-  fmt::print(
-      "coverage at {} view samples, {} more where something touches the light: the receiver's silhouettes are {:.1e} "
-      "from the triangles at most; at {} with a single layer, {}\n",
-      figures.samples, figures.touching, figures.worst_layers, figures.single, against_union);
+  if (figures.touching > 0) {
+    fmt::print("coverage: not checked, something touches the light\n");
+    return;
+  }
+  fmt::print("coverage at {} view samples: the receiver's silhouettes are {:.1e} from the triangles at most\n",
+             figures.samples, figures.worst_layers);
+  if (figures.single > 0 && !coverage.hidden.empty()) {
+    fmt::print("{} of them have a single layer: {:.1e} from the exact area at most\n", figures.single,
+               figures.worst_union);
+  }
   fmt::print("centre silhouettes differ by {:.4f} in the mean, {:.4f} at most\n", figures.center_mean,
              figures.center_max);
 }

@@ -24,15 +24,16 @@ void fail(const CoveragePoint& point, double distance, std::string what, Validat
 std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visibility::Light& light,
                                           std::span<const LitPoint> samples, ValidationReport& report) {
   std::vector<CoveragePoint> points(samples.size());
+  const bool touching = soft.something_touches_light();
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     CoveragePoint& point = points[i];
     point.sample = samples[i];
-    const ProjectedLayers layers = projected_layers(light, samples[i].p, soft.layers(samples[i]));
-    point.touches_light = layers.touch_light;
+    const auto layers = projected_layers(light, samples[i].p, soft.layers(samples[i]));
+    point.touches_light = touching;
     point.center = soft.at(samples[i], Viewer::center).blocked;
     point.receiver = soft.at(samples[i], Viewer::receiver).blocked;
-    point.layers = sum_of_layers(soft.outline(), layers.polygons);
-    point.overlap = overlap_of_layers(soft.outline(), layers.polygons, kMostOverlap);
+    point.layers = sum_of_layers(soft.outline(), layers);
+    point.overlap = overlap_of_layers(soft.outline(), layers, kMostOverlap);
   });
   for (const CoveragePoint& point : points) {
     if (point.touches_light) continue;

@@ -19,7 +19,7 @@ struct CoveragePoint {
   double center = 0, receiver = 0;  ///< `blocked` by the centre's silhouettes, by the receiver's own
   double layers = 0;                ///< the same of the receiver, each triangle by itself (layer_areas.hpp)
   double overlap = 0;               ///< of layers; beyond `kMostOverlap` it was not summed further
-  bool touches_light = false;       ///< a layer crosses the light itself: nothing is held against anything
+  bool touches_light = false;       ///< something meets the light itself: nothing is held against anything
 
   [[nodiscard]] bool is_single_layer() const { return !touches_light && overlap <= kSingleLayer; }
 };

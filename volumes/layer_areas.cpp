@@ -1,5 +1,7 @@
 #include "volumes/layer_areas.hpp"
 
+#include "mesh/predicates.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -86,8 +88,7 @@ double common_area(Polygon one, const Polygon& other) {
   return one.size() > 2 ? area_of(one) : 0;
 }
 
-/// A corner whose W is this near to 1 was cut off by the light's plane, or lies on it; rounding makes 2⁻⁴⁸ of W.
-constexpr double kAtLight = 0x1p-40;
+constexpr double kHair = 0x1p-20;  ///< of the light: far more than rounding, and nothing to the eye
 
 struct Bounds {
   glm::dvec2 lower, upper;
@@ -100,11 +101,11 @@ Bounds bounds_of(const Polygon& polygon) {
 
 }  // namespace
 
-ProjectedLayers projected_layers(const visibility::Light& light, const glm::vec3& p,
-                                 std::span<const std::array<glm::vec3, 3>> triangles) {
+std::vector<Polygon> projected_layers(const visibility::Light& light, const glm::vec3& p,
+                                      std::span<const std::array<glm::vec3, 3>> triangles) {
   const LightProjection projection(light, p);
   const Polygon frame = frame_of(light_outline(light));
-  ProjectedLayers layers;
+  std::vector<Polygon> layers;
   for (const std::array<glm::vec3, 3>& corners : triangles) {
     std::vector<glm::dvec3> seen;
     for (const glm::vec3& corner : corners) seen.push_back(homogeneous(projection(glm::dvec3(corner))));
@@ -119,15 +120,42 @@ ProjectedLayers projected_layers(const visibility::Light& light, const glm::vec3
     }
     Polygon layer;
     for (const glm::dvec3& q : seen) {
-      if (!(q.z > 0)) continue;
-      layer.push_back(glm::dvec2(q) / q.z);
-      layers.touch_light = layers.touch_light || q.z > 1 - kAtLight;
+      if (q.z > 0) layer.push_back(glm::dvec2(q) / q.z);
     }
     const double area = area_of(layer);
     if (area < 0) std::ranges::reverse(layer);
-    if (area != 0) layers.polygons.push_back(std::move(layer));
+    if (area != 0) layers.push_back(std::move(layer));
   }
   return layers;
+}
+
+bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3>& triangle) {
+  std::array<mesh::Side, 3> sides{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    sides[i] = mesh::side_of_plane(light.center, light.center_u, light.center_v, triangle[i]);
+  }
+  if (sides[0] != mesh::Side::on && sides[0] == sides[1] && sides[0] == sides[2]) return false;
+  const glm::dvec3 o = light.center, u = glm::dvec3(light.center_u) - o, v = glm::dvec3(light.center_v) - o;
+  const glm::dvec3 n = glm::cross(u, v);
+  const auto in_frame = [&](const glm::dvec3& x) {
+    return glm::dvec2(glm::dot(glm::cross(x - o, v), n), glm::dot(glm::cross(u, x - o), n)) / glm::dot(n, n);
+  };
+  Polygon met;  // of the triangle and the plane: a point, a segment, or the triangle
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 a = triangle[i], b = triangle[(i + 1) % 3];
+    const mesh::Side at_a = sides[i], at_b = sides[(i + 1) % 3];
+    if (at_a == mesh::Side::on) met.push_back(in_frame(a));
+    if (at_a == mesh::Side::on || at_b != mesh::opposite(at_a)) continue;
+    const double from = std::abs(glm::dot(n, a - o)), to = std::abs(glm::dot(n, b - o));
+    met.push_back(in_frame(a + (from + to > 0 ? from / (from + to) : 0.5) * (b - a)));
+  }
+  const Polygon frame = frame_of(light_outline(light));
+  for (std::size_t i = 0; i < frame.size() && !met.empty(); ++i) {
+    const glm::dvec2 corner = frame[i], side = frame[(i + 1) % frame.size()] - corner;
+    met = cut(
+        met, [&](const glm::dvec2& q) { return cross2(side, q - corner) + kHair; }, kMix);
+  }
+  return !met.empty();
 }
 
 double sum_of_layers(const LightOutline& outline, std::span<const Polygon> layers) {

@@ -14,14 +14,14 @@
 /// sums over silhouettes.
 namespace penumbra::volumes {
 
-struct ProjectedLayers {
-  std::vector<std::vector<glm::dvec2>> polygons;  ///< convex, counter-clockwise, in frame coordinates
-  bool touch_light = false;  ///< some triangle crosses the light's plane within the light: there it ends at no edge
-};
-/// Each triangle, as p sees it, clipped to the light (a disk: to the square around it). Those of no area are left out.
-/// p must be off the light's plane (asserted).
-ProjectedLayers projected_layers(const visibility::Light& light, const glm::vec3& p,
-                                 std::span<const std::array<glm::vec3, 3>> triangles);
+/// Each triangle, as p sees it, clipped to the light (a disk: to the square around it): convex polygons in frame
+/// coordinates, counter-clockwise. Those of no area are left out. p must be off the light's plane (asserted).
+std::vector<std::vector<glm::dvec2>> projected_layers(const visibility::Light& light, const glm::vec3& p,
+                                                      std::span<const std::array<glm::vec3, 3>> triangles);
+
+/// Does the triangle meet the light itself (a disk: the square around it)? There its shadow ends at none of its edges.
+/// Exact for those that do not meet the light's plane; else a hair too often.
+bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3>& triangle);
 
 /// Σ of the polygons' areas within the light, of |L|: the mean number of layers.
 double sum_of_layers(const LightOutline& outline, std::span<const std::vector<glm::dvec2>> layers);

@@ -11,12 +11,16 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace penumbra::volumes {
 namespace {
+
+constexpr std::array kSquare = {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)};
 
 double cross2(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
@@ -154,10 +158,20 @@ Projected LightProjection::operator()(const glm::dvec3& x) const {
           glm::dot(size_x_, size), glm::dot(size_y_, size), glm::dot(size_w_, size)};
 }
 
+bool LightProjection::misses(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec2& lower,
+                             const glm::dvec2& upper) const {
+  const glm::dvec3 to_a = a - p_, to_b = b - p_;
+  const double w_a = glm::dot(row_w_, to_a), w_b = glm::dot(row_w_, to_b);
+  if ((w_a <= 0 && w_b <= 0) || (w_a >= 1 && w_b >= 1)) return true;
+  const double x_a = glm::dot(row_x_, to_a), x_b = glm::dot(row_x_, to_b);
+  if ((x_a < lower.x * w_a && x_b < lower.x * w_b) || (x_a > upper.x * w_a && x_b > upper.x * w_b)) return true;
+  const double y_a = glm::dot(row_y_, to_a), y_b = glm::dot(row_y_, to_b);
+  return (y_a < lower.y * w_a && y_b < lower.y * w_b) || (y_a > upper.y * w_a && y_b > upper.y * w_b);
+}
+
 std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Projected& a, const Projected& b) {
-  static const std::vector<glm::dvec2> kSquare = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   const bool is_disk = outline.corners.empty();
-  const std::vector<glm::dvec2>& corners = is_disk ? kSquare : outline.corners;
+  const std::span<const glm::dvec2> corners = is_disk ? std::span<const glm::dvec2>(kSquare) : outline.corners;
   Range range;
   if (!range.cut(a.w, b.w) || !range.cut(1 - a.w, 1 - b.w)) return std::nullopt;
   for (std::size_t i = 0; i < corners.size(); ++i) {

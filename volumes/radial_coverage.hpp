@@ -41,6 +41,9 @@ class LightProjection {
   LightProjection(const visibility::Light& light, const glm::vec3& p);
 
   [[nodiscard]] Projected operator()(const glm::dvec3& x) const;
+  /// Certainly nothing of the edge appears in this box around a light, but for its border. A third of the work.
+  [[nodiscard]] bool misses(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec2& lower,
+                            const glm::dvec2& upper) const;
   /// +1: what is counter-clockwise as seen from p is so in (s, t); −1: p is behind the light. Exact.
   [[nodiscard]] int turn() const { return turn_; }
 

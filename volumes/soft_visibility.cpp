@@ -8,12 +8,14 @@
 #include "mesh/silhouettes.hpp"
 #include "visibility/pair_truth.hpp"
 #include "volumes/closed_casters.hpp"
+#include "volumes/layer_areas.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace penumbra::volumes {
 namespace {
@@ -54,6 +56,10 @@ SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light
       caster_of_(scene.triangles.size(), kNone),
       light_sides_(light_sides(casters.view(), casters.graph, light, center_)),
       center_facings_(mesh::facings(casters.view(), casters.graph, center_)) {
+  for (const glm::dvec2& corner : outline_.corners) {
+    lower_ = glm::min(lower_, corner);
+    upper_ = glm::max(upper_, corner);
+  }
   for (std::uint32_t i = 0; i < casters.triangle.size(); ++i) {
     caster_of_[casters.triangle[i]] = i;
     by_plane_.emplace_back(scene.plane[casters.triangle[i]], i);
@@ -100,10 +106,12 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const
     }
   }
   if (changes.empty()) return silhouettes_;
-  changes.insert(changes.end(), silhouettes_.begin(), silhouettes_.end());
   std::ranges::sort(changes);
-  std::vector<Silhouette> result;
-  for (const Silhouette& change : changes) {
+  std::vector<Silhouette> both, result;
+  both.reserve(changes.size() + silhouettes_.size());
+  std::ranges::merge(changes, silhouettes_, std::back_inserter(both));
+  result.reserve(both.size());
+  for (const Silhouette& change : both) {
     if (result.empty() || result.back().first != change.first) {
       result.push_back(change);
     } else {
@@ -190,6 +198,11 @@ std::vector<std::array<glm::vec3, 3>> SoftVisibility::layers(const LitPoint& sam
   return result;
 }
 
+bool SoftVisibility::something_touches_light() const {
+  return std::ranges::any_of(casters_.triangle,
+                             [&](std::uint32_t triangle) { return touches_light(light_, scene_.corners(triangle)); });
+}
+
 double SoftVisibility::share_above_carrier(const LitPoint& sample) const {
   const auto [a, b, c] = scene_.corners(sample.carrier);
   const glm::dvec3 n =
@@ -207,7 +220,9 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   std::vector<Candidate> candidates;
   for (const auto& [edge, k] : silhouettes(sample, viewer)) {
     const auto [a, b] = casters_.graph.edges[edge];
-    const auto clipped = clip_to_light(outline_, projection(casters_.positions[a]), projection(casters_.positions[b]));
+    const glm::dvec3 &at_a = casters_.positions[a], &at_b = casters_.positions[b];
+    if (projection.misses(at_a, at_b, lower_, upper_)) continue;
+    const auto clipped = clip_to_light(outline_, projection(at_a), projection(at_b));
     if (clipped) candidates.push_back({edge, k, *clipped});
   }
 

@@ -76,6 +76,9 @@ class SoftVisibility {
   /// (layer_areas.hpp makes `blocked` of them without edges).
   [[nodiscard]] std::vector<std::array<glm::vec3, 3>> layers(const LitPoint& sample) const;
 
+  /// Does any caster meet the light itself? No edge tells where its shadow ends there, and no sum is exact.
+  [[nodiscard]] bool something_touches_light() const;
+
   [[nodiscard]] const LightOutline& outline() const { return outline_; }
   /// Edges of what counts, with their k_e, by number.
   using Silhouette = std::pair<std::uint32_t, std::int32_t>;
@@ -100,6 +103,7 @@ class SoftVisibility {
   const visibility::Light& light_;
   const Casters& casters_;
   LightOutline outline_;
+  glm::dvec2 lower_{-1}, upper_{1};  // of the outline
   glm::vec3 center_{0};
   visibility::TriangleTree tree_;
   std::vector<std::uint32_t> caster_of_;                           // for each of the scene's triangles

@@ -123,8 +123,8 @@ double predicted_error(const CoverageStage& stage, const glm::vec3& p, int times
       same_side.push_back(corners);
     }
   }
-  const ProjectedLayers layers = projected_layers(stage.light, p, same_side);
-  return times * sum_of_layers(stage.soft.outline(), layers.polygons);
+  const auto layers = projected_layers(stage.light, p, same_side);
+  return times * sum_of_layers(stage.soft.outline(), layers);
 }
 
 TEST(CoverageErrors, OfTheCentreAreWhatIsSeenFromOneSideByBoth) {
@@ -254,6 +254,18 @@ TEST(CoverageErrors, SolidsThatShadowThemselvesAddUpToTheirLayers) {
     EXPECT_LT(worst, 1e-9);
     fmt::print("{} samples, {} with a single layer and partly lit, {:.1e} off at most\n", checked.points.size(), single,
                worst);
+  }
+}
+
+TEST(CoverageErrors, WhatCrossesTheLightIsSetApart) {
+  // A board that stands across the light's plane: within the light it is not judged, beside it it is.
+  for (const double at : {0.25, 1.5}) {
+    scenes::Scene scene = still_life();
+    tests::add_object(scene, "board", tests::quad({0.5 + at, 4, 0.5}, {0, 0.5, 0}, {0.125, 0, 0.25}));
+    const tests::Stage stage(scene, 32, 24);
+    const Checked checked = check(stage, casters_of(stage.floats, stage.light));
+    EXPECT_TRUE(checked.report.violations.empty()) << checked.report.violations.front().what;
+    EXPECT_EQ(std::ranges::any_of(checked.points, &CoveragePoint::touches_light), at < 1);
   }
 }
 

@@ -34,7 +34,7 @@ struct CoverageStage {
   }
   [[nodiscard]] double exact(const glm::vec3& p) const { return area.visibility(receiver_at(floats, p)); }
   [[nodiscard]] std::vector<std::vector<glm::dvec2>> layers(const glm::vec3& p) const {
-    return volumes::projected_layers(light, p, soft.layers(lit(p))).polygons;
+    return volumes::projected_layers(light, p, soft.layers(lit(p)));
   }
 
   visibility::SceneFloats floats;
