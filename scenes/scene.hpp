@@ -52,7 +52,7 @@ struct AreaLight {
   std::variant<Rectangle, Disk, Polygon, Sphere> shape;
   glm::dvec3 radiance{10.0};
   bool two_sided = false;
-  std::optional<Texture> texture;  ///< of a rectangle only
+  std::optional<Texture> texture = {};  ///< of a rectangle only
 };
 
 struct Camera {

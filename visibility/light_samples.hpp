@@ -53,7 +53,7 @@ struct Light {
                                         ///< (rectangle); a disk's and a sphere's: on the unit disk; a polygon's:
                                         ///< over its bounding rectangle
 
-  std::optional<LightTexture> texture;   ///< of a rectangle; none: the radiance is constant
+  std::optional<LightTexture> texture = {};  ///< of a rectangle; none: the radiance is constant
   std::vector<double> weights;           ///< with a texture, of each light sample: V = Σ weight · visible; they add
                                          ///< up to exactly 1 (sample_weights). Else empty: each is 1 / N
   std::vector<glm::vec3> sample_colors;  ///< with a texture, of each light sample: its texel's colour. Else empty
