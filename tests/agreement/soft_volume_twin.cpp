@@ -165,6 +165,7 @@ TEST_F(SoftVolumeTwin, SmallerFootprintsLoseNothing) {
       fragments = method->counters().at("fragments");
     }
     EXPECT_LT(fragments, all->counters().at("fragments")) << name;
+    EXPECT_EQ(stage.run(*make_soft_volume(device(), {{"construction", "tight"}})), expected) << name << ", tight";
   }
 }
 
