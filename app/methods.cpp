@@ -165,8 +165,9 @@ bool runs_on_device(std::string_view name) {
 }
 
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
-  return std::ranges::all_of(
-      lights, [&](const Light& light) { return std::ranges::find(method.lights, light.kind) != method.lights.end(); });
+  return std::ranges::all_of(lights, [&](const Light& light) {
+    return std::ranges::find(method.lights, light.kind) != method.lights.end() && (method.textures || !light.texture);
+  });
 }
 
 const MethodDescription& default_method(const std::vector<Light>& lights) {

@@ -7,7 +7,6 @@
 #include "volumes/soft_volume_blend.hpp"
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
 #include "mesh/parallel.hpp"
 #include "volumes/pass_times.hpp"
 #include "volumes/soft_visibility.hpp"
@@ -45,6 +44,7 @@ visibility::MethodDescription describe() {
           .output = visibility::Output::scalar,
           .exact_for = "what soft-volume is exact for, if boxes around occluders on a quarter of the light are apart",
           .lights = {LightKind::rectangle},
+          .textures = false,
           .options = {},
           .verdict_on = verdict_on};
 }
@@ -173,10 +173,6 @@ void SoftVolumeBlend::prepare_mesh(const SceneFloats& scene) {
 
 void SoftVolumeBlend::prepare_light(const Light& light) {
   visibility::check_light(description_, light);
-  if (light.texture) {
-    throw InputError("light \"{}\" has a texture, which method soft-volume-blend cannot do; soft-volume can",
-                     light.name);
-  }
   light_ = &light;
   for (const auto& occluder : occluders_) {
     occluder->count.prepare_light(light);

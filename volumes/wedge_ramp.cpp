@@ -5,7 +5,6 @@
 #include "volumes/wedge_ramp.hpp"
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
 #include "mesh/parallel.hpp"
 #include "volumes/pass_times.hpp"
 #include "volumes/ramp_wedges.hpp"
@@ -40,6 +39,7 @@ visibility::MethodDescription describe() {
           .output = visibility::Output::scalar,
           .exact_for = "nothing but umbra and full light of one occluder with a simple silhouette",
           .lights = {LightKind::rectangle, LightKind::disk},
+          .textures = false,
           .options = {},
           .verdict_on = verdict_on};
 }
@@ -61,9 +61,6 @@ class WedgeRamp final : public visibility::Method {
   }
   void prepare_light(const Light& light) override {
     visibility::check_light(description_, light);
-    if (light.texture) {
-      throw InputError("light \"{}\" has a texture, which method wedge-ramp cannot do; soft-volume can", light.name);
-    }
     light_ = &light;
     count_.prepare_light(light);
     wedges_ = ramp_wedges_of(count_.volumes(), light);
