@@ -1,6 +1,6 @@
-// A light's points to look edges up by (Assarsson and Akenine-Möller 2003: a 4D table, here 32⁴). Twin of coverage_table.cpp.
-// No point is nearer to the centre than half a step, and each is in the quadrant of all that are moved to it: so cones
-// change by less than half a light, and which way round they go is known. Points on the rim stay there.
+// A light's points to look edges up by (Assarsson and Akenine-Möller 2003: a 4D table, here 32⁴). Twin of
+// coverage_table.cpp. No point is at the centre, and each is in the quadrant of all that are moved to it: so a cone's
+// sector changes by less than half a light, and which way round it goes is known. Points on the rim stay there.
 
 const int kTableSide = 32;  // rectangle: 32 × 32 points; disk: 16 circles of 64
 

@@ -1,5 +1,5 @@
-// How much of a light one edge takes or gives back, as seen from p (U. Assarsson, T. Akenine-Möller 2003): the cone from
-// the light's centre over the edge's projection, cut by the light, less the triangle within. docs/soft-volume.md derives
+// How much of a light one edge takes or gives back as seen from p (U. Assarsson, T. Akenine-Möller 2003): the cone from
+// the light's centre over the edge's projection, cut by the light, less the triangle within. docs/coverage.md derives
 // it. The light is [−1, 1]² or the unit disk in its own coordinates, its centre (0, 0).
 //
 // (X, Y) / W is where a point appears on the light; W is its height above p, the light's being 1.

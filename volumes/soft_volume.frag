@@ -8,8 +8,8 @@
 #include "volumes/wedge_raster.shared.h"
 #include "volumes/determinant.glsl"
 
-// What one silhouette edge adds to the part of the light that is hidden from p. Outside the edge's penumbra nothing of it
-// is left once it is cut by the light: no plane of the wedge is looked at again.
+// What one silhouette edge adds to the part of the light that is hidden from p. Outside the edge's penumbra nothing of
+// it is left once it is cut by the light: no plane of the wedge is looked at again.
 
 layout(constant_id = 0) const uint kShape = 0;
 layout(constant_id = 1) const uint kMeasure = 0;
