@@ -14,6 +14,9 @@
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
 #include "volumes/hard_volume.hpp"
+#include "volumes/soft_volume.hpp"
+#include "volumes/soft_volume_blend.hpp"
+#include "volumes/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/accumulate.hpp"
@@ -67,6 +70,9 @@ const std::vector<TableRow>& table() {
       on_device<vsm::view_sample_description, vsm::make_view_sample>(),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+      on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
+      on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
+      on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
@@ -84,9 +90,6 @@ const std::vector<TableRow>& table() {
 
 /// Names that the program will understand some day; they mean nothing else until then.
 constexpr std::array kNotThereYet = {"exact",
-                                     "wedge-ramp",
-                                     "soft-volume",
-                                     "soft-volume-blend",
                                      "depth-complexity",
                                      "alias-free",
                                      "view-sample-planar",
@@ -162,8 +165,9 @@ bool runs_on_device(std::string_view name) {
 }
 
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
-  return std::ranges::all_of(
-      lights, [&](const Light& light) { return std::ranges::find(method.lights, light.kind) != method.lights.end(); });
+  return std::ranges::all_of(lights, [&](const Light& light) {
+    return std::ranges::find(method.lights, light.kind) != method.lights.end() && (method.textures || !light.texture);
+  });
 }
 
 const MethodDescription& default_method(const std::vector<Light>& lights) {
