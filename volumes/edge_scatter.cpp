@@ -201,12 +201,7 @@ class EdgeScatter final : public visibility::Method {
   }
 
   void check_pattern() const {
-    if (!frame_.rows) {
-      throw InputError(
-          "light \"{}\": edge-scatter takes light samples in rows (--sample-pattern rows or grid), not {}; view-sample "
-          "takes any",
-          light_->name, visibility::name_of(light_->pattern));
-    }
+    PENUMBRA_ASSERT(frame_.rows, "light {} has no rows that a step describes", light_->name);
     const std::uint32_t lanes = device_->limits().subgroup_size;
     if (std::uint64_t{light_->columns} * lanes * 4 > device_->limits().max_shared_memory) {
       throw InputError(
@@ -451,6 +446,7 @@ visibility::MethodDescription edge_scatter_description() {
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup (rows of a rectangle light)",
           .lights = {visibility::LightKind::rectangle},
+          .any_pattern = false,
           .options = {},
           .verdict_on = verdict_on};
 }

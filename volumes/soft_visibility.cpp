@@ -233,6 +233,7 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   const RadialCoverage coverage(outline_, result.reference_at);
   // k counts triangles counter-clockwise as the viewer sees them; between c and p, c sees them the other way around.
   const int sense = viewer == Viewer::center ? -projection.turn() : projection.turn();
+  result.sense = -sense;
   for (const Candidate& candidate : candidates) {
     const auto [a, b] = casters_.graph.edges[candidate.edge];
     const int side =

@@ -45,7 +45,9 @@ struct LayerSum {
   glm::vec3 reference{0};      ///< the point of the light that areas are seen from: its centre, unless edges end there
   glm::dvec2 reference_at{0};  ///< the same in frame coordinates
   bool moved = false;          ///< it is not the centre
-  std::int32_t constant = 0;   ///< layers at the reference point. Exact
+  int sense =
+      0;  ///< ±1: an edge's area has the sign of sense · k_e · (the turn of its ends around the reference point)
+  std::int32_t constant = 0;       ///< layers at the reference point. Exact
   std::vector<CoveredEdge> edges;  ///< by their numbers; those that appear on the light
   double sum = 0;                  ///< of their areas
   double blocked = 0;              ///< constant + sum: the mean number of layers over the light

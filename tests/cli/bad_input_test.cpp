@@ -144,7 +144,7 @@ std::vector<BadUsage> bad_usages() {
       {"OverflowingSize", with({"--size", "99999999999x1"}), 2, {"--size"}},
       {"SizeInWords", with({"--size", "big"}), 2, {"WxH"}},
       {"UnknownMethod", with({"--method", "magic"}), 2, {"magic", "raytrace"}},
-      {"MethodNotThereYet", with({"--method", "wedge-ramp"}), 2, {"not there yet", "raytrace"}},
+      {"MethodNotThereYet", with({"--method", "soft-irregular"}), 2, {"not there yet", "raytrace"}},
       {"UnknownMethodOption", with({"--method", "raytrace", "--method-option", "speed=high"}), 2, {"speed"}},
       {"MethodOptionWithoutValue", with({"--method", "raytrace", "--method-option", "speed"}), 2, {"KEY=VALUE"}},
       {"UnknownLight", with({"--method", "raytrace", "--light", "moon"}), 2, {"moon", "key"}},
