@@ -149,7 +149,9 @@ TEST_P(Render, ChosenLightComesFirst) {
 
 INSTANTIATE_TEST_SUITE_P(With, Render, testing::Values("raytrace", "view-sample", "edge-scatter"),
                          [](const auto& test) {
-                           return std::string(test.param) == "raytrace" ? "Raytrace" : "ViewSample";
+                           std::string name = test.param;
+                           std::erase(name, '-');
+                           return name;
                          });
 
 using RenderOnce = ProgramTest;
