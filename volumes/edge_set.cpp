@@ -27,15 +27,61 @@ glm::vec3 rounded(const glm::dvec3& n) {
   return largest == 0 ? glm::vec3(0) : glm::vec3(n * std::ldexp(1.0, -std::ilogb(largest)));
 }
 
-/// The side of the triangle for the edge a→b: in front where (a, b, apex) runs counter-clockwise.
-EdgeSide side_of(const SceneFloats& scene, std::uint32_t triangle, const glm::vec3& a, const glm::vec3& b) {
+/// Exactly coplanar triangles take their normal and anchor from one of them, the largest: the edges between them are
+/// not among the records, so p must be on one side of all of them, however the device rounds.
+class Planes {
+ public:
+  Planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles)
+      : scene_(&scene), largest_(scene.triangles.size(), kNone) {
+    std::vector<double> size(scene.triangles.size(), -1);
+    for (const std::uint32_t triangle : triangles) {
+      const glm::dvec3 n = normal_of(scene.corners(triangle));
+      const std::uint32_t plane = scene.plane[triangle];
+      if (const double squared = glm::dot(n, n); squared > size[plane]) {
+        size[plane] = squared;
+        largest_[plane] = triangle;
+      }
+    }
+  }
+
+  /// In front where the triangle's sorted corners run counter-clockwise.
+  [[nodiscard]] EdgeSide of(std::uint32_t triangle) const {
+    const std::uint32_t plane = scene_->plane[triangle], chosen = largest_[plane];
+    const std::array<glm::vec3, 3> corners = scene_->corners(chosen);
+    const glm::vec3 n = rounded(normal_of(corners));
+    return {turned_alike(triangle, chosen) ? n : -n, corners[0], plane};
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+
+  /// Of two coplanar triangles: do they run the same way around? Asked at points off their plane.
+  [[nodiscard]] bool turned_alike(std::uint32_t x, std::uint32_t y) const {
+    if (x == y) return true;
+    const std::array<glm::vec3, 3> a = scene_->corners(x), b = scene_->corners(y);
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::vec3 q = a[0];
+      q[axis] += 1 + std::abs(q[axis]);
+      const mesh::Side side = mesh::side_of_plane(a[0], a[1], a[2], q);
+      if (side != mesh::Side::on) return side == mesh::side_of_plane(b[0], b[1], b[2], q);
+    }
+    return true;
+  }
+
+  const SceneFloats* scene_;
+  std::vector<std::uint32_t> largest_;  // for each plane number
+};
+
+/// The triangle's side for the edge a→b: in front where (a, b, apex) runs counter-clockwise.
+EdgeSide side_of(const SceneFloats& scene, const Planes& planes, std::uint32_t triangle, const glm::vec3& a,
+                 const glm::vec3& b) {
   const std::array<glm::vec3, 3> corners = scene.corners(triangle);
   const auto place = [&](const glm::vec3& x) {
     return static_cast<int>(std::find(corners.begin(), corners.end(), x) - corners.begin());
   };
-  const bool along = (place(a) + 1) % 3 == place(b);
-  const glm::vec3 n = rounded(normal_of(corners));
-  return {along ? n : -n, corners[0], scene.plane[triangle]};
+  EdgeSide side = planes.of(triangle);
+  if ((place(a) + 1) % 3 != place(b)) side.n = -side.n;
+  return side;
 }
 
 /// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
@@ -86,7 +132,7 @@ bool keep_in_front(EdgeRecord& record, const LightSide& side) {
 }
 
 /// The cut edges, in the light's plane, of triangles that may pass through the light.
-void add_cut_edges(const SceneFloats& scene, const EdgeCasters& casters, const LightSide& side,
+void add_cut_edges(const SceneFloats& scene, const EdgeCasters& casters, const Planes& planes, const LightSide& side,
                    std::vector<EdgeRecord>& records) {
   for (const std::uint32_t triangle : casters.triangle) {
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
@@ -100,8 +146,7 @@ void add_cut_edges(const SceneFloats& scene, const EdgeCasters& casters, const L
     }
     if (!leaves || !returns || *leaves == *returns || !may_touch_light(side, *leaves, *returns)) continue;
     // Run around as the corners do: in front where those are counter-clockwise.
-    records.push_back(
-        {*leaves, *returns, {EdgeSide{rounded(normal_of(corners)), corners[0], scene.plane[triangle]}, {}}});
+    records.push_back({*leaves, *returns, {planes.of(triangle), EdgeSide{}}});
   }
 }
 
@@ -131,6 +176,7 @@ bool reaches_behind(const SceneFloats& scene, const LightSide& side) {
 
 std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters,
                                      const std::optional<LightSide>& side) {
+  const Planes planes(scene, casters.triangle);
   std::vector<EdgeRecord> records;
   records.reserve(casters.graph.edges.size());
   for (std::uint32_t e = 0; e < casters.graph.edges.size(); ++e) {
@@ -140,13 +186,13 @@ std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters
     for (std::size_t i = 0; i < around.size(); i += 2) {
       EdgeRecord record{a, b, {}};
       for (std::size_t j = i; j < std::min(i + 2, around.size()); ++j) {
-        record.sides[j - i] = side_of(scene, casters.triangle[around[j].triangle], a, b);
+        record.sides[j - i] = side_of(scene, planes, casters.triangle[around[j].triangle], a, b);
       }
       if (is_flat(record) || (side && !keep_in_front(record, *side))) continue;
       records.push_back(record);
     }
   }
-  if (side) add_cut_edges(scene, casters, *side, records);
+  if (side) add_cut_edges(scene, casters, planes, *side, records);
   return records;
 }
 

@@ -32,6 +32,7 @@ uint left_changes[kWordsPerColumn];                       // where edges cross t
 uvec2 open_rows;                                          // light rows of the band for the host
 uvec2 open_samples;                                       // and two more light samples, or kNone
 bool open_pixel;                                          // all of them
+bool cut_off;                                             // a loop did not run to its end
 uint out_of_range;                                        // bytes of changes on the light's left side: open all rows
 
 void open_row(float row, bool when) {
@@ -130,6 +131,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     const uint bit = open ? 1u << (band_row & 31) : 0;
     open_rows |= band_row < 32 ? uvec2(bit, 0) : uvec2(0, bit);
   } while (++row < end);
+  cut_off = cut_off || row < end;
 
   if ((a.x < -0.5) != (b.x < -0.5)) {
     const float inverse = way.y / way.x, flat_error = 1.2 * (error_near + error_far * min(1.0, (abs(near.x - first_cell.x) + 2.0 * half_cells.x) / abs(way.x))) * (1.0 + abs(inverse)) +
@@ -272,7 +274,6 @@ Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 
 const uint kQueue = 64;
 uint queue[kQueue];                                       // edges; every lane has all of it: shared memory is the histogram's
 uint queued;
-bool cut_off;                                             // a loop did not run to its end
 
 // Projects and scatters the queued edges.
 void drain(bool on, GroupBounds g) {
@@ -311,6 +312,7 @@ void drain(bool on, GroupBounds g) {
         scatter_seen(a1, b1, k, open && on, errors, subgroupShuffle(settled, from), subgroupShuffle(sliver, from));
         left &= left - 1;
       } while (left != 0);
+      cut_off = cut_off || left != 0;
     }
   }
   cut_off = cut_off || i < queued;
@@ -341,6 +343,7 @@ void scatter_list(uint head, bool on) {
           queued += left != 0 ? 1 : 0;
           left &= left - 1;
         } while (left != 0);
+        cut_off = cut_off || left != 0;
       }
     }
     const bool room = queued + kLanes < kQueue;
@@ -436,6 +439,7 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   int depth = int(depth_at_corner);
   uint visible = 0;
   const uint first_word = uint(first_row) >> 2;
+  uint cells = 0;
   for (uint word = 0; word < kWordsPerColumn; ++word) {
     // Depths are in 0 … 127. More than that: 128 … 190, since none of the changes exceeds 63. Negative, −63 … −1, are those
     // of light samples that are open anyway.
@@ -456,6 +460,7 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
           depths = bytes_sum(depths, histogram[(column * kWordsPerColumn + word) * kLanes + gl_SubgroupInvocationID]);
           outside |= depths & ~(depths << 1);
           bits |= (zero_bytes(depths) & used) << i;
+          ++cells;
         }
       }
       visible += bitCount(bits);
@@ -465,12 +470,13 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
     const uint found = (rows & ((1u << clamp(rows_left, 0, 4)) - 1)) << (4 * (word & 7));
     open_rows |= word < 8 ? uvec2(found, 0) : uvec2(0, found);
   }
+  cut_off = cut_off || cells != kHistogramWords;
   return visible;
 }
 
 // Light samples not strictly above the carrier's plane are not visible: A·X + B·Y + C > 0. (bound horizon)
 uint cut_at_horizon(uint pixel, vec3 above, float error) {
-  uint visible = 0;
+  uint visible = 0, bits_seen = 0;
   for (int row = first_row; row <= last_row; row += 4) {
     for (uint column_word = 0; column_word * 8 < kColumns; ++column_word) {
       uint bits = masks[mask_word(pixel, column_word, uint(row) >> 2)];
@@ -480,12 +486,14 @@ uint cut_at_horizon(uint pixel, vec3 above, float error) {
         const vec2 light_point = (vec2(column, float(r)) - first_cell) / half_cells;
         const float value = above.x * light_point.x + above.y * light_point.y + above.z;
         if (value <= error) bits &= ~(1u << ((i >> 3) * 8 + (i & 7)));
+        ++bits_seen;
         open_row(float(r), abs(value) <= error && column < float(kColumns) && r <= last_row);
       }
       masks[mask_word(pixel, column_word, uint(row) >> 2)] = bits;
       visible += bitCount(bits);
     }
   }
+  cut_off = cut_off || bits_seen != uint((last_row - first_row + 4) / 4) * ((kColumns + 7) / 8) * 32;
   return visible;
 }
 
