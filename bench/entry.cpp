@@ -34,11 +34,11 @@ struct Rival {
 /// All who are asked about one subject.
 class Field {
  public:
-  Field(const Ground& ground, const Options& options, app::DeviceSource& devices)
-      : ground_(ground), options_(options), oracle_(oracle_entry(), ground, devices), rays_(ground) {
+  Field(const Ground& ground, const Options& options)
+      : ground_(ground), options_(options), oracle_(oracle_entry(), ground, ""), rays_(ground) {
     for (const app::MethodEntry& method : options.methods) {
       attempt(method.label, [&] {
-        rivals_.push_back({std::make_unique<MethodRunner>(method, ground, devices), method.label, false});
+        rivals_.push_back({std::make_unique<MethodRunner>(method, ground, options.device), method.label, false});
       });
     }
     add_peer({RayWork::all, false, name_of(RayWork::all)});
@@ -148,10 +148,10 @@ const Contestant* find_contestant(const Entry& entry, const std::string& name) {
   return found == entry.contestants.end() ? nullptr : &*found;
 }
 
-void measure(const Subject& subject, const Options& options, app::DeviceSource& devices,
+void measure(const Subject& subject, const Options& options, const render::Device& device,
              const std::function<void(const Entry&)>& sink) {
-  const Ground ground = make_ground(subject, devices.device());
-  Field field(ground, options, devices);
+  const Ground ground = make_ground(subject, device);
+  Field field(ground, options);
   std::optional<ReferenceVisibility> reference;
   if (options.reference != Reference::none) reference = make_reference(ground, options);
   for (const std::uint32_t samples : options.light_samples) {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "app/device_source.hpp"
 #include "bench/options.hpp"
 #include "compare/metrics.hpp"
+#include "render/device.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -37,7 +37,7 @@ struct Contestant {
   std::optional<compare::PairCounts> pairs;       ///< against raytrace; only of methods with masks
   std::map<std::string, double> passes;           ///< milliseconds, of the last run
   std::map<std::string, std::uint64_t> counters;  ///< of the last run
-  std::optional<std::uint64_t> memory;            ///< bytes, at their peak; methods only
+  std::optional<std::uint64_t> memory;            ///< bytes, at their peak on this subject so far; methods only
   int packet = 0;                  ///< rays traced together: the fastest of those tried; ray casters only
   std::uint64_t view_samples = 0;  ///< that were asked about with all light samples; ray casters only
 };
@@ -60,7 +60,7 @@ const Contestant* find_contestant(const Entry& entry, const std::string& name);
 /// jittered peers) light samples. They take turns: a run of each, then the next run of each, so that whatever else the
 /// machine does meets them alike. The first run of each is discarded. Contestants that fail are left out and said so on
 /// stderr.
-void measure(const Subject& subject, const Options& options, app::DeviceSource& devices,
+void measure(const Subject& subject, const Options& options, const render::Device& device,
              const std::function<void(const Entry&)>& sink);
 
 }  // namespace penumbra::bench

@@ -54,7 +54,7 @@ void run_methods(const bench::Options& options, Output& output) {
   output.write(bench::table_head(), "");
   std::vector<bench::Entry> entries;
   for (const bench::Subject& subject : options.subjects) {
-    bench::measure(subject, options, devices, [&](const bench::Entry& entry) {
+    bench::measure(subject, options, devices.device(), [&](const bench::Entry& entry) {
       output.write(bench::table_rows(entry), bench::json_lines(entry, options));
       entries.push_back(entry);
     });

@@ -59,11 +59,11 @@ double Runner::spent() const {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-MethodRunner::MethodRunner(const app::MethodEntry& entry, const Ground& ground, app::DeviceSource& devices)
-    : name_(entry.label), method_(app::make_method(entry.name, entry.options, devices)) {
+MethodRunner::MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device)
+    : name_(entry.label), devices_(device), method_(app::make_method(entry.name, entry.options, devices_)) {
   const compare::Machine machine = compare::this_machine();
-  device_ = app::runs_on_device(entry.name) ? devices.name()
-                                            : fmt::format("{}, {} threads", machine.processor, machine.threads);
+  where_ = app::runs_on_device(entry.name) ? devices_.name()
+                                           : fmt::format("{}, {} threads", machine.processor, machine.threads);
   const app::Stopwatch watch;
   method_->prepare_mesh(ground.floats);
   mesh_ = watch.seconds();
@@ -110,9 +110,10 @@ Runner::Seconds MethodRunner::run_once(const Question& question, std::vector<flo
 }
 
 Contestant MethodRunner::result() const {
+  devices_.check_validation();
   Contestant contestant;
   contestant.name = name_;
-  contestant.device = device_;
+  contestant.device = where_;
   contestant.mesh = mesh_;
   contestant.times = times();
   contestant.pairs = pairs_;

@@ -45,10 +45,11 @@ class Runner {
   std::vector<float> visibility_;
 };
 
-/// A method of the program.
+/// A method of the program, on a Vulkan device of its own (if it needs one): a device knows the memory that it gave,
+/// not to whom.
 class MethodRunner final : public Runner {
  public:
-  MethodRunner(const app::MethodEntry& entry, const Ground& ground, app::DeviceSource& devices);
+  MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device);
 
   [[nodiscard]] Contestant result() const override;
   /// For the oracle: its masks go there in the discarded run, and no pairs are counted.
@@ -59,7 +60,8 @@ class MethodRunner final : public Runner {
   void prepare(const Question& question) override;
   void take_masks(const Question& question, const visibility::Tile& tile);
 
-  std::string name_, device_;
+  std::string name_, where_;
+  app::DeviceSource devices_;
   std::unique_ptr<visibility::Method> method_;
   double mesh_ = 0;
   std::vector<visibility::PassTime> passes_;
