@@ -5,6 +5,7 @@
 #include "render/device.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,29 +26,41 @@ struct Timing {
 };
 Timing timing_of(std::vector<double> seconds);
 
-/// What one contestant did on one subject.
+/// What one contestant did on one subject with so many light samples.
 struct Contestant {
-  std::string name;    ///< "view-sample", "plain-rays" (the speed peer), "raytrace"
+  std::string name;    ///< "edge-scatter", "plain-rays" (the speed peer), "raytrace"
   std::string device;  ///< where it ran
   double mesh = 0;     ///< once
   Times times;
-  std::optional<compare::VisibilityError> error;  ///< of V against raytrace, over judged pixels
+  std::optional<compare::VisibilityError> error;  ///< of V against raytrace at the same light samples, judged pixels
+  std::optional<compare::VisibilityError> error_to_reference;
   std::optional<compare::PairCounts> pairs;       ///< against raytrace; only of methods with masks
   std::map<std::string, double> passes;           ///< milliseconds, of the last run
   std::map<std::string, std::uint64_t> counters;  ///< of the last run
+  std::optional<std::uint64_t> memory;            ///< bytes, at their peak on this subject so far; methods only
+  int packet = 0;                  ///< rays traced together: the fastest of those tried; ray casters only
+  std::uint64_t view_samples = 0;  ///< that were asked about with all light samples; ray casters only
 };
 
 struct Entry {
-  std::string subject;
+  std::string subject;                                   ///< stable name
+  std::string name;                                      ///< the same with "/n=N" where N was asked for
   std::uint64_t triangles = 0, pixels = 0, samples = 0;  ///< pixels with A = 1; light samples
   std::uint32_t width = 0, height = 0;
-  int packet = 0;          ///< rays in the speed peer's packets: the fastest of those tried
   double load_before = 0;  ///< of the machine, mean of the last minute: above what this process itself makes, distrust
-  std::vector<Contestant> contestants;  ///< view-sample, plain-rays, raytrace
+  std::string reference;   ///< what error_to_reference is against, over how many pixels; empty: nothing
+  std::uint64_t reference_pixels = 0;
+  std::vector<Contestant> contestants;  ///< methods, peers, raytrace
 };
 
-/// Runs all contestants on the same view samples and light samples, interleaved: a run of each, then the next run of
-/// each, so that whatever else the machine does meets them alike. The first run of each is discarded.
-Entry measure(const Subject& subject, const Options& options, const render::Device& device);
+/// Of that name, or nothing.
+const Contestant* find_contestant(const Entry& entry, const std::string& name);
+
+/// Asks all contestants about one subject, once for each number of light samples, on the same view samples and (but for
+/// jittered peers) light samples. They take turns: a run of each, then the next run of each, so that whatever else the
+/// machine does meets them alike. The first run of each is discarded. Contestants that fail are left out and said so on
+/// stderr.
+void measure(const Subject& subject, const Options& options, const render::Device& device,
+             const std::function<void(const Entry&)>& sink);
 
 }  // namespace penumbra::bench

@@ -1,5 +1,7 @@
 #include "bench/lines.hpp"
 
+#include "compare/machine.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -13,44 +15,80 @@ Json to_json(const Timing& timing) {
       {"median", timing.median}, {"lowest", timing.lowest}, {"highest", timing.highest}, {"spread", timing.spread()}};
 }
 
-double ratio_to_peer(const Entry& entry, const Contestant& contestant) {
-  return timing_of(contestant.times.shadow()).median / timing_of(entry.contestants[1].times.shadow()).median;
+Json to_json(const compare::VisibilityError& error) {
+  return {{"rmse", error.rmse}, {"max", error.max},   {"bias", error.bias},
+          {"mean", error.mean}, {"p999", error.p999}, {"over05", error.over05}};
 }
 
-std::string seconds(const Contestant& contestant) {
-  const Timing timing = timing_of(contestant.times.shadow());
-  return fmt::format("{:.3f} ±{:2.0f} %", timing.median, 50 * timing.spread());
+/// Seconds of the contestant ÷ those of a peer; nothing where that one did not run.
+std::optional<double> ratio_to(const Entry& entry, const std::string& peer, const Contestant& contestant) {
+  const Contestant* other = find_contestant(entry, peer);
+  if (other == nullptr) return std::nullopt;
+  return timing_of(contestant.times.shadow()).median / timing_of(other->times.shadow()).median;
+}
+
+std::string seconds(const Timing& timing) {
+  return fmt::format("{:.4g} ±{:2.0f} %", timing.median, 50 * timing.spread());
+}
+
+std::string ratio_text(std::optional<double> ratio) {
+  return ratio ? fmt::format("{:.3g}", *ratio) : "-";
+}
+
+std::string rmse_text(const std::optional<compare::VisibilityError>& error) {
+  return error ? fmt::format("{:.2e}", error->rmse) : "-";
+}
+
+void add_errors(Json& line, const Entry& entry, const Contestant& contestant) {
+  if (contestant.error) line["error"] = to_json(*contestant.error);
+  if (contestant.error_to_reference) {
+    line["errorToReference"] = to_json(*contestant.error_to_reference);
+    line["errorToReference"]["reference"] = entry.reference;
+    line["errorToReference"]["pixels"] = entry.reference_pixels;
+  }
+  if (contestant.pairs) {
+    line["pairsAll"] = contestant.pairs->all;
+    line["pairs"] = contestant.pairs->penumbra;
+    line["pairsDiffering"] = contestant.pairs->differing;
+  }
 }
 
 }  // namespace
 
 std::string table_head() {
   return fmt::format(
-      "| {:<16} | {:>9} | {:>13} | {:>13} | {:>6} | {:>5} | {:>13} | {:>9} | {:>7} | {:>7} | {:>9} | {:>4} |\n"
-      "| {:-<16} | {:->8}: | {:->12}: | {:->12}: | {:->5}: | {:->4}: | {:->12}: | {:->8}: | {:->6}: | {:->6}: | "
-      "{:->8}: | {:->3}: |\n",
-      "scene", "triangles", "view-sample s", "plain-rays s", "packet", "ratio", "raytrace s", "differing", "of all",
-      "of pairs", "peer RMSE", "load", "", "", "", "", "", "", "", "", "", "", "", "");
+      "| {:<50} | {:>15} | {:>7} | {:>7} | {:>7} | {:>8} | {:>9} | {:>9} | {:>7} | {:>6} | {:>4} |\n"
+      "| {:-<50} | {:->14}: | {:->6}: | {:->6}: | {:->6}: | {:->7}: | {:->8}: | {:->8}: | {:->6}: | {:->5}: | {:->3}: "
+      "|\n",
+      "name", "shadow s", "plain", "nontr.", "adapt.", "RMSE", "RMSE ref.", "differing", "of all", "MiB", "load", "",
+      "", "", "", "", "", "", "", "", "", "");
 }
 
-std::string table_row(const Entry& entry) {
-  const Contestant &ours = entry.contestants[0], &peer = entry.contestants[1], &raytrace = entry.contestants[2];
-  const compare::PairCounts& pairs = *ours.pairs;
-  const auto share = [&](std::uint64_t of) {
-    return of == 0 ? 0.0 : static_cast<double>(pairs.differing) / static_cast<double>(of);
-  };
-  return fmt::format(
-      "| {:<16} | {:>9} | {:>13} | {:>13} | {:>6} | {:>5.2f} | {:>13} | {:>9} | {:>7.1e} | {:>7.1e} | {:>9} | {:>4.1f} "
-      "|\n",
-      entry.subject, entry.triangles, seconds(ours), seconds(peer), entry.packet, ratio_to_peer(entry, ours),
-      seconds(raytrace), pairs.differing, share(pairs.all), share(pairs.penumbra),
-      peer.error ? fmt::format("{:.6f}", peer.error->rmse) : "-", entry.load_before);
+std::string table_rows(const Entry& entry) {
+  std::string rows;
+  for (const Contestant& contestant : entry.contestants) {
+    std::string differing = "-", share = "-";
+    if (contestant.pairs) {
+      const auto of = static_cast<double>(contestant.pairs->all);
+      differing = std::to_string(contestant.pairs->differing);
+      share = fmt::format("{:.1e}", of > 0 ? static_cast<double>(contestant.pairs->differing) / of : 0.0);
+    }
+    rows += fmt::format(
+        "| {:<50} | {:>15} | {:>7} | {:>7} | {:>7} | {:>8} | {:>9} | {:>9} | {:>7} | {:>6} | {:>4.1f} |\n",
+        entry.name + "/" + contestant.name, seconds(timing_of(contestant.times.shadow())),
+        ratio_text(ratio_to(entry, "plain-rays", contestant)),
+        ratio_text(ratio_to(entry, "nontrivial-rays", contestant)),
+        ratio_text(ratio_to(entry, "adaptive-rays", contestant)), rmse_text(contestant.error),
+        rmse_text(contestant.error_to_reference), differing, share,
+        contestant.memory ? std::to_string((*contestant.memory + (1U << 19)) >> 20) : "-", entry.load_before);
+  }
+  return rows;
 }
 
 std::string json_lines(const Entry& entry, const Options& options) {
   std::string lines;
   for (const Contestant& contestant : entry.contestants) {
-    Json line{{"name", entry.subject + "/" + contestant.name},
+    Json line{{"name", entry.name + "/" + contestant.name},
               {"commit", options.commit},
               {"buildType", PENUMBRA_BUILD_TYPE},
               {"device", contestant.device},
@@ -65,23 +103,53 @@ std::string json_lines(const Entry& entry, const Options& options) {
               {"mesh", contestant.mesh},
               {"light", to_json(timing_of(contestant.times.light))},
               {"evaluate", to_json(timing_of(contestant.times.evaluate))},
-              {"shadow", to_json(timing_of(contestant.times.shadow()))},
-              {"ratioToPlainRays", ratio_to_peer(entry, contestant)}};
-    if (contestant.name == "plain-rays") line["packet"] = entry.packet;
-    if (contestant.error) {
-      line["error"] = {
-          {"rmse", contestant.error->rmse}, {"max", contestant.error->max}, {"bias", contestant.error->bias}};
+              {"shadow", to_json(timing_of(contestant.times.shadow()))}};
+    for (const auto& [key, peer] : {std::pair{"ratioToPlainRays", "plain-rays"},
+                                    {"ratioToNontrivialRays", "nontrivial-rays"},
+                                    {"ratioToAdaptiveRays", "adaptive-rays"}}) {
+      if (const auto ratio = ratio_to(entry, peer, contestant)) line[key] = *ratio;
     }
-    if (contestant.pairs) {
-      line["pairsAll"] = contestant.pairs->all;
-      line["pairs"] = contestant.pairs->penumbra;
-      line["pairsDiffering"] = contestant.pairs->differing;
+    if (contestant.packet != 0) {
+      line["packet"] = contestant.packet;
+      line["viewSamples"] = contestant.view_samples;
     }
+    add_errors(line, entry, contestant);
+    if (contestant.memory) line["memoryBytes"] = *contestant.memory;
     if (!contestant.passes.empty()) line["passes"] = contestant.passes;
     if (!contestant.counters.empty()) line["counters"] = contestant.counters;
     lines += line.dump() + "\n";
   }
   return lines;
+}
+
+std::string cpu_table_head() {
+  return fmt::format("| {:<44} | {:>14} | {:>11} | {:>7} |\n| {:-<44} | {:->13}: | {:->10}: | {:->6}: |\n", "name",
+                     "seconds", "a second", "growth", "", "", "", "");
+}
+
+std::string cpu_table_row(const CpuEntry& entry) {
+  const Timing timing = timing_of(entry.seconds);
+  return fmt::format("| {:<44} | {:>14} | {:>11.4g} | {:>7} |\n", entry.name, seconds(timing),
+                     static_cast<double>(entry.items) / timing.median, ratio_text(entry.growth));
+}
+
+std::string json_line(const CpuEntry& entry, const Options& options) {
+  const compare::Machine machine = compare::this_machine();
+  const Timing timing = timing_of(entry.seconds);
+  Json line{{"name", entry.name},
+            {"commit", options.commit},
+            {"buildType", PENUMBRA_BUILD_TYPE},
+            {"device", fmt::format("{}, {} threads", machine.processor, machine.threads)},
+            {"triangles", entry.triangles},
+            {"edges", entry.edges},
+            {"items", entry.items},
+            {"runs", entry.seconds.size()},
+            {"loadBefore", entry.load_before},
+            {"seconds", to_json(timing)},
+            {"itemsPerSecond", static_cast<double>(entry.items) / timing.median}};
+  if (entry.growth) line["growth"] = *entry.growth;
+  if (!entry.counts.empty()) line["counters"] = entry.counts;
+  return line.dump() + "\n";
 }
 
 }  // namespace penumbra::bench

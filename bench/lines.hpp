@@ -1,16 +1,22 @@
 #pragma once
 
+#include "bench/cpu.hpp"
 #include "bench/entry.hpp"
 
 #include <string>
 
 namespace penumbra::bench {
 
-/// The table on stdout, a row an entry.
+/// The table on stdout, a row a contestant.
 std::string table_head();
-std::string table_row(const Entry& entry);
+std::string table_rows(const Entry& entry);
 
-/// One JSON line a contestant, each with its name ("bunny/view-sample"), which never changes.
+/// One JSON line a contestant, each with its name ("bunny/n=1024/edge-scatter"), which never changes.
 std::string json_lines(const Entry& entry, const Options& options);
+
+/// The same for --cpu.
+std::string cpu_table_head();
+std::string cpu_table_row(const CpuEntry& entry);
+std::string json_line(const CpuEntry& entry, const Options& options);
 
 }  // namespace penumbra::bench

@@ -1,7 +1,11 @@
+#include "app/device_source.hpp"
+#include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "bench/cpu.hpp"
 #include "bench/entry.hpp"
 #include "bench/lines.hpp"
 #include "bench/options.hpp"
+#include "bench/picture.hpp"
 
 #include <fmt/format.h>
 
@@ -11,30 +15,65 @@
 
 namespace {
 
+using namespace penumbra;
+
+/// The table on stdout and, if wanted, the lines in a file: each as soon as there is something to say, since a long run
+/// is watched and may be cut short.
+class Output {
+ public:
+  explicit Output(const bench::Options& options) : path_(options.json) {
+    if (path_.empty()) return;
+    json_.open(path_, std::ios::app);
+    if (!json_) throw ResourceError("{}: cannot be opened for writing", path_.string());
+  }
+  void write(const std::string& rows, const std::string& lines) {
+    fmt::print("{}", rows);
+    std::fflush(stdout);
+    if (path_.empty()) return;
+    json_ << lines << std::flush;
+    if (!json_) throw ResourceError("{}: cannot be written", path_.string());
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream json_;
+};
+
+void run_cpu(const bench::Options& options, Output& output) {
+  output.write(bench::cpu_table_head(), "");
+  bench::measure_cpu(options, [&](const bench::CpuEntry& entry) {
+    output.write(bench::cpu_table_row(entry), bench::json_line(entry, options));
+  });
+}
+
+void run_methods(const bench::Options& options, Output& output) {
+  app::require_writable(options.picture);
+  app::DeviceSource devices(options.device);
+  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
+             options.commit.empty() ? "unknown" : options.commit, options.runs);
+  output.write(bench::table_head(), "");
+  std::vector<bench::Entry> entries;
+  for (const bench::Subject& subject : options.subjects) {
+    bench::measure(subject, options, devices.device(), [&](const bench::Entry& entry) {
+      output.write(bench::table_rows(entry), bench::json_lines(entry, options));
+      entries.push_back(entry);
+    });
+    if (!options.picture.empty()) write_file_atomically(options.picture, bench::svg_picture(entries));
+  }
+  devices.check_validation();
+}
+
 int run(const std::vector<std::string>& arguments) {
-  using namespace penumbra;
   const bench::Options options = bench::parse_options(arguments);
   if (options.help) {
     fmt::print("{}", bench::kHelp);
     return 0;
   }
-  std::ofstream json;
-  if (!options.json.empty()) {
-    json.open(options.json, std::ios::app);
-    if (!json) throw ResourceError("{}: cannot be opened for writing", options.json.string());
-  }
-  const render::Device device({.wanted = options.device});
-  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", device.info().name,
-             options.commit.empty() ? "unknown" : options.commit, options.runs);
-  fmt::print("{}", bench::table_head());
-  for (const bench::Subject& subject : options.subjects) {
-    const bench::Entry entry = bench::measure(subject, options, device);
-    fmt::print("{}", bench::table_row(entry));
-    std::fflush(stdout);  // a long run is watched
-    if (json.is_open()) {
-      json << bench::json_lines(entry, options) << std::flush;
-      if (!json) throw ResourceError("{}: cannot be written", options.json.string());
-    }
+  Output output(options);
+  if (options.cpu) {
+    run_cpu(options, output);
+  } else {
+    run_methods(options, output);
   }
   return 0;
 }
@@ -44,11 +83,11 @@ int run(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
   try {
     return run({argv + 1, argv + argc});
-  } catch (const penumbra::Error& error) {
+  } catch (const Error& error) {
     fmt::print(stderr, "penumbra-bench: error: {}\n", error.what());
     return static_cast<int>(error.code());
   } catch (const std::exception& error) {
     fmt::print(stderr, "penumbra-bench: error: internal: {}\n", error.what());
-    return static_cast<int>(penumbra::ExitCode::resource);
+    return static_cast<int>(ExitCode::resource);
   }
 }

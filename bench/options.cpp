@@ -3,25 +3,44 @@
 #include "app/parse.hpp"
 #include "base/error.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
+#include <map>
 #include <string_view>
 
 namespace penumbra::bench {
 
 const char* const kHelp =
-    R"(penumbra-bench: view-sample mapping, the speed peer (fastest plain Embree) and ray tracing, side by side
+    R"(penumbra-bench: shadow methods, ray casters and the oracle side by side, on the same view samples
 
-  --scene NAME|FILE    a shipped scene by name, or a scene file; may be given again
+  --scene NAME|FILE|knot:T
+                       a shipped scene by name, a scene file, or a generated knot of T triangles; may be given again
                        (default: all shipped scenes but terrain-1m, and bunny with light half sizes 0.3 and 2)
   --all                terrain-1m too
-  --light-half H       half size of each scene's first rectangle light instead of the scene's; needs --scene;
-                       may be given again
+  --light-half H       half size of each scene's first rectangle light instead of the scene's; may be given again
+  --size N             pixels on a side (default 512); may be given again
+  --light-samples N    1 to 4096 (default 256); may be given again
+  --method NAME[:KEY=VALUE...]
+                       a contestant; may be given again (default: edge-scatter, view-sample)
+  --peer NAME[:pattern=jittered]
+                       a ray caster beside plain-rays: plain-rays, nontrivial-rays, adaptive-rays; may be given again;
+                       none: no other (default: plain-rays:pattern=jittered, nontrivial-rays, adaptive-rays)
+  --reference raytrace|exact
+                       also the errors against many light samples, or against the exact area
+  --reference-samples M
+                       of raytrace: 1 to 1048576 (default 16384)
+  --sample-pixels N    of exact: how many pixels in penumbra (default 2000), or all
   --runs N             timed runs after one that is discarded (default 5)
-  --size N             pixels on a side (default 512)
-  --light-samples N    1 to 4096 (default 256)
+  --budget SECONDS     who has used as much in timed runs gets no other
+  --cpu                instead of methods: edge graphs, edge records, hierarchies and penumbra wedges on the processor
+  --triangles T        of --cpu's knots (default 5000, 50000, 500000); may be given again
+  --edges N            of --cpu's wedges (default 1000000)
   --device NAME|INDEX|cpu
-  --json FILE          append one JSON line a scene and method
+  --json FILE          append one JSON line a contestant
+  --picture FILE.svg   error against time, a curve a contestant; needs --reference
   --commit TEXT        instead of the commit that this was configured at
   --help
 
@@ -30,116 +49,166 @@ The table goes to stdout, what is going on to stderr. bench/README.md says how t
 
 namespace {
 
-/// The values that follow options, in order.
-class Arguments {
- public:
-  explicit Arguments(const std::vector<std::string>& all) : all_(all) {}
-  [[nodiscard]] bool done() const { return next_ == all_.size(); }
-  const std::string& take() { return all_[next_++]; }
-  const std::string& value_of(const std::string& option) {
-    if (done()) throw UsageError("{}: expected a value after it; --help lists the options", option);
-    return take();
-  }
-  std::uint32_t number_of(const std::string& option, std::uint32_t most) {
-    const std::string& text = value_of(option);
-    const auto number = app::parse_integer<std::uint32_t>(text);
-    if (!number || *number == 0 || *number > most)
-      throw UsageError("{} {}: expected a whole number from 1 to {}", option, text, most);
-    return *number;
-  }
+constexpr std::string_view kJittered = ":pattern=jittered";
 
- private:
-  const std::vector<std::string>& all_;
-  std::size_t next_ = 0;
+template <typename Integer>
+Integer parse_number(const std::string& option, const std::string& text, Integer most) {
+  const auto number = app::parse_integer<Integer>(text);
+  if (!number || *number == 0 || *number > most)
+    throw UsageError("{} {}: expected a whole number from 1 to {}", option, text, most);
+  return *number;
+}
+
+double parse_seconds(const std::string& text) {
+  char* end = nullptr;
+  const double seconds = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(seconds > 0))
+    throw UsageError("--budget {}: expected seconds above 0, such as 60", text);
+  return seconds;
+}
+
+Peer parse_peer(const std::string& text) {
+  std::string_view name = text;
+  const bool jittered = name.ends_with(kJittered);
+  if (jittered) name.remove_suffix(kJittered.size());
+  for (const RayWork work : {RayWork::all, RayWork::nontrivial, RayWork::adaptive}) {
+    if (name == name_of(work)) return {work, jittered, text};
+  }
+  throw UsageError("--peer {}: expected plain-rays, nontrivial-rays or adaptive-rays, perhaps with {}, or none", text,
+                   kJittered);
+}
+
+Reference parse_reference(const std::string& text) {
+  if (text == "raytrace") return Reference::raytrace;
+  if (text == "exact") return Reference::exact;
+  throw UsageError("--reference {}: expected raytrace or exact", text);
+}
+
+/// "name:key=value:key=value", the keys in their order.
+std::string contestant_name(const app::MethodEntry& entry) {
+  std::string name = entry.name;
+  for (const auto& [key, value] : entry.options) name += fmt::format(":{}={}", key, value);
+  return name;
+}
+
+void add_methods(std::vector<app::MethodEntry>& methods, const std::string& text) {
+  for (app::MethodEntry& entry : app::parse_methods(text)) {
+    if (entry.from_group && entry.name == "raytrace") continue;  // runs anyway
+    entry.label = contestant_name(entry);
+    methods.push_back(std::move(entry));
+  }
+}
+
+/// Command line as it is read; what was not given gets its default at the end.
+struct Reading {
+  Options options;
+  SubjectRequest subjects;
+  std::vector<std::string> peers;
 };
 
-/// H as the user wrote it, because it becomes part of a stable name.
-double parse_half(const std::string& text) {
-  char* end = nullptr;
-  const double half = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(half > 0 && half < 1e9))
-    throw UsageError("--light-half {}: expected a length above 0, such as 0.3", text);
-  return half;
+using Take = std::function<void(Reading&, const std::string& option, const std::string& value)>;
+
+const std::map<std::string, Take>& options_with_value() {
+  static const std::map<std::string, Take> takes = {
+      {"--scene", [](Reading& r, auto&, auto& value) { r.subjects.scenes.push_back(value); }},
+      {"--light-half", [](Reading& r, auto&, auto& value) { r.subjects.halves.push_back(value); }},
+      {"--size", [](Reading& r, auto& option,
+                    auto& value) { r.subjects.sizes.push_back(parse_number<std::uint32_t>(option, value, 16384)); }},
+      {"--light-samples",
+       [](Reading& r, auto& option, auto& value) {
+         r.options.light_samples.push_back(parse_number<std::uint32_t>(option, value, 4096));
+       }},
+      {"--method", [](Reading& r, auto&, auto& value) { add_methods(r.options.methods, value); }},
+      {"--peer", [](Reading& r, auto&, auto& value) { r.peers.push_back(value); }},
+      {"--reference", [](Reading& r, auto&, auto& value) { r.options.reference = parse_reference(value); }},
+      {"--reference-samples",
+       [](Reading& r, auto& option, auto& value) {
+         r.options.reference_samples = parse_number<std::uint32_t>(option, value, 1U << 20);
+       }},
+      {"--sample-pixels", [](Reading& r, auto&, auto& value) { r.options.sample_pixels = value; }},
+      {"--runs", [](Reading& r, auto& option,
+                    auto& value) { r.options.runs = parse_number<std::uint32_t>(option, value, 1000); }},
+      {"--budget", [](Reading& r, auto&, auto& value) { r.options.budget = parse_seconds(value); }},
+      {"--triangles",
+       [](Reading& r, auto& option, auto& value) {
+         r.options.triangles.push_back(parse_number<std::uint64_t>(option, value, mesh::kMaxShapeTriangles));
+       }},
+      {"--edges",
+       [](Reading& r, auto& option, auto& value) {
+         r.options.edges = parse_number<std::uint64_t>(option, value, mesh::kMaxShapeTriangles);
+       }},
+      {"--device", [](Reading& r, auto&, auto& value) { r.options.device = value; }},
+      {"--json", [](Reading& r, auto&, auto& value) { r.options.json = value; }},
+      {"--picture", [](Reading& r, auto&, auto& value) { r.options.picture = value; }},
+      {"--commit", [](Reading& r, auto&, auto& value) { r.options.commit = value; }}};
+  return takes;
 }
 
-std::filesystem::path find_scene(const std::string& name) {
-  if (std::filesystem::is_regular_file(name)) return name;
-  const std::filesystem::path shipped = std::filesystem::path(PENUMBRA_SCENES) / (name + ".json");
-  if (std::filesystem::is_regular_file(shipped)) return shipped;
-  throw UsageError("--scene {}: neither a file nor a scene of {}", name, PENUMBRA_SCENES);
+void require_once(const std::vector<std::string>& names) {
+  std::vector<std::string> sorted = names;
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
+  if (twice != sorted.end()) throw UsageError("{} is asked for twice; its results would have one name", *twice);
 }
 
-constexpr const char* kLarge = "terrain-1m";
-
-std::vector<std::string> shipped_scenes(bool all) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_SCENES)) {
-    const std::filesystem::path& path = entry.path();
-    const std::string stem = path.stem().string();
-    if (path.extension() != ".json" || stem.ends_with(".schema") || (stem == kLarge && !all)) continue;
-    names.push_back(stem);
+void set_defaults(Reading& reading) {
+  Options& options = reading.options;
+  if (options.methods.empty()) add_methods(options.methods, "edge-scatter,view-sample");
+  if (reading.peers.empty()) reading.peers = {"plain-rays:pattern=jittered", "nontrivial-rays", "adaptive-rays"};
+  if (reading.peers != std::vector<std::string>{"none"}) {
+    for (const std::string& text : reading.peers) options.peers.push_back(parse_peer(text));
   }
-  std::ranges::sort(names);
-  return names;
-}
-
-void add_subject(std::vector<Subject>& subjects, const std::string& scene, const std::string& half) {
-  const std::filesystem::path path = find_scene(scene);
-  Subject subject{.name = path.stem().string(), .scene = path, .light_half = std::nullopt};
-  if (!half.empty()) {
-    subject.light_half = parse_half(half);
-    subject.name += "/half=" + half;
-  }
-  subjects.push_back(std::move(subject));
+  options.samples_in_name = !options.light_samples.empty();
+  if (options.light_samples.empty()) options.light_samples = {256};
+  if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
+  if (!options.cpu) options.subjects = make_subjects(reading.subjects);
+  if (!options.picture.empty() && (options.cpu || options.reference == Reference::none))
+    throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
+  std::vector<std::string> rivals = {"plain-rays", "raytrace"}, subjects, samples;  // those two always run
+  for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
+  for (const Peer& peer : options.peers) rivals.push_back(peer.name);
+  for (const Subject& subject : options.subjects) subjects.push_back(subject.name);
+  for (const std::uint32_t count : options.light_samples) samples.push_back(fmt::format("--light-samples {}", count));
+  for (const auto& names : {rivals, subjects, samples}) require_once(names);
 }
 
 }  // namespace
 
+const char* name_of(RayWork work) {
+  switch (work) {
+    case RayWork::all:
+      return "plain-rays";
+    case RayWork::nontrivial:
+      return "nontrivial-rays";
+    case RayWork::adaptive:
+      return "adaptive-rays";
+  }
+  return "";
+}
+
 Options parse_options(const std::vector<std::string>& arguments) {
-  Options options;
-  options.commit = PENUMBRA_COMMIT;
-  std::vector<std::string> scenes, halves;
-  bool all = false;
-  Arguments left(arguments);
-  while (!left.done()) {
-    const std::string option = left.take();
+  Reading reading;
+  reading.options.commit = PENUMBRA_COMMIT;
+  for (std::size_t next = 0; next < arguments.size(); ++next) {
+    const std::string& option = arguments[next];
     if (option == "--help" || option == "-h") {
-      options.help = true;
-      return options;
+      reading.options.help = true;
+      return reading.options;
     }
-    if (option == "--scene") {
-      scenes.push_back(left.value_of(option));
-    } else if (option == "--light-half") {
-      halves.push_back(left.value_of(option));
-    } else if (option == "--all") {
-      all = true;
-    } else if (option == "--runs") {
-      options.runs = left.number_of(option, 1000);
-    } else if (option == "--size") {
-      options.size = left.number_of(option, 16384);
-    } else if (option == "--light-samples") {
-      options.light_samples = left.number_of(option, 4096);
-    } else if (option == "--device") {
-      options.device = left.value_of(option);
-    } else if (option == "--json") {
-      options.json = left.value_of(option);
-    } else if (option == "--commit") {
-      options.commit = left.value_of(option);
-    } else {
+    if (option == "--all") {
+      reading.subjects.all = true;
+    } else if (option == "--cpu") {
+      reading.options.cpu = true;
+    } else if (const auto take = options_with_value().find(option); take == options_with_value().end()) {
       throw UsageError("{}: no such option; --help lists what there is", option);
+    } else if (next + 1 == arguments.size()) {
+      throw UsageError("{}: expected a value after it; --help lists the options", option);
+    } else {
+      take->second(reading, option, arguments[++next]);
     }
   }
-  if (!halves.empty() && scenes.empty()) throw UsageError("--light-half needs --scene");
-  if (halves.empty()) halves.emplace_back();
-  const bool by_default = scenes.empty();
-  if (by_default) scenes = shipped_scenes(all);
-  for (const std::string& scene : scenes) {
-    for (const std::string& half : halves) add_subject(options.subjects, scene, half);
-    if (by_default && scene == "bunny") {
-      for (const char* half : {"0.3", "2"}) add_subject(options.subjects, scene, half);
-    }
-  }
-  return options;
+  set_defaults(reading);
+  return reading.options;
 }
 
 }  // namespace penumbra::bench

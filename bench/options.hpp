@@ -1,28 +1,48 @@
 #pragma once
 
+#include "app/options.hpp"
+#include "bench/subject.hpp"
+
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace penumbra::bench {
 
-/// One row of the table: a scene, perhaps with its first light made larger or smaller.
-struct Subject {
-  std::string name;  ///< stable: the scene's file name without extension, and "/half=H" if the light was scaled
-  std::filesystem::path scene;
-  std::optional<double> light_half;  ///< half size of the first light instead of the scene's
+/// What a ray caster is asked to do (README.md, peers).
+enum class RayWork {
+  all,         ///< "plain-rays": every view sample
+  nontrivial,  ///< "nontrivial-rays": those of blocks in which V is neither 0 nor 1 throughout
+  adaptive,    ///< "adaptive-rays": 64 light samples, and all N where those do not agree
 };
+const char* name_of(RayWork work);
+
+struct Peer {
+  RayWork work = RayWork::all;
+  bool jittered = false;  ///< jittered light samples instead of the methods' rows
+  std::string name;       ///< "plain-rays", "plain-rays:pattern=jittered"
+};
+
+enum class Reference { none, raytrace, exact };
 
 struct Options {
   std::vector<Subject> subjects;
-  std::uint32_t runs = 5;  ///< timed ones, after one that is discarded
-  std::uint32_t size = 512;
-  std::uint32_t light_samples = 256;
-  std::string device;  ///< as `penumbra --device` takes it
-  std::filesystem::path json;
+  std::vector<app::MethodEntry> methods;     ///< their labels are contestants' names, with options as given
+  std::vector<Peer> peers;                   ///< beside plain-rays, which always runs
+  std::vector<std::uint32_t> light_samples;  ///< 256 if none were asked for
+  bool samples_in_name = false;              ///< they were asked for
+  Reference reference = Reference::none;
+  std::uint32_t reference_samples = 16384;
+  std::string sample_pixels = "2000";  ///< of the exact reference
+  std::uint32_t runs = 5;              ///< timed ones, after one that is discarded
+  double budget = 0;                   ///< seconds: who has used as many in timed runs gets no other; 0: no limit
+  std::string device;                  ///< as `penumbra --device` takes it
+  std::filesystem::path json, picture;
   std::string commit;
+  bool cpu = false;                      ///< the parts that run on the processor, not methods
+  std::vector<std::uint64_t> triangles;  ///< --cpu: of the knots
+  std::uint64_t edges = 1'000'000;       ///< --cpu: that get wedges
   bool help = false;
 };
 

@@ -1,0 +1,137 @@
+#include "bench/question.hpp"
+
+#include "app/sample_pixels.hpp"
+#include "base/assert.hpp"
+#include "compare/metrics.hpp"
+#include "reference/exact_method.hpp"
+#include "reference/ray_traced.hpp"
+#include "render/visibility_buffer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+namespace penumbra::bench {
+namespace {
+
+using visibility::PixelClass;
+
+constexpr std::uint32_t kBlock = 8;
+constexpr std::uint32_t kMostAtOnce = 4096;  // light samples of one light
+
+/// V of every pixel by a method that is used once.
+std::vector<float> evaluate_once(visibility::Method& method, const Ground& ground, const visibility::Light& light) {
+  method.prepare_light(light);
+  method.prepare_view(ground.samples);
+  const std::uint32_t step = method.max_tile_rows(), height = ground.samples.height, width = ground.samples.width;
+  std::vector<float> visibility(ground.samples.size());
+  for (std::uint32_t row = 0; row < height; row += step) {
+    const visibility::Tile tile{row, std::min(step, height - row)};
+    method.evaluate(tile);
+    method.read_visibility(
+        std::span(visibility).subspan(std::size_t{row} * width, std::size_t{tile.row_count} * width));
+  }
+  return visibility;
+}
+
+std::vector<float> dense_visibility(visibility::Method& raytrace, const Ground& ground, std::uint32_t samples) {
+  std::vector<double> sum(ground.samples.size());
+  std::uint32_t seed = 1;
+  for (std::uint32_t left = samples; left > 0; ++seed) {
+    const std::uint32_t count = std::min(left, kMostAtOnce);
+    const auto light = light_of(ground, count, visibility::SamplePattern::sobol, seed);
+    const std::vector<float> visibility = evaluate_once(raytrace, ground, light);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += static_cast<double>(visibility[i]) * count;
+    left -= count;
+  }
+  std::vector<float> mean(sum.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) mean[i] = static_cast<float>(sum[i] / samples);
+  return mean;
+}
+
+std::vector<std::uint32_t> penumbra_pixels(visibility::Method& raytrace, const Ground& ground) {
+  const auto light = light_of(ground, 64, visibility::SamplePattern::sobol);
+  const std::vector<float> visibility = evaluate_once(raytrace, ground, light);
+  std::vector<std::uint32_t> pixels = ground.judged;
+  std::erase_if(pixels, [&](std::uint32_t pixel) { return visibility[pixel] <= 0 || visibility[pixel] >= 1; });
+  return pixels;
+}
+
+bool asks(PixelClass c) {
+  return c == PixelClass::judged || c == PixelClass::horizon || c == PixelClass::behind;
+}
+
+/// Does V of those view samples of a block that ask settle on one number, 0 or 1?
+bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top) {
+  const visibility::ViewSamples& samples = question.ground.samples;
+  bool lit = false, dark = false;
+  for (std::uint32_t y = top; y < std::min(top + kBlock, samples.height); ++y) {
+    for (std::uint32_t x = left; x < std::min(left + kBlock, samples.width); ++x) {
+      const std::size_t pixel = std::size_t{y} * samples.width + x;
+      if (!asks(question.ground.classes[pixel])) continue;
+      lit |= question.truth[pixel] > 0;
+      dark |= question.truth[pixel] < 1;
+    }
+  }
+  return !(lit && dark);
+}
+
+}  // namespace
+
+Ground make_ground(const Subject& subject, const render::Device& device) {
+  Ground ground;
+  ground.scene = read_subject(subject);
+  ground.floats = visibility::make_scene_floats(ground.scene);
+  const auto camera =
+      visibility::make_camera(ground.scene.cameras.front(), ground.floats.origin, subject.size, subject.size);
+  ground.samples = render::VisibilityBuffer(device, ground.floats).render(camera);
+  ground.classes = visibility::classify_pixels(ground.floats, ground.samples, light_of(ground, 1));
+  ground.judged = compare::pixels_of_class(ground.classes, PixelClass::judged);
+  return ground;
+}
+
+visibility::Light light_of(const Ground& ground, std::uint32_t samples, visibility::SamplePattern pattern,
+                           std::uint32_t seed) {
+  return visibility::make_light(ground.scene, 0, ground.floats.origin,
+                                {.count = samples, .pattern = pattern, .seed = seed});
+}
+
+ReferenceVisibility make_reference(const Ground& ground, const Options& options) {
+  PENUMBRA_ASSERT(options.reference != Reference::none, "no reference was asked for");
+  const auto raytrace = reference::make_ray_traced({});
+  raytrace->prepare_mesh(ground.floats);
+  if (options.reference == Reference::raytrace) {
+    return {fmt::format("raytrace at {} light samples", options.reference_samples),
+            dense_visibility(*raytrace, ground, options.reference_samples), ground.judged};
+  }
+  const auto exact = reference::make_exact({});
+  ReferenceVisibility reference;
+  reference.name = "exact";
+  reference.pixels = app::sample_pixels(penumbra_pixels(*raytrace, ground), options.sample_pixels, ground.samples.width,
+                                        ground.samples.height);
+  exact->want_pixels(reference.pixels);
+  exact->prepare_mesh(ground.floats);
+  const auto light = light_of(ground, 1);
+  reference.visibility = evaluate_once(*exact, ground, light);
+  return reference;
+}
+
+std::vector<std::uint8_t> nontrivial_pixels(const Question& question) {
+  const visibility::ViewSamples& samples = question.ground.samples;
+  std::vector<std::uint8_t> chosen(samples.size());
+  for (std::uint32_t top = 0; top < samples.height; top += kBlock) {
+    for (std::uint32_t left = 0; left < samples.width; left += kBlock) {
+      if (is_trivial(question, left, top)) continue;
+      for (std::uint32_t y = top; y < std::min(top + kBlock, samples.height); ++y) {
+        for (std::uint32_t x = left; x < std::min(left + kBlock, samples.width); ++x) {
+          const std::size_t pixel = std::size_t{y} * samples.width + x;
+          chosen[pixel] = asks(question.ground.classes[pixel]) ? 1 : 0;
+        }
+      }
+    }
+  }
+  return chosen;
+}
+
+}  // namespace penumbra::bench

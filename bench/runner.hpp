@@ -1,0 +1,107 @@
+#pragma once
+
+#include "app/device_source.hpp"
+#include "app/options.hpp"
+#include "bench/entry.hpp"
+#include "bench/question.hpp"
+#include "reference/plain_rays.hpp"
+#include "visibility/method.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::bench {
+
+/// Something that answers questions and is timed. `question` outlives its runs.
+class Runner {
+ public:
+  virtual ~Runner() = default;
+
+  /// A new question; earlier times are forgotten.
+  void ask(const Question& question);
+  /// One run; its times count unless it is the discarded one, in which pairs are counted.
+  void run(bool timed);
+  /// V of each pixel, of the last run.
+  [[nodiscard]] std::span<const float> visibility() const { return visibility_; }
+  /// `light` + `evaluate` of all timed runs.
+  [[nodiscard]] double spent() const;
+  /// All but errors.
+  [[nodiscard]] virtual Contestant result() const = 0;
+
+ protected:
+  struct Seconds {
+    double light = 0, evaluate = 0;
+  };
+  virtual Seconds run_once(const Question& question, std::vector<float>& visibility, bool timed) = 0;
+  virtual void prepare(const Question& question) = 0;
+  [[nodiscard]] const Times& times() const { return times_; }
+
+ private:
+  const Question* question_ = nullptr;
+  Times times_;
+  std::vector<float> visibility_;
+};
+
+/// A method of the program, on a Vulkan device of its own (if it needs one): a device knows the memory that it gave,
+/// not to whom.
+class MethodRunner final : public Runner {
+ public:
+  MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device);
+
+  [[nodiscard]] Contestant result() const override;
+  /// For the oracle: its masks go there in the discarded run, and no pairs are counted.
+  void keep_masks(std::vector<std::uint32_t>& masks) { kept_ = &masks; }
+
+ private:
+  Seconds run_once(const Question& question, std::vector<float>& visibility, bool timed) override;
+  void prepare(const Question& question) override;
+  void take_masks(const Question& question, const visibility::Tile& tile);
+
+  std::string name_, where_;
+  app::DeviceSource devices_;
+  std::unique_ptr<visibility::Method> method_;
+  double mesh_ = 0;
+  std::vector<visibility::PassTime> passes_;
+  std::vector<std::uint32_t>* kept_ = nullptr;
+  std::optional<compare::PairCounts> pairs_;
+};
+
+/// Embree, with the packets that are fastest on this subject and processor. All ray casters share one.
+class FastestRays {
+ public:
+  explicit FastestRays(const Ground& ground);
+  [[nodiscard]] reference::PlainRays& rays() { return *rays_; }
+  [[nodiscard]] int packet() const { return packet_; }
+  [[nodiscard]] double mesh_seconds() const { return mesh_; }
+
+ private:
+  std::optional<reference::PlainRays> rays_;
+  int packet_ = 0;
+  double mesh_ = 0;
+};
+
+/// A peer.
+class RayRunner final : public Runner {
+ public:
+  RayRunner(Peer peer, const Ground& ground, FastestRays& rays);
+
+  [[nodiscard]] const Peer& peer() const { return peer_; }
+  [[nodiscard]] Contestant result() const override;
+
+ private:
+  Seconds run_once(const Question& question, std::vector<float>& visibility, bool timed) override;
+  void prepare(const Question& question) override;
+  Seconds run_adaptive(const Question& question, std::vector<float>& visibility);
+
+  Peer peer_;
+  FastestRays& rays_;
+  visibility::ViewSamples chosen_;  ///< those to ask about; the others are background
+  visibility::Light few_;           ///< what the adaptive one asks first
+  std::vector<float> all_samples_;  ///< adaptive: V where it asked again
+  std::uint64_t asked_ = 0;         ///< view samples that got all light samples
+};
+
+}  // namespace penumbra::bench

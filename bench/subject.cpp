@@ -1,0 +1,162 @@
+#include "bench/subject.hpp"
+
+#include "app/parse.hpp"
+#include "base/error.hpp"
+#include "scenes/reader.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+#include <variant>
+
+namespace penumbra::bench {
+namespace {
+
+constexpr const char* kLarge = "terrain-1m";
+constexpr std::string_view kKnot = "knot:";
+
+double parse_half(const std::string& text) {
+  char* end = nullptr;
+  const double half = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(half > 0 && half < 1e9))
+    throw UsageError("--light-half {}: expected a length above 0, such as 0.3", text);
+  return half;
+}
+
+std::filesystem::path find_scene(const std::string& name) {
+  if (std::filesystem::is_regular_file(name)) return name;
+  const std::filesystem::path shipped = std::filesystem::path(PENUMBRA_SCENES) / (name + ".json");
+  if (std::filesystem::is_regular_file(shipped)) return shipped;
+  throw UsageError("--scene {}: neither a file, nor a scene of {}, nor knot:TRIANGLES", name, PENUMBRA_SCENES);
+}
+
+std::vector<std::string> shipped_scenes(bool all) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_SCENES)) {
+    const std::filesystem::path& path = entry.path();
+    const std::string stem = path.stem().string();
+    if (path.extension() != ".json" || stem.ends_with(".schema") || (stem == kLarge && !all)) continue;
+    names.push_back(stem);
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+Subject find_subject(const std::string& scene) {
+  Subject subject;
+  if (scene.starts_with(kKnot)) {
+    const auto triangles = app::parse_integer<std::uint64_t>(std::string_view(scene).substr(kKnot.size()));
+    if (!triangles) throw UsageError("--scene {}: expected a number of triangles, such as knot:5000", scene);
+    static_cast<void>(knot_of(*triangles));  // says now if there is none
+    subject.knot = *triangles;
+    subject.name = fmt::format("knot-{}", *triangles);
+  } else {
+    subject.scene = find_scene(scene);
+    subject.name = subject.scene.stem().string();
+  }
+  return subject;
+}
+
+/// All sizes of one scene and one half size (empty: the scene's own).
+void add_subjects(std::vector<Subject>& subjects, const Subject& scene, const std::string& half,
+                  const std::vector<std::uint32_t>& sizes) {
+  Subject subject = scene;
+  if (!half.empty()) {
+    subject.light_half = parse_half(half);
+    subject.name += "/half=" + half;
+  }
+  if (sizes.empty()) subjects.push_back(subject);
+  for (const std::uint32_t size : sizes) {
+    subjects.push_back(subject);
+    subjects.back().size = size;
+    subjects.back().name += fmt::format("/size={}", size);
+  }
+}
+
+void resize_first_light(scenes::Scene& scene, double half) {
+  auto* rectangle = std::get_if<scenes::Rectangle>(&scene.lights.front().shape);
+  if (rectangle == nullptr) throw UsageError("--light-half: the first light of {} is no rectangle", scene.name);
+  rectangle->half_u = glm::normalize(rectangle->half_u) * half;
+  rectangle->half_v = glm::normalize(rectangle->half_v) * half;
+}
+
+void append(scenes::Scene& scene, const std::string& name, const mesh::TriangleSoup& soup) {
+  const auto first = static_cast<std::uint32_t>(scene.soup.positions.size());
+  const auto object = static_cast<std::uint32_t>(scene.objects.size());
+  scene.soup.positions.insert(scene.soup.positions.end(), soup.positions.begin(), soup.positions.end());
+  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
+    const mesh::Triangle& t = soup.triangles[i];
+    scene.soup.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    scene.soup.object.push_back(object);
+    scene.soup.source_face.push_back(soup.source_face[i]);
+  }
+  scenes::Object made;
+  made.name = name;
+  scene.objects.push_back(made);
+}
+
+}  // namespace
+
+std::vector<Subject> make_subjects(const SubjectRequest& request) {
+  const bool shipped = request.scenes.empty();
+  const std::vector<std::string> names = shipped ? shipped_scenes(request.all) : request.scenes;
+  std::vector<Subject> subjects;
+  for (const std::string& name : names) {
+    const Subject scene = find_subject(name);
+    if (request.halves.empty()) add_subjects(subjects, scene, "", request.sizes);
+    std::vector<std::string> halves = request.halves;
+    if (halves.empty() && shipped && name == "bunny") halves = {"0.3", "2"};
+    for (const std::string& half : halves) add_subjects(subjects, scene, half, request.sizes);
+  }
+  return subjects;
+}
+
+scenes::Scene read_subject(const Subject& subject) {
+  scenes::Scene scene = subject.scene.empty() ? knot_scene(subject.knot) : scenes::read_scene(subject.scene);
+  if (subject.light_half) resize_first_light(scene, *subject.light_half);
+  return scene;
+}
+
+mesh::KnotShape knot_of(std::uint64_t triangles) {
+  // Of the ways to share the triangles between sides and segments, the one nearest to four times as many segments.
+  constexpr std::uint64_t kFewest = 3;
+  const double wanted = std::sqrt(static_cast<double>(triangles) / 8);
+  std::uint64_t best = 0;
+  const auto off = [&](std::uint64_t sides) { return std::abs(std::log(static_cast<double>(sides) / wanted)); };
+  const std::uint64_t half = triangles % 2 == 0 && triangles <= mesh::kMaxShapeTriangles ? triangles / 2 : 0;
+  for (std::uint64_t small = 1; small * small <= half; ++small) {
+    if (half % small != 0) continue;
+    for (const std::uint64_t sides : {small, half / small}) {
+      if (sides >= kFewest && half / sides >= kFewest && (best == 0 || off(sides) < off(best))) best = sides;
+    }
+  }
+  if (best == 0) throw UsageError("there is no knot of {} triangles: it has 2 · segments · sides", triangles);
+  mesh::KnotShape knot;
+  knot.center = {0, 1, 0};
+  knot.radius = 0.8;
+  knot.sides = static_cast<std::uint32_t>(best);
+  knot.segments = static_cast<std::uint32_t>(half / best);
+  return knot;
+}
+
+scenes::Scene knot_scene(std::uint64_t triangles) {
+  scenes::Scene scene;
+  scene.name = fmt::format("knot-{}", triangles);
+  append(scene, "knot", mesh::make_knot(knot_of(triangles)));
+  append(scene, "floor", mesh::make_quad({0, 0, 0}, {6, 0, 0}, {0, 0, -6}));
+  scenes::AreaLight light;
+  light.name = "key";
+  light.shape = scenes::Rectangle{{0.5, 5, 0.5}, {1, 0, 0}, {0, 0, 1}};
+  scene.lights.push_back(light);
+  scenes::Camera camera;
+  camera.eye = {4, 3, 5};
+  camera.target = {0, 0.8, 0};
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+}  // namespace penumbra::bench

@@ -1,0 +1,179 @@
+// penumbra-bench: JSON lines, stable names, the picture. Sizes are tiny, and no time is looked at.
+#include "tests/cli/program.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <sstream>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Bench : public ProgramTest {
+ protected:
+  [[nodiscard]] std::vector<json> lines(const std::string& file) const {
+    std::istringstream text(read(file));
+    std::vector<json> parsed;
+    for (std::string line; std::getline(text, line);) parsed.push_back(json::parse(line));
+    return parsed;
+  }
+  /// One run of each at 16 × 16 pixels, lines in "lines".
+  [[nodiscard]] Outcome run_tiny(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"--scene", tiny_scene(), "--size", "16",
+                                          "--runs",  "1",          "--json", path("lines")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+};
+
+std::vector<std::string> names_of(const std::vector<json>& lines) {
+  std::vector<std::string> names;
+  for (const json& line : lines) names.push_back(line.at("name"));
+  return names;
+}
+
+const json& line_of(const std::vector<json>& lines, const std::string& name) {
+  const auto found = std::ranges::find_if(lines, [&](const json& line) { return line.at("name") == name; });
+  if (found == lines.end()) throw std::runtime_error("no line " + name);
+  return *found;
+}
+
+/// What is wrong with the XML, or nothing: tags in pairs, attributes quoted, no bare & or <. Knows no more than the
+/// picture uses.
+std::string fault_of_xml(const std::string& text) {
+  std::vector<std::string> open;
+  for (std::size_t at = text.find("?>") + 2; (at = text.find_first_of("<&", at)) != std::string::npos; ++at) {
+    if (text[at] == '&') {
+      const std::string entity = text.substr(at, text.find(';', at) + 1 - at);
+      if (entity != "&amp;" && entity != "&lt;" && entity != "&gt;") return "bare &";
+      continue;
+    }
+    const std::size_t end = text.find('>', at);
+    const std::string tag = text.substr(at + 1, end - at - 1);
+    if (end == std::string::npos || tag.find('<') != std::string::npos) return "open tag " + tag;
+    if (std::ranges::count(tag, '"') % 2 != 0) return "open quote in " + tag;
+    const std::string name = tag.substr(0, tag.find(' '));
+    if (tag.front() != '/') {
+      if (tag.back() != '/') open.push_back(name);
+    } else if (open.empty() || "/" + open.back() != name) {
+      return "unexpected " + tag;
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : "no end of " + open.back();
+}
+
+TEST(BenchXml, FaultsAreFound) {
+  EXPECT_EQ(fault_of_xml("<?xml?><a b=\"1\"><c/>&amp;</a>"), "");
+  for (const char* wrong : {"<?xml?><a>", "<?xml?><a></b></a>", "<?xml?></a>", "<?xml?><a b=\"></a>", "<?xml?><a>&</a>",
+                            "<?xml?><a><</a>"}) {
+    EXPECT_NE(fault_of_xml(wrong), "") << wrong;
+  }
+}
+
+TEST_F(Bench, NamesStayAndLinesParse) {
+  const Outcome outcome =
+      run_tiny({"--light-half", "0.3", "--light-samples", "64", "--light-samples", "100", "--reference", "raytrace",
+                "--reference-samples", "5000", "--picture", path("picture.svg")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<json> all = lines("lines");
+  const std::string few = "scene/half=0.3/size=16/n=64/", many = "scene/half=0.3/size=16/n=100/";
+  EXPECT_THAT(names_of(all), ElementsAre(few + "edge-scatter", few + "view-sample", few + "plain-rays",
+                                         few + "plain-rays:pattern=jittered", few + "nontrivial-rays", few + "raytrace",
+                                         many + "edge-scatter", many + "view-sample", many + "plain-rays",
+                                         many + "plain-rays:pattern=jittered", many + "nontrivial-rays",
+                                         many + "adaptive-rays", many + "raytrace"));
+  for (const json& line : all) {
+    for (const char* key : {"commit", "buildType", "device", "triangles", "pixels", "loadBefore", "mesh", "light",
+                            "evaluate", "shadow", "ratioToPlainRays", "ratioToNontrivialRays"}) {
+      EXPECT_TRUE(line.contains(key)) << line << " " << key;
+    }
+    EXPECT_EQ(line.at("runs"), 1) << line;
+    EXPECT_EQ(line.at("size"), json({16, 16})) << line;
+    EXPECT_EQ(line.at("errorToReference").at("reference"), "raytrace at 5000 light samples") << line;
+    EXPECT_GT(line.at("errorToReference").at("rmse"), 0) << line;
+    EXPECT_EQ(line.contains("error"), line.at("method") != "raytrace") << line;
+  }
+  EXPECT_EQ(fault_of_xml(read("picture.svg")), "");
+  EXPECT_THAT(read("picture.svg"), testing::AllOf(HasSubstr("scene/half=0.3/size=16"), HasSubstr("adaptive-rays")));
+}
+
+TEST_F(Bench, PeersAskWhatTheySay) {
+  ASSERT_EQ(run_tiny({"--light-samples", "256"}).code, 0);
+  const std::vector<json> all = lines("lines");
+  const auto asked = [&](const std::string& peer) -> std::uint64_t {
+    return line_of(all, "scene/size=16/n=256/" + peer).at("viewSamples");
+  };
+  EXPECT_EQ(asked("plain-rays"), line_of(all, "scene/size=16/n=256/raytrace").at("pixels"));
+  EXPECT_GT(asked("adaptive-rays"), 0);
+  EXPECT_LE(asked("adaptive-rays"), asked("plain-rays"));
+  EXPECT_LE(asked("nontrivial-rays"), asked("plain-rays"));
+  // What it does not ask is known to it: so it is never further off than plain rays.
+  EXPECT_LE(line_of(all, "scene/size=16/n=256/nontrivial-rays").at("error").at("rmse"),
+            line_of(all, "scene/size=16/n=256/plain-rays").at("error").at("rmse"));
+}
+
+TEST_F(Bench, OptionsOfMethodsAreInTheirNames) {
+  const Outcome outcome = run_tiny({"--method", "raytrace:packet=1", "--method", "exact", "--peer", "none",
+                                    "--reference", "exact", "--sample-pixels", "20"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<json> all = lines("lines");
+  EXPECT_THAT(names_of(all), ElementsAre("scene/size=16/raytrace:packet=1", "scene/size=16/exact",
+                                         "scene/size=16/plain-rays", "scene/size=16/raytrace"));
+  EXPECT_EQ(all[0].at("error").at("max"), 0);  // the oracle itself
+  EXPECT_EQ(all[0].at("pairsDiffering"), 0);
+  EXPECT_FALSE(all[1].contains("pairs"));  // no masks
+  EXPECT_EQ(all[1].at("errorToReference").at("max"), 0);
+  EXPECT_LE(all[1].at("errorToReference").at("pixels"), 20);
+}
+
+TEST_F(Bench, KnotsHaveTheTrianglesAskedFor) {
+  ASSERT_EQ(run({"--scene", "knot:600", "--size", "16", "--light-samples", "16", "--method", "view-sample", "--peer",
+                 "none", "--runs", "1", "--json", path("lines")})
+                .code,
+            0);
+  EXPECT_EQ(line_of(lines("lines"), "knot-600/size=16/n=16/view-sample").at("triangles"), 602);  // and the floor's 2
+}
+
+TEST_F(Bench, PartsOnTheProcessor) {
+  const Outcome outcome = run(
+      {"--cpu", "--triangles", "600", "--triangles", "6000", "--edges", "500", "--runs", "1", "--json", path("lines")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<json> all = lines("lines");
+  EXPECT_THAT(names_of(all), ElementsAre("cpu/edge-graph/triangles=600", "cpu/edge-records/triangles=600",
+                                         "cpu/edge-hierarchy/triangles=600", "cpu/edge-graph/triangles=6000",
+                                         "cpu/edge-records/triangles=6000", "cpu/edge-hierarchy/triangles=6000",
+                                         "cpu/wedges/original/edges=500", "cpu/wedges/tight/edges=500"));
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].contains("growth"), i >= 3 && i < 6) << all[i];
+  EXPECT_EQ(all[0].at("items"), 3 * 600 / 2 + 5);  // a closed mesh's, and the floor's
+  EXPECT_EQ(all[7].at("counters").at("wedge"), 500);
+}
+
+TEST_F(Bench, WrongUseIsTold) {
+  const std::string scene = tiny_scene();
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--scene", scene, "--picture", path("a.svg")},  // needs a reference
+      {"--scene", scene, "--peer", "rays"},
+      {"--scene", scene, "--reference", "photograph"},
+      {"--scene", scene, "--light-samples", "5000"},
+      {"--scene", scene, "--method", "view-sample", "--method", "view-sample"},
+      {"--scene", scene, "--light-half", "1", "--light-half", "1"},
+      {"--scene", "knot:7"},
+      {"--scene", scene, "--method", "nothing"},
+      {"--runs"},
+      {"--faster"}};
+  for (const auto& arguments : wrong) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments.back() << ": " << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("penumbra-bench: error: ")) << arguments.back();
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests
