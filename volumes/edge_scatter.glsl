@@ -57,17 +57,18 @@ struct ViewSample {
   vec2 foot;                                              // (X, Y) straight above p
 };
 
+ViewSample view_sample_at(vec3 p) {
+  const vec3 from = p - push.center;
+  return ViewSample(p, kNone, kNone, vec3(0.0), dot(axis, from), vec2(dot(across, from), dot(along, from)) + first_cell);
+}
+
 ViewSample fetch_view_sample(uint pixel) {
   const int texel = int(2 * (push.first_row * push.width + pixel));
   const uvec4 first = texelFetch(view, texel), second = texelFetch(view, texel + 1);
-  ViewSample at;
-  at.p = uintBitsToFloat(first.xyz);
+  ViewSample at = view_sample_at(uintBitsToFloat(first.xyz));
   at.carrier = first.w;
   at.normal = uintBitsToFloat(second.xyz);
   at.plane = second.w;
-  const vec3 from = at.p - push.center;
-  at.height = dot(axis, from);
-  at.foot = vec2(dot(across, from), dot(along, from)) + first_cell;
   return at;
 }
 

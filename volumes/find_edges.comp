@@ -133,6 +133,7 @@ uint walk(Shaft shaft, bool edges) {
 // This lane's view samples of the block are numbers lane, lane + kLanes …; their clusters, two bits each.
 const uint kEach = kBlock * kBlock / kLanes;
 uint cluster_of_each, on_each;
+vec3 place_of[kEach];
 
 uint cluster_of(uint i) { return cluster_of_each >> (2 * i) & 3; }
 bool is_on(uint i) { return (on_each >> i & 1) != 0; }
@@ -144,11 +145,11 @@ uint pixel_of(uint i, uint block) {
 }
 
 // Cuts a cluster in two in the middle of its box, if a gap is there of more than a third of it. Returns whether it did.
-bool split(uint cluster, uint new_cluster, uint block) {
+bool split(uint cluster, uint new_cluster) {
   vec3 lower = vec3(1e30), upper = vec3(-1e30);
   for (uint i = 0; i < kEach; ++i) {
     if (!is_on(i) || cluster_of(i) != cluster) continue;
-    const vec3 p = fetch_view_sample(pixel_of(i, block)).p;
+    const vec3 p = place_of[i];
     lower = min(lower, p);
     upper = max(upper, p);
   }
@@ -160,7 +161,7 @@ bool split(uint cluster, uint new_cluster, uint block) {
   float below = -1e30, above = 1e30;
   for (uint i = 0; i < kEach; ++i) {
     if (!is_on(i) || cluster_of(i) != cluster) continue;
-    const float x = dot(pick, fetch_view_sample(pixel_of(i, block)).p);
+    const float x = dot(pick, place_of[i]);
     if (x < cut) below = max(below, x);
     if (x >= cut) above = min(above, x);
   }
@@ -169,7 +170,7 @@ bool split(uint cluster, uint new_cluster, uint block) {
   if (!(above - below > 0.34 * extent) || below < -1e29 || above > 1e29) return false;
   for (uint i = 0; i < kEach; ++i) {
     if (!is_on(i) || cluster_of(i) != cluster) continue;
-    if (dot(pick, fetch_view_sample(pixel_of(i, block)).p) >= cut) {
+    if (dot(pick, place_of[i]) >= cut) {
       cluster_of_each = (cluster_of_each & ~(3u << (2 * i))) | new_cluster << (2 * i);
     }
   }
@@ -183,7 +184,7 @@ void list_for(uint cluster, uint block) {
   float height = 0.0;
   for (uint i = 0; i < kEach; ++i) {
     if (!is_on(i) || cluster_of(i) != cluster) continue;
-    const ViewSample it = fetch_view_sample(pixel_of(i, block));
+    const ViewSample it = view_sample_at(place_of[i]);
     lower = min(lower, it.p);
     upper = max(upper, it.p);
     slopes = max(slopes, slopes_of(low, half_cells, it.foot, it.height));
@@ -214,16 +215,17 @@ void main() {
   for (uint i = 0; i < kEach; ++i) {
     const uint pixel = pixel_of(i, block);
     const ViewSample it = fetch_view_sample(pixel == kNone ? 0 : pixel);
+    place_of[i] = it.p;
     if (pixel != kNone && it.carrier != kNone && it.height > level_error(it.p)) on_each |= 1u << i;
   }
   if (!subgroupAny(on_each != 0)) return;
   uint clusters = 1;
-  if (split(0, 1, block)) {
+  if (split(0, 1)) {
     clusters = 2;
-    if (split(0, 2, block)) clusters = 3;
+    if (split(0, 2)) clusters = 3;
     if (clusters == 3) {
-      if (split(1, 3, block)) clusters = 4;
-    } else if (split(1, 2, block)) {
+      if (split(1, 3)) clusters = 4;
+    } else if (split(1, 2)) {
       clusters = 3;
     }
   }

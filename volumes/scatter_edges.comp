@@ -27,6 +27,7 @@ shared uint histogram[kHistogramWords * kLanes];
 // This lane's view sample.
 ViewSample at;
 vec3 from_center;
+float away;                                               // |from_center|
 int first_row, last_row;                                  // of the band
 uint left_changes[kWordsPerColumn];                       // where edges cross the light's left side, a byte a row
 uvec2 open_rows;                                          // light rows of the band for the host
@@ -70,12 +71,17 @@ void open_near(float row, float x, float error, bool when) {
   open_sample(row, nearest, when && in_band && !wide && on_light && abs(column - nearest) < error);
 }
 
-// Where p + d appears on the light, and its height over p.
-precise vec3 project(vec3 d) {
+// p + d as p sees it: (across, along) · d and its height over p; it appears at foot + height / w (x, y).
+vec3 seen_way(vec3 d) {
   precise const float w = -dot(axis, d);
-  precise const float q = at.height / w;
-  precise const vec2 seen = at.foot + q * vec2(dot(across, d), dot(along, d));
-  return vec3(seen, w);
+  precise const vec2 way = vec2(dot(across, d), dot(along, d));
+  return vec3(way, w);
+}
+
+vec2 appears(vec3 way) {
+  precise const float q = at.height / way.z;
+  precise const vec2 seen = at.foot + q * way.xy;
+  return seen;
 }
 
 // The error of a projected point's coordinates in cells. (bound X)
@@ -163,33 +169,32 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// One edge, k times. `settled`: it stays well above p for the whole group, which knows `errors` of its ends, and k_e is
-// certain. Otherwise what appears beyond a window of about twice the light is cut away, so that ends near p's height, or
-// behind p, do not spoil what is in it. Where p is within rounding of one of the triangles' planes (`open`), that triangle
-// is a sliver: samples it may hide are as near to its edges as if the edges were off their places by `sliver`. (bound sliver)
-void scatter_seen(vec3 a, vec3 b, int k, bool open, vec2 errors, bool settled, float sliver) {
+// One edge, k times. Unless it stays well above p for the whole group (`settled`), what appears beyond a window of about
+// twice the light is cut away, so that ends near p's height, or behind p, do not spoil what is in it. Where p is within
+// rounding of one of the triangles' planes (`open`), that triangle is a sliver: samples it may hide are as near to its edges
+// as if the edges were off their places by `sliver`. (bound window, bound sliver)
+void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
-  const vec2 window = 2.0 * half_cells + 2.0;
-  const float wa = -dot(axis, da), wb = -dot(axis, db);
-  const vec2 xa = vec2(dot(across, da), dot(along, da)) * at.height + (at.foot - first_cell) * wa;
-  const vec2 xb = vec2(dot(across, db), dot(along, db)) * at.height + (at.foot - first_cell) * wb;
-  const vec4 inside_a = vec4(window * wa - xa, window * wa + xa), inside_b = vec4(window * wb - xb, window * wb + xb);
+  const vec3 way_a = seen_way(da), way_b = seen_way(db);
+  const vec2 window = 2.0 * half_cells + 2.0, xa = way_a.xy * at.height + (at.foot - first_cell) * way_a.z,
+             xb = way_b.xy * at.height + (at.foot - first_cell) * way_b.z;
+  const vec4 inside_a = vec4(window * way_a.z - xa, window * way_a.z + xa), inside_b = vec4(window * way_b.z - xb, window * way_b.z + xb);
   const vec4 t = inside_a / (inside_a - inside_b);
   const vec4 froms = mix(vec4(0.0), mix(t, vec4(2.0), lessThan(inside_b, vec4(0.0))), lessThan(inside_a, vec4(0.0)));
   const vec4 tos = mix(vec4(1.0), t, bvec4(ivec4(greaterThanEqual(inside_a, vec4(0.0))) * ivec4(lessThan(inside_b, vec4(0.0)))));
   const float from = settled ? 0.0 : max(max(froms.x, froms.y), max(froms.z, froms.w));
   const float to = settled ? 1.0 : min(min(tos.x, tos.y), min(tos.z, tos.w));
   const bool cut = from > 0.0 || to < 1.0;
-  const vec3 start = from > 0.0 ? mix(da, db, from) : da, end = to < 1.0 ? mix(da, db, to) : db;
-  const vec3 seen_a = project(start), seen_b = project(end);
-  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b), away = length(from_center);
-  const float foot_a = length(seen_a.xy - at.foot), foot_b = length(seen_b.xy - at.foot), off = open ? sliver : 0.0;
-  const float error_a = error_of(cut ? far : far_a, seen_a.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / seen_a.z * off;
-  const float error_b = error_of(cut ? far : far_b, seen_b.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / seen_b.z * off;
+  const vec3 start = from > 0.0 ? mix(way_a, way_b, from) : way_a, end = to < 1.0 ? mix(way_a, way_b, to) : way_b;
+  const vec2 seen_a = appears(start), seen_b = appears(end);
+  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
+  const float foot_a = length(seen_a - at.foot), foot_b = length(seen_b - at.foot), off = open ? sliver : 0.0;
+  const float error_a = error_of(cut ? far : far_a, start.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / start.z * off;
+  const float error_b = error_of(cut ? far : far_b, end.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / end.z * off;
   const bool matters = (k != 0 || open) && from <= to;
-  const bool through_p = !settled && min(seen_a.z, seen_b.z) < 64.0 * kRound * far;
+  const bool through_p = !settled && min(start.z, end.z) < 64.0 * kRound * far;
   if (matters && through_p) open_pixel = true;            // it passes through p, but for rounding
-  if (matters && !through_p) scatter(seen_a.xy, seen_b.xy, k, settled ? errors.x : error_a, settled ? errors.y : error_b);
+  if (matters && !through_p) scatter(seen_a, seen_b, k, error_a, error_b);
 }
 
 // The box of the group's view samples in each frame that edges are tested in.
@@ -216,7 +221,6 @@ GroupBounds bounds_of_group(bool on) {
 // of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so the corners bound it.
 struct Range {
   vec2 low, high;
-  float error;
   bool bounded;
 };
 
@@ -232,9 +236,9 @@ Range range_of(vec3 x, GroupBounds g) {
   const vec2 low = above + min(min(p0, p1), min(p2, p3)), high = above + max(max(p0, p1), max(p2, p3));
   const float far = length(x - g.middle) + length(g.half_size);
   const vec2 spread = max(abs(high - g.foot_low), abs(low - g.foot_high)) + (g.foot_high - g.foot_low);
-  range.error = error_of(far, w_low, g.height_high, spread.x + spread.y, g.away);
-  range.low = low - 4.0 * range.error;
-  range.high = high + 4.0 * range.error;
+  const float error = error_of(far, w_low, g.height_high, spread.x + spread.y, g.away);
+  range.low = low - 4.0 * error;
+  range.high = high + 4.0 * error;
   return range;
 }
 
@@ -308,8 +312,7 @@ void drain(bool on, GroupBounds g) {
         const bool open = has_bit(subgroupShuffle(m.open, from)) && left != 0;
         const int size = has_bit(subgroupShuffle(m.two, from)) ? 2 : 1, k = left == 0 ? 0 : positive ? size : negative ? -size : 0;
         const vec3 a1 = subgroupShuffle(a, from), b1 = subgroupShuffle(b, from);
-        const vec2 errors = subgroupShuffle(vec2(at_a.error, at_b.error), from);
-        scatter_seen(a1, b1, k, open && on, errors, subgroupShuffle(settled, from), subgroupShuffle(sliver, from));
+        scatter_seen(a1, b1, k, open && on, subgroupShuffle(settled, from), subgroupShuffle(sliver, from));
         left &= left - 1;
       } while (left != 0);
       cut_off = cut_off || left != 0;
@@ -362,7 +365,8 @@ void scatter_list(uint head, bool on) {
 
 // How many triangles the segment from p to the light's lower left corner meets (Woop et al. 2013: in coordinates with the
 // ray as third axis, what decides is three products in two dimensions).
-uint count_to_corner(uint head, bool on) {
+// One is as good as many where no edge changes the count (`one_will_do`).
+uint count_to_corner(uint head, bool on, bool one_will_do) {
   const vec4 none = vec4(-1e18);
   const Shaft shaft = make_shaft(-half_cells, -half_cells, subgroupMax(on ? slopes_of(-half_cells, -half_cells, at.foot, at.height) : none),
                                  subgroupMax(on ? at.height : 0.0));
@@ -372,7 +376,7 @@ uint count_to_corner(uint head, bool on) {
   for (; piece != kNone; piece = lists[piece]) {
     const uint count = lists[piece + 1];
     uint i = 0;
-    for (; i < count; i += kLanes) {
+    for (; i < count && !(one_will_do && subgroupAll(!on || met > 0)); i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
       const int texel = 3 * int(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)]);
       const uvec4 t0 = texelFetch(corner_texels, texel), t1 = texelFetch(corner_texels, texel + 1), t2 = texelFetch(corner_texels, texel + 2);
@@ -395,8 +399,8 @@ uint count_to_corner(uint head, bool on) {
           const vec3 f = vec3(xa.x * xb.y - xa.y * xb.x, xb.x * xc.y - xb.y * xc.x, xc.x * xa.y - xc.y * xa.x);
           // (bound corner)
           const float far = max(length(da), max(length(db), length(dc)));
-          const float away = length(from_center) / at.height;
-          const float error_x = kRound * far * (5.0 * per_length * (1.0 + away) + (8.0 + 5.0 * away) * length(lean));
+          const float lengths = away / at.height;
+          const float error_x = kRound * far * (5.0 * per_length * (1.0 + lengths) + (8.0 + 5.0 * lengths) * length(lean));
           const float size = max(max(size1(vec3(xa, 0.0)), size1(vec3(xb, 0.0))), size1(vec3(xc, 0.0)));
           const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
           const bool all_above = all(greaterThan(f, vec3(error))), all_below = all(lessThan(f, vec3(-error)));
@@ -419,6 +423,7 @@ uint count_to_corner(uint head, bool on) {
         }
       }
     }
+    if (one_will_do && subgroupAll(!on || met > 0)) return met;
     cut_off = cut_off || i < count;
   }
   cut_off = cut_off || piece != kNone;
@@ -511,6 +516,7 @@ void main() {
   const uint pixel = inside ? place.y * push.width + place.x : 0;
   at = fetch_view_sample(pixel);
   from_center = at.p - push.center;
+  away = length(from_center);
   first_row = int(band * band_rows);
   last_row = min(first_row + int(band_rows), int(push.rows)) - 1;
   for (uint word = 0; word < kWordsPerColumn; ++word) left_changes[word] = 0;
@@ -541,19 +547,19 @@ void main() {
   uint visible = receives ? 0 : all_samples;
   const uint cluster = on ? heads[2 * kClusters * push.block_count + pixel] : kNone;
   uint depth = 0;
-  bool any_edges = false;
   cut_off = false;
-  for (uint word = 0; word < kHistogramWords; ++word) histogram[word * kLanes + gl_SubgroupInvocationID] = 0;
+  const bool any_edges = subgroupAny(on && heads[2 * (block * kClusters + (on ? cluster : 0))] != kNone);
+  const uint cleared = any_edges || subgroupAny(straddles) ? kHistogramWords : 0;
+  for (uint word = 0; word < cleared; ++word) histogram[word * kLanes + gl_SubgroupInvocationID] = 0;
   for (uint i = 0; i < kClusters; ++i) {
     const bool here = on && cluster == i;
     if (!subgroupAny(here)) continue;
     const uint edges = heads[2 * (block * kClusters + i)], triangles = heads[2 * (block * kClusters + i) + 1];
     if (triangles != kNone) {
-      const uint met = count_to_corner(triangles, here);
+      const uint met = count_to_corner(triangles, here, edges == kNone);
       if (here) depth = met;
     }
     if (edges != kNone) scatter_list(edges, here);
-    any_edges = any_edges || edges != kNone;
   }
   if (any_edges || subgroupAny(straddles)) {
     const uint counted = count_visible(pixel, depth, on);
