@@ -250,9 +250,9 @@ struct Multiplicities {
 
 uvec2 bit_of(uint lane, bool set) {
   const uint bit = set ? 1u << (lane & 31) : 0;
-  return lane < 32 ? uvec2(bit, 0) : uvec2(0, bit);
+  return kLanes <= 32 || lane < 32 ? uvec2(bit, 0) : uvec2(0, bit);
 }
-bool has_bit(uvec2 bits) { return ((gl_SubgroupInvocationID < 32 ? bits.x : bits.y) >> (gl_SubgroupInvocationID & 31) & 1) != 0; }
+bool has_bit(uvec2 bits) { return ((kLanes <= 32 || gl_SubgroupInvocationID < 32 ? bits.x : bits.y) >> (gl_SubgroupInvocationID & 31) & 1) != 0; }
 
 // One lane an edge, view sample after view sample.
 Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 anchor2, uint plane2, bool on) {
