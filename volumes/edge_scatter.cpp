@@ -18,6 +18,7 @@
 #include "volumes/settle_rows.comp.spv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -50,7 +51,8 @@ struct Counts {
 /// What device passes read of the casters on one side of the light's plane.
 struct SideBuffers {
   std::uint32_t depth = 0;
-  std::optional<render::Buffer> nodes, slots;
+  std::optional<render::Buffer> nodes;
+  std::array<std::optional<render::Buffer>, 6> slots;
 };
 
 class EdgeScatter final : public visibility::Method {
@@ -76,7 +78,10 @@ class EdgeScatter final : public visibility::Method {
     scale_ = render::device_scale(scene);
     tree_ = visibility::make_triangle_tree(scene);
     triangle_nodes_.emplace(make_texels("triangle nodes", render::node_texels(tree_, scale_)));
-    triangle_corners_.emplace(make_texels("triangle corners", corner_texels()));
+    const std::array<std::vector<Texel>, 3> corners = corner_texels();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      triangle_corners_[i].emplace(make_texels("triangle corners", corners[i]));
+    }
     casters_ = edge_casters(scene, -1);
     casters_without_ = -1;
     whole_ = upload(edge_records(scene, casters_, std::nullopt));
@@ -181,20 +186,20 @@ class EdgeScatter final : public visibility::Method {
     SideBuffers side;
     side.depth = texels.depth;
     side.nodes.emplace(make_texels("edge nodes", texels.nodes));
-    side.slots.emplace(make_texels("edges", texels.slots));
+    for (std::size_t i = 0; i < side.slots.size(); ++i) side.slots[i].emplace(make_texels("edges", texels.slots[i]));
     return side;
   }
 
   /// For each slot of each leaf: (a, triangle), (b, plane), (c, light that the triangle is the body of).
-  [[nodiscard]] std::vector<Texel> corner_texels() const {
-    std::vector<Texel> texels;
+  [[nodiscard]] std::array<std::vector<Texel>, 3> corner_texels() const {
+    std::array<std::vector<Texel>, 3> texels;
     for (const TriangleTree::Leaf& leaf : tree_.leaves) {
       for (const std::uint32_t triangle : leaf) {
         const bool used = triangle != TriangleTree::kNoTriangle;
         const auto at = used ? scene_->corners(triangle) : std::array<glm::vec3, 3>{};
-        texels.push_back({at[0] * scale_, triangle});
-        texels.push_back({at[1] * scale_, used ? scene_->plane[triangle] : visibility::SceneFloats::kNoPlane});
-        texels.push_back({at[2] * scale_, used ? static_cast<std::uint32_t>(scene_->emits[triangle]) : 0xffffffffU});
+        texels[0].push_back({at[0] * scale_, triangle});
+        texels[1].push_back({at[1] * scale_, used ? scene_->plane[triangle] : visibility::SceneFloats::kNoPlane});
+        texels[2].push_back({at[2] * scale_, used ? static_cast<std::uint32_t>(scene_->emits[triangle]) : 0xffffffffU});
       }
     }
     return texels;
@@ -335,7 +340,9 @@ class EdgeScatter final : public visibility::Method {
       commands_.fill(*lists_, 0, 0, sizeof(std::uint32_t));
       commands_.fill(*lists_, 0, 2 * sizeof(std::uint32_t), sizeof(std::uint32_t));
       find_edges_->record(commands_, push,
-                          {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots, *triangle_corners_},
+                          {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots[0], *edges.slots[1],
+                           *edges.slots[2], *edges.slots[3], *edges.slots[4], *edges.slots[5], *triangle_corners_[0],
+                           *triangle_corners_[1], *triangle_corners_[2]},
                           blocks());
       submit();
       Counts counts = read_counts();
@@ -350,7 +357,9 @@ class EdgeScatter final : public visibility::Method {
       const std::uint32_t lanes = device_->limits().subgroup_size,
                           bands = (light_->rows + 4 * band_words_ - 1) / (4 * band_words_);
       scatter_->record(commands_, push,
-                       {*view_, *heads_, *lists_, *edges.slots, *triangle_corners_, *masks_, *visible_, *questions_},
+                       {*view_, *heads_, *lists_, *edges.slots[0], *edges.slots[1], *edges.slots[2], *edges.slots[3],
+                        *edges.slots[4], *edges.slots[5], *triangle_corners_[0], *triangle_corners_[1],
+                        *triangle_corners_[2], *masks_, *visible_, *questions_},
                        blocks() * (kBlock * kBlock / lanes) * bands);
       submit();
       counts = read_counts();
@@ -415,7 +424,8 @@ class EdgeScatter final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   float scale_ = 1;
   TriangleTree tree_;
-  std::optional<render::Buffer> triangle_nodes_, triangle_corners_;
+  std::optional<render::Buffer> triangle_nodes_;
+  std::array<std::optional<render::Buffer>, 3> triangle_corners_;
   EdgeCasters casters_;
   std::int32_t casters_without_ = -1;  // whose body is left out of them
   SideBuffers whole_;                  // of all casters, cut nowhere

@@ -300,22 +300,24 @@ EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
     texels.nodes.push_back(boxed[2 * child + 1]);
     texels.nodes.push_back({glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)});
   }
-  texels.slots.reserve(tree.leaves.size() * TriangleTree::kWidth * 6);
+  for (auto& list : texels.slots) list.reserve(tree.leaves.size() * TriangleTree::kWidth);
   for (const TriangleTree::Leaf& leaf : tree.leaves) {
     for (const std::uint32_t number : leaf) {
       const bool used = number != TriangleTree::kNoTriangle;
       const EdgeRecord record = used ? records[number] : EdgeRecord{};
       const auto& [s, t] = record.sides;
-      texels.slots.push_back({record.a * scale, s.plane});
-      texels.slots.push_back({record.b * scale, t.plane});
-      texels.slots.push_back({s.n, used ? 1U : 0U});
-      texels.slots.push_back({s.anchor * scale, used ? 1U : 0U});
-      texels.slots.push_back({t.n, used ? 1U : 0U});
-      texels.slots.push_back({t.anchor * scale, used ? 1U : 0U});
+      texels.slots[0].push_back({record.a * scale, s.plane});
+      texels.slots[1].push_back({record.b * scale, t.plane});
+      texels.slots[2].push_back({s.n, used ? 1U : 0U});
+      texels.slots[3].push_back({s.anchor * scale, used ? 1U : 0U});
+      texels.slots[4].push_back({t.n, used ? 1U : 0U});
+      texels.slots[5].push_back({t.anchor * scale, used ? 1U : 0U});
     }
   }
   if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty
-  if (texels.slots.empty()) texels.slots.emplace_back();
+  for (auto& list : texels.slots) {
+    if (list.empty()) list.emplace_back();
+  }
   return texels;
 }
 

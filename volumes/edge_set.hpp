@@ -59,13 +59,14 @@ std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const
 bool reaches_behind(const visibility::SceneFloats& scene, const LightSide& side);
 
 /// As texels: the hierarchy, three a child (render::node_texels' two, and the cone of normals: axis, cosine of its
-/// half- angle), and six a leaf slot: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2), the numbers of
-/// the last four 1 for a record and 0 for an empty slot.
+/// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
+/// (anchor 2), the numbers of the last four 1 for a record and 0 for an empty slot.
 ///
 /// A cone holds, up to sign, the two normals of each record below such that k_e(p) = 0 where p is in front of both, or
 /// behind both. Cosine 0: at least one record below that has none, or normals that point all over.
 struct EdgeTexels {
-  std::vector<render::Texel> nodes, slots;
+  std::vector<render::Texel> nodes;
+  std::array<std::vector<render::Texel>, 6> slots;
   std::uint32_t depth = 0;
   std::uint32_t records = 0;
 };

@@ -11,8 +11,17 @@ layout(constant_id = 2) const uint kStackSize = 64;
 layout(binding = 3) uniform usamplerBuffer edge_nodes;      // 3 texels a child: (centre, reference), (half extent, –),
                                                             // cone of normals (axis, cosine)
 layout(binding = 4) uniform usamplerBuffer triangle_nodes;  // 2 texels a child
-layout(binding = 5) uniform usamplerBuffer slots;           // 6 texels an edge record (EdgeTexels)
-layout(binding = 6) uniform usamplerBuffer corner_texels;   // 3 texels a triangle: (a, triangle), (b, plane), (c, light)
+// An edge record (EdgeTexels), a texel buffer each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2).
+layout(binding = 5) uniform usamplerBuffer record_a;
+layout(binding = 6) uniform usamplerBuffer record_b;
+layout(binding = 7) uniform usamplerBuffer record_n1;
+layout(binding = 8) uniform usamplerBuffer record_anchor1;
+layout(binding = 9) uniform usamplerBuffer record_n2;
+layout(binding = 10) uniform usamplerBuffer record_anchor2;
+// A triangle: (a, triangle), (b, plane), (c, light that it is the body of).
+layout(binding = 11) uniform usamplerBuffer corner_a;
+layout(binding = 12) uniform usamplerBuffer corner_b;
+layout(binding = 13) uniform usamplerBuffer corner_c;
 
 const uint kBatch = 24;                                     // leaves looked into at a time
 
@@ -41,9 +50,9 @@ bool meets(Shaft shaft, vec3 level, vec4 least) {
 vec4 along_shaft(Shaft shaft, vec3 x) { return shaft.nx * x.x + shaft.ny * x.y + shaft.nz * x.z; }
 
 bool edge_matters(Shaft shaft, uint slot) {
-  const int texel = int(6 * slot);
-  const uvec4 t0 = texelFetch(slots, texel), t1 = texelFetch(slots, texel + 1), t2 = texelFetch(slots, texel + 2);
-  const uvec4 t3 = texelFetch(slots, texel + 3), t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
+  const int texel = int(slot);
+  const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
+  const uvec4 t3 = texelFetch(record_anchor1, texel), t4 = texelFetch(record_n2, texel), t5 = texelFetch(record_anchor2, texel);
   const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz);
   const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), middle, half_size);
   const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), middle, half_size);
@@ -53,8 +62,8 @@ bool edge_matters(Shaft shaft, uint slot) {
 }
 
 bool triangle_matters(Shaft shaft, uint slot) {
-  const int texel = int(3 * slot);
-  const uvec4 t0 = texelFetch(corner_texels, texel), t1 = texelFetch(corner_texels, texel + 1), t2 = texelFetch(corner_texels, texel + 2);
+  const int texel = int(slot);
+  const uvec4 t0 = texelFetch(corner_a, texel), t1 = texelFetch(corner_b, texel), t2 = texelFetch(corner_c, texel);
   const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz), c = uintBitsToFloat(t2.xyz);
   const vec4 least = min(along_shaft(shaft, a), min(along_shaft(shaft, b), along_shaft(shaft, c)));
   return t0.w != kNone && t2.w != push.light && meets(shaft, vec3(dot(axis, a), dot(axis, b), dot(axis, c)), least);

@@ -13,11 +13,20 @@ layout(constant_id = 3) const uint kColumns = 16;         // of light samples
 layout(constant_id = 4) const uint kWordsPerColumn = 4;   // four light rows a word: rows of a band / 4
 layout(constant_id = 5) const uint kHistogramWords = 64;  // a lane: columns · words a column
 
-layout(binding = 3) uniform usamplerBuffer slots;         // 6 texels an edge record (EdgeTexels)
-layout(binding = 4) uniform usamplerBuffer corner_texels; // 3 texels a triangle: (a, triangle), (b, plane), (c, light)
-layout(scalar, binding = 5) buffer Masks { uint masks[]; };    // visible: 8 columns × 4 rows a word
-layout(scalar, binding = 6) buffer Counts { uint counts[]; };  // visible light samples of a pixel
-layout(scalar, binding = 7) writeonly buffer Questions { RowQuestion questions[]; };
+// An edge record (EdgeTexels), a texel buffer each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2).
+layout(binding = 3) uniform usamplerBuffer record_a;
+layout(binding = 4) uniform usamplerBuffer record_b;
+layout(binding = 5) uniform usamplerBuffer record_n1;
+layout(binding = 6) uniform usamplerBuffer record_anchor1;
+layout(binding = 7) uniform usamplerBuffer record_n2;
+layout(binding = 8) uniform usamplerBuffer record_anchor2;
+// A triangle: (a, triangle), (b, plane), (c, light that it is the body of).
+layout(binding = 9) uniform usamplerBuffer corner_a;
+layout(binding = 10) uniform usamplerBuffer corner_b;
+layout(binding = 11) uniform usamplerBuffer corner_c;
+layout(scalar, binding = 12) buffer Masks { uint masks[]; };    // visible: 8 columns × 4 rows a word
+layout(scalar, binding = 13) buffer Counts { uint counts[]; };  // visible light samples of a pixel
+layout(scalar, binding = 14) writeonly buffer Questions { RowQuestion questions[]; };
 
 // Some devices run a loop's body once even for no turn at all, and once more than a `for` asks: loops that count are
 // written do … while, their bodies harmless where there is nothing to do.
@@ -87,8 +96,8 @@ vec2 appears(vec3 way) {
 // The error of a projected point's coordinates in cells. (bound X)
 float error_of(float far, float w, float height, float from_foot, float away) {
   const float q = height / w;
-  return kRound * (4.0 * per_length * far * q + from_foot * (4.0 * far / w + 4.0 * away / height + 3.0) +
-                   per_length * (4.0 * away + push.cut_reach) + 16.0 * (half_cells.x + half_cells.y)) +
+  return kRound * (4.0 * per_length * far * q + from_foot * (4.0 * far / w + 4.0 * away / height + 8.0) +
+                   per_length * (4.0 * away + push.cut_reach) + 16.0 * skew * (half_cells.x + half_cells.y) * (1.0 + far / w)) +
          per_length * push.deviation;
 }
 
@@ -286,9 +295,9 @@ void drain(bool on, GroupBounds g) {
   for (; i < queued; i += kLanes) {
     // One lane an edge: can it matter to this group, and to which view samples?
     const bool used = i + gl_SubgroupInvocationID < queued;
-    const int texel = 6 * int(used ? queue[i + gl_SubgroupInvocationID] : 0);
-    const uvec4 t0 = texelFetch(slots, texel), t1 = texelFetch(slots, texel + 1), t2 = texelFetch(slots, texel + 2);
-    const uvec4 t3 = texelFetch(slots, texel + 3), t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
+    const int texel = int(used ? queue[i + gl_SubgroupInvocationID] : 0);
+    const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
+    const uvec4 t3 = texelFetch(record_anchor1, texel), t4 = texelFetch(record_n2, texel), t5 = texelFetch(record_anchor2, texel);
     const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz);
     const Range at_a = range_of(a, g), at_b = range_of(b, g);
     const bool bounded = at_a.bounded && at_b.bounded;
@@ -332,9 +341,9 @@ void scatter_list(uint head, bool on) {
     for (; i < count && queued + kLanes < kQueue; i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
       const uint slot = lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)];
-      const int texel = int(6 * slot);
-      const uvec4 t2 = texelFetch(slots, texel + 2), t3 = texelFetch(slots, texel + 3);
-      const uvec4 t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
+      const int texel = int(slot);
+      const uvec4 t2 = texelFetch(record_n1, texel), t3 = texelFetch(record_anchor1, texel);
+      const uvec4 t4 = texelFetch(record_n2, texel), t5 = texelFetch(record_anchor2, texel);
       const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), g.middle, g.half_size);
       const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), g.middle, g.half_size);
       const bool silhouette = used && (side1 == 2 || side2 == 2 || side1 + side2 != 0);
@@ -378,8 +387,8 @@ uint count_to_corner(uint head, bool on, bool one_will_do) {
     uint i = 0;
     for (; i < count && !(one_will_do && subgroupAll(!on || met > 0)); i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
-      const int texel = 3 * int(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)]);
-      const uvec4 t0 = texelFetch(corner_texels, texel), t1 = texelFetch(corner_texels, texel + 1), t2 = texelFetch(corner_texels, texel + 2);
+      const int texel = int(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)]);
+      const uvec4 t0 = texelFetch(corner_a, texel), t1 = texelFetch(corner_b, texel), t2 = texelFetch(corner_c, texel);
       const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz), c = uintBitsToFloat(t2.xyz);
       const vec3 levels = vec3(dot(axis, a), dot(axis, b), dot(axis, c));
       const vec4 least = min(shaft.nx * a.x + shaft.ny * a.y + shaft.nz * a.z,
