@@ -13,6 +13,7 @@
 #include "vsm/view_sample.hpp"
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+#include "volumes/depth_complexity.hpp"
 #include "volumes/edge_scatter.hpp"
 #include "volumes/hard_volume.hpp"
 #endif
@@ -69,6 +70,7 @@ const std::vector<TableRow>& table() {
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
       on_device<volumes::edge_scatter_description, volumes::make_edge_scatter>(),
+      on_device<volumes::depth_complexity_description, volumes::make_depth_complexity>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
