@@ -182,12 +182,12 @@ void drain(uint queued) {
   subgroupBarrier();
 }
 
+// Some devices run what a branch leaves out: `drain` is called once for many edges, not in the loop that collects them.
 void count_list(uint head) {
-  uint queued = 0, piece = head;
-  for (; piece != kNone; piece = lists[piece]) {
-    const uint count = lists[piece + 1];
-    uint i = 0;
-    for (; i < count; i += kLanes) {
+  uint queued = 0, piece = head, i = 0;
+  uint count = piece == kNone ? 0 : lists[piece + 1];
+  while (piece != kNone) {
+    for (; i < count && queued + kLanes <= kQueue; i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
       const Edge edge = see(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)], used);
       // c0 as near to it: D at c0 is not that of the edges as projected.
@@ -201,15 +201,22 @@ void count_list(uint head) {
         queue_more[place] = vec2(edge.error, float(edge.k));
       }
       queued += subgroupBallotBitCount(all);
-      if (queued + kLanes > kQueue) {
-        drain(queued);
-        queued = 0;
-      }
     }
-    cut_off = cut_off || i < count;
+    const bool room = queued + kLanes <= kQueue;
+    if (i >= count) {
+      piece = lists[piece];
+      i = 0;
+      count = piece == kNone ? 0 : lists[piece + 1];
+    } else if (room) {
+      cut_off = true;                                     // the loop above was
+      break;
+    }
+    if (!room || piece == kNone) {
+      drain(queued);
+      queued = 0;
+    }
   }
   cut_off = cut_off || piece != kNone;
-  if (queued > 0) drain(queued);
 }
 
 // How many triangles the segment from p to c0 meets, one lane a triangle (Woop et al. 2013: in coordinates with the ray as
