@@ -20,7 +20,10 @@ class ConvertCommand : public Command {
   explicit ConvertCommand(CLI::App& app)
       : Command(app, "convert", "write the scene as the program understood it, in world space") {
     cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
-    cli_.add_option("-o,--output", out_, "FILE.json, FILE.glb or FILE.obj")->required()->type_name("FILE");
+    cli_.add_option("-o,--output", out_,
+                    "FILE.json (textures of lights go beside it: FILE-light0.exr), FILE.glb or FILE.obj")
+        ->required()
+        ->type_name("FILE");
     cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
   }
 

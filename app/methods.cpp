@@ -16,6 +16,9 @@
 #include "volumes/depth_complexity.hpp"
 #include "volumes/edge_scatter.hpp"
 #include "volumes/hard_volume.hpp"
+#include "volumes/soft_volume.hpp"
+#include "volumes/soft_volume_blend.hpp"
+#include "volumes/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/accumulate.hpp"
@@ -65,12 +68,17 @@ template <auto kMake>
 /// The table of methods: one line a method; within a family the best comes first.
 const std::vector<TableRow>& table() {
   static const std::vector<TableRow> rows = {
+#ifdef PENUMBRA_HAS_VOLUMES
+      on_device<volumes::edge_scatter_description, volumes::make_edge_scatter>(),
+#endif
 #ifdef PENUMBRA_HAS_VSM
       on_device<vsm::view_sample_description, vsm::make_view_sample>(),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
-      on_device<volumes::edge_scatter_description, volumes::make_edge_scatter>(),
       on_device<volumes::depth_complexity_description, volumes::make_depth_complexity>(),
+      on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
+      on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
+      on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
@@ -88,9 +96,6 @@ const std::vector<TableRow>& table() {
 
 /// Names that the program will understand some day; they mean nothing else until then.
 constexpr std::array kNotThereYet = {"exact",
-                                     "wedge-ramp",
-                                     "soft-volume",
-                                     "soft-volume-blend",
                                      "depth-complexity",
                                      "alias-free",
                                      "view-sample-planar",
@@ -166,8 +171,10 @@ bool runs_on_device(std::string_view name) {
 }
 
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
-  return std::ranges::all_of(
-      lights, [&](const Light& light) { return std::ranges::find(method.lights, light.kind) != method.lights.end(); });
+  return std::ranges::all_of(lights, [&](const Light& light) {
+    return std::ranges::find(method.lights, light.kind) != method.lights.end() && (method.textures || !light.texture) &&
+           (method.any_pattern || light.rows != 0);
+  });
 }
 
 const MethodDescription& default_method(const std::vector<Light>& lights) {

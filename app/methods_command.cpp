@@ -21,14 +21,14 @@ std::vector<std::string> light_names(const MethodDescription& method) {
 }
 
 void print_table(const std::vector<const MethodDescription*>& methods) {
-  fmt::print("{:<14} {:<10} {:<7} {:<32} {}\n", "method", "family", "output", "lights", "paper");
+  fmt::print("{:<18} {:<10} {:<7} {:<32} {}\n", "method", "family", "output", "lights", "paper");
   for (const MethodDescription* method : methods) {
-    fmt::print("{:<14} {:<10} {:<7} {:<32} {}\n", method->name, visibility::name_of(method->family),
+    fmt::print("{:<18} {:<10} {:<7} {:<32} {}\n", method->name, visibility::name_of(method->family),
                visibility::name_of(method->output), fmt::format("{}", fmt::join(light_names(*method), ", ")),
                method->paper);
-    fmt::print("{:<14} exact for: {}\n", "", method->exact_for);
+    fmt::print("{:<18} exact for: {}\n", "", method->exact_for);
     for (const OptionDescription& option : method->options) {
-      fmt::print("{:<14} {}={} (default {}): {}\n", "", option.name, option.values, option.default_value, option.help);
+      fmt::print("{:<18} {}={} (default {}): {}\n", "", option.name, option.values, option.default_value, option.help);
     }
   }
 }

@@ -2,6 +2,7 @@
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/wedges_report.hpp"
+#include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "scenes/reader.hpp"
 #include "volumes/wedge_export.hpp"
@@ -85,7 +86,15 @@ class WedgesCommand : public Command {
     cli_.add_option("--export", export_, "wedges cut by the scene's box, edges, light, offending points")
         ->type_name("FILE.glb|.obj|.ply");
     cli_.add_option("--json", json_, "edges, planes, violations")->type_name("FILE");
-    cli_.add_option("--explain", explain_, "(not there yet)")->type_name("X,Y");
+    cli_.add_option("--explain", explain_,
+                    "for this pixel of the first camera's image: the wedges that contain what it sees, what each takes "
+                    "from the light or gives back, their sum, and the exact area")
+        ->type_name("X,Y");
+    cli_.add_option("--svg", svg_,
+                    "the light as seen from there, with projected edges (default: beside --export's file, or in the "
+                    "working folder: <name>-X-Y.svg)")
+        ->type_name("FILE.svg")
+        ->needs("--explain");
     cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
   }
 
@@ -106,16 +115,27 @@ class WedgesCommand : public Command {
     const std::vector<volumes::Wedge> wedges = chosen.fault
                                                    ? volumes::build_faulty_wedges(casting.wedges, hull, *chosen.fault)
                                                    : volumes::build_wedges(casting.wedges, hull, chosen.construction);
-    WedgesResult result{light, hull, floats.origin, construction_, from_, wedges, nullptr, nullptr};
+    WedgesResult result{light, hull, floats.origin, construction_, from_, wedges};
     std::optional<volumes::ValidationReport> report;
     std::optional<volumes::Tightness> tightness;
+    std::optional<CoverageOutcome> coverage;
     if (validate_) {
       report = volumes::validate({casters, casting, hull, wedges, tight});
       tightness = volumes::tightness_of(wedges, hull, shape_of(light, hull));
+      coverage = check_scene_coverage(scene, floats, light, casters, *report);
       result.validation = &*report;
       result.tightness = &*tightness;
+      result.coverage = &*coverage;
+    }
+    std::optional<Explanation> explanation;
+    if (!explain_.empty()) {
+      const auto [x, y] = parse_pixel(explain_, scene);
+      explanation = explain({scene, floats, light, casters, casting, wedges}, x, y);
+      result.explanation = &*explanation;
+      if (!explanation->picture.empty()) result.svg = picture_path(x, y);
     }
     at_once.reset();
+    if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
     if (!json_.empty()) write_wedges_json(json_, result);
     if (!export_.empty()) {
       volumes::export_wedges(export_, {wedges, hull, volumes::bounds_of(casters), floats.origin,
@@ -128,16 +148,25 @@ class WedgesCommand : public Command {
 
  private:
   void check_files() const {
-    if (!explain_.empty()) throw UsageError("--explain is not there yet; what is: --validate, --export, --json");
     constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
     if (!export_.empty() && std::ranges::find(kExtensions, export_.extension()) == kExtensions.end()) {
       throw UsageError("--export {}: expected a name that ends in .glb, .obj or .ply", export_.string());
     }
     if (!export_.empty()) require_writable(export_);
     if (!json_.empty()) require_writable(json_);
+    if (!svg_.empty() && svg_.extension() != ".svg") {
+      throw UsageError("--svg {}: expected a name that ends in .svg", svg_.string());
+    }
+    if (!svg_.empty()) require_writable(svg_);
   }
 
-  std::filesystem::path scene_, export_, json_;
+  [[nodiscard]] std::filesystem::path picture_path(std::uint32_t x, std::uint32_t y) const {
+    if (!svg_.empty()) return svg_;
+    const std::filesystem::path beside = export_.empty() ? scene_.filename() : export_;
+    return beside.parent_path() / fmt::format("{}-{}-{}.svg", beside.stem().string(), x, y);
+  }
+
+  std::filesystem::path scene_, export_, json_, svg_;
   std::string light_, construction_ = "original", from_ = "centre", explain_;
   bool validate_ = false, allow_outside_ = false;
 };

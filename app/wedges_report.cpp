@@ -81,6 +81,67 @@ ordered_json tightness_json(const volumes::Tightness& tightness) {
   return entry;
 }
 
+/// Of the samples that are held against something.
+struct CoverageFigures {
+  std::uint64_t samples = 0, touching = 0, single = 0;
+  double worst_layers = 0, worst_union = 0;  ///< the latter over single layers
+  double center_mean = 0, center_max = 0;    ///< |blocked by the centre's silhouettes − the receiver's|
+};
+
+CoverageFigures figures_of(const CoverageOutcome& coverage) {
+  CoverageFigures figures;
+  for (std::size_t i = 0; i < coverage.points.size(); ++i) {
+    const volumes::CoveragePoint& point = coverage.points[i];
+    if (point.touches_light) {
+      ++figures.touching;
+      continue;
+    }
+    ++figures.samples;
+    figures.worst_layers = std::max(figures.worst_layers, std::abs(point.receiver - point.layers));
+    if (point.is_single_layer()) {
+      ++figures.single;
+      if (!coverage.hidden.empty()) {
+        figures.worst_union = std::max(figures.worst_union, std::abs(point.receiver - coverage.hidden[i]));
+      }
+    }
+    figures.center_mean += std::abs(point.center - point.receiver);
+    figures.center_max = std::max(figures.center_max, std::abs(point.center - point.receiver));
+  }
+  if (figures.samples > 0) figures.center_mean /= static_cast<double>(figures.samples);
+  return figures;
+}
+
+ordered_json coverage_json(const CoverageOutcome& coverage) {
+  const CoverageFigures figures = figures_of(coverage);
+  ordered_json entry{{"samples", figures.samples},
+                     {"touchingLight", figures.touching},
+                     {"singleLayer", figures.single},
+                     {"maxAgainstTriangles", figures.worst_layers}};
+  entry["maxAgainstExact"] = coverage.hidden.empty() ? ordered_json() : ordered_json(figures.worst_union);
+  entry["centreDifference"] = {{"mean", figures.center_mean}, {"max", figures.center_max}};
+  return entry;
+}
+
+void print_coverage(const CoverageOutcome& coverage) {
+  if (!coverage.has_plane) {
+    fmt::print("coverage: not of a sphere\n");
+    return;
+  }
+  const CoverageFigures figures = figures_of(coverage);
+  if (figures.touching > 0) {
+    fmt::print("coverage: not checked, something touches the light\n");
+    return;
+  }
+  fmt::print("coverage at {} view samples: the receiver's silhouettes are {:.1e} from the triangles at most\n",
+             figures.samples, figures.worst_layers);
+  if (figures.single > 0 && !coverage.hidden.empty()) {
+    fmt::print("{} of them have a single layer: {:.1e} from the exact area at most\n", figures.single,
+               figures.worst_union);
+  }
+  fmt::print("centre silhouettes differ by {:.4f} in the mean, {:.4f} at most\n", figures.center_mean,
+             figures.center_max);
+}
+
 std::string text_of(const glm::dvec3& v) {
   return fmt::format("({}, {}, {})", v.x, v.y, v.z);
 }
@@ -151,6 +212,8 @@ void write_wedges_json(const std::filesystem::path& path, const WedgesResult& re
     put(",\n\"checks\":" + checks.dump());
   }
   if (result.tightness != nullptr) put(",\n\"tightness\":" + tightness_json(*result.tightness).dump());
+  if (result.coverage != nullptr) put(",\n\"coverage\":" + coverage_json(*result.coverage).dump());
+  if (result.explanation != nullptr) put(",\n\"explain\":" + explain_json(*result.explanation, result.svg).dump());
   put("}\n");
   write_file_atomically(path, std::string_view(text.data(), text.size()));
 }
@@ -166,6 +229,8 @@ void print_wedges(const WedgesResult& result) {
              result.construction, result.from, roots, wedges,
              wedges == 0 ? 0.0 : static_cast<double>(planes) / static_cast<double>(wedges), split, everywhere, empty);
   if (result.tightness != nullptr) print_tightness(*result.tightness);
+  if (result.explanation != nullptr) print_explanation(*result.explanation, result.svg);
+  if (result.coverage != nullptr) print_coverage(*result.coverage);
   if (result.validation != nullptr) print_validation(*result.validation, result.wedges);
 }
 

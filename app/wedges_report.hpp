@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/wedges_coverage.hpp"
+#include "app/wedges_explain.hpp"
 #include "visibility/light_samples.hpp"
 #include "volumes/wedge_tightness.hpp"
 #include "volumes/wedge_validation.hpp"
@@ -20,9 +22,14 @@ struct WedgesResult {
   std::span<const volumes::Wedge> wedges;
   const volumes::ValidationReport* validation = nullptr;  ///< if it was asked for
   const volumes::Tightness* tightness = nullptr;
+  const CoverageOutcome* coverage = nullptr;
+  const Explanation* explanation = nullptr;
+  std::filesystem::path svg{};  ///< of the explanation
 };
 
-/// The contract's JSON, and beside it "counts", and if they were validated "checks" and "tightness".
+/// The contract's JSON, and beside it "counts", and if they were validated "checks",
+/// "tightness" and "coverage", if
+/// a pixel was to be explained "explain".
 void write_wedges_json(const std::filesystem::path& path, const WedgesResult& result);
 
 /// For people, on stdout: how many of which outcome, what was proved, the first violations.

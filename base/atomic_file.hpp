@@ -25,6 +25,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile();
 
+  /// The destination, as it was given.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// An existing empty file in the destination's folder, for libraries that want a path to write to.
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
 

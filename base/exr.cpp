@@ -81,10 +81,9 @@ void add_vector_channels(ExrImage& image, const std::string& layer, std::span<co
 }
 
 void write_exr(const std::filesystem::path& path, const ExrImage& image) {
-  constexpr std::uint32_t kLargestSide = 1u << 24;
-  if (image.width == 0 || image.height == 0 || image.width > kLargestSide || image.height > kLargestSide) {
+  if (image.width == 0 || image.height == 0 || image.width > kLargestExrSide || image.height > kLargestExrSide) {
     throw ResourceError("cannot write \"{}\": {}x{} pixels; an OpenEXR image has 1 to {} a side", path.string(),
-                        image.width, image.height, kLargestSide);
+                        image.width, image.height, kLargestExrSide);
   }
   AtomicFile file(path);  // first, so that a place that cannot be written is told before any work
   Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
@@ -130,16 +129,21 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
   file.commit();
 }
 
-ExrFile read_exr(const std::filesystem::path& path) {
+ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side) {
   start_worker_threads();
   try {
     Imf::InputFile input(path.c_str());
     const Imf::Header& header = input.header();
     const Imath::Box2i window = header.dataWindow();
     if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", path.string());
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    if (std::max(width, height) > largest_side) {
+      throw InputError("\"{}\": {}x{} pixels; at most {} a side", path.string(), width, height, largest_side);
+    }
     ExrFile file;
-    file.width = static_cast<std::uint32_t>(std::int64_t{window.max.x} - window.min.x + 1);
-    file.height = static_cast<std::uint32_t>(std::int64_t{window.max.y} - window.min.y + 1);
+    file.width = static_cast<std::uint32_t>(width);
+    file.height = static_cast<std::uint32_t>(height);
     const std::size_t pixel_count = std::size_t{file.width} * file.height;
     for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute())) {

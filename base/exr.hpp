@@ -13,6 +13,8 @@
 
 namespace penumbra {
 
+inline constexpr std::uint32_t kLargestExrSide = 1u << 24;  ///< pixels
+
 /// One channel to write: pixel i's value is values[i · stride], so that a component of interleaved data (an array of
 /// vec3) needs no copy: {"P.Y", {&p[0].y, 3 · pixels − 1}, 3}.
 struct ExrChannel {
@@ -46,7 +48,8 @@ struct ExrFile {
   std::map<std::string, glm::dvec3> vectors;
 };
 
-/// Reads a scan-line image. Throws InputError for what is none.
-ExrFile read_exr(const std::filesystem::path& path);
+/// Reads a scan-line or tiled image: its data window. Throws InputError for what is none, or has a side of more than
+/// `largest_side` pixels, which is found out before anything is decoded.
+ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side = kLargestExrSide);
 
 }  // namespace penumbra

@@ -14,6 +14,10 @@ std::uint8_t srgb_byte(float linear) {
   return static_cast<std::uint8_t>(std::lround(encoded * 255));
 }
 
+double linear_of_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
 Image8 to_srgb(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> linear, float exposure) {
   PENUMBRA_ASSERT(linear.size() == std::size_t{width} * height, "{} pixels for {}x{}", linear.size(), width, height);
   Image8 image{width, height, {}};

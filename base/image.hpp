@@ -18,6 +18,15 @@ struct Image8 {
   std::vector<Color8> pixels;
 };
 
+/// A picture in linear light, in scan-line order from the top left: what a light or a surface is textured with.
+struct LinearImage {
+  std::uint32_t width = 0, height = 0;
+  std::vector<glm::vec3> pixels;  ///< red green blue, primaries of Rec. 709
+};
+
+/// The linear value of an sRGB-encoded one, both in [0, 1].
+double linear_of_srgb(double encoded);
+
 /// The sRGB transfer curve (IEC 61966-2-1) of a linear value, clamped to [0, 1] and rounded; NaN is 0.
 std::uint8_t srgb_byte(float linear);
 

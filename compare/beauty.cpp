@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -45,9 +46,15 @@ struct Receiver {
   glm::dvec3 m;     ///< the light's normal
 };
 
-/// Σ over the block's samples whose bit is set of cos θp · cos θl / d².
+/// A block's light points.
+struct Block {
+  const double *x, *y, *z;
+};
+
+/// cos θp · cos θl / d² of the block's samples.
 template <bool kTwoSided>
-double sum_block(const Receiver& r, const double* x, const double* y, const double* z, std::uint32_t bits) {
+std::array<double, kBlock> weigh_block(const Receiver& r, const Block& block) {
+  const double *x = block.x, *y = block.y, *z = block.z;
   std::array<double, kBlock> weight;
   for (std::size_t j = 0; j < kBlock; ++j) {
     const double dx = x[j] - r.p.x, dy = y[j] - r.p.y, dz = z[j] - r.p.z;
@@ -58,6 +65,11 @@ double sum_block(const Receiver& r, const double* x, const double* y, const doub
     // d = 0 makes the numerator 0 as well; float32 coordinates keep every other (d²)² above 1e-180.
     weight[j] = at_receiver * at_light / std::max(squared * squared, 1e-300);
   }
+  return weight;
+}
+
+/// Σ over the block's samples whose bit is set of their weight.
+double sum_block(const std::array<double, kBlock>& weight, std::uint32_t bits) {
   std::array<double, kLanes> sum{};
   for (std::size_t j = 0; j < kBlock; j += kLanes) {
     const auto& factor = kFactors[bits >> j & 15];
@@ -72,20 +84,47 @@ std::uint32_t full_word(std::uint32_t sample_count, std::size_t word) {
   return left >= 32 ? 0xffffffffu : (1u << left) - 1;
 }
 
-/// Σ_j visible_j · cos θp · cos θl / d² of a view sample; `mask` null: all visible.
-double sum_light(const Receiver& receiver, const visibility::Light& light, const Points& points,
-                 const std::uint32_t* mask) {
+/// The same with each sample's texel as a factor.
+glm::dvec3 sum_block(const std::array<double, kBlock>& weight, std::uint32_t bits, const glm::vec3* colors) {
+  glm::dvec3 sum(0);
+  for (; bits != 0; bits &= bits - 1) {
+    const auto j = static_cast<std::size_t>(std::countr_zero(bits));
+    sum += weight[j] * glm::dvec3(colors[j]);
+  }
+  return sum;
+}
+
+/// Σ_j visible_j · texel_j · cos θp · cos θl / d² of a view sample; `mask` null: all visible; no texture: texel 1.
+glm::dvec3 sum_light(const Receiver& receiver, const visibility::Light& light, const Points& points,
+                     const std::uint32_t* mask) {
+  const bool two_sided = light.two_sided && light.kind != visibility::LightKind::sphere;
   double sum = 0;
+  glm::dvec3 colored(0);
   for (std::size_t word = 0; word < light.words_per_mask(); ++word) {
     const std::uint32_t full = full_word(light.sample_count(), word);
     const std::uint32_t bits = mask != nullptr ? mask[word] & full : full;
     if (bits == 0) continue;
     const std::size_t i = word * kBlock;
-    sum += light.two_sided && light.kind != visibility::LightKind::sphere
-               ? sum_block<true>(receiver, &points.x[i], &points.y[i], &points.z[i], bits)
-               : sum_block<false>(receiver, &points.x[i], &points.y[i], &points.z[i], bits);
+    const Block block{&points.x[i], &points.y[i], &points.z[i]};
+    const auto weight = two_sided ? weigh_block<true>(receiver, block) : weigh_block<false>(receiver, block);
+    if (light.texture) {
+      colored += sum_block(weight, bits, &light.sample_colors[i]);
+    } else {
+      sum += sum_block(weight, bits);
+    }
   }
-  return sum;
+  return light.texture ? colored : glm::dvec3(sum);
+}
+
+/// What the light's body shows at p: radiance times the texel that is there, or nearest to p.
+glm::dvec3 radiance_at(const visibility::Light& light, const glm::vec3& p) {
+  if (!light.texture) return light.radiance;
+  const glm::dvec3 c(light.center), u = glm::dvec3(light.center_u) - c, v = glm::dvec3(light.center_v) - c;
+  const glm::dvec3 q = glm::dvec3(p) - c, n = glm::cross(u, v);
+  // q = s u + t v + h n: s (u × v) · n = (q × v) · n, and likewise t.
+  const double under = glm::dot(n, n);
+  const glm::dvec2 st(glm::dot(glm::cross(q, v), n) / under, glm::dot(glm::cross(u, q), n) / under);
+  return light.radiance * glm::dvec3(light.texture->colors[light.texture->texel_at(st)]);
 }
 
 /// Adds one light to the pixels [begin, end).
@@ -114,7 +153,7 @@ void add_light(const BeautyScene& in, const visibility::Light& light, const Ligh
     if (length == 0) continue;  // p is the centre of a sphere light: it sees no disk
     receiver.m /= length;
     const Points& points = is_sphere ? sphere_points : fixed_points;
-    double sum = 0;
+    glm::dvec3 sum(0);
     if (!shadowed || seen.masks.empty()) {
       sum = sum_light(receiver, light, points, nullptr);
       if (shadowed) sum *= static_cast<double>(seen.visibility[i]);
@@ -156,7 +195,7 @@ std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<cons
       if (emits >= 0) {
         // By the light's number in the scene: `lights` may hold only those that were asked for.
         for (const visibility::Light& light : scene.lights) {
-          if (light.index == emits) sum[i - range.begin()] = light.radiance;
+          if (light.index == emits) sum[i - range.begin()] = radiance_at(light, scene.samples.p[i]);
         }
       }
       beauty[i] = glm::vec3(sum[i - range.begin()]);

@@ -35,9 +35,11 @@ struct BeautyScene {
 ///
 /// The first is equation 1.3 of the rendering integral with visibility inside, the second equation 1.4, which takes
 /// visibility out of the integral: where the light is half hidden the two differ by what a method that only knows V
-/// cannot know. Pixels of a light's body show its radiance (black if that light is not among `lights`: it is
-/// off), the background is 0, and what receives no shadow is lit as if nothing stood between. A sphere light is the
-/// disk through its centre that faces p.
+/// cannot know. A texture multiplies radiance by the texel at each l_j, in both.
+///
+/// Pixels of a light's body show its radiance (with a texture, times the texel that is there or nearest; black if that
+/// light is not among `lights`: it is off), the background is 0, and what receives no shadow is lit as if nothing stood
+/// between. A sphere light is the disk through its centre that faces p.
 ///
 /// Each pixel is summed in double and in one order, so the result does not depend on the number of threads.
 std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility);

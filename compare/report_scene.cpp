@@ -30,6 +30,12 @@ struct ShapeText {
   }
 };
 
+std::string texture_text(const scenes::AreaLight& light) {
+  if (!light.texture) return "";
+  return fmt::format(" times the texture {} of {} × {}", light.texture->file, light.texture->width,
+                     light.texture->height);
+}
+
 }  // namespace
 
 std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera) {
@@ -42,8 +48,8 @@ std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t c
       {"Scene", scene.name}, {"Triangles", count_text(scene.soup.triangles.size())}, {"Objects", objects}};
   for (const scenes::AreaLight& light : scene.lights) {
     facts.push_back({fmt::format("Light “{}”", light.name),
-                     fmt::format("{}, radiance {}{}", std::visit(ShapeText{}, light.shape), text_of(light.radiance),
-                                 light.two_sided ? ", from both sides" : "")});
+                     fmt::format("{}, radiance {}{}{}", std::visit(ShapeText{}, light.shape), text_of(light.radiance),
+                                 texture_text(light), light.two_sided ? ", from both sides" : "")});
   }
   const scenes::Camera& c = scene.cameras.at(camera);
   facts.push_back(

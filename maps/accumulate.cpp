@@ -18,6 +18,7 @@
 #include "maps/pass_ledger.hpp"
 #include "maps/receivers.hpp"
 #include "render/compute_pass.hpp"
+#include "visibility/visible_share.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -189,11 +190,7 @@ void Accumulate::read_visibility(std::span<float> visibility) {
   const std::size_t words = light_->words_per_mask();
   std::vector<std::uint32_t> masks(visibility.size() * words);
   read_masks(masks);
-  for (std::size_t i = 0; i < visibility.size(); ++i) {
-    int visible = 0;
-    for (const std::uint32_t word : std::span(masks).subspan(i * words, words)) visible += std::popcount(word);
-    visibility[i] = static_cast<float>(visible) / static_cast<float>(light_->sample_count());
-  }
+  visibility::visible_shares(*light_, masks, visibility);
 }
 
 std::uint64_t Accumulate::memory_bytes() const {

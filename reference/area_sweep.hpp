@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 // Inside reference/ only: the part of a region that no polygon covers, by a sweep over slabs.
@@ -17,17 +18,40 @@ struct SweepEdge {
   int region = 0;         ///< counted into the region itself
 };
 
-/// The area of {region > 0 and cover ≤ 0}, where both counts start from 0 at t = −∞ and step at each edge. Edges may
-/// cross, touch, coincide and run along one another.
+/// A sweep's edge at a slab: its height at the two ends of the strip, and in the slab's middle and at its ends.
+template <typename Number>
+struct ActiveEdge {
+  const SweepEdge<Number>* edge;
+  Number left, right;  ///< t at the strip's two ends
+  Number t;            ///< in the middle of the slab
+  Number from, to;     ///< at the slab's two ends; set only if the measure asks for them
+};
+
+/// Measures area as it is. A measure says what lies between two edges that do not cross within a slab, as the mean over
+/// the slab of what a vertical line finds between them; where further strips begin; and in which strip the sweep is.
+template <typename Number>
+struct PlainMeasure {
+  static constexpr bool kNeedsEnds = false;
+  void add_breaks(std::vector<Number>& /*breaks*/) const {}
+  void enter_strip(const Number& /*middle*/) {}
+  [[nodiscard]] Number between(const ActiveEdge<Number>& low, const ActiveEdge<Number>& high) const {
+    return high.t - low.t;
+  }
+};
+
+/// The area (or what else Measure measures) of {region > 0 and cover ≤ 0}, where both counts start from 0 at t = −∞ and
+/// step at each edge. Edges may cross, touch, coincide and run along one another.
 ///
 /// Between neighbouring end points (a strip) the same edges are active. Within a strip, between neighbouring crossings
 /// (a slab), they keep their order, and the uncovered length of a vertical line is linear in s: its value in the middle
 /// times the width is the slab's area. With rational numbers the result is exact. With double it is the exact result
 /// for end points and crossings moved by rounding: docs/exact.md has the bound. The result does not depend on the order
 /// of the edges.
-template <typename Number>
+template <typename Number, typename Measure = PlainMeasure<Number>>
 class AreaSweep {
  public:
+  explicit AreaSweep(Measure measure = {}) : measure_(std::move(measure)) {}
+
   Number uncovered_area(std::vector<SweepEdge<Number>>& edges) {
     std::sort(edges.begin(), edges.end(), before);
     breaks_.clear();
@@ -35,6 +59,7 @@ class AreaSweep {
       breaks_.push_back(edge.s0);
       breaks_.push_back(edge.s1);
     }
+    measure_.add_breaks(breaks_);
     sort_unique(breaks_);
     active_.clear();
     std::size_t next = 0;
@@ -42,18 +67,14 @@ class AreaSweep {
     for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
       const Number &left = breaks_[i], &right = breaks_[i + 1];
       std::erase_if(active_, [&](const Active& active) { return active.edge->s1 <= left; });
-      for (; next < edges.size() && edges[next].s0 <= left; ++next) active_.push_back({&edges[next], 0, 0, 0});
+      for (; next < edges.size() && edges[next].s0 <= left; ++next) active_.push_back({&edges[next], 0, 0, 0, 0, 0});
       area += strip(left, right);
     }
     return area;
   }
 
  private:
-  struct Active {
-    const SweepEdge<Number>* edge;
-    Number left, right;  ///< t at the strip's two ends
-    Number t;            ///< in the middle of a slab
-  };
+  using Active = ActiveEdge<Number>;
 
   static bool before(const SweepEdge<Number>& a, const SweepEdge<Number>& b) {
     if (a.s0 != b.s0) return a.s0 < b.s0;
@@ -85,8 +106,12 @@ class AreaSweep {
       active.t = (active.left + active.right) / 2;
     }
     const Number width = right - left;
+    measure_.enter_strip((left + right) / 2);
     sort_active();
-    if (!some_cross()) return width * uncovered_length();
+    if (!some_cross()) {
+      set_ends(0, 1);
+      return width * uncovered_length();
+    }
 
     crossings_.assign({left, right});
     for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -99,9 +124,20 @@ class AreaSweep {
       const Number share = (middle - left) / width;
       for (Active& active : active_) active.t = active.left + share * (active.right - active.left);
       sort_active();
+      set_ends((crossings_[i] - left) / width, (crossings_[i + 1] - left) / width);
       area += (crossings_[i + 1] - crossings_[i]) * uncovered_length();
     }
     return area;
+  }
+
+  /// Where the edges are at the ends of a slab, given in shares of the strip.
+  void set_ends(const Number& from, const Number& to) {
+    if constexpr (Measure::kNeedsEnds) {
+      for (Active& active : active_) {
+        active.from = active.left + from * (active.right - active.left);
+        active.to = active.left + to * (active.right - active.left);
+      }
+    }
   }
 
   /// By insertion: from slab to slab the order hardly changes.
@@ -133,11 +169,12 @@ class AreaSweep {
     for (std::size_t i = 0; i + 1 < active_.size(); ++i) {
       cover += active_[i].edge->cover;
       region += active_[i].edge->region;
-      if (region > 0 && cover <= 0) length += active_[i + 1].t - active_[i].t;
+      if (region > 0 && cover <= 0) length += measure_.between(active_[i], active_[i + 1]);
     }
     return length;
   }
 
+  Measure measure_;
   std::vector<Number> breaks_, crossings_;  // of a strip: left, right, then what lies between
   std::vector<Active> active_;
 };

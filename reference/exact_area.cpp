@@ -17,6 +17,7 @@
 #include "reference/back_projection.hpp"
 #include "reference/light_region.hpp"
 #include "reference/light_shaft.hpp"
+#include "reference/texture_measure.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/triangle_tree.hpp"
 
@@ -124,6 +125,7 @@ struct ExactAreaData {
   mpq_class area;
   GridBox box;
   std::vector<SweepEdge<double>> edges;  ///< of the region
+  std::optional<TextureColumns> texture;
 };
 
 namespace {
@@ -241,14 +243,21 @@ class OccluderEdges {
   std::uint64_t triangles_ = 0;
 };
 
-/// The share of the light that is region and not hidden. `edges` are the region's, and the workspace.
+/// The share of the light, by area or by luminance, that is region and not hidden. `edges` are the region's, and the
+/// workspace.
 template <typename Number>
 double share_left(const ExactAreaData& data, const Region& region, std::vector<SweepEdge<Number>> edges,
                   const OccluderEdges& occluders, AreaWork& work) {
   const std::size_t of_region = edges.size();
   occluders.append_to(edges);
   work = {occluders.triangles(), edges.size() - of_region};
-  if (work.edges == 0) return &region == &data.region ? 1 : mpq_class(area_of(region) / data.area).get_d();
+  if (work.edges == 0 && &region == &data.region) return 1;
+  if (data.texture) {
+    AreaSweep<Number, TextureMeasure<Number>> sweep{TextureMeasure<Number>(*data.texture)};
+    const mpq_class left = mpq_class(sweep.uncovered_area(edges)) / data.texture->integral();
+    return std::clamp(left.get_d(), 0.0, 1.0);
+  }
+  if (work.edges == 0) return mpq_class(area_of(region) / data.area).get_d();
   AreaSweep<Number> sweep;
   const mpq_class left = mpq_class(sweep.uncovered_area(edges)) / data.area;
   return std::clamp(left.get_d(), 0.0, 1.0);
@@ -274,6 +283,8 @@ void ExactArea::set_light(const Light& light) {
   data_->area = area_of(data_->region);
   data_->box = box_around(data_->region);
   data_->edges = region_edges<double>(data_->region);
+  data_->texture.reset();
+  if (light.texture) data_->texture.emplace(*light.texture);
 }
 
 double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork* work) const {

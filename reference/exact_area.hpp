@@ -32,7 +32,8 @@ struct ExactAreaData;
 
 /// V of a view sample as an area, not a count: the part of the light's exact region that is strictly above the
 /// carrier's plane and in no triangle's back-projection, over the region's own area. The region is what
-/// light_region.hpp says of each kind. Thread-safe once the light is set.
+/// light_region.hpp says of each kind. With a texture areas are weighted with its luminance. Thread-safe once the light
+/// is set.
 class ExactArea {
  public:
   /// `scene` must outlive it.

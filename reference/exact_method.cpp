@@ -73,8 +73,9 @@ Exact::Exact(const visibility::MethodOptions& options) {
       "tracing, 2005) and a sweep";
   description_.output = visibility::Output::scalar;
   description_.exact_for =
-      "rectangle and polygon lights and any triangle soup, up to float32 of V; disk and sphere lights within 7.6e-8 (a "
-      "polygon of 4096 sides)";
+      "rectangle (textured or not) and polygon lights and any triangle soup, up to float32 of V; disk and sphere "
+      "lights "
+      "within 7.6e-8 (a polygon of 4096 sides)";
   description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
   description_.verdict_on = verdict_on;
   description_.options = {{"sweep", "rounded|rational", "rounded",

@@ -15,6 +15,7 @@
 #include "reference/tracing_order.hpp"
 #include "visibility/horizon.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/visible_share.hpp"
 
 #include <glm/common.hpp>
 
@@ -279,14 +280,7 @@ void RayTraced::read_masks(std::span<std::uint32_t> masks) {
 }
 
 void RayTraced::read_visibility(std::span<float> visibility) {
-  const std::size_t words = light_->words_per_mask();
-  PENUMBRA_ASSERT(visibility.size() * words == masks_.size(), "{} pixels asked for, {} words evaluated",
-                  visibility.size(), masks_.size());
-  for (std::size_t pixel = 0; pixel < visibility.size(); ++pixel) {
-    int visible = 0;
-    for (std::size_t word = 0; word < words; ++word) visible += std::popcount(masks_[pixel * words + word]);
-    visibility[pixel] = static_cast<float>(visible) / static_cast<float>(light_->sample_count());
-  }
+  visibility::visible_shares(*light_, masks_, visibility);
 }
 
 }  // namespace

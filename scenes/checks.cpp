@@ -132,6 +132,9 @@ glm::dvec3 polygon_normal(const Polygon& polygon) {
 
 void check_light(const AreaLight& light, const std::string& where) {
   std::visit([&](const auto& shape) { check_shape(shape, where); }, light.shape);
+  if (light.texture && !std::holds_alternative<Rectangle>(light.shape)) {
+    throw InputError("{}: only a rectangle light can have a texture", where);
+  }
   if (!is_finite(light.radiance) || light.radiance.x < 0 || light.radiance.y < 0 || light.radiance.z < 0) {
     throw InputError("{}: the radiance is {}; expected finite numbers from 0 up", where, show(light.radiance));
   }

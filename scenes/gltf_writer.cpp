@@ -1,5 +1,6 @@
 #include "scenes/checks.hpp"
 #include "scenes/glb_model.hpp"
+#include "scenes/light_texture.hpp"
 #include "scenes/writers.hpp"
 
 #include "base/assert.hpp"
@@ -31,7 +32,7 @@ class GlbBuilder {
     material.pbrMetallicRoughness.roughnessFactor = 1;
     if (light != nullptr) {
       // The factor is at most 1; the strength carries the rest.
-      const glm::dvec3& radiance = light->radiance;
+      const glm::dvec3 radiance = light->radiance * (light->texture ? mean_color(*light->texture) : glm::dvec3(1));
       const double strength = std::max({radiance.x, radiance.y, radiance.z});
       const glm::dvec3 factor = strength > 0 ? radiance / strength : glm::dvec3(0);
       material.emissiveFactor = {factor.x, factor.y, factor.z};
@@ -145,6 +146,11 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
   }
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     if (!has_body[i]) add_light(scene.lights[i], glb, notes);
+  }
+  for (const AreaLight& light : scene.lights) {
+    if (!light.texture) continue;
+    notes.push_back(
+        fmt::format("light \"{}\": its texture is left out; its mean colour stands in its place", light.name));
   }
   for (const Camera& camera : scene.cameras) {
     glb.add_camera(camera, static_cast<double>(scene.width) / scene.height);

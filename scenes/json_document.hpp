@@ -1,5 +1,8 @@
 #pragma once
 
+#include "base/error.hpp"
+
+#include <fmt/format.h>
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
@@ -19,6 +22,16 @@ struct Place {
   /// "scene.json: /meshes/0", or "scene.json" for the whole document.
   [[nodiscard]] std::string str() const;
 };
+
+/// Runs `make`; an Error of it gets the place in the scene file in front.
+template <typename Make>
+auto at_place(const Place& place, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{}: {}", place.str(), error.what()));
+  }
+}
 
 /// Parses JSON strictly. InputError with line and column for a syntax error, and with the JSON pointer for what
 /// libraries let pass in silence: a number beyond double's range, a key that stands twice, absurd nesting.

@@ -21,39 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Runs `make`; an Error of it gets the place in the scene file in front.
-template <typename Make>
-auto at_place(const Place& place, const Make& make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    throw Error(error.code(), fmt::format("{}: {}", place.str(), error.what()));
-  }
-}
-
-/// The named file, from the scene file's folder. Links are resolved before it is decided what lies outside.
-std::filesystem::path resolve_file(const std::string& name, const Place& place, const ReadOptions& options) {
-  const std::filesystem::path folder = std::filesystem::path(place.file).parent_path();
-  const std::filesystem::path path = folder / name;  // an absolute name stands for itself
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    // Said only of what lies inside: whether other files exist is none of the scene's business.
-    const std::filesystem::path lexical = std::filesystem::path(name).lexically_normal();
-    if (options.allow_outside || (!lexical.is_absolute() && *lexical.begin() != "..")) {
-      throw InputError("{}: no such file \"{}\" (paths are relative to the scene file)", place.str(), name);
-    }
-  }
-  if (options.allow_outside) return path;
-  const std::filesystem::path home = std::filesystem::canonical(folder.empty() ? "." : folder, error);
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
-  const std::filesystem::path relative = target.lexically_relative(home);
-  if (error || relative.empty() || *relative.begin() == "..") {
-    throw InputError("{}: \"{}\" leads outside the scene's folder; move it there or pass --allow-outside", place.str(),
-                     name);
-  }
-  return target;
-}
-
 mesh::TriangleSoup import_file(const std::filesystem::path& path, const std::string& shown, const Place& place,
                                Scene& scene) {
   return at_place(place, [&] {
@@ -177,6 +144,28 @@ Affine read_affine(const json& transform, const Place& place) {
 }
 
 }  // namespace
+
+std::filesystem::path resolve_file(const std::string& name, const Place& place, const ReadOptions& options) {
+  const std::filesystem::path folder = std::filesystem::path(place.file).parent_path();
+  const std::filesystem::path path = folder / name;  // an absolute name stands for itself
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    // Said only of what lies inside: whether other files exist is none of the scene's business.
+    const std::filesystem::path lexical = std::filesystem::path(name).lexically_normal();
+    if (options.allow_outside || (!lexical.is_absolute() && *lexical.begin() != "..")) {
+      throw InputError("{}: no such file \"{}\" (paths are relative to the scene file)", place.str(), name);
+    }
+  }
+  if (options.allow_outside) return path;
+  const std::filesystem::path home = std::filesystem::canonical(folder.empty() ? "." : folder, error);
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  const std::filesystem::path relative = target.lexically_relative(home);
+  if (error || relative.empty() || *relative.begin() == "..") {
+    throw InputError("{}: \"{}\" leads outside the scene's folder; move it there or pass --allow-outside", place.str(),
+                     name);
+  }
+  return target;
+}
 
 glm::dvec3 read_vector(const json& value) {
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};

@@ -5,6 +5,7 @@
 #include "scenes/json_document.hpp"
 #include "scenes/json_meshes.hpp"
 #include "scenes/json_schema.hpp"
+#include "scenes/light_texture.hpp"
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
@@ -60,8 +61,20 @@ glm::dvec3 unit(const glm::dvec3& direction) {
   return length == 0 || std::abs(length - 1) <= kRounding ? direction : direction / length;
 }
 
-AreaLight read_light(const json& value, const Place& place, std::string fallback_name,
-                     std::vector<std::string>& warnings) {
+Texture read_light_texture(const json& value, const Place& place, const ReadOptions& options, Scene& scene) {
+  if (!value.contains("rectangle")) {
+    throw InputError("{}: only a \"rectangle\" light can have a texture; take it away or make the light a rectangle",
+                     place.str());
+  }
+  const std::string name = value["texture"].get<std::string>();
+  const std::filesystem::path file = resolve_file(name, place, options);
+  Texture texture = at_place(place, [&] { return read_texture(file, name); });
+  scene.sources.push_back(file);
+  return texture;
+}
+
+AreaLight read_light(const json& value, const Place& place, std::string fallback_name, const ReadOptions& options,
+                     Scene& scene) {
   AreaLight light;
   light.name = read_name(value, place, std::move(fallback_name));
   if (value.contains("radiance")) light.radiance = read_vector(value["radiance"]);
@@ -74,8 +87,8 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
     check("rectangle");
     const double cosine = glm::dot(glm::normalize(rectangle.half_u), glm::normalize(rectangle.half_v));
     if (std::abs(cosine) > 1e-3) {  // only a hint: what decimals leave of a right angle is no reason to speak
-      warnings.push_back(fmt::format("{}: halfU and halfV are not at right angles; the light is a parallelogram",
-                                     (place / "rectangle").str()));
+      scene.warnings.push_back(fmt::format("{}: halfU and halfV are not at right angles; the light is a parallelogram",
+                                           (place / "rectangle").str()));
     }
   } else if (value.contains("disk")) {
     const json& shape = value["disk"];
@@ -91,14 +104,15 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
     light.shape = Sphere{read_vector(shape["center"]), shape["radius"].get<double>()};
     check("sphere");
   }
+  if (value.contains("texture")) light.texture = read_light_texture(value, place / "texture", options, scene);
   return light;
 }
 
-std::vector<AreaLight> read_lights(const json& document, const Place& root, std::vector<std::string>& warnings) {
+std::vector<AreaLight> read_lights(const json& document, const Place& root, const ReadOptions& options, Scene& scene) {
   std::vector<AreaLight> lights;
   for (const json& value : document["lights"]) {
     const Place place = root / "lights" / lights.size();
-    AreaLight light = read_light(value, place, fmt::format("light{}", lights.size()), warnings);
+    AreaLight light = read_light(value, place, fmt::format("light{}", lights.size()), options, scene);
     for (std::size_t i = 0; i < lights.size(); ++i) {
       if (lights[i].name != light.name) continue;
       throw InputError("{}: the name \"{}\" is that of light {} already; names of lights must differ", place.str(),
@@ -154,7 +168,7 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
     scene.height = document["size"][1].get<std::uint32_t>();
   }
   scene.cameras = read_cameras(document, root);
-  scene.lights = read_lights(document, root, scene.warnings);
+  scene.lights = read_lights(document, root, options, scene);
   for (const json& value : document["meshes"]) {
     const std::size_t index = scene.objects.size();
     const Place place = root / "meshes" / index;

@@ -44,11 +44,13 @@ void write_shape(const Sphere& sphere, TextStream& text) {
   text.print(R"(, "radius": )").number(sphere.radius).print("}}");
 }
 
-void write_light(const AreaLight& light, TextStream& text) {
+void write_light(const AreaLight& light, const std::string& texture_file, TextStream& text) {
   text.print(R"({{"name": {}, )", quoted(light.name));
   std::visit([&](const auto& shape) { write_shape(shape, text); }, light.shape);
   text.print(R"(, "radiance": )").array(light.radiance);
-  text.print(R"(, "twoSided": {}}})", light.two_sided);
+  text.print(R"(, "twoSided": {})", light.two_sided);
+  if (light.texture) text.print(R"(, "texture": {})", quoted(texture_file));
+  text.print("}}");
 }
 
 void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) {
@@ -92,7 +94,7 @@ void write_json(const Scene& scene, AtomicFile& file, Notes& notes) {
   text.print("\n  ],\n  \"lights\": [");
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     text.print("{}\n    ", i > 0 ? "," : "");
-    write_light(scene.lights[i], text);
+    write_light(scene.lights[i], texture_file(file.path(), i).filename().string(), text);
   }
   text.print("\n  ]\n}}\n");
   text.flush();

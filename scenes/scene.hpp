@@ -37,12 +37,22 @@ struct Sphere {
   double radius = 0;
 };
 
-/// An area light of constant radiance, in world space.
+/// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
+/// the right and half_v upward: texel (0, 0), the picture's top left, lies in the corner −half_u + half_v. Each texel
+/// is constant over its cell; nothing is filtered.
+struct Texture {
+  std::string file;                     ///< its name, for people
+  std::uint32_t width = 0, height = 0;  ///< texels
+  std::vector<glm::vec3> texels;        ///< linear red green blue, row by row from the top left
+};
+
+/// An area light in world space: of constant radiance, or with a texture that multiplies it.
 struct AreaLight {
   std::string name;
   std::variant<Rectangle, Disk, Polygon, Sphere> shape;
   glm::dvec3 radiance{10.0};
   bool two_sided = false;
+  std::optional<Texture> texture = {};  ///< of a rectangle only
 };
 
 struct Camera {
@@ -59,7 +69,7 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<AreaLight> lights;               ///< at least one; names are unique
   std::vector<Camera> cameras;                 ///< at least one
-  std::vector<std::filesystem::path> sources;  ///< mesh files that the scene names, as they were opened (JSON only)
+  std::vector<std::filesystem::path> sources;  ///< files that the scene names, as they were opened (JSON only)
   std::vector<std::string> warnings;  ///< what was skipped or changed on the way, each with its place and count
 };
 

@@ -80,6 +80,7 @@ Object get_object(WireReader& from) {
   return object;
 }
 
+/// Without a texture: the formats that come this way have none.
 AreaLight get_light(WireReader& from) {
   AreaLight light;
   light.name = from.get_string();

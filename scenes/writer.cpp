@@ -1,11 +1,16 @@
 #include "scenes/writer.hpp"
 
 #include "base/error.hpp"
+#include "scenes/light_texture.hpp"
 #include "scenes/writers.hpp"
 
 #include <cmath>
 
 namespace penumbra::scenes {
+
+std::filesystem::path texture_file(const std::filesystem::path& file, std::size_t light) {
+  return file.parent_path() / fmt::format("{}-light{}.exr", file.stem().string(), light);
+}
 
 std::vector<ObjectRange> object_ranges(const mesh::TriangleSoup& soup) {
   std::vector<ObjectRange> ranges;
@@ -57,6 +62,10 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
   AtomicFile output(file);
   Notes notes;
   write(scene, output, notes);
+  // The scene comes last: where it is, what it names is.
+  for (std::size_t i = 0; extension == ".json" && i < scene.lights.size(); ++i) {
+    if (scene.lights[i].texture) write_texture(*scene.lights[i].texture, texture_file(file, i));
+  }
   output.commit();
   return notes;
 }

@@ -10,9 +10,10 @@ namespace penumbra::scenes {
 
 /// Writes the scene in world space, triangles in the scene's order, in the format of the file's extension:
 /// - .json: penumbra-scene/1; reading it back gives the same scene to the last bit (inline triangles share no
-///   vertices, and a face is a triangle).
+///   vertices, and a face is a triangle). A light's texture is written beside it, "NAME-light0.exr" of "NAME.json".
 /// - .glb: positions in float32, materials with base colour, cameras; a rectangle or polygon light becomes an emissive
-///   flat mesh after all others (a disk one with 64 sides), unless a mesh of the scene is its body already.
+///   flat mesh after all others (a disk one with 64 sides), unless a mesh of the scene is its body already. In
+///   place of a texture stands its mean colour.
 /// - .obj: one object each, nothing but geometry.
 ///
 /// Returns what the format could not hold, in words. The file appears whole or not at all. UsageError for another

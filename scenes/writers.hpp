@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <iterator>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ using Notes = std::vector<std::string>;
 void write_json(const Scene& scene, AtomicFile& file, Notes& notes);
 void write_glb(const Scene& scene, AtomicFile& file, Notes& notes);
 void write_obj(const Scene& scene, AtomicFile& file, Notes& notes);
+
+/// Where write_scene puts the texture of a light of the scene in `file`: "room.json" → "room-light0.exr".
+std::filesystem::path texture_file(const std::filesystem::path& file, std::size_t light);
 
 /// Triangles first … first + count − 1 of the soup belong to `object`.
 struct ObjectRange {

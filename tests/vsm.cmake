@@ -1,17 +1,17 @@
-# View-sample mapping against the exact decision, closed forms and the ray caster.
+# View-sample mapping, and edge scatter, against the exact decision, closed forms and the ray caster.
 find_package(TBB REQUIRED)
 add_executable(vsm_tests
   ${CMAKE_CURRENT_LIST_DIR}/analytic/view_sample_closed_forms.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_closed_parts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_invariance.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_lattice.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/property/mask_lattice.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_patterns.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_triangle_tree.cpp)
-add_executable(agreement_tests ${CMAKE_CURRENT_LIST_DIR}/agreement/view_sample_raytrace.cpp)
+add_executable(agreement_tests ${CMAKE_CURRENT_LIST_DIR}/agreement/masks_raytrace.cpp)
 foreach(target vsm_tests agreement_tests)
   target_compile_definitions(${target} PRIVATE PENUMBRA_SCENES="${PROJECT_SOURCE_DIR}/scenes")
   target_link_libraries(${target} PRIVATE
-    penumbra_vsm penumbra_reference penumbra_scenes penumbra_warnings GTest::gtest_main TBB::tbb)
+    penumbra_vsm penumbra_volumes penumbra_reference penumbra_scenes penumbra_warnings GTest::gtest_main TBB::tbb)
 endforeach()
 gtest_discover_tests(vsm_tests PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
 gtest_discover_tests(agreement_tests TEST_FILTER "-*Full*" PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)

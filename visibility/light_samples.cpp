@@ -3,6 +3,7 @@
 
 #include "visibility/light_samples.hpp"
 
+#include "base/assert.hpp"
 #include "base/error.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/sample_patterns.hpp"
@@ -189,6 +190,16 @@ void Builder::operator()(const scenes::Polygon& shape) const {
   }
 }
 
+void add_texture(Light& light, const scenes::Texture& source) {
+  PENUMBRA_ASSERT(light.kind == LightKind::rectangle, "light \"{}\" is a {} with a texture", light.name,
+                  name_of(light.kind));
+  light.texture = make_light_texture(source);
+  light.weights = sample_weights(*light.texture, light.coordinates, light.name);
+  for (const glm::dvec2& st : light.coordinates) {
+    light.sample_colors.push_back(light.texture->colors[light.texture->texel_at(st)]);
+  }
+}
+
 }  // namespace
 
 const char* name_of(LightKind kind) {
@@ -237,6 +248,7 @@ Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const gl
     throw InputError("light \"{}\": its position relative to the scene's origin ({}, {}, {}) is not finite in float32",
                      light.name, origin.x, origin.y, origin.z);
   }
+  if (source.texture) add_texture(light, *source.texture);
   return light;
 }
 

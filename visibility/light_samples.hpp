@@ -1,11 +1,13 @@
 #pragma once
 
 #include "scenes/scene.hpp"
+#include "visibility/light_texture.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,11 @@ struct Light {
                                         ///< (rectangle); a disk's and a sphere's: on the unit disk; a polygon's:
                                         ///< over its bounding rectangle
 
+  std::optional<LightTexture> texture = {};  ///< of a rectangle; none: the radiance is constant
+  std::vector<double> weights;           ///< with a texture, of each light sample: V = Σ weight · visible; they add
+                                         ///< up to exactly 1 (sample_weights). Else empty: each is 1 / N
+  std::vector<glm::vec3> sample_colors;  ///< with a texture, of each light sample: its texel's colour. Else empty
+
   [[nodiscard]] std::uint32_t sample_count() const { return static_cast<std::uint32_t>(coordinates.size()); }
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
 };
@@ -61,7 +68,8 @@ struct Light {
 /// each of N strata of equal area, in L = round(√N) rows.
 std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
 
-/// Throws InputError for a light of zero area or one whose points are not finite in float32 relative to `origin`.
+/// Throws InputError for a light of zero area, one whose points are not finite in float32 relative to `origin`, or one
+/// whose samples all lie on black texels.
 /// If rows or grid rounded the count, `notes` (when given) gets a line that says so.
 Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
                  const SampleRequest& request, std::vector<std::string>* notes = nullptr);

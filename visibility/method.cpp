@@ -37,6 +37,18 @@ void Method::read_masks(std::span<std::uint32_t> masks) {
 
 void check_light(const MethodDescription& description, const Light& light) {
   const std::vector<LightKind>& can = description.lights;
+  if (light.texture && !description.textures) {
+    throw InputError(
+        "light \"{}\" has a texture; method {} knows none. Take another light (--light) or method (--method; raytrace "
+        "does textures)",
+        light.name, description.name);
+  }
+  if (light.rows == 0 && !description.any_pattern && light.kind == LightKind::rectangle) {
+    throw InputError(
+        "light \"{}\": method {} takes light samples in rows (--sample-pattern rows or grid), not {}; view-sample and "
+        "raytrace take any",
+        light.name, description.name, name_of(light.pattern));
+  }
   if (std::find(can.begin(), can.end(), light.kind) != can.end()) return;
   std::string kinds;
   for (const LightKind kind : can) kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));

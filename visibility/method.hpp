@@ -36,6 +36,8 @@ struct MethodDescription {
   Output output = Output::mask;
   std::string exact_for;          ///< what it is exact for, in words
   std::vector<LightKind> lights;  ///< shapes it can do
+  bool textures = true;           ///< weighs V by a light's texture
+  bool any_pattern = true;        ///< otherwise only light samples in rows (patterns rows and grid)
   std::vector<OptionDescription> options;
   /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;

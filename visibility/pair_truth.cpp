@@ -66,6 +66,10 @@ bool boxes_touch(const glm::vec3& p, const glm::vec3& l, const std::array<glm::v
 
 }  // namespace
 
+int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
+  return edge_sign(p, l, a, b, light).sign;
+}
+
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light) {
   const auto& [a, b, c] = corners;

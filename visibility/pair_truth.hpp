@@ -21,6 +21,11 @@ struct Meeting {
                                 ///< the signs that are not zero do not already say that the line passes the triangle by
 };
 
+/// On which side of the line p→l the edge a→b passes: the sign of det(l − p, a − p, b − p), and where that is zero the
+/// contract's reading of it (below), so that neighbouring triangles agree about their edge. 0 only if p is on the line
+/// a b or on the light's plane. Exact.
+int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light);
+
 /// Does the open segment p→l meet the triangle? Exact. An edge sign that is zero is read as that of
 /// l + ε(u) + ε²(v), with u, v the light's frame axes; zero-area triangles, and triangles whose plane contains p or l,
 /// are not met. Does not know about carriers: coplanar triangles are the caller's.

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/light_frame.hpp"
+#include "visibility/visible_share.hpp"
 #include "volumes/count_edges.comp.spv.hpp"
 #include "volumes/depth_judge.hpp"
 #include "volumes/edge_lists.hpp"
@@ -118,6 +119,12 @@ class DepthComplexity final : public DepthCounters {
   void read_masks(std::span<std::uint32_t> masks) override { masks_->read(masks); }
 
   void read_visibility(std::span<float> visibility) override {
+    if (!light_->weights.empty()) {
+      std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
+      read_masks(masks);
+      visibility::visible_shares(*light_, masks, visibility);
+      return;
+    }
     std::vector<std::uint32_t> counts(visibility.size());
     visible_->read(std::span(counts));
     const auto all = static_cast<double>(light_->sample_count());

@@ -9,6 +9,7 @@
 #include "render/tree_texels.hpp"
 #include "visibility/light_frame.hpp"
 #include "visibility/triangle_tree.hpp"
+#include "visibility/visible_share.hpp"
 #include "volumes/edge_scatter.shared.h"
 #include "volumes/edge_set.hpp"
 #include "volumes/find_edges.comp.spv.hpp"
@@ -153,6 +154,12 @@ class EdgeScatter final : public visibility::Method {
   }
 
   void read_visibility(std::span<float> visibility) override {
+    if (!light_->weights.empty()) {
+      std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
+      read_masks(masks);
+      visibility::visible_shares(*light_, masks, visibility);
+      return;
+    }
     std::vector<std::uint32_t> counts(visibility.size());
     visible_->read(std::span(counts));
     const auto all = static_cast<double>(light_->sample_count());
@@ -194,12 +201,7 @@ class EdgeScatter final : public visibility::Method {
   }
 
   void check_pattern() const {
-    if (!frame_.rows) {
-      throw InputError(
-          "light \"{}\": edge-scatter takes light samples in rows (--sample-pattern rows or grid), not {}; view-sample "
-          "takes any",
-          light_->name, visibility::name_of(light_->pattern));
-    }
+    PENUMBRA_ASSERT(frame_.rows, "light {} has no rows that a step describes", light_->name);
     const std::uint32_t lanes = device_->limits().subgroup_size;
     if (std::uint64_t{light_->columns} * lanes * 4 > device_->limits().max_shared_memory) {
       throw InputError(
@@ -444,6 +446,7 @@ visibility::MethodDescription edge_scatter_description() {
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup (rows of a rectangle light)",
           .lights = {visibility::LightKind::rectangle},
+          .any_pattern = false,
           .options = {},
           .verdict_on = verdict_on};
 }

@@ -5,6 +5,7 @@
 
 #include "mesh/parallel.hpp"
 #include "mesh/silhouettes.hpp"
+#include "volumes/closed_casters.hpp"
 #include "volumes/volume_count.shared.h"
 
 #include <glm/common.hpp>
@@ -66,8 +67,8 @@ std::optional<std::int32_t> count(const LightVolumes& volumes, const Inside& ins
 
 }  // namespace
 
-ShadowCasters::ShadowCasters(const visibility::SceneFloats& scene)
-    : scene_(&scene), positions_(mesh::widened(scene.positions)) {
+ShadowCasters::ShadowCasters(const visibility::SceneFloats& scene, Layers layers)
+    : scene_(&scene), positions_(mesh::widened(scene.positions)), layers_(layers) {
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.casts_shadow[i] == 0) continue;
     casters_.push_back(i);
@@ -76,12 +77,19 @@ ShadowCasters::ShadowCasters(const visibility::SceneFloats& scene)
   graph_ = mesh::build_edge_graph({positions_, triangles_});
 }
 
-LightVolumes ShadowCasters::seen_from(const glm::vec3& l, std::int32_t light_index) const {
-  std::vector<mesh::Side> sides = mesh::facings({positions_, triangles_}, graph_, l);
-  LightVolumes volumes{l, {}, {}};
+LightVolumes ShadowCasters::seen_from(const glm::vec3& l, const visibility::Light& light) const {
+  const mesh::MeshView view{positions_, triangles_};
+  std::vector<mesh::Side> sides = mesh::facings(view, graph_, l);
+  LightVolumes volumes{l, {}, {}, {}};
+  if (layers_ == Layers::one_a_solid) {
+    const std::vector<mesh::Side> all = sides;
+    keep_one_layer(light_sides(view, graph_, light, l), true, sides);
+    volumes.left_out.resize(scene_->triangles.size());
+    for (std::size_t i = 0; i < sides.size(); ++i) volumes.left_out[casters_[i]] = sides[i] != all[i] ? 1 : 0;
+  }
   volumes.caps.reserve(casters_.size());
   for (std::size_t i = 0; i < casters_.size(); ++i) {
-    if (scene_->emits[casters_[i]] == light_index) sides[i] = mesh::Side::on;
+    if (scene_->emits[casters_[i]] == light.index) sides[i] = mesh::Side::on;
     if (sides[i] == mesh::Side::on) continue;
     VolumeCap cap{scene_->corners(casters_[i]), scene_->plane[casters_[i]]};
     if (sides[i] == mesh::Side::back) std::swap(cap.corners[1], cap.corners[2]);

@@ -30,16 +30,23 @@ struct VolumeCap {
 struct LightVolumes {
   glm::vec3 l{0};
   std::vector<VolumeEdge> edges;
-  std::vector<VolumeCap> caps;  ///< of every triangle whose plane does not hold l
+  std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not hold l
+  std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: by Layers::one_a_solid; empty: none
+};
+
+/// Which triangles have a volume.
+enum class Layers {
+  every_triangle,
+  one_a_solid,  ///< of closed parts only what makes one layer of them: closed_casters.hpp
 };
 
 /// Everything that casts shadow, with its edges. `scene` must outlive it.
 class ShadowCasters {
  public:
-  explicit ShadowCasters(const visibility::SceneFloats& scene);
+  explicit ShadowCasters(const visibility::SceneFloats& scene, Layers layers = Layers::every_triangle);
 
   /// Seen from `l`, without the body of that light. Exact.
-  [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, std::int32_t light_index) const;
+  [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
   [[nodiscard]] std::size_t size() const { return casters_.size(); }
 
  private:
@@ -48,6 +55,7 @@ class ShadowCasters {
   std::vector<std::uint32_t> casters_;     // into the scene's triangles
   std::vector<mesh::Triangle> triangles_;  // the same, corners
   mesh::EdgeGraph graph_;
+  Layers layers_;
 };
 
 /// How many triangles the ray from l in this direction meets; nothing if double cannot tell.

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace penumbra::volumes {
 namespace {
@@ -15,32 +16,59 @@ class Judge {
   Judge(const RowJudgeInput& input, std::vector<gpu::MaskWord>& words) : in_(input), words_(words) {}
 
   void answer(const gpu::RowQuestion& question) {
-    const std::uint64_t rows = question.low | std::uint64_t{question.high} << 32U;
-    const std::uint32_t column_words = (in_.light.columns + 7) / 8, row_words = (in_.light.rows + 3) / 4;
-    const std::uint32_t pixel = question.pixel & ~gpu::kWholePixel;
-    const std::uint32_t end = std::min(question.first_row + 64, row_words * 4);
-    for (std::uint32_t first = question.first_row; first < end; first += 4) {
-      const auto asked = static_cast<std::uint32_t>(rows >> (first - question.first_row) & 15U);
-      if (asked == 0) continue;
-      std::uint32_t decided = 0;
-      for (std::uint32_t r = 0; r < 4; ++r) decided |= (asked >> r & 1U) * (0xffU << (8 * r));
-      for (std::uint32_t c = 0; c < column_words; ++c) {
-        const std::uint32_t at = pixel * column_words * row_words + c * row_words + first / 4;
-        words_.push_back({question.pixel, at, decided, bits_of(pixel, first, asked, c * 8)});
-      }
+    const std::size_t begin = words_.size();
+    answer_rows(question);
+    for (const std::uint32_t sample : {question.sample_1, question.sample_2}) {
+      if (sample != gpu::kNoSample) answer_sample(question, sample, begin);
     }
   }
 
  private:
-  [[nodiscard]] std::uint32_t bits_of(std::uint32_t pixel, std::uint32_t first_row, std::uint32_t asked,
-                                      std::uint32_t first_column) const {
-    std::uint32_t bits = 0;
+  [[nodiscard]] std::uint32_t row_words() const { return (in_.light.rows + 3) / 4; }
+  [[nodiscard]] std::uint32_t column_words() const { return (in_.light.columns + 7) / 8; }
+  /// The word of these 4 rows and 8 columns.
+  [[nodiscard]] std::uint32_t word_of(std::uint32_t pixel, std::uint32_t row, std::uint32_t column) const {
+    return (pixel * column_words() + column / 8) * row_words() + row / 4;
+  }
+
+  void answer_rows(const gpu::RowQuestion& question) {
+    const std::uint32_t pixel = question.pixel & ~gpu::kWholePixel;
+    const std::uint64_t rows = question.low | std::uint64_t{question.high} << 32U;
+    for (std::uint32_t row = question.first_row; row < std::min(question.first_row + 64, in_.light.rows); row += 4) {
+      const auto asked = static_cast<std::uint32_t>(rows >> (row - question.first_row) & 15U);
+      if (asked == 0) continue;
+      std::uint32_t bits = 0;
+      for (std::uint32_t r = 0; r < 4; ++r) bits |= (asked >> r & 1U) * (0xffU << (8 * r));
+      for (std::uint32_t column = 0; column < in_.light.columns; column += 8) {
+        words_.push_back(decide({question.pixel, word_of(pixel, row, column), bits, 0}, row, column));
+      }
+    }
+  }
+
+  /// A word is written once: what is decided joins the one that rows of the same question began.
+  void answer_sample(const gpu::RowQuestion& question, std::uint32_t sample, std::size_t begin) {
+    const std::uint32_t row = sample / in_.light.columns, column = sample % in_.light.columns;
+    const std::uint32_t word = word_of(question.pixel & ~gpu::kWholePixel, row, column);
+    const gpu::MaskWord one =
+        decide({question.pixel, word, 1U << (row % 4 * 8 + column % 8), 0}, row / 4 * 4, column / 8 * 8);
+    const auto same = std::find_if(words_.begin() + static_cast<std::ptrdiff_t>(begin), words_.end(),
+                                   [&](const gpu::MaskWord& w) { return w.word == word; });
+    if (same == words_.end()) {
+      words_.push_back(one);
+    } else {
+      same->bits = (same->bits & ~one.decided) | one.bits;
+      same->decided |= one.decided;
+    }
+  }
+
+  [[nodiscard]] gpu::MaskWord decide(gpu::MaskWord word, std::uint32_t first_row, std::uint32_t first_column) const {
+    const std::size_t pixel = in_.first_pixel + (word.pixel & ~gpu::kWholePixel);
     for (std::uint32_t i = 0; i < 32; ++i) {
       const std::uint32_t row = first_row + i / 8, column = first_column + i % 8;
-      if ((asked >> (i / 8) & 1U) == 0 || row >= in_.light.rows || column >= in_.light.columns) continue;
-      bits |= (is_visible(in_.first_pixel + pixel, in_.light.points[row * in_.light.columns + column]) ? 1U : 0U) << i;
+      if ((word.decided >> i & 1U) == 0 || row >= in_.light.rows || column >= in_.light.columns) continue;
+      word.bits |= (is_visible(pixel, in_.light.points[row * in_.light.columns + column]) ? 1U : 0U) << i;
     }
-    return bits;
+    return word;
   }
 
   [[nodiscard]] bool is_visible(std::size_t pixel, const glm::vec3& l) const {

@@ -20,8 +20,8 @@ struct RowJudgeInput {
   std::size_t first_pixel = 0;     ///< of the tile, in the samples
 };
 
-/// Decides every light sample of the rows asked about by exact predicates (visibility/pair_truth.hpp), on all cores.
-/// Words in the layout of scatter_edges.comp: 8 columns × 4 rows each.
+/// Decides every light sample asked about, those of whole rows and single ones, by exact predicates
+/// (visibility/pair_truth.hpp), on all cores. Words in the layout of scatter_edges.comp: 8 columns × 4 rows each.
 std::vector<gpu::MaskWord> judge_rows(const RowJudgeInput& input, std::span<const gpu::RowQuestion> questions);
 
 }  // namespace penumbra::volumes

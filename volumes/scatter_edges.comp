@@ -95,7 +95,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   const float error_near = turn ? error_b : error_a, error_far = turn ? error_a : error_b;
   const int jump = (near.y < far.y) == turn ? k : -k;     // crossing the edge to the right, if it runs upward: −k
   const vec2 way = far - near, low = min(a, b), high = max(a, b);
-  const float slope = way.x / way.y, steep = abs(slope);
+  const float slope = way.x / way.y, steep = way.y == 0.0 ? 1e30 : abs(slope);
 
   // Ends within their error of a row: on which side they are is open, and so is what that row has there.
   const vec2 rows = vec2(round(near.y), round(far.y));

@@ -15,6 +15,7 @@
 #include "visibility/pair_truth.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "volumes/light_volumes.hpp"
+#include "volumes/pass_times.hpp"
 #include "volumes/screen_box.hpp"
 #include "volumes/volume_count.frag.spv.hpp"
 #include "volumes/volume_count.shared.h"
@@ -74,15 +75,17 @@ bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& ca
 }  // namespace
 
 struct VolumeCount::State {
-  State(const render::Device& on, CountVariant which)
+  State(const render::Device& on, CountVariant which, Layers of)
       : device(&on),
         variant(which),
+        layers(of),
         sides(make_pass(on, "volume sides", kSide, which)),
         fans(make_pass(on, "volume far ends", kFan, which)),
         caps(make_pass(on, "volume caps", kCap, which)) {}
 
   const render::Device* device;
   CountVariant variant;
+  Layers layers;
   render::RasterPass sides, fans, caps;
 
   const SceneFloats* scene = nullptr;
@@ -121,8 +124,8 @@ struct VolumeCount::State {
   [[nodiscard]] std::int32_t count_exactly(std::size_t pixel) const;
 };
 
-VolumeCount::VolumeCount(const render::Device& device, CountVariant variant)
-    : state_(std::make_unique<State>(device, variant)) {}
+VolumeCount::VolumeCount(const render::Device& device, CountVariant variant, Layers layers)
+    : state_(std::make_unique<State>(device, variant, layers)) {}
 VolumeCount::~VolumeCount() = default;
 VolumeCount::VolumeCount(VolumeCount&&) noexcept = default;
 VolumeCount& VolumeCount::operator=(VolumeCount&&) noexcept = default;
@@ -133,7 +136,7 @@ void VolumeCount::prepare_mesh(const SceneFloats& scene) {
   s.light = nullptr;
   s.samples = nullptr;
   s.tree.reset();
-  s.casters.emplace(scene);
+  s.casters.emplace(scene, s.layers);
   // Counts are sums of at most three faces a triangle and edge; far from what 32 bits hold.
   PENUMBRA_ASSERT(s.casters->size() < (1u << 28), "{} triangles", s.casters->size());
 }
@@ -142,7 +145,7 @@ void VolumeCount::prepare_light(const visibility::Light& light) {
   State& s = *state_;
   PENUMBRA_ASSERT(s.casters.has_value(), "prepare_light before prepare_mesh");
   s.light = &light;
-  s.volumes = s.casters->seen_from(center_of(light), light.index);
+  s.volumes = s.casters->seen_from(center_of(light), light);
   s.boxes_found = false;
   s.totals = {.silhouette_edges = s.volumes.edges.size(), .caps = s.volumes.caps.size()};
 }
@@ -304,6 +307,7 @@ std::int32_t VolumeCount::State::count_exactly(std::size_t pixel) const {
   const glm::vec3 &p = samples->p[pixel], &l = volumes.l;
   std::int32_t count = 0;
   tree->for_each_near(glm::min(p, l), glm::max(p, l), [&](std::uint32_t triangle) {
+    if (!volumes.left_out.empty() && volumes.left_out[triangle] != 0) return;
     if (!visibility::may_occlude(*scene, *light, carrier, triangle)) return;
     count += visibility::segment_meets_triangle(p, l, scene->corners(triangle), *light).meets ? 1 : 0;
   });
@@ -350,19 +354,15 @@ std::span<const VolumeCount::Kind> VolumeCount::kinds() const {
 glm::vec3 VolumeCount::center() const {
   return state_->volumes.l;
 }
+const LightVolumes& VolumeCount::volumes() const {
+  return state_->volumes;
+}
 const VolumeCount::Totals& VolumeCount::totals() const {
   return state_->totals;
 }
 std::vector<visibility::PassTime> VolumeCount::take_pass_times() {
   std::vector<visibility::PassTime> sums;
-  for (const visibility::PassTime& time : std::exchange(state_->times, {})) {
-    const auto sum = std::ranges::find(sums, time.name, &visibility::PassTime::name);
-    if (sum == sums.end()) {
-      sums.push_back(time);
-    } else {
-      sum->milliseconds += time.milliseconds;
-    }
-  }
+  add_times(sums, std::exchange(state_->times, {}));
   return sums;
 }
 std::uint64_t VolumeCount::memory_bytes() const {

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
 #include "volumes/volume_count.shared.h"
+#include "volumes/determinant.glsl"
 
 // Where does the ray from p away from the eye (z-fail), or the segment from the eye to p (z-pass), go through this face
 // of shadow volumes, and in or out? Signs of determinants in double that must all be one sign; README.md, Counting,
@@ -24,20 +25,6 @@ layout(location = 1) flat in vec3 face_b;
 layout(location = 2) flat in vec3 face_c;
 layout(location = 3) flat in int face_weight;
 layout(location = 4) flat in uint face_plane;
-
-struct Value {
-  double value, bound;
-};
-
-double norm1(dvec3 v) { return abs(v.x) + abs(v.y) + abs(v.z); }
-
-Value det(dvec3 a, dvec3 b, dvec3 c) {
-  precise const double x = b.y * c.z - b.z * c.y;
-  precise const double y = b.z * c.x - b.x * c.z;
-  precise const double z = b.x * c.y - b.y * c.x;
-  precise const double value = a.x * x + a.y * y + a.z * z;
-  return Value(value, kDeterminantError * norm1(a) * norm1(b) * norm1(c));
-}
 
 Value negative(Value v) { return Value(-v.value, v.bound); }
 Value difference(Value v, Value w) { return Value(v.value - w.value, v.bound + w.bound); }

@@ -5,6 +5,7 @@
 #include "visibility/method.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
+#include "volumes/light_volumes.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -23,11 +24,12 @@ enum class CountVariant {
 /// How many shadow volumes of the light's centre each view sample is in.
 ///
 /// Exact (z_fail): the count is the number of triangles that the open segment from p to `center()` meets, as
-/// visibility::segment_meets_triangle says, what is coplanar with the carrier left out. Any soup, camera and light.
+/// visibility::segment_meets_triangle says, what is coplanar with the carrier left out, and of closed parts what
+/// `layers` leaves out. Any soup, camera and light.
 /// Faces are rasterised and counted in 32-bit integers, so their order cannot matter and nothing wraps.
 class VolumeCount {
  public:
-  VolumeCount(const render::Device& device, CountVariant variant);
+  VolumeCount(const render::Device& device, CountVariant variant, Layers layers = Layers::every_triangle);
   ~VolumeCount();
   VolumeCount(VolumeCount&&) noexcept;
   VolumeCount& operator=(VolumeCount&&) noexcept;
@@ -52,6 +54,8 @@ class VolumeCount {
 
   /// What the volumes belong to.
   [[nodiscard]] glm::vec3 center() const;
+  /// Of the light last prepared: silhouette edges, caps.
+  [[nodiscard]] const LightVolumes& volumes() const;
 
   /// Of the counts since prepare_light.
   struct Totals {

@@ -115,8 +115,8 @@ std::vector<int> carried_by_loops(const Casters& casters, const mesh::HalfEdgeVi
 }  // namespace
 
 const char* name_of(Invariant invariant) {
-  static constexpr std::array kNames = {"numbers", "cover",      "outcome",     "conservative",
-                                        "sampled", "polyhedron", "half-spaces", "closed-loops"};
+  static constexpr std::array kNames = {"numbers",    "cover",       "outcome",      "conservative", "sampled",
+                                        "polyhedron", "half-spaces", "closed-loops", "coverage"};
   static_assert(kNames.size() == kInvariants);
   return kNames[static_cast<std::size_t>(invariant)];
 }

@@ -23,13 +23,14 @@ enum class Invariant {
   polyhedron,    ///< cut by the box: closed, convex, oriented outward
   half_spaces,   ///< the half-space tests and that mesh agree on which points are inside
   closed_loops,  ///< around every vertex Σ k_e in = Σ k_e out; half-edge loops are closed and carry the same k_e
+  coverage,      ///< silhouettes add up to what triangles hide of the light (coverage_validation.hpp)
 };
-inline constexpr std::size_t kInvariants = 8;
+inline constexpr std::size_t kInvariants = 9;
 const char* name_of(Invariant invariant);
 
 struct Violation {
   Invariant invariant = Invariant::conservative;
-  std::optional<std::uint32_t> wedge;  ///< number in the list; nothing for closed_loops
+  std::optional<std::uint32_t> wedge;  ///< number in the list; nothing for closed_loops and coverage
   std::optional<std::uint32_t> plane;  ///< of the wedge
   glm::dvec3 point{0};                 ///< of the penumbra, yet outside; or where else the flaw is
   double distance = 0;                 ///< by which it is outside the plane

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/triangle_tree.hpp"
+#include "visibility/visible_share.hpp"
 #include "vsm/closed_parts.hpp"
 #include "vsm/find_leaves.comp.spv.hpp"
 #include "visibility/light_frame.hpp"
@@ -153,8 +154,10 @@ class ViewSampleMapping final : public visibility::Method {
       bands.push_back({band.first_row, half});
       ++counters_["splitBands"];
     }
-    resolve_.record(commands_, gpu::ResolvePush{pixels, light_->sample_count()}, {*masks_, *visibility_},
-                    (pixels + 63) / 64);
+    if (light_->weights.empty()) {  // else read_visibility adds weights, which floats could not do in any order
+      resolve_.record(commands_, gpu::ResolvePush{pixels, light_->sample_count()}, {*masks_, *visibility_},
+                      (pixels + 63) / 64);
+    }
     submit();
   }
 
@@ -177,7 +180,12 @@ class ViewSampleMapping final : public visibility::Method {
     }
   }
 
-  void read_visibility(std::span<float> visibility) override { visibility_->read(visibility); }
+  void read_visibility(std::span<float> visibility) override {
+    if (light_->weights.empty()) return visibility_->read(visibility);
+    std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
+    read_masks(masks);
+    visibility::visible_shares(*light_, masks, visibility);
+  }
 
   std::vector<visibility::PassTime> take_pass_times() override { return std::exchange(pass_times_, {}); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }

@@ -1,4 +1,4 @@
-// View-sample mapping and the ray caster on meshes that are broken: every defect of the generator, random soups on a
+// The mask methods and the ray caster on meshes that are broken: every defect of the generator, random soups on a
 // lattice, and the meshes of CGAL's demos, many of which are flawed.
 
 #include "tests/agreement/differences.hpp"
@@ -13,15 +13,15 @@ namespace {
 
 using tests::Differences;
 
-/// `allowed` of all pairs may differ; of those that do and are judged, view-sample must be right about every one.
+/// `allowed` of all pairs may differ; of those that do and are judged, the mask method must be right about every one.
 void expect_agreement(const std::string& name, const Differences& found, double allowed = 2e-5) {
   EXPECT_GT(found.pairs_all, 0U) << name;
   EXPECT_LE(static_cast<double>(found.differing), allowed * static_cast<double>(found.pairs_all)) << name;
-  EXPECT_EQ(found.view_sample_right, found.judged) << name << ": " << found.first_wrong;
+  EXPECT_EQ(found.mapped_right, found.judged) << name << ": " << found.first_wrong;
 }
 
 /// One device and one pair of methods for all cases of a test.
-class Meshes : public tests::DeviceTest {
+class Meshes : public tests::DeviceTest, public testing::WithParamInterface<tests::MaskMethod> {
  protected:
   void add(const std::string& name, const scenes::Scene& scene, std::uint32_t size,
            std::size_t most_judged = tests::kMostJudged) {
@@ -36,23 +36,31 @@ class Meshes : public tests::DeviceTest {
   }
 
  private:
-  tests::BothMethods methods_{device()};
+  tests::BothMethods methods_{device(), GetParam()};
   Differences total_;
 };
 
-using BrokenMeshes = Meshes;
+class BrokenMeshes : public Meshes {};
+class CgalMeshes : public Meshes {};
+
+const auto kMethods = testing::Values(tests::kViewSample, tests::kEdgeScatter);
+std::string name_of_case(const testing::TestParamInfo<tests::MaskMethod>& info) {
+  return info.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(By, BrokenMeshes, kMethods, name_of_case);
+INSTANTIATE_TEST_SUITE_P(By, CgalMeshes, kMethods, name_of_case);
 
 scenes::Scene broken_scene(const std::vector<std::string>& defects, std::uint32_t size, double half_extent) {
   return tests::with_a_floor(mesh::make_broken_mesh({defects, size, {0, 1, 0}, half_extent}).soup);
 }
 
-TEST_F(BrokenMeshes, EveryDefectAlone) {
+TEST_P(BrokenMeshes, EveryDefectAlone) {
   for (const mesh::DefectName& defect : mesh::broken_defects()) {
     add(std::string(defect.name), broken_scene({std::string(defect.name)}, 2, 1), 48);
   }
 }
 
-TEST_F(BrokenMeshes, AllDefectsTogether) {
+TEST_P(BrokenMeshes, AllDefectsTogether) {
   std::vector<std::string> all;
   for (const mesh::DefectName& defect : mesh::broken_defects()) all.emplace_back(defect.name);
   for (const std::uint32_t size : {1u, 2u, 3u, 16u}) {
@@ -60,7 +68,7 @@ TEST_F(BrokenMeshes, AllDefectsTogether) {
   }
 }
 
-TEST_F(BrokenMeshes, LatticeSoups) {
+TEST_P(BrokenMeshes, LatticeSoups) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const mesh::TriangleSoup soup = mesh::make_lattice_soup({16 * seed, 1 + seed % 4, seed, {0, 1.5, 0}, 1});
     add(fmt::format("soup, seed {}", seed), tests::with_a_floor(soup), 64);
@@ -72,9 +80,7 @@ scenes::Scene corpus_scene(const std::string& name) {
   return tests::with_a_floor(tests::fitted(mesh::import_mesh(file).soup));
 }
 
-using CgalMeshes = Meshes;
-
-TEST_F(CgalMeshes, ADozen) {
+TEST_P(CgalMeshes, ADozen) {
   for (const char* name : {"cow", "cube-shuffled", "degtri_sliding", "hole", "icosahedron", "mushroom", "negative",
                            "open_cube", "plane", "quads_to_stitch", "tetra_intersected_by_triangle", "tet-shuffled"}) {
     add(name, corpus_scene(name), 128);
@@ -82,7 +88,7 @@ TEST_F(CgalMeshes, ADozen) {
 }
 
 /// Open, self-intersecting, shuffled, degenerate: every differing pair is judged.
-TEST_F(CgalMeshes, FlawedOnesFull) {
+TEST_P(CgalMeshes, FlawedOnesFull) {
   for (const char* name : {"diplodocus", "cow", "cube-shuffled", "cube4-shuffled", "blobby-shuffled", "oblong-shuffled",
                            "tet-shuffled", "boeing", "mannequin-devil", "elephant-with-holes", "degtri_sliding",
                            "tetra_intersected_by_triangle", "mech-holes-shark"}) {
@@ -90,7 +96,7 @@ TEST_F(CgalMeshes, FlawedOnesFull) {
   }
 }
 
-TEST_F(CgalMeshes, EveryOneFull) {
+TEST_P(CgalMeshes, EveryOneFull) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_CGAL_CORPUS "/meshes")) {
     if (entry.path().extension() == ".off") names.push_back(entry.path().stem().string());

@@ -1,9 +1,10 @@
 #pragma once
 
-// View-sample mapping and the ray caster, pair by pair on the same view and light samples. They share no code that
-// decides anything: a hierarchy of shafts and float arithmetic with error bounds here, Embree's rays there. Where they
-// differ, the exact decision says who is right.
+// A mask method and the ray caster, pair by pair on the same view and light samples. They share no code that decides
+// anything: hierarchies of shafts and float arithmetic with error bounds here, Embree's rays there. Where they differ,
+// the exact decision says who is right.
 
+#include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
 
 #include "render/visibility_buffer.hpp"
@@ -12,7 +13,7 @@ namespace penumbra::tests {
 
 struct Differences {
   std::size_t pairs_all = 0, pairs = 0, differing = 0;
-  std::size_t judged = 0, view_sample_right = 0, zero_predicate = 0;
+  std::size_t judged = 0, mapped_right = 0, zero_predicate = 0;
   std::string first_wrong;
 
   void operator+=(const Differences& other) {
@@ -20,7 +21,7 @@ struct Differences {
     pairs += other.pairs;
     differing += other.differing;
     judged += other.judged;
-    view_sample_right += other.view_sample_right;
+    mapped_right += other.mapped_right;
     zero_predicate += other.zero_predicate;
     if (first_wrong.empty()) first_wrong = other.first_wrong;
   }
@@ -49,7 +50,7 @@ inline Differences differences(const visibility::SceneFloats& floats, const visi
       ++result.judged;
       result.zero_predicate += truth.zero_predicate ? 1 : 0;
       if (mapped.visible(pixel, j) == (truth.outcome == visibility::PairOutcome::visible)) {
-        ++result.view_sample_right;
+        ++result.mapped_right;
       } else if (result.first_wrong.empty()) {
         result.first_wrong = describe_pair(floats, samples, pixel, light, j);
       }
@@ -60,19 +61,20 @@ inline Differences differences(const visibility::SceneFloats& floats, const visi
 
 inline void print(const std::string& name, const Differences& found) {
   fmt::print(
-      "{}: {} of {} pairs differ ({:.2e}; {:.2e} of those in penumbra); of {} judged, {} with a zero, view-sample is "
+      "{}: {} of {} pairs differ ({:.2e}; {:.2e} of those in penumbra); of {} judged, {} with a zero, the mask method "
+      "is "
       "right about {}\n",
       name, found.differing, found.pairs_all,
       static_cast<double>(found.differing) / static_cast<double>(found.pairs_all),
       static_cast<double>(found.differing) / static_cast<double>(found.pairs), found.judged, found.zero_predicate,
-      found.view_sample_right);
+      found.mapped_right);
 }
 
 /// Both methods, kept from picture to picture: making them costs more than a small picture.
 class BothMethods {
  public:
-  explicit BothMethods(const render::Device& device)
-      : device_(device), map_(vsm::make_view_sample(device, {})), trace_(reference::make_ray_traced({})) {}
+  explicit BothMethods(const render::Device& device, const MaskMethod& mapped = kViewSample)
+      : device_(device), map_(mapped.make(device, {})), trace_(reference::make_ray_traced({})) {}
 
   Differences on(const scenes::Scene& scene, std::uint32_t size, const visibility::SampleRequest& request = {},
                  std::size_t most_judged = kMostJudged) {

@@ -147,9 +147,10 @@ TEST_P(Render, ChosenLightComesFirst) {
   EXPECT_NE(key.floats.at("V"), fill.floats.at("V"));
 }
 
-INSTANTIATE_TEST_SUITE_P(With, Render, testing::Values("raytrace", "view-sample"), [](const auto& test) {
-  return std::string(test.param) == "raytrace" ? "Raytrace" : "ViewSample";
-});
+INSTANTIATE_TEST_SUITE_P(With, Render, testing::Values("raytrace", "view-sample", "edge-scatter"),
+                         [](const auto& test) {
+                           return std::string(test.param) == "raytrace" ? "Raytrace" : "ViewSample";
+                         });
 
 using RenderOnce = ProgramTest;
 
@@ -175,7 +176,17 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
 TEST_F(RenderOnce, DefaultMethodIsGeometryBased) {
   const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "edge-scatter");
+}
+
+TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
+  const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "sobol"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "view-sample");
+  const Outcome named =
+      run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered", "--method", "edge-scatter"});
+  EXPECT_EQ(named.code, 3);
+  EXPECT_THAT(named.err, HasSubstr("--sample-pattern rows"));
 }
 
 TEST_F(RenderOnce, MeshesOutsideTheRuleAreAlwaysLit) {

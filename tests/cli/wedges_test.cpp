@@ -122,7 +122,8 @@ TEST_F(WedgesCommand, RefusesWhatItCannotDo) {
   refused({"--from", "center"}, "centre or anywhere");
   refused({"--light", "moon"}, "key");
   refused({"--export", path("w.stl")}, ".glb");
-  refused({"--explain", "1,2"}, "not there yet");
+  refused({"--explain", "48,0"}, "48x32");
+  refused({"--svg", path("w.svg")}, "--explain");
   EXPECT_EQ(files(), std::vector<std::string>{"scene.json"});
   EXPECT_EQ(run({"wedges", path("nothing.json")}).code, 3);
 }

@@ -1,4 +1,4 @@
-// View-sample mapping and the ray caster on every shipped scene.
+// The mask methods and the ray caster on every shipped scene.
 
 #include "tests/agreement/differences.hpp"
 
@@ -11,20 +11,22 @@ namespace {
 
 class AgreementBase : public tests::DeviceTest {
  protected:
-  void check(const scenes::Scene& scene, std::uint32_t size) {
-    const tests::Differences found = tests::BothMethods(device()).on(scene, size);
-    tests::print(fmt::format("{} {}x{}", scene.name, size, size), found);
+  void check(const scenes::Scene& scene, std::uint32_t size, const tests::MaskMethod& method) {
+    const tests::Differences found = tests::BothMethods(device(), method).on(scene, size);
+    tests::print(fmt::format("{} {} {}x{}", method.name, scene.name, size, size), found);
     EXPECT_GT(found.pairs, 0U);
     EXPECT_LE(static_cast<double>(found.differing), 2e-5 * static_cast<double>(found.pairs_all));
     EXPECT_LE(static_cast<double>(found.differing), 2e-4 * static_cast<double>(found.pairs));
-    EXPECT_EQ(found.view_sample_right, found.judged) << found.first_wrong;
+    EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
   }
 };
 
-class AgreementTest : public AgreementBase, public testing::WithParamInterface<std::string> {
+class AgreementTest : public AgreementBase,
+                      public testing::WithParamInterface<std::tuple<std::string, tests::MaskMethod>> {
  protected:
   void check(std::uint32_t size) {
-    AgreementBase::check(scenes::read_scene(std::string(PENUMBRA_SCENES "/") + GetParam()), size);
+    const auto& [name, method] = GetParam();
+    AgreementBase::check(scenes::read_scene(std::string(PENUMBRA_SCENES "/") + name), size, method);
   }
 };
 
@@ -35,7 +37,7 @@ TEST_F(AgreementOn, ParallelogramLights) {
     scenes::Scene scene = scenes::read_scene(PENUMBRA_SCENES "/fusion.json");
     auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
     light.half_v += skew * light.half_u;
-    check(scene, 96);
+    for (const tests::MaskMethod& method : {tests::kViewSample, tests::kEdgeScatter}) check(scene, 96, method);
   }
 }
 
@@ -50,8 +52,9 @@ std::vector<std::string> shipped_scenes(bool with_large_ones) {
   return names;
 }
 
-std::string name_of_case(const testing::TestParamInfo<std::string>& info) {
-  std::string name = std::filesystem::path(info.param).stem().string();
+std::string name_of_case(const testing::TestParamInfo<std::tuple<std::string, tests::MaskMethod>>& info) {
+  const auto& [scene, method] = info.param;
+  std::string name = fmt::format("{}_{}", std::filesystem::path(scene).stem().string(), method.name);
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
@@ -61,13 +64,19 @@ using Agreement = AgreementTest;
 TEST_P(Agreement, WithTheRayCaster) {
   check(128);
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, Agreement, testing::ValuesIn(shipped_scenes(false)), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
+                         testing::Combine(testing::ValuesIn(shipped_scenes(false)),
+                                          testing::Values(tests::kViewSample, tests::kEdgeScatter)),
+                         name_of_case);
 
 class AgreementFull : public AgreementTest {};
 TEST_P(AgreementFull, WithTheRayCaster) {
   check(512);
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, AgreementFull, testing::ValuesIn(shipped_scenes(true)), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Scenes, AgreementFull,
+                         testing::Combine(testing::ValuesIn(shipped_scenes(true)),
+                                          testing::Values(tests::kViewSample, tests::kEdgeScatter)),
+                         name_of_case);
 
 }  // namespace
 }  // namespace penumbra

@@ -1,12 +1,13 @@
-// View-sample mapping where nothing is in general position: every pair equals the exact decision, without tolerance.
+// The mask methods where nothing is in general position: every pair equals the exact decision, without tolerance.
 
 #include "tests/agreement/lattice.hpp"
+#include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
 
 #include <cmath>
 #include <optional>
 
-namespace penumbra::vsm {
+namespace penumbra {
 namespace {
 
 using tests::LatticeSoup;
@@ -39,21 +40,23 @@ void anchor(scenes::Scene& scene) {
   tests::add_object(scene, "anchor", {{glm::dvec3(-4), glm::dvec3(4, 4, -4), glm::dvec3(4)}}).casts_shadow = false;
 }
 
-class LatticeSoups : public tests::DeviceTest, public testing::WithParamInterface<int> {};
+class LatticeSoups : public tests::DeviceTest,
+                     public testing::WithParamInterface<std::tuple<int, tests::MaskMethod>> {};
 
 TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
-  const auto method = make_view_sample(device(), {});
+  const auto [range, under_test] = GetParam();
+  const auto method = under_test.make(device(), {});
   PairCounts counts;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
-    LatticeSoup soup(seed + 1000 * static_cast<std::uint32_t>(GetParam()), GetParam());
+    LatticeSoup soup(seed + 1000 * static_cast<std::uint32_t>(range), range);
     visibility::SampleRequest request;
     const scenes::Scene scene = lattice_scene(soup, request);
     const SceneFloats floats = visibility::make_scene_floats(scene);
     const Light rows = visibility::make_light(scene, 0, floats.origin, request);
     const ViewSamples samples = all_samples(scene, floats, soup.random());
-    const Light light = seed % 3 == 0 ? rows : scattered(rows, seed % 3 == 2);
+    const Light light = seed % 3 == 0 || !under_test.any_light ? rows : scattered(rows, seed % 3 == 2);
     const tests::Masks masks = tests::run(*method, floats, light, samples);
-    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << GetParam();
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << range;
   }
   EXPECT_GT(counts.visible, counts.pairs / 20);
   EXPECT_GT(counts.blocked, counts.pairs / 20);
@@ -62,9 +65,15 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
   EXPECT_GT(counts.zero, counts.pairs / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Range, LatticeSoups, testing::Values(1, 2, 4));
+std::string name_of_soups(const testing::TestParamInfo<std::tuple<int, tests::MaskMethod>>& info) {
+  return fmt::format("{}_{}", std::get<1>(info.param).name, std::get<0>(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Range, LatticeSoups,
+                         testing::Combine(testing::Values(1, 2, 4),
+                                          testing::Values(tests::kViewSample, tests::kEdgeScatter)),
+                         name_of_soups);
 
-using HardScenes = tests::DeviceTest;
+class HardScenes : public tests::DeviceTest, public testing::WithParamInterface<tests::MaskMethod> {};
 
 /// A method may refuse a light that float32 cannot span together with the scene; it may not be wrong about it.
 std::optional<tests::Masks> run_or_refuse(visibility::Method& method, const SceneFloats& floats, const Light& light,
@@ -78,8 +87,8 @@ std::optional<tests::Masks> run_or_refuse(visibility::Method& method, const Scen
 
 /// Needles so thin that a double cross product of their edges is mostly rounding, in scenes of mixed magnitudes: as
 /// carriers, as occluders, far from and at the origin.
-TEST_F(HardScenes, NeedlesOfMixedMagnitudes) {
-  const auto method = make_view_sample(device(), {});
+TEST_P(HardScenes, NeedlesOfMixedMagnitudes) {
+  const auto method = GetParam().make(device(), {});
   PairCounts counts;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
@@ -117,8 +126,8 @@ TEST_F(HardScenes, NeedlesOfMixedMagnitudes) {
 }
 
 /// Coordinates over forty powers of two: a cluster of tiny triangles inside large ones, with the light near either.
-TEST_F(HardScenes, MagnitudesFarApart) {
-  const auto method = make_view_sample(device(), {});
+TEST_P(HardScenes, MagnitudesFarApart) {
+  const auto method = GetParam().make(device(), {});
   PairCounts counts;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     std::mt19937 random(seed);
@@ -138,7 +147,8 @@ TEST_F(HardScenes, MagnitudesFarApart) {
                                                   light_size * glm::dvec3(0, 0.1, 0.6)));
     scene.lights[0].two_sided = seed % 3 == 0;
     const SceneFloats floats = visibility::make_scene_floats(scene);
-    const auto pattern = seed % 4 < 2 ? visibility::SamplePattern::rows : visibility::SamplePattern::jittered;
+    const auto pattern =
+        seed % 4 < 2 || !GetParam().any_light ? visibility::SamplePattern::rows : visibility::SamplePattern::jittered;
     Light light;
     try {
       light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, pattern, 0});
@@ -156,8 +166,8 @@ TEST_F(HardScenes, MagnitudesFarApart) {
 }
 
 /// A light as large as the sun and as far: the scene is a speck beside it.
-TEST_F(HardScenes, LightsFarAway) {
-  const auto method = make_view_sample(device(), {});
+TEST_P(HardScenes, LightsFarAway) {
+  const auto method = GetParam().make(device(), {});
   PairCounts counts;
   for (int exponent = 0; exponent <= 60; exponent += 2) {
     std::mt19937 random(static_cast<std::uint32_t>(exponent));
@@ -173,6 +183,7 @@ TEST_F(HardScenes, LightsFarAway) {
         distance * glm::dvec3(0.3, 1, 0.2), distance * glm::dvec3(0.2, 0.05, 0), distance * glm::dvec3(0, 0.05, 0.2)));
     const SceneFloats floats = visibility::make_scene_floats(scene);
     for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
+      if (!GetParam().any_light && pattern != visibility::SamplePattern::rows) continue;
       const Light light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, pattern, 0});
       const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
       const std::optional<tests::Masks> masks = run_or_refuse(*method, floats, light, samples);
@@ -187,29 +198,32 @@ TEST_F(HardScenes, LightsFarAway) {
 }
 
 /// A picture with nothing in it, and one where nothing casts shadow.
-TEST_F(HardScenes, NothingToHideTheLight) {
+TEST_P(HardScenes, NothingToHideTheLight) {
   for (const bool empty_view : {false, true}) {
     scenes::Scene scene;
     tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4})).casts_shadow = false;
     scene.lights.push_back(tests::ceiling_light(3, 1));
     scene.cameras.push_back(tests::camera({0, 2, 6}, empty_view ? glm::dvec3(0, 9, 9) : glm::dvec3(0)));
     const tests::Stage stage(scene, 17, 11);
-    const tests::Masks masks = tests::map_view_samples(device(), stage.floats, stage.light, stage.samples);
+    const tests::Masks masks = tests::run(*GetParam().make(device(), {}), stage.floats, stage.light, stage.samples);
     for (std::size_t pixel = 0; pixel < stage.samples.size(); ++pixel)
       ASSERT_EQ(masks.visible_count(pixel), 256U) << pixel;
   }
 }
 
-TEST_F(HardScenes, SphereLightsAreRefused) {
+TEST_P(HardScenes, SphereLightsAreRefused) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   scene.lights.emplace_back();
   scene.lights[0].shape = scenes::Sphere{{0, 3, 0}, 1};
   scene.cameras.push_back(tests::camera({0, 2, 6}, {0, 0, 0}));
   const tests::Stage stage(scene, 8, 8);
-  EXPECT_THROW(tests::map_view_samples(device(), stage.floats, stage.light, stage.samples), InputError);
-  EXPECT_THROW(make_view_sample(device(), {{"bias", "0.1"}}), UsageError);
+  EXPECT_THROW(tests::run(*GetParam().make(device(), {}), stage.floats, stage.light, stage.samples), InputError);
+  EXPECT_THROW(GetParam().make(device(), {{"bias", "0.1"}}), UsageError);
 }
 
+INSTANTIATE_TEST_SUITE_P(By, HardScenes, testing::Values(tests::kViewSample, tests::kEdgeScatter),
+                         [](const auto& by) { return by.param.name; });
+
 }  // namespace
-}  // namespace penumbra::vsm
+}  // namespace penumbra

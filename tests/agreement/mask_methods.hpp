@@ -1,0 +1,25 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+#include "volumes/edge_scatter.hpp"
+#include "vsm/view_sample.hpp"
+
+#include <memory>
+#include <ostream>
+
+namespace penumbra::tests {
+
+/// A method that promises every bit to be the truth of its pair.
+struct MaskMethod {
+  const char* name;
+  std::unique_ptr<visibility::Method> (*make)(const render::Device&, const visibility::MethodOptions&);
+  bool any_light;  ///< otherwise only light samples in rows of a rectangle
+
+  friend std::ostream& operator<<(std::ostream& out, const MaskMethod& method) { return out << method.name; }
+};
+
+inline constexpr MaskMethod kViewSample{"view_sample", vsm::make_view_sample, true};
+inline constexpr MaskMethod kEdgeScatter{"edge_scatter", volumes::make_edge_scatter, false};
+
+}  // namespace penumbra::tests

@@ -1,0 +1,130 @@
+// The other ways to measure what lies beyond an edge: a table, and a texture texel by texel.
+
+#include "tests/agreement/soft_stage.hpp"
+
+#include "volumes/coverage_table.hpp"
+#include "volumes/soft_volume.hpp"
+#include "volumes/texture_weights.hpp"
+
+#include <glm/geometric.hpp>
+
+namespace penumbra::volumes {
+namespace {
+
+using tests::Errors;
+using tests::SoftStage;
+
+class SoftVolumeMeasures : public tests::DeviceTest {
+ protected:
+  static std::vector<float> run(const SoftStage& stage, const visibility::MethodOptions& options = {}) {
+    return stage.run(*make_soft_volume(device(), options));
+  }
+  static void make_disk(scenes::Scene& scene) {
+    const auto rectangle = std::get<scenes::Rectangle>(scene.lights.at(0).shape);
+    scene.lights[0].shape =
+        scenes::Disk{rectangle.center, glm::cross(rectangle.half_u, rectangle.half_v), glm::length(rectangle.half_u)};
+  }
+  /// A checkered texture with a dark corner.
+  static scenes::Texture checkered(std::uint32_t width, std::uint32_t height) {
+    scenes::Texture texture;
+    texture.width = width;
+    texture.height = height;
+    for (std::uint32_t i = 0; i < width * height; ++i) {
+      const float bright = i == 0 ? 0.0F : 0.25F + 0.5F * static_cast<float>((i % width + i / width) % 2);
+      texture.texels.emplace_back(bright, 0.8F * bright, 0.5F);
+    }
+    return texture;
+  }
+};
+
+TEST_F(SoftVolumeMeasures, TheTableKeepsWithinItsBound) {
+  for (const char* name : {"fusion", "parallel-square", "broken"}) {
+    for (const bool disk : {false, true}) {
+      scenes::Scene scene = tests::shipped_scene(name);
+      if (disk) make_disk(scene);
+      const SoftStage stage(scene, device(), 40, 30);
+      const Casters casters = casters_of(stage.floats, stage.light);
+      const SoftVisibility soft(stage.floats, stage.light, casters);
+      const std::vector<float> found = run(stage, {{"coverage", "table"}});
+      const double reach = disk ? kDiskTableReach : kRectangleTableReach;
+      double largest = 0, tightest = 1;
+      std::size_t moved = 0;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!stage.judged(i)) continue;
+        const LayerSum layers = soft.at(stage.lit(i), Viewer::center);
+        double swept = 0;
+        for (const CoveredEdge& edge : layers.edges) {
+          const glm::dvec2 from = table_point(soft.outline(), edge.clipped.from),
+                           to = table_point(soft.outline(), edge.clipped.to);
+          ASSERT_LE(glm::length(from - edge.clipped.from), reach);
+          ASSERT_LE(glm::length(to - edge.clipped.to), reach);
+          swept += std::abs(edge.multiplicity) * reach *
+                   (glm::length(edge.clipped.to - edge.clipped.from) + glm::length(to - from)) / 2;
+        }
+        // Beside it, the tolerance of soft_volume_twin.cpp.
+        const double bound = swept / soft.outline().area + 1e-6, error = std::abs(found[i] - layers.visibility);
+        ASSERT_LE(error, bound) << name << ", pixel " << i;
+        largest = std::max(largest, error);
+        if (swept > 0) tightest = std::min(tightest, bound - error);
+        moved += error > 1e-6 ? 1 : 0;
+      }
+      fmt::print("{}, {}: the table is off by {:.4f} at most; its bound is not nearer than {:.4f}\n", name,
+                 disk ? "disk" : "rectangle", largest, tightest);
+      EXPECT_GT(moved, 10U) << name;
+    }
+  }
+}
+
+TEST_F(SoftVolumeMeasures, TexturesAreIntegratedTexelByTexel) {
+  for (const auto& [width, height] : {std::pair{1u, 1u}, {2u, 3u}, {7u, 5u}, {64u, 64u}}) {
+    scenes::Scene scene = tests::shipped_scene("fusion");
+    scene.lights[0].texture = checkered(width, height);
+    if (width == 1) scene.lights[0].texture->texels = {glm::vec3(1)};
+    const SoftStage stage(scene, device(), 40, 30);
+    const Casters casters = casters_of(stage.floats, stage.light);
+    const SoftVisibility soft(stage.floats, stage.light, casters);
+    const TextureWeights weights(*stage.light.texture);
+    const std::vector<float> found = run(stage);
+    const std::vector<double> expected = stage.at_judged(
+        [&](std::size_t i) { return textured_visibility(weights, soft.at(stage.lit(i), Viewer::center)); });
+    const Errors errors = tests::errors_of(found, expected);
+    fmt::print("{}x{} texels: off by {:.1e} at most\n", width, height, errors.largest);
+    // As soft_volume_twin.cpp; means over less than 2⁻²⁰ cost up to 2⁻²⁰ · the weight of a texel.
+    EXPECT_LE(errors.largest, 1e-6) << "pixel " << errors.largest_at;
+    if (width > 1) continue;
+    const Errors plain = tests::errors_of(found, stage.twin(Viewer::center));
+    EXPECT_LE(plain.largest, 1e-6) << "an even texture is none";
+  }
+}
+
+/// Boards beside each other, so that the method's model holds: exact areas say what the texture hides.
+TEST_F(SoftVolumeMeasures, TexturedLightsAgreeWithTheExactArea) {
+  scenes::Scene scene = tests::floor_and_light(0.4);
+  for (int i = 0; i < 9; ++i) {
+    const glm::dvec3 center((i % 3 - 1) * 1.2, 0.3 + 0.06 * i, (i / 3 - 1) * 1.2);
+    tests::add_object(scene, "board", tests::quad(center, {0.25, 0.03, 0.1 * (i % 4)}, {-0.1 * (i % 4), 0.05, 0.2}));
+  }
+  scene.lights[0].texture = checkered(5, 4);
+  const SoftStage stage(scene, device(), 64, 48);
+  const std::vector<double> exact = stage.exact();
+  for (const char* split : {"1", "3"}) {
+    const Errors errors = tests::errors_of(run(stage, {{"split", split}}), exact);
+    fmt::print("boards under a texture, split {}: {} in penumbra, off by {:.1e} at most\n", split, errors.penumbra,
+               errors.largest);
+    EXPECT_LE(errors.largest, 2e-3);
+    EXPECT_GT(errors.penumbra, 100U);
+  }
+  const Errors table = tests::errors_of(run(stage, {{"coverage", "table"}}), exact);
+  fmt::print("boards under a texture, by a table: off by {:.4f} at most\n", table.largest);
+  // A convex region of [−1, 1]² has a perimeter of at most 8, also once its corners are moved: 2 · reach of the area,
+  // and no texel is twice the mean.
+  EXPECT_LE(table.largest, 4 * kRectangleTableReach);
+}
+
+TEST_F(SoftVolumeMeasures, ATextureIsRefusedWhereItIsTooWide) {
+  visibility::LightTexture texture{0x10000, 1, {}, std::vector<double>(0x10000, 1.0), 1};
+  EXPECT_THROW(TextureWeights{texture}, ResourceError);
+}
+
+}  // namespace
+}  // namespace penumbra::volumes

@@ -1,0 +1,162 @@
+// All methods under textured lights: the same pairs as without, V from the weights of what is visible, and beauty.
+
+#include "compare/beauty.hpp"
+#include "maps/accumulate.hpp"
+#include "maps/pcss.hpp"
+#include "tests/agreement/support.hpp"
+#include "tests/unit/textured_lights_support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace penumbra::tests {
+namespace {
+
+using visibility::SamplePattern;
+using visibility::SampleRequest;
+
+class TexturedLightMethods : public DeviceTest {
+ protected:
+  using Make = std::function<std::unique_ptr<visibility::Method>()>;
+  /// The mask methods.
+  static std::vector<Make> makers() {
+    return {[] { return reference::make_ray_traced({}); }, [] { return vsm::make_view_sample(device(), {}); },
+            [] {
+              return maps::make_accumulate(device(), {{"size", "64"}});
+            }};
+  }
+  static Masks run_on(const Make& make, const Stage& stage, std::uint32_t rows = 0) {
+    const auto method = make();
+    return run(*method, stage.floats, stage.light, stage.samples, rows);
+  }
+  static Stage stage_with(std::optional<scenes::Texture> texture, const SampleRequest& request) {
+    return {board_under_light(std::move(texture)), 40, 30, request};
+  }
+};
+
+scenes::Texture random_texture(std::uint32_t width, std::uint32_t height, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto level = [&] { return static_cast<float>(random() % 4) / 3.0f; };
+  return texture_of(width, height, [&](std::uint32_t x, std::uint32_t y) {
+    return x + y == 0 ? glm::vec3(1) : glm::vec3(level(), level(), level());
+  });
+}
+
+TEST_F(TexturedLightMethods, PairsStayAsTheyAreAndVAddsWeights) {
+  const SampleRequest request{200, 0, 0, SamplePattern::jittered, 7};
+  const Stage plain = stage_with({}, request), textured = stage_with(random_texture(9, 5, 1), request);
+  for (const Make& make : makers()) {
+    const Masks without = run_on(make, plain), with = run_on(make, textured), in_bands = run_on(make, textured, 7);
+    EXPECT_EQ(with.words, without.words);
+    EXPECT_EQ(with.visibility, in_bands.visibility);
+    int part = 0;
+    for (std::size_t i = 0; i < with.visibility.size(); ++i) {
+      double v = 0;
+      for (std::uint32_t j = textured.light.sample_count(); j-- > 0;) {
+        if (with.visible(i, j)) v += textured.light.weights[j];
+      }
+      ASSERT_EQ(with.visibility[i], static_cast<float>(v)) << i;
+      part += v > 0 && v < 1 ? 1 : 0;
+    }
+    EXPECT_GT(part, 50);
+  }
+}
+
+TEST_F(TexturedLightMethods, AConstantTextureGivesTheBytesOfNone) {
+  for (const std::uint32_t count : {64u, 225u}) {
+    const SampleRequest request{count, 0, 0, SamplePattern::rows, 0};
+    const Stage plain = stage_with({}, request);
+    const Stage textured = stage_with(constant_texture(6, 11, glm::vec3(0.1f, 0.5f, 0.9f)), request);
+    for (const Make& make : makers()) EXPECT_EQ(run_on(make, textured).visibility, run_on(make, plain).visibility);
+  }
+}
+
+/// The half of the scene's light at −axis or at +axis (side −1 or 1), axis its halfU or halfV.
+scenes::Scene half_light_scene(glm::dvec3 scenes::Rectangle::*axis, int side) {
+  scenes::Scene scene = board_under_light({});
+  auto& rectangle = std::get<scenes::Rectangle>(scene.lights[0].shape);
+  rectangle.*axis *= 0.5;
+  rectangle.center += static_cast<double>(side) * rectangle.*axis;
+  return scene;
+}
+
+// Sixteen by sixteen cell-centred samples, of which eight by sixteen are on a half: the very points of the half light's
+// own samples, so that V is equal, not nearly so.
+const SampleRequest kWhole{256, 16, 16, SamplePattern::grid, 0}, kHalfU{128, 16, 8, SamplePattern::grid, 0},
+    kHalfV{128, 8, 16, SamplePattern::grid, 0};
+
+TEST_F(TexturedLightMethods, HalfBlackIsHalfALight) {
+  for (const int side : {-1, 1}) {
+    const auto texture = texture_of(
+        2, 1, [&](std::uint32_t x, std::uint32_t) { return glm::vec3((x == 0) == (side < 0) ? 1.0f : 0.0f); });
+    const Stage whole = stage_with(texture, kWhole),
+                half(half_light_scene(&scenes::Rectangle::half_u, side), 40, 30, kHalfU);
+    for (const Make& make : {makers()[0], makers()[1]}) {  // accumulate's maps are fitted to the whole light
+      EXPECT_EQ(run_on(make, whole).visibility, run_on(make, half).visibility);
+    }
+  }
+}
+
+std::vector<glm::vec3> beauty_of(const Stage& stage, const compare::LightVisibility& seen) {
+  const std::vector<glm::dvec3> colors(stage.floats.object.empty() ? 0 : 8, glm::dvec3(0.5));
+  return compare::integrate_beauty({stage.floats, stage.samples, colors, std::span(&stage.light, 1)}, {&seen, 1});
+}
+
+TEST_F(TexturedLightMethods, BeautyTakesEachSamplesColour) {
+  // Red above, blue below: red is what the upper half gives, blue the lower one, but for the order of sums in double
+  // and one rounding to float.
+  const auto texture =
+      texture_of(1, 2, [](std::uint32_t, std::uint32_t y) { return y == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1); });
+  const Stage whole = stage_with(texture, kWhole);
+  const Stage upper(half_light_scene(&scenes::Rectangle::half_v, 1), 40, 30, kHalfV),
+      lower(half_light_scene(&scenes::Rectangle::half_v, -1), 40, 30, kHalfV);
+  const Masks seen = trace(whole), seen_upper = trace(upper), seen_lower = trace(lower);
+  const std::vector<float> third(whole.samples.size(), 1.0f / 3);
+  const auto masked = beauty_of(whole, {seen.words, {}}), scaled = beauty_of(whole, {{}, third});
+  const auto red = beauty_of(upper, {seen_upper.words, {}}), blue = beauty_of(lower, {seen_lower.words, {}});
+  const auto scaled_red = beauty_of(upper, {{}, third});
+  for (std::size_t i = 0; i < masked.size(); ++i) {
+    ASSERT_FLOAT_EQ(masked[i].r, red[i].r);
+    ASSERT_FLOAT_EQ(masked[i].b, blue[i].b);
+    ASSERT_EQ(masked[i].g, 0);
+    ASSERT_FLOAT_EQ(scaled[i].r, scaled_red[i].r);
+  }
+}
+
+TEST_F(TexturedLightMethods, TheBodyShowsThePictureUprightToWhoStandsBeforeIt) {
+  scenes::Scene scene;
+  add_object(scene, "body", quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0})).emits = 0;
+  scene.lights.push_back(rectangle_light({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));  // emits toward +z
+  scene.lights[0].radiance = glm::dvec3(2);
+  scene.lights[0].texture = texture_of(4, 4, [](std::uint32_t x, std::uint32_t y) {
+    return glm::vec3(static_cast<float>(x) + 1, static_cast<float>(y) + 1, 1);
+  });
+  scene.cameras.push_back(camera({0, 0, 4}, {0, 0, 0}, 90));  // sees y from −4 to 4: a pixel is half a unit
+  const Stage stage(scene, 16, 16, {16, 4, 4, SamplePattern::grid, 0});
+  const std::vector<float> all(256, 1.0f);
+  const auto picture = beauty_of(stage, {{}, all});
+  for (std::uint32_t y = 0; y < 4; ++y) {
+    for (std::uint32_t x = 0; x < 4; ++x) {
+      EXPECT_EQ(picture[(y + 6) * 16 + x + 6], 2.0f * glm::vec3(x + 1, y + 1, 1)) << x << ", " << y;
+    }
+  }
+}
+
+TEST_F(TexturedLightMethods, ScalarMethodsKeepTheirV) {
+  const Stage plain = stage_with({}, {}), textured = stage_with(random_texture(4, 4, 2), {});
+  const auto value = [](const Stage& stage) {
+    const auto method = maps::make_pcss(device(), {{"size", "64"}});
+    method->prepare_mesh(stage.floats);
+    method->prepare_light(stage.light);
+    method->prepare_view(stage.samples);
+    method->evaluate({0, 8});
+    std::vector<float> v(std::size_t{8} * stage.samples.width);
+    method->read_visibility(v);
+    return v;
+  };
+  EXPECT_EQ(value(plain), value(textured));
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,118 @@
+// wedges --explain and the coverage that --validate checks: what is printed, written as JSON, drawn, and refused.
+#include "tests/cli/program.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+using ExplainCommand = ProgramTest;
+
+/// A floor seen from above, from 4 units up with a field of view of 90°: pixel (x, y) of 8 × 8 is the floor's point
+/// (x − 3.5, y − 3.5). A board of half-size 0.25 at height 1 under a light of half-size `half` at height 2.
+std::string scene_with(const std::string& light, const std::string& meshes = "") {
+  return R"({"format": "penumbra-scene/1", "size": [8, 8],
+    "camera": {"eye": [0, 4, 0], "target": [0, 0, 0], "up": [0, 0, -1], "verticalFov": 90},
+    "meshes": [)" +
+         meshes + R"(
+      {"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [3.25, 0, 0], "halfV": [0, 0, -3.25]}},
+      {"name": "board", "triangles": [[0.25, 1, -0.25, 0.75, 1, -0.25, 0.75, 1, 0.25],
+                                      [0.25, 1, -0.25, 0.75, 1, 0.25, 0.25, 1, 0.25]]}],
+    "lights": [)" +
+         light + "]}";
+}
+
+const std::string kSquare =
+    R"({"name": "key", "rectangle": {"center": [0, 2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}})";
+
+TEST_F(ExplainCommand, NamesEveryWedgeAndAddsUpToTheExactArea) {
+  const std::string scene = write("scene.json", scene_with(kSquare)).string();
+  // The pixel's floor point is (0.5, 0, 0.5): the board appears at s in (0, 1), t in (−1, 0): a quarter of the light,
+  // two of its edges on the light's rim and two through its centre.
+  const Outcome outcome = run({"wedges", scene, "--explain", "4,4", "--json", path("w.json"), "--svg", path("w.svg")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("pixel 4,4: floor"), HasSubstr("V = 0.75"), HasSubstr("exact area"),
+                                 Not(HasSubstr("none of its wedges"))));
+  const json wedges = json::parse(read("w.json"));
+  const json& explained = wedges.at("explain");
+  double sum = 0;
+  for (const json& wedge : explained.at("wedges")) {
+    EXPECT_EQ(std::abs(wedge.at("multiplicity").get<int>()), 1);
+    EXPECT_LT(wedge.at("wedge").get<std::size_t>(), wedges.at("wedges").size());
+    sum += wedge.at("area").get<double>();
+  }
+  const json& center = explained.at("centre");
+  EXPECT_NEAR(sum, center.at("sum").get<double>(), 1e-12);
+  EXPECT_NEAR(center.at("constant").get<int>() + sum, 0.25, 1e-12);
+  EXPECT_NEAR(center.at("V").get<double>(), 0.75, 1e-12);
+  EXPECT_NEAR(explained.at("receiver").at("V").get<double>(), 0.75, 1e-12);
+  EXPECT_NEAR(explained.at("exactV").get<double>(), 0.75, 1e-12);
+  EXPECT_EQ(explained.at("edgesOutsideTheirWedges"), 0);
+  EXPECT_THAT(read("w.svg"), AllOf(testing::StartsWith("<svg"), testing::EndsWith("</svg>\n"),
+                                   HasSubstr("exact V = 0.750000"), Not(HasSubstr("nan")), Not(HasSubstr("inf"))));
+}
+
+TEST_F(ExplainCommand, ExplainsDisksAndPolygons) {
+  for (const char* light : {R"({"name": "key", "disk": {"center": [0, 2, 0], "normal": [0, -1, 0], "radius": 1}})",
+                            R"({"name": "key", "polygon": [[-1, 2, -1], [1, 2, -1], [1.5, 2, 0], [0, 2, 1.5]]})"}) {
+    const std::string scene = write("scene.json", scene_with(light)).string();
+    const Outcome outcome =
+        run({"wedges", scene, "--explain", "4,4", "--json", path("w.json"), "--svg", path("w.svg"), "--validate"});
+    ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    const json wedges = json::parse(read("w.json"));
+    const json& explained = wedges.at("explain");
+    EXPECT_GT(explained.at("exactV").get<double>(), 0.5);
+    EXPECT_LT(explained.at("exactV").get<double>(), 1);
+    EXPECT_NEAR(explained.at("centre").at("V").get<double>(), explained.at("exactV").get<double>(), 1e-7);
+    EXPECT_GT(wedges.at("checks").at("coverage").get<int>(), 0);
+    EXPECT_GT(wedges.at("coverage").at("singleLayer").get<int>(), 0);
+    EXPECT_THAT(read("w.svg"), Not(HasSubstr("nan")));
+  }
+}
+
+TEST_F(ExplainCommand, SaysWhyThereIsNothingToAdd) {
+  const std::string scene =
+      write("scene.json", scene_with(kSquare, R"({"name": "mat", "quad": {"center": [2.5, 0.0625, 2.5],
+        "halfU": [0.75, 0, 0], "halfV": [0, 0, -0.75]}, "receivesShadow": false},)"))
+          .string();
+  const auto said = [&](const char* pixel, const char* what) {
+    const Outcome outcome = run({"wedges", scene, "--explain", pixel, "--svg", path("w.svg")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr(what)) << pixel;
+  };
+  said("0,0", "background, no surface; V = 1");
+  said("6,6", "mat receives no shadow; V = 1");
+  EXPECT_EQ(files(), std::vector<std::string>{"scene.json"});  // no picture of nothing
+  const std::string below = write("below.json", scene_with(R"({"name": "key", "rectangle":
+      {"center": [0, -2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}})"))
+                                .string();
+  EXPECT_THAT(run({"wedges", below, "--explain", "1,4"}).out, HasSubstr("behind the light; V = 0"));
+}
+
+TEST_F(ExplainCommand, RefusesASphereAndABadName) {
+  const std::string scene =
+      write("scene.json", scene_with(R"({"name": "bulb", "sphere": {"center": [0, 2, 0], "radius": 0.5}})")).string();
+  const Outcome sphere = run({"wedges", scene, "--explain", "4,4"});
+  EXPECT_EQ(sphere.code, 3);
+  EXPECT_THAT(sphere.err, AllOf(HasSubstr("bulb"), HasSubstr("rectangle, a disk or a polygon")));
+  EXPECT_THAT(run({"wedges", scene, "--validate"}).out, HasSubstr("coverage: not of a sphere"));
+  EXPECT_EQ(run({"wedges", scene, "--explain", "4,4", "--svg", path("w.png")}).code, 2);
+}
+
+TEST_F(ExplainCommand, DrawsBesideTheExportByDefault) {
+  const std::string scene = write("scene.json", scene_with(kSquare)).string();
+  const Outcome outcome = run({"wedges", scene, "--explain", "4,4", "--export", path("w.ply")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(files(), testing::Contains("w-4-4.svg"));
+}
+
+}  // namespace
+}  // namespace penumbra::tests

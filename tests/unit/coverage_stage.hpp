@@ -1,0 +1,56 @@
+#pragma once
+
+#include "reference/exact_area.hpp"
+#include "tests/unit/exact_area_scenes.hpp"
+#include "volumes/layer_areas.hpp"
+#include "volumes/soft_visibility.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace penumbra::tests {
+
+/// A scene's soft shadow volumes for its first light beside its exact areas.
+struct CoverageStage {
+  explicit CoverageStage(const scenes::Scene& scene)
+      : floats(visibility::make_scene_floats(scene)),
+        light(visibility::make_light(scene, 0, floats.origin, {1})),
+        casters(volumes::casters_of(floats, light)),
+        soft(floats, light, casters),
+        area(floats) {
+    area.set_light(light);
+  }
+  CoverageStage(const CoverageStage&) = delete;
+  CoverageStage& operator=(const CoverageStage&) = delete;
+
+  /// On the carrier, triangle 0, seen from above.
+  [[nodiscard]] volumes::LitPoint lit(const glm::vec3& p) const {
+    const reference::Receiver receiver = receiver_at(floats, p);
+    return {receiver.p, receiver.carrier, receiver.facing};
+  }
+  [[nodiscard]] volumes::LayerSum center(const glm::vec3& p) const { return soft.at(lit(p), volumes::Viewer::center); }
+  [[nodiscard]] volumes::LayerSum receiver(const glm::vec3& p) const {
+    return soft.at(lit(p), volumes::Viewer::receiver);
+  }
+  [[nodiscard]] double exact(const glm::vec3& p) const { return area.visibility(receiver_at(floats, p)); }
+  [[nodiscard]] std::vector<std::vector<glm::dvec2>> layers(const glm::vec3& p) const {
+    return volumes::projected_layers(light, p, soft.layers(lit(p)));
+  }
+
+  visibility::SceneFloats floats;
+  visibility::Light light;
+  volumes::Casters casters;
+  volumes::SoftVisibility soft;
+  reference::ExactArea area;
+};
+
+/// A shape's triangles as corners, for add_object.
+inline std::vector<Corners> corners_of(const mesh::TriangleSoup& soup) {
+  std::vector<Corners> result;
+  for (const mesh::Triangle& t : soup.triangles) {
+    result.push_back({soup.positions[t[0]], soup.positions[t[1]], soup.positions[t[2]]});
+  }
+  return result;
+}
+
+}  // namespace penumbra::tests

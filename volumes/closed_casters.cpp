@@ -1,0 +1,115 @@
+#include "volumes/closed_casters.hpp"
+
+#include "base/assert.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace penumbra::volumes {
+namespace {
+
+using mesh::EdgeGraph;
+using mesh::MeshView;
+using mesh::Side;
+
+struct Component {
+  std::vector<std::uint32_t> triangles;
+  bool closed = true;
+};
+
+/// Walks from `first`, winding each triangle as its neighbours: turn is ±1.
+Component wind_component(const EdgeGraph& graph, std::uint32_t first, std::vector<std::int8_t>& turn) {
+  Component component{{first}};
+  turn[first] = 1;
+  for (std::size_t i = 0; i < component.triangles.size(); ++i) {
+    const std::uint32_t t = component.triangles[i];
+    component.closed = component.closed && graph.kind[t] == mesh::TriangleKind::proper;
+    for (const std::uint32_t edge : graph.triangle_edges[t]) {
+      if (edge == EdgeGraph::kNoEdge) continue;
+      const std::span<const mesh::Incidence> around = graph.around(edge);
+      component.closed = component.closed && around.size() == 2;
+      const auto own = std::ranges::find(around, t, &mesh::Incidence::triangle);
+      for (const mesh::Incidence& other : around) {
+        if (other.triangle == t) continue;
+        const auto wanted = static_cast<std::int8_t>(own->reversed != other.reversed ? turn[t] : -turn[t]);
+        if (turn[other.triangle] == 0) {
+          turn[other.triangle] = wanted;
+          component.triangles.push_back(other.triangle);
+        }
+        component.closed = component.closed && turn[other.triangle] == wanted;
+      }
+    }
+  }
+  return component;
+}
+
+std::array<glm::dvec3, 3> corners_of(const MeshView& mesh, std::uint32_t triangle) {
+  const mesh::Triangle& t = mesh.triangles[triangle];
+  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
+
+/// Wound by `turn`: positive if front is outside. Seen from one of its own vertices, so that far away is no worse.
+double signed_volume(const MeshView& mesh, const Component& component, const std::vector<std::int8_t>& turn) {
+  const glm::dvec3 from = corners_of(mesh, component.triangles.front())[0];
+  double sum = 0;
+  for (const std::uint32_t t : component.triangles) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    sum += turn[t] * glm::dot(a - from, glm::cross(b - from, c - from));
+  }
+  return sum;
+}
+
+/// Is the winding number of the part around c other than 0? The crossings of a segment that ends beyond its box.
+bool is_around(const MeshView& mesh, const Component& component, const std::vector<std::int8_t>& turn,
+               const visibility::Light& light, const glm::vec3& c) {
+  glm::dvec3 lower = corners_of(mesh, component.triangles.front())[0], upper = lower;
+  for (const std::uint32_t t : component.triangles) {
+    for (const glm::dvec3& corner : corners_of(mesh, t)) {
+      lower = glm::min(lower, corner);
+      upper = glm::max(upper, corner);
+    }
+  }
+  const glm::dvec3 at(c);
+  if (glm::any(glm::lessThan(at, lower)) || glm::any(glm::greaterThan(at, upper))) return false;
+  const glm::vec3 beyond(upper + (upper - lower) + 1.0);
+  int winding = 0;
+  for (const std::uint32_t t : component.triangles) {
+    const auto [a, b, d] = corners_of(mesh, t);
+    const std::array<glm::vec3, 3> corners = {glm::vec3(a), glm::vec3(b), glm::vec3(d)};  // they were floats
+    if (!visibility::segment_meets_triangle(c, beyond, corners, light).meets) continue;
+    winding += turn[t] * static_cast<int>(mesh::side_of_plane(corners[0], corners[1], corners[2], c));
+  }
+  return winding != 0;
+}
+
+}  // namespace
+
+std::vector<Side> light_sides(const MeshView& mesh, const EdgeGraph& graph, const visibility::Light& light,
+                              const glm::vec3& c) {
+  std::vector<Side> sides(mesh.triangles.size(), Side::on);
+  std::vector<std::int8_t> turn(mesh.triangles.size(), 0);
+  for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
+    if (turn[first] != 0) continue;
+    const Component component = wind_component(graph, first, turn);
+    if (!component.closed) continue;
+    int toward_light = signed_volume(mesh, component, turn) < 0 ? -1 : 1;
+    if (is_around(mesh, component, turn, light, c)) toward_light = -toward_light;
+    for (const std::uint32_t t : component.triangles) sides[t] = static_cast<Side>(toward_light * turn[t]);
+  }
+  return sides;
+}
+
+void keep_one_layer(std::span<const Side> light_sides, bool from_light, std::span<Side> facings) {
+  PENUMBRA_ASSERT(light_sides.size() == facings.size(), "{} for {} triangles", light_sides.size(), facings.size());
+  for (std::size_t i = 0; i < facings.size(); ++i) {
+    if (light_sides[i] == Side::on) continue;
+    const Side counted = from_light ? light_sides[i] : mesh::opposite(light_sides[i]);
+    if (facings[i] != counted) facings[i] = Side::on;
+  }
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// A rectangle cut in n × n equal rectangles, each a light of its own (without samples): stored in floats, so that
+/// neighbours meet to within an ulp of their coordinates. n = 1: the light itself.
+std::vector<visibility::Light> light_parts(const visibility::Light& light, std::uint32_t n);
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,54 @@
+// Structs written once for C++ and GLSL: footprints of penumbra wedges, view samples, push constants.
+#ifdef __cplusplus
+#pragma once
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <cstdint>
+namespace penumbra::volumes::gpu {
+using uint = std::uint32_t;
+using glm::vec2;
+using glm::vec3;
+#define DOUBLE3(name) double name[3]
+#else
+#define DOUBLE3(name) f64vec3 name
+#endif
+
+/// A silhouette edge a b, `weight` times (VolumeEdge), and where on the screen its wedge is.
+struct WedgeFace {
+  vec3 a, b;
+  int weight;
+  uint number;  // of the edge, in LightWedges
+  uint corner_count;
+  vec2 corners[8];
+};
+
+struct WedgeReceiver {
+  vec3 p;
+  uint counted;  // 0: leave this pixel alone
+};
+
+/// The light's frame. A point x of its plane has the coordinates (u_dual · (x − c), v_dual · (x − c)): a rectangle is
+/// [−1, 1]², a disk the unit disk. n points to where u × v does, of any length.
+struct WedgePush {
+  DOUBLE3(c);
+  DOUBLE3(u_dual);
+  DOUBLE3(v_dual);
+  DOUBLE3(n);
+  uint width;                 // of the whole picture
+  uint first_row, row_count;  // the tile
+  uint texels;                // of a texture: width, and height · 2¹⁶
+};
+
+/// Sums are whole multiples of 2⁻³² of the light, in 64 bits. A term is off by 2⁻³³: 2¹⁶ of them by less than 10⁻⁵.
+/// Each is at most |k| lights, and all |k| add up to less than 3 · 2²⁸ (VolumeCount): no sum leaves its 64 bits.
+const double kSumUnit = 1.0 / 4294967296.0;
+
+const uint kRectangle = 0, kDisk = 1;
+
+/// How much of the light is on a side of an edge: its area; by a table; of a texture, texel by texel.
+const uint kArea = 0, kTable = 1, kTexture = 2;
+
+#ifdef __cplusplus
+}  // namespace penumbra::volumes::gpu
+#endif
+#undef DOUBLE3
