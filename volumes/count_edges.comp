@@ -46,9 +46,9 @@ precise vec3 project(vec3 d) {
 
 // The error of a projected point's coordinates. (bound X)
 float error_of(float far, float w, float from_foot, float away) {
-  const float q = at.height / w;
-  return kRound * (4.0 * per_length * far * q + from_foot * (4.0 * far / w + 4.0 * away / at.height + 3.0) +
-                   per_length * (4.0 * away + push.cut_reach) + 16.0 * (half_cells.x + half_cells.y)) +
+  const float q = at.height / w, along_normal = (4.0 + 4.0 * skew) * (far / w + away / at.height);
+  return kRound * (8.0 * per_length * far * q + from_foot * (along_normal + 8.0) + per_length * (4.0 * away + push.cut_reach) +
+                   16.0 * (half_cells.x + half_cells.y)) +
          per_length * push.deviation;
 }
 
@@ -118,7 +118,7 @@ Edge see(uint slot, bool used) {
   Edge edge;
   edge.a = seen_a.xy;
   edge.b = seen_b.xy;
-  edge.error = 1.5 * max(error_a, error_b) + 128.0 * kRound;  // (bound near)
+  edge.error = 1.5 * max(error_a, error_b) + 128.0 * kRound * skew;  // (bound near)
   const int k = push.side < 0.0 ? -both : both;           // seen from behind, counter-clockwise is clockwise in (X, Y)
   edge.k = kHalves == 0 ? k : clamp(k, -1, 1);
   const vec2 low = min(edge.a, edge.b) - edge.error, high = max(edge.a, edge.b) + edge.error, size = 2.0 * half_cells;

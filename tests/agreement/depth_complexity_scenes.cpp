@@ -37,7 +37,7 @@ class DepthScenesBase : public tests::DeviceTest, public testing::WithParamInter
     EXPECT_GT(found.pairs, 0U);
     EXPECT_LE(static_cast<double>(found.differing), 2e-5 * static_cast<double>(found.pairs_all));
     EXPECT_LE(static_cast<double>(found.differing), 2e-4 * static_cast<double>(found.pairs));
-    EXPECT_EQ(found.view_sample_right, found.judged) << found.first_wrong;  // here: depth complexity is
+    EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
     fmt::print("{} {}x{} {}: {} of {} pairs are not the ray caster's, {} left to exact predicates\n", scene.name, size,
                size, visibility::name_of(request.pattern), found.differing, found.pairs_all,
                soup->counters()["openPairs"]);
