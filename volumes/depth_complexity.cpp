@@ -178,6 +178,9 @@ class DepthComplexity final : public DepthCounters {
 
   /// False when the list of questions was too short; it has grown then.
   bool try_tile() {
+    if (variant_ == Variant::laine) {  // each view sample asks for its reference ray
+      question_capacity_ = std::max(question_capacity_, static_cast<std::uint32_t>(pixels() + pixels() / 8));
+    }
     render::grow(*device_, questions_, "open samples", std::uint64_t{question_capacity_} * sizeof(gpu::DepthQuestion));
     if (keeps_depths_) commands_.fill(*depths_, static_cast<std::uint32_t>(kNoCounter));
     gpu::ScatterPush push{};

@@ -59,7 +59,7 @@ void expect_truth(const render::Device& device, int range, std::uint32_t count) 
 
 class DepthLattice : public tests::DeviceTest, public testing::WithParamInterface<int> {};
 TEST_P(DepthLattice, EveryPairIsTheExactDecision) {
-  expect_truth(device(), GetParam(), 20);
+  expect_truth(device(), GetParam(), 12);
 }
 INSTANTIATE_TEST_SUITE_P(Range, DepthLattice, testing::Values(1, 2, 4));
 
@@ -102,7 +102,6 @@ TEST_F(DepthHard, SoupsAllAroundTheLight) {
   }
   EXPECT_GT(counts.visible, counts.pairs / 20);
   EXPECT_GT(counts.blocked, counts.pairs / 10);
-  RecordProperty("openPairs", std::to_string(open));
   fmt::print("{} of {} pairs open\n", open, counts.pairs);
 }
 
