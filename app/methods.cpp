@@ -13,6 +13,7 @@
 #include "vsm/view_sample.hpp"
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+#include "volumes/depth_complexity.hpp"
 #include "volumes/edge_scatter.hpp"
 #include "volumes/hard_volume.hpp"
 #include "volumes/soft_volume.hpp"
@@ -74,6 +75,7 @@ const std::vector<TableRow>& table() {
       on_device<vsm::view_sample_description, vsm::make_view_sample>(),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
+      on_device<volumes::depth_complexity_description, volumes::make_depth_complexity>(),
       on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
       on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
       on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),

@@ -1,0 +1,123 @@
+// Depth complexity where nothing is in general position: every pair of variant=soup equals the exact decision, without
+// tolerance, for light samples in rows and for heaps of points.
+
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/support.hpp"
+#include "volumes/depth_complexity.hpp"
+
+#include <cmath>
+
+namespace penumbra::volumes {
+namespace {
+
+using tests::LatticeSoup;
+using tests::PairCounts;
+using visibility::Light;
+using visibility::SceneFloats;
+using visibility::ViewSamples;
+
+/// What all cameras see, and points on triangles that no camera's rounding has moved off them.
+ViewSamples all_samples(const scenes::Scene& scene, const SceneFloats& floats, std::mt19937& random) {
+  ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
+  for (const scenes::Camera& camera : scene.cameras) {
+    tests::append(samples,
+                  visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
+  }
+  return samples;
+}
+
+/// The same points as a heap of points without rows.
+Light scattered(Light light, bool as_polygon) {
+  light.pattern = visibility::SamplePattern::sobol;
+  light.rows = light.columns = 0;
+  light.row_shift.clear();
+  if (as_polygon) light.kind = visibility::LightKind::polygon;
+  return light;
+}
+
+/// Every pair of `count` soups with corners in −range … range.
+void expect_truth(const render::Device& device, int range, std::uint32_t count) {
+  const auto method = make_depth_complexity(device, {});
+  PairCounts counts;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t seed = i + 1000 * static_cast<std::uint32_t>(range);
+    LatticeSoup soup(seed, range);
+    visibility::SampleRequest request;
+    const scenes::Scene scene = lattice_scene(soup, request);
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light rows = visibility::make_light(scene, 0, floats.origin, request);
+    const ViewSamples samples = all_samples(scene, floats, soup.random());
+    const Light light = i % 3 == 0 ? rows : scattered(rows, i % 3 == 2);
+    const tests::Masks masks = tests::run(*method, floats, light, samples);
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << range;
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 20);
+  EXPECT_GT(counts.horizon, counts.pairs / 20);
+  EXPECT_GT(counts.zero, counts.pairs / 100);
+}
+
+class DepthLattice : public tests::DeviceTest, public testing::WithParamInterface<int> {};
+TEST_P(DepthLattice, EveryPairIsTheExactDecision) {
+  expect_truth(device(), GetParam(), 12);
+}
+INSTANTIATE_TEST_SUITE_P(Range, DepthLattice, testing::Values(1, 2, 4));
+
+class DepthLatticeFull : public tests::DeviceTest, public testing::WithParamInterface<int> {};
+TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
+  expect_truth(device(), GetParam(), 600);
+}
+INSTANTIATE_TEST_SUITE_P(Range, DepthLatticeFull, testing::Values(1, 2, 4, 16));
+
+using DepthHard = tests::DeviceTest;
+
+/// Triangles that reach behind p, past the light and through it, in general position: hardly anything may be left to
+/// exact predicates, and all of it must be right, on every kind of light and pattern.
+TEST_F(DepthHard, SoupsAllAroundTheLight) {
+  const auto method = make_depth_complexity(device(), {});
+  PairCounts counts;
+  std::uint64_t open = 0;
+  for (std::uint32_t seed = 0; seed < 24; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&] { return glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    std::vector<tests::Corners> soup;
+    for (int i = 0; i < 24; ++i) {
+      const glm::dvec3 a = point();
+      soup.push_back(i % 2 == 0 ? tests::Corners{a, a + 0.3 * point(), a + 0.3 * point()}
+                                : tests::Corners{a, point(), point()});
+    }
+    tests::add_object(scene, "soup", soup);
+    scene.lights.push_back(tests::rectangle_light(0.5 * point(), 0.4 * point(), 0.4 * point()));
+    if (seed % 4 == 1) scene.lights[0].shape = scenes::Disk{0.5 * point(), glm::normalize(point()), 0.3};
+    scene.lights[0].two_sided = seed % 2 == 0;
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const auto pattern = seed % 3 == 0 ? visibility::SamplePattern::rows : visibility::SamplePattern::sobol;
+    const Light light = visibility::make_light(scene, 0, floats.origin, {100, 0, 0, pattern, seed});
+    const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
+    const tests::Masks masks = tests::run(*method, floats, light, samples);
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed;
+    open += method->counters()["openPairs"];
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 10);
+  fmt::print("{} of {} pairs open\n", open, counts.pairs);
+}
+
+TEST_F(DepthHard, WrongOptionsAndLightsAreRefused) {
+  EXPECT_THROW(make_depth_complexity(device(), {{"variant", "forest"}}), UsageError);
+  EXPECT_THROW(make_depth_complexity(device(), {{"variant", "rays"}}), UsageError);
+  EXPECT_THROW(make_depth_complexity(device(), {{"bias", "0.1"}}), UsageError);
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  scene.lights.emplace_back();
+  scene.lights[0].shape = scenes::Sphere{{0, 3, 0}, 1};
+  scene.cameras.push_back(tests::camera({0, 2, 6}, {0, 0, 0}));
+  const tests::Stage stage(scene, 8, 8);
+  const auto method = make_depth_complexity(device(), {});
+  EXPECT_THROW(tests::run(*method, stage.floats, stage.light, stage.samples), InputError);
+}
+
+}  // namespace
+}  // namespace penumbra::volumes

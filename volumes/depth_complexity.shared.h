@@ -1,0 +1,21 @@
+// One struct, two languages (scalar layout): what the depth-complexity pass asks the host.
+#ifdef __cplusplus
+#pragma once
+#include <cstdint>
+namespace penumbra::volumes::gpu {
+using uint = std::uint32_t;
+#endif
+
+// Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: the one light sample
+// that `word` is besides, whose ray the whole mask hangs on; `bits` is 0.
+struct DepthQuestion {
+  uint pixel;
+  uint word;
+  uint bits;
+};
+
+const uint kReference = 0x80000000u;
+
+#ifdef __cplusplus
+}  // namespace penumbra::volumes::gpu
+#endif

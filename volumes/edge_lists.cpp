@@ -1,0 +1,234 @@
+#include "volumes/edge_lists.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "volumes/find_edges.comp.spv.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+using render::Texel;
+using visibility::TriangleTree;
+
+constexpr std::uint32_t kBlock = 8, kClusters = 4;  // as in edge_scatter.glsl
+
+/// Head of the buffer of lists.
+struct Counts {
+  std::uint32_t words = 0, questions = 0, unfinished = 0;
+};
+
+render::Buffer make_texels(const render::Device& device, const char* name, const std::vector<Texel>& texels) {
+  return render::make_buffer<Texel>(device, name, texels, render::BufferUse::texels);
+}
+
+}  // namespace
+
+EdgeLists::EdgeLists(const render::Device& device, std::string method) : device_(&device), method_(std::move(method)) {
+  const std::uint32_t lanes = device.limits().subgroup_size;
+  if (lanes >= TriangleTree::kWidth && kBlock * kBlock % lanes == 0) return;
+  throw ResourceError("{} needs subgroups of 8, 16, 32 or 64 lanes; {} has {}", method_, device.info().name, lanes);
+}
+
+void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
+  scene_ = &scene;
+  scale_ = render::device_scale(scene);
+  tree_ = visibility::make_triangle_tree(scene);
+  triangle_nodes_.emplace(make_texels(*device_, "triangle nodes", render::node_texels(tree_, scale_)));
+  triangle_corners_.emplace(make_texels(*device_, "triangle corners", corner_texels()));
+  casters_ = edge_casters(scene, -1);
+  casters_without_ = -1;
+  const std::vector<EdgeRecord> records = edge_records(scene, casters_, std::nullopt);
+  edge_count_ = records.size();
+  whole_ = upload(records);
+}
+
+/// For each slot of each leaf: (a, triangle), (b, plane), (c, light that the triangle is the body of).
+std::vector<Texel> EdgeLists::corner_texels() const {
+  std::vector<Texel> texels;
+  for (const TriangleTree::Leaf& leaf : tree_.leaves) {
+    for (const std::uint32_t triangle : leaf) {
+      const bool used = triangle != TriangleTree::kNoTriangle;
+      const auto at = used ? scene_->corners(triangle) : std::array<glm::vec3, 3>{};
+      texels.push_back({at[0] * scale_, triangle});
+      texels.push_back({at[1] * scale_, used ? scene_->plane[triangle] : visibility::SceneFloats::kNoPlane});
+      texels.push_back({at[2] * scale_, used ? static_cast<std::uint32_t>(scene_->emits[triangle]) : 0xffffffffU});
+    }
+  }
+  return texels;
+}
+
+EdgeLists::SideBuffers EdgeLists::upload(const std::vector<EdgeRecord>& records) const {
+  const EdgeTexels texels = edge_texels(records, scale_);
+  SideBuffers side;
+  side.depth = texels.depth;
+  side.nodes.emplace(make_texels(*device_, "edge nodes", texels.nodes));
+  side.slots.emplace(make_texels(*device_, "edges", texels.slots));
+  return side;
+}
+
+void EdgeLists::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame) {
+  PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
+  light_ = &light;
+  frame_ = frame;
+  retries_ = 0;
+  check_size();
+  prepare_edges();
+  build_pass();
+}
+
+void EdgeLists::check_size() const {
+  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
+  const float largest = size(frame_.center) + size(frame_.u) + size(frame_.v);
+  const float smallest = std::min(size(frame_.u), size(frame_.v));
+  if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
+  throw InputError(
+      "light \"{}\": {} handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size {:.3g} and "
+      "reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in scale",
+      light_->name, method_, smallest, largest);
+}
+
+/// The light's plane as its stored points span it, in double, and the frame's rectangle in it.
+LightSide EdgeLists::front_of_light() const {
+  const glm::dvec3 center(light_->center), to_u = glm::dvec3(light_->center_u) - center;
+  if (light_->kind == visibility::LightKind::rectangle) {
+    return {center, to_u, glm::dvec3(light_->center_v) - center, 1};
+  }
+  const glm::dvec3 normal = glm::normalize(glm::cross(to_u, glm::dvec3(light_->center_v) - center));
+  const auto in_plane = [&](const glm::dvec3& d) { return d - normal * glm::dot(normal, d); };
+  const double unscaled = 1 / static_cast<double>(scale_);
+  return {center + in_plane(glm::dvec3(frame_.center) * unscaled - center), in_plane(glm::dvec3(frame_.u) * unscaled),
+          in_plane(glm::dvec3(frame_.v) * unscaled), 1};
+}
+
+/// Records without the light's own body, cut at its plane where something lies behind that.
+void EdgeLists::prepare_edges() {
+  const bool has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light_->index) != scene_->emits.end();
+  const std::int32_t without = has_body ? light_->index : -1;
+  if (casters_without_ != without) {
+    casters_ = edge_casters(*scene_, without);
+    casters_without_ = without;
+  }
+  const LightSide front = front_of_light();
+  cut_ = reaches_behind(*scene_, front);
+  front_.reset();
+  back_.reset();
+  if (cut_ || has_body) front_ = upload(edge_records(*scene_, casters_, cut_ ? std::optional(front) : std::nullopt));
+  if (cut_ && light_->two_sided) {
+    LightSide back = front;
+    back.sign = -1;
+    back_ = upload(edge_records(*scene_, casters_, back));
+  }
+}
+
+/// Its stack: depth first, `teams` nodes at a time, each leaves at most seven more than it takes. Cut edges may deepen
+/// a hierarchy.
+void EdgeLists::build_pass() {
+  const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
+  const std::vector<std::uint32_t> constants{lanes, lanes,
+                                             teams * TriangleTree::kWidth * (std::max(tree_.depth, whole_.depth) + 10)};
+  if (pass_ && constants == constants_) return;
+  pass_.emplace(*device_, render::ComputePassOptions{.name = "find edges",
+                                                     .spirv = shaders::kFindEdgesComp,
+                                                     .push_bytes = sizeof(gpu::ScatterPush),
+                                                     .constants = constants,
+                                                     .full_subgroups = true});
+  constants_ = constants;
+}
+
+void EdgeLists::prepare_view(const visibility::ViewSamples& samples) {
+  samples_ = &samples;
+  view_texels_.clear();
+  view_texels_.reserve(2 * samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::int32_t carrier = samples.triangle[i];
+    const bool background = carrier == visibility::ViewSamples::kBackground ||
+                            scene_->receives_shadow[static_cast<std::size_t>(carrier)] == 0;  // the host says V = 1
+    const auto triangle = background ? 0U : static_cast<std::uint32_t>(carrier);
+    const bool known = !background && render::normal_is_known(scene_->corners(triangle));
+    view_texels_.push_back({samples.p[i] * scale_, background ? TriangleTree::kNoTriangle : triangle});
+    view_texels_.push_back({known ? samples.n[i] : glm::vec3(0), background ? 0U : scene_->plane[triangle]});
+  }
+  view_row_ = view_rows_ = 0;
+}
+
+void EdgeLists::load(const visibility::Tile& tile) {
+  tile_ = tile;
+  if (tile.first_row >= view_row_ && tile.first_row + tile.row_count <= view_row_ + view_rows_) return;
+  const auto rows = std::span<const Texel>(view_texels_)
+                        .subspan(std::size_t{2} * tile.first_row * samples_->width,
+                                 std::size_t{2} * tile.row_count * samples_->width);
+  render::grow(*device_, view_, "view samples", rows.size_bytes(), render::BufferUse::texels);
+  view_->write(rows);
+  view_row_ = tile.first_row;
+  view_rows_ = tile.row_count;
+}
+
+std::uint64_t EdgeLists::blocks() const {
+  return std::uint64_t{(samples_->width + kBlock - 1) / kBlock} * ((tile_.row_count + kBlock - 1) / kBlock);
+}
+
+const EdgeLists::SideBuffers& EdgeLists::of_side(float side) const {
+  return side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
+}
+
+void EdgeLists::describe(gpu::ScatterPush& push) const {
+  float reach = 0;
+  for (int i = 0; i < 3; ++i) {
+    push.center[i] = frame_.center[i];
+    push.u[i] = frame_.u[i];
+    push.v[i] = frame_.v[i];
+    reach = std::max({reach, std::abs(frame_.center[i]) + std::abs(frame_.u[i]) + std::abs(frame_.v[i]),
+                      std::abs(scene_->lower[i]) * scale_, std::abs(scene_->upper[i]) * scale_});
+  }
+  push.deviation = frame_.deviation;
+  push.reach = reach;
+  push.cut_reach = cut_ ? 4 * reach : 0;
+  push.keeps_rest = light_->two_sided ? 1 : 0;
+  push.light = static_cast<std::uint32_t>(light_->index);
+  push.width = samples_->width;
+  push.first_row = tile_.first_row - view_row_;
+  push.row_count = tile_.row_count;
+  push.block_count = static_cast<std::uint32_t>(blocks());
+  push.triangle_depth = tree_.depth;
+}
+
+std::uint64_t EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push, float side, std::uint32_t keep) {
+  const SideBuffers& edges = of_side(side);
+  describe(push);
+  push.side = side;
+  push.edge_depth = edges.depth;
+  const std::uint64_t pixels = std::uint64_t{tile_.row_count} * samples_->width;
+  render::grow(*device_, heads_, "heads of lists", blocks() * kClusters * 8 + pixels * 4);
+  for (;; ++retries_) {
+    push.list_capacity = capacity_;
+    render::grow(*device_, lists_, "edge lists", sizeof(Counts) + std::uint64_t{capacity_} * 4);
+    commands.fill(*lists_, 0, 0, sizeof(Counts));
+    commands.fill(*lists_, keep, sizeof(std::uint32_t), sizeof(std::uint32_t));
+    pass_->record(commands, push,
+                  {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots, *triangle_corners_},
+                  blocks());
+    times_ = commands.submit();
+    Counts counts;
+    lists_->read(std::span(&counts, 1));
+    if (counts.unfinished != 0) {
+      throw ResourceError("{}: {} cuts off loops that a hierarchy over {} triangles needs", method_,
+                          device_->info().name, scene_->triangles.size());
+    }
+    if (counts.words <= capacity_) return counts.words;
+    capacity_ = counts.words + counts.words / 8;
+  }
+}
+
+std::uint32_t EdgeLists::question_count() const {
+  Counts counts;
+  lists_->read(std::span(&counts, 1));
+  return counts.questions;
+}
+
+}  // namespace penumbra::volumes
