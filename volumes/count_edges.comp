@@ -14,13 +14,22 @@ layout(constant_id = 3) const uint kWords = 8;            // of a mask
 layout(constant_id = 4) const uint kHalves = 0;           // 1: a silhouette counts ±1 and no D at c0 is known (variant=laine)
 layout(constant_id = 5) const uint kKeepsDepths = 0;      // 1: write the counters too
 
-layout(binding = 3) uniform usamplerBuffer slots;         // 6 texels an edge record (EdgeTexels)
-layout(binding = 4) uniform usamplerBuffer corner_texels; // 3 texels a triangle: (a, triangle), (b, plane), (c, light)
-layout(scalar, binding = 5) readonly buffer Places { vec2 places[]; };   // light samples in the frame, from c0: [0, 2]²
-layout(scalar, binding = 6) writeonly buffer Masks { uint masks[]; };    // visible: bit j mod 32 of word j / 32
-layout(scalar, binding = 7) writeonly buffer Counts { uint counts[]; };  // visible light samples of a pixel
-layout(scalar, binding = 8) writeonly buffer Questions { DepthQuestion questions[]; };
-layout(scalar, binding = 9) writeonly buffer Depths { int depths[]; };
+// An edge record (EdgeTexels), a texel buffer each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2).
+layout(binding = 3) uniform usamplerBuffer record_a;
+layout(binding = 4) uniform usamplerBuffer record_b;
+layout(binding = 5) uniform usamplerBuffer record_n1;
+layout(binding = 6) uniform usamplerBuffer record_anchor1;
+layout(binding = 7) uniform usamplerBuffer record_n2;
+layout(binding = 8) uniform usamplerBuffer record_anchor2;
+// A triangle: (a, triangle), (b, plane), (c, light that it is the body of).
+layout(binding = 9) uniform usamplerBuffer corner_a;
+layout(binding = 10) uniform usamplerBuffer corner_b;
+layout(binding = 11) uniform usamplerBuffer corner_c;
+layout(scalar, binding = 12) readonly buffer Places { vec2 places[]; };   // light samples in the frame, from c0: [0, 2]²
+layout(scalar, binding = 13) writeonly buffer Masks { uint masks[]; };    // visible: bit j mod 32 of word j / 32
+layout(scalar, binding = 14) writeonly buffer Counts { uint counts[]; };  // visible light samples of a pixel
+layout(scalar, binding = 15) writeonly buffer Questions { DepthQuestion questions[]; };
+layout(scalar, binding = 16) writeonly buffer Depths { int depths[]; };
 
 const uint kQueue = 64;
 const uint kEach = 8;                                     // light samples of a lane at a time
@@ -81,9 +90,9 @@ struct Edge {
 // This lane's edge. Its part that appears beyond a window of twice the light is cut away, so that ends near p's height, or
 // behind p, do not spoil what is in it; an uncut end is the same for all edges that meet in it.
 Edge see(uint slot, bool used) {
-  const int texel = int(6 * slot);
-  const uvec4 t0 = texelFetch(slots, texel), t1 = texelFetch(slots, texel + 1), t2 = texelFetch(slots, texel + 2);
-  const uvec4 t3 = texelFetch(slots, texel + 3), t4 = texelFetch(slots, texel + 4), t5 = texelFetch(slots, texel + 5);
+  const int texel = int(slot);
+  const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
+  const uvec4 t3 = texelFetch(record_anchor1, texel), t4 = texelFetch(record_n2, texel), t5 = texelFetch(record_anchor2, texel);
   const vec3 anchor1 = uintBitsToFloat(t3.xyz), anchor2 = uintBitsToFloat(t5.xyz);
   bool open = false;
   const int both = side_of(uintBitsToFloat(t2.xyz), anchor1, t0.w, open) + side_of(uintBitsToFloat(t4.xyz), anchor2, t1.w, open);
@@ -229,8 +238,8 @@ uint count_to_corner(uint head) {
     uint i = 0;
     for (; i < count; i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
-      const int texel = 3 * int(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)]);
-      const uvec4 t0 = texelFetch(corner_texels, texel), t1 = texelFetch(corner_texels, texel + 1), t2 = texelFetch(corner_texels, texel + 2);
+      const int texel = int(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)]);
+      const uvec4 t0 = texelFetch(corner_a, texel), t1 = texelFetch(corner_b, texel), t2 = texelFetch(corner_c, texel);
       const vec3 da = uintBitsToFloat(t0.xyz) - at.p, db = uintBitsToFloat(t1.xyz) - at.p, dc = uintBitsToFloat(t2.xyz) - at.p;
       const bool occludes = used && t0.w != kNone && t2.w != push.light && t1.w != at.plane;
       const vec3 w = -vec3(dot(axis, da), dot(axis, db), dot(axis, dc));

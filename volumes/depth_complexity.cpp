@@ -192,8 +192,10 @@ class DepthComplexity final : public DepthCounters {
       counters_["listWords"] += edges_.find(commands_, push, side, questions);
       add_times(edges_.times());
       count_->record(commands_, push,
-                     {edges_.view(), edges_.heads(), edges_.lists(), edges_.slots(side), edges_.triangle_corners(),
-                      *places_, *masks_, *visible_, *questions_, *depths_},
+                     {edges_.view(), edges_.heads(), edges_.lists(), edges_.slots(side, 0), edges_.slots(side, 1),
+                      edges_.slots(side, 2), edges_.slots(side, 3), edges_.slots(side, 4), edges_.slots(side, 5),
+                      edges_.triangle_corners(0), edges_.triangle_corners(1), edges_.triangle_corners(2), *places_,
+                      *masks_, *visible_, *questions_, *depths_},
                      pixels());
       add_times(commands_.submit());
       questions = edges_.question_count();

@@ -40,7 +40,10 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
   scale_ = render::device_scale(scene);
   tree_ = visibility::make_triangle_tree(scene);
   triangle_nodes_.emplace(make_texels(*device_, "triangle nodes", render::node_texels(tree_, scale_)));
-  triangle_corners_.emplace(make_texels(*device_, "triangle corners", corner_texels()));
+  const std::array<std::vector<Texel>, 3> corners = corner_texels();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    triangle_corners_[i].emplace(make_texels(*device_, "triangle corners", corners[i]));
+  }
   casters_ = edge_casters(scene, -1);
   casters_without_ = -1;
   const std::vector<EdgeRecord> records = edge_records(scene, casters_, std::nullopt);
@@ -49,15 +52,15 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
 }
 
 /// For each slot of each leaf: (a, triangle), (b, plane), (c, light that the triangle is the body of).
-std::vector<Texel> EdgeLists::corner_texels() const {
-  std::vector<Texel> texels;
+std::array<std::vector<Texel>, 3> EdgeLists::corner_texels() const {
+  std::array<std::vector<Texel>, 3> texels;
   for (const TriangleTree::Leaf& leaf : tree_.leaves) {
     for (const std::uint32_t triangle : leaf) {
       const bool used = triangle != TriangleTree::kNoTriangle;
       const auto at = used ? scene_->corners(triangle) : std::array<glm::vec3, 3>{};
-      texels.push_back({at[0] * scale_, triangle});
-      texels.push_back({at[1] * scale_, used ? scene_->plane[triangle] : visibility::SceneFloats::kNoPlane});
-      texels.push_back({at[2] * scale_, used ? static_cast<std::uint32_t>(scene_->emits[triangle]) : 0xffffffffU});
+      texels[0].push_back({at[0] * scale_, triangle});
+      texels[1].push_back({at[1] * scale_, used ? scene_->plane[triangle] : visibility::SceneFloats::kNoPlane});
+      texels[2].push_back({at[2] * scale_, used ? static_cast<std::uint32_t>(scene_->emits[triangle]) : 0xffffffffU});
     }
   }
   return texels;
@@ -68,7 +71,9 @@ EdgeLists::SideBuffers EdgeLists::upload(const std::vector<EdgeRecord>& records)
   SideBuffers side;
   side.depth = texels.depth;
   side.nodes.emplace(make_texels(*device_, "edge nodes", texels.nodes));
-  side.slots.emplace(make_texels(*device_, "edges", texels.slots));
+  for (std::size_t i = 0; i < side.slots.size(); ++i) {
+    side.slots[i].emplace(make_texels(*device_, "edges", texels.slots[i]));
+  }
   return side;
 }
 
@@ -211,7 +216,9 @@ std::uint64_t EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push
     commands.fill(*lists_, 0, 0, sizeof(Counts));
     commands.fill(*lists_, keep, sizeof(std::uint32_t), sizeof(std::uint32_t));
     pass_->record(commands, push,
-                  {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots, *triangle_corners_},
+                  {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots[0], *edges.slots[1],
+                   *edges.slots[2], *edges.slots[3], *edges.slots[4], *edges.slots[5], *triangle_corners_[0],
+                   *triangle_corners_[1], *triangle_corners_[2]},
                   blocks());
     times_ = commands.submit();
     Counts counts;

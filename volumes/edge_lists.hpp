@@ -9,6 +9,8 @@
 #include "volumes/edge_scatter.shared.h"
 #include "volumes/edge_set.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -45,17 +47,20 @@ class EdgeLists {
   [[nodiscard]] const render::Buffer& view() const { return *view_; }
   [[nodiscard]] const render::Buffer& heads() const { return *heads_; }
   [[nodiscard]] const render::Buffer& lists() const { return *lists_; }
-  [[nodiscard]] const render::Buffer& slots(float side) const { return *of_side(side).slots; }
-  [[nodiscard]] const render::Buffer& triangle_corners() const { return *triangle_corners_; }
+  /// EdgeTexels::slots[i] of that side.
+  [[nodiscard]] const render::Buffer& slots(float side, std::size_t i) const { return *of_side(side).slots[i]; }
+  /// Corner i of the triangle in each leaf slot: (a, triangle), (b, plane), (c, light that it is the body of).
+  [[nodiscard]] const render::Buffer& triangle_corners(std::size_t i) const { return *triangle_corners_[i]; }
 
  private:
   /// What device passes read of the edges on one side of the light's plane.
   struct SideBuffers {
     std::uint32_t depth = 0;
-    std::optional<render::Buffer> nodes, slots;
+    std::optional<render::Buffer> nodes;
+    std::array<std::optional<render::Buffer>, 6> slots;
   };
   [[nodiscard]] SideBuffers upload(const std::vector<EdgeRecord>& records) const;
-  [[nodiscard]] std::vector<render::Texel> corner_texels() const;
+  [[nodiscard]] std::array<std::vector<render::Texel>, 3> corner_texels() const;
   void check_size() const;
   void prepare_edges();
   [[nodiscard]] LightSide front_of_light() const;
@@ -72,7 +77,8 @@ class EdgeLists {
   const visibility::SceneFloats* scene_ = nullptr;
   float scale_ = 1;
   visibility::TriangleTree tree_;
-  std::optional<render::Buffer> triangle_nodes_, triangle_corners_;
+  std::optional<render::Buffer> triangle_nodes_;
+  std::array<std::optional<render::Buffer>, 3> triangle_corners_;
   EdgeCasters casters_;
   std::int32_t casters_without_ = -1;  // the light whose body is left out of them
   SideBuffers whole_;                  // of all casters, cut nowhere

@@ -187,8 +187,8 @@ std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Ligh
   return apart;
 }
 
-std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const SceneFloats& scene, const visibility::LightFrame& frame,
-                                           float scale) {
+std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const SceneFloats& scene,
+                                           const visibility::LightFrame& frame, float scale) {
   std::vector<std::uint8_t> dispensable(scene.triangles.size());
   mesh::for_each_index(closed.part.size(), [&](std::size_t t) {
     if (closed.part[t] == 0) return;
