@@ -106,7 +106,8 @@ class WedgesCommand : public Command {
     const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
+    visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
+    light.texture = {};  // areas of the light, whatever its picture weighs
     const volumes::LightHull hull = volumes::light_hull(light);
     const volumes::Casters casters = volumes::casters_of(floats, light);
     const bool tight = chosen.construction == volumes::Construction::tight;

@@ -54,6 +54,13 @@ TEST_F(WedgesCommand, ValidatesItself) {
   }
 }
 
+/// Areas are the light's own, whatever its picture weighs.
+TEST_F(WedgesCommand, ValidatesUnderATexturedLight) {
+  const Outcome outcome = run({"wedges", PENUMBRA_SCENES "/textured-light.json", "--light", "window", "--validate"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("have a single layer"));
+}
+
 TEST_F(WedgesCommand, CatchesWhatIsWrongOnPurpose) {
   for (int number = 1; number <= 6; ++number) {
     const std::string name = "broken:" + std::to_string(number);
