@@ -33,7 +33,8 @@ set(kept_OpenEXR base)
 set(kept_png base)
 set(kept_CLI app)
 set(kept_gmpxx volumes reference)
-set(libraries vulkan spirv_cross CGAL OpenMesh embree3 assimp tiny_gltf valijson OpenEXR png CLI gmpxx)
+set(kept_hwy volumes)
+set(libraries vulkan spirv_cross CGAL OpenMesh embree3 assimp tiny_gltf valijson OpenEXR png CLI gmpxx hwy)
 
 # check(root result): a list of complaints, one a wrong include.
 function(check root result)

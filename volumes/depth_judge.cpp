@@ -1,6 +1,6 @@
 #include "volumes/depth_judge.hpp"
 
-#include "visibility/pair_truth.hpp"
+#include "visibility/pair_judge.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -12,7 +12,8 @@ namespace {
 
 class Judge {
  public:
-  explicit Judge(const DepthJudgeInput& input) : in_(input) {}
+  explicit Judge(const DepthJudgeInput& input)
+      : in_(input), judge_{input.scene, input.tree, input.samples, input.light} {}
 
   void answer(const gpu::DepthQuestion& question, DepthAnswers& answers) const {
     const std::uint32_t words = in_.light.words_per_mask();
@@ -33,22 +34,13 @@ class Judge {
     answers.decided.push_back({question.pixel, first_word + question.word, question.bits, bits});
   }
 
-  [[nodiscard]] bool meets(std::size_t pixel, const glm::vec3& l, std::uint32_t triangle) const {
-    const auto carrier = static_cast<std::uint32_t>(in_.samples.triangle[pixel]);
-    return visibility::may_occlude(in_.scene, in_.light, carrier, triangle) &&
-           visibility::segment_meets_triangle(in_.samples.p[pixel], l, in_.scene.corners(triangle), in_.light).meets;
-  }
-
  private:
   [[nodiscard]] bool is_visible(std::size_t pixel, std::uint32_t light_sample) const {
-    const auto carrier = static_cast<std::uint32_t>(in_.samples.triangle[pixel]);
-    const glm::vec3 &p = in_.samples.p[pixel], &l = in_.light.points[light_sample];
-    return visibility::above_horizon(in_.scene.corners(carrier), in_.samples.facing[pixel], l) &&
-           visibility::in_front_of_light(in_.light, p) &&
-           !in_.tree.any_along(p, l, [&](std::uint32_t triangle) { return meets(pixel, l, triangle); });
+    return judge_.is_visible(pixel, in_.light.points[light_sample]);
   }
 
   const DepthJudgeInput& in_;
+  visibility::PairJudge judge_;
 };
 
 }  // namespace
@@ -68,7 +60,7 @@ DepthAnswers judge_depths(const DepthJudgeInput& input, std::span<const gpu::Dep
 }
 
 int exact_depth(const DepthJudgeInput& input, std::size_t pixel, std::uint32_t light_sample) {
-  const Judge judge(input);
+  const visibility::PairJudge judge{input.scene, input.tree, input.samples, input.light};
   const glm::vec3& l = input.light.points[light_sample];
   int met = 0;
   static_cast<void>(input.tree.any_along(input.samples.p[pixel], l, [&](std::uint32_t triangle) {

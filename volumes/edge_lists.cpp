@@ -29,7 +29,8 @@ render::Buffer make_texels(const render::Device& device, const char* name, const
 
 }  // namespace
 
-EdgeLists::EdgeLists(const render::Device& device, std::string method) : device_(&device), method_(std::move(method)) {
+EdgeLists::EdgeLists(const render::Device& device, std::string method)
+    : device_(&device), method_(std::move(method)), sides_(method_) {
   const std::uint32_t lanes = device.limits().subgroup_size;
   if (lanes >= TriangleTree::kWidth && kBlock * kBlock % lanes == 0) return;
   throw ResourceError("{} needs subgroups of 8, 16, 32 or 64 lanes; {} has {}", method_, device.info().name, lanes);
@@ -44,9 +45,7 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     triangle_corners_[i].emplace(make_texels(*device_, "triangle corners", corners[i]));
   }
-  casters_ = edge_casters(scene, -1);
-  casters_without_ = -1;
-  const std::vector<EdgeRecord> records = edge_records(scene, casters_, std::nullopt);
+  const std::vector<EdgeRecord> records = sides_.prepare_mesh(scene);
   edge_count_ = records.size();
   whole_ = upload(records);
 }
@@ -82,53 +81,13 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
   light_ = &light;
   frame_ = frame;
   retries_ = 0;
-  check_size();
-  prepare_edges();
-  build_pass();
-}
-
-void EdgeLists::check_size() const {
-  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
-  const float largest = size(frame_.center) + size(frame_.u) + size(frame_.v);
-  const float smallest = std::min(size(frame_.u), size(frame_.v));
-  if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
-  throw InputError(
-      "light \"{}\": {} handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size {:.3g} and "
-      "reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in scale",
-      light_->name, method_, smallest, largest);
-}
-
-/// The light's plane as its stored points span it, in double, and the frame's rectangle in it.
-LightSide EdgeLists::front_of_light() const {
-  const glm::dvec3 center(light_->center), to_u = glm::dvec3(light_->center_u) - center;
-  if (light_->kind == visibility::LightKind::rectangle) {
-    return {center, to_u, glm::dvec3(light_->center_v) - center, 1};
-  }
-  const glm::dvec3 normal = glm::normalize(glm::cross(to_u, glm::dvec3(light_->center_v) - center));
-  const auto in_plane = [&](const glm::dvec3& d) { return d - normal * glm::dot(normal, d); };
-  const double unscaled = 1 / static_cast<double>(scale_);
-  return {center + in_plane(glm::dvec3(frame_.center) * unscaled - center), in_plane(glm::dvec3(frame_.u) * unscaled),
-          in_plane(glm::dvec3(frame_.v) * unscaled), 1};
-}
-
-/// Records without the light's own body, cut at its plane where something lies behind that.
-void EdgeLists::prepare_edges() {
-  const bool has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light_->index) != scene_->emits.end();
-  const std::int32_t without = has_body ? light_->index : -1;
-  if (casters_without_ != without) {
-    casters_ = edge_casters(*scene_, without);
-    casters_without_ = without;
-  }
-  const LightSide front = front_of_light();
-  cut_ = reaches_behind(*scene_, front);
+  const SidedRecords records = sides_.prepare_light(light, frame, scale_);
+  cut_ = records.cut;
   front_.reset();
   back_.reset();
-  if (cut_ || has_body) front_ = upload(edge_records(*scene_, casters_, cut_ ? std::optional(front) : std::nullopt));
-  if (cut_ && light_->two_sided) {
-    LightSide back = front;
-    back.sign = -1;
-    back_ = upload(edge_records(*scene_, casters_, back));
-  }
+  if (records.front) front_ = upload(*records.front);
+  if (records.back) back_ = upload(*records.back);
+  build_pass();
 }
 
 /// Its stack: depth first, `teams` nodes at a time, each leaves at most seven more than it takes. Cut edges may deepen

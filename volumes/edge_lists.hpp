@@ -8,6 +8,7 @@
 #include "visibility/triangle_tree.hpp"
 #include "volumes/edge_scatter.shared.h"
 #include "volumes/edge_set.hpp"
+#include "volumes/edge_sides.hpp"
 
 #include <array>
 #include <cstddef>
@@ -61,9 +62,6 @@ class EdgeLists {
   };
   [[nodiscard]] SideBuffers upload(const std::vector<EdgeRecord>& records) const;
   [[nodiscard]] std::array<std::vector<render::Texel>, 3> corner_texels() const;
-  void check_size() const;
-  void prepare_edges();
-  [[nodiscard]] LightSide front_of_light() const;
   void build_pass();
   [[nodiscard]] const SideBuffers& of_side(float side) const;
   [[nodiscard]] std::uint64_t blocks() const;
@@ -71,6 +69,7 @@ class EdgeLists {
 
   const render::Device* device_;
   std::string method_;
+  EdgeSides sides_;
   std::optional<render::ComputePass> pass_;
   std::vector<std::uint32_t> constants_;
 
@@ -79,9 +78,7 @@ class EdgeLists {
   visibility::TriangleTree tree_;
   std::optional<render::Buffer> triangle_nodes_;
   std::array<std::optional<render::Buffer>, 3> triangle_corners_;
-  EdgeCasters casters_;
-  std::int32_t casters_without_ = -1;  // the light whose body is left out of them
-  SideBuffers whole_;                  // of all casters, cut nowhere
+  SideBuffers whole_;  // of all casters, cut nowhere
   std::size_t edge_count_ = 0;
 
   const visibility::Light* light_ = nullptr;

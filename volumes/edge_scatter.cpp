@@ -10,6 +10,7 @@
 #include "visibility/light_frame.hpp"
 #include "visibility/visible_share.hpp"
 #include "volumes/edge_lists.hpp"
+#include "volumes/edge_scatter_native.hpp"
 #include "volumes/edge_scatter.shared.h"
 #include "volumes/row_judge.hpp"
 #include "volumes/scatter_edges.comp.spv.hpp"
@@ -252,6 +253,14 @@ class EdgeScatter final : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
 };
 
+bool runs_natively(const render::Device& device, const visibility::MethodOptions& options) {
+  const auto found = options.find("engine");
+  const std::string engine = found == options.end() ? "auto" : found->second;
+  if (engine == "auto") return device.info().kind == "cpu";
+  if (engine == "vulkan" || engine == "native") return engine == "native";
+  throw UsageError("edge-scatter: engine is auto, vulkan or native, not \"{}\"", engine);
+}
+
 }  // namespace
 
 visibility::MethodDescription edge_scatter_description() {
@@ -262,12 +271,17 @@ visibility::MethodDescription edge_scatter_description() {
           .exact_for = "every pair of view sample and light sample, for any triangle soup (rows of a rectangle light)",
           .lights = {visibility::LightKind::rectangle},
           .any_pattern = false,
-          .options = {},
+          .options = {{"engine", "auto|vulkan|native", "auto",
+                       "vulkan: on the device; native: on the processor's own vector units; auto: native where the "
+                       "Vulkan device is the processor anyway. The same bits"}},
           .verdict_on = verdict_on};
 }
 
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
                                                       const visibility::MethodOptions& options) {
+  visibility::MethodDescription description = edge_scatter_description();
+  visibility::check_options(description, options);
+  if (runs_natively(device, options)) return make_native_edge_scatter(std::move(description));
   return std::make_unique<EdgeScatter>(device, options);
 }
 

@@ -1,6 +1,6 @@
 #include "volumes/row_judge.hpp"
 
-#include "visibility/pair_truth.hpp"
+#include "visibility/pair_judge.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +13,8 @@ namespace {
 
 class Judge {
  public:
-  Judge(const RowJudgeInput& input, std::vector<gpu::MaskWord>& words) : in_(input), words_(words) {}
+  Judge(const RowJudgeInput& input, std::vector<gpu::MaskWord>& words)
+      : in_(input), judge_{input.scene, input.tree, input.samples, input.light}, words_(words) {}
 
   void answer(const gpu::RowQuestion& question) {
     const std::size_t begin = words_.size();
@@ -66,25 +67,13 @@ class Judge {
     for (std::uint32_t i = 0; i < 32; ++i) {
       const std::uint32_t row = first_row + i / 8, column = first_column + i % 8;
       if ((word.decided >> i & 1U) == 0 || row >= in_.light.rows || column >= in_.light.columns) continue;
-      word.bits |= (is_visible(pixel, in_.light.points[row * in_.light.columns + column]) ? 1U : 0U) << i;
+      word.bits |= (judge_.is_visible(pixel, in_.light.points[row * in_.light.columns + column]) ? 1U : 0U) << i;
     }
     return word;
   }
 
-  [[nodiscard]] bool is_visible(std::size_t pixel, const glm::vec3& l) const {
-    const auto carrier = static_cast<std::uint32_t>(in_.samples.triangle[pixel]);
-    const glm::vec3& p = in_.samples.p[pixel];
-    if (!visibility::above_horizon(in_.scene.corners(carrier), in_.samples.facing[pixel], l) ||
-        !visibility::in_front_of_light(in_.light, p)) {
-      return false;
-    }
-    return !in_.tree.any_along(p, l, [&](std::uint32_t triangle) {
-      return visibility::may_occlude(in_.scene, in_.light, carrier, triangle) &&
-             visibility::segment_meets_triangle(p, l, in_.scene.corners(triangle), in_.light).meets;
-    });
-  }
-
   const RowJudgeInput& in_;
+  visibility::PairJudge judge_;
   std::vector<gpu::MaskWord>& words_;
 };
 

@@ -43,7 +43,7 @@ class Meshes : public tests::DeviceTest, public testing::WithParamInterface<test
 class BrokenMeshes : public Meshes {};
 class CgalMeshes : public Meshes {};
 
-const auto kMethods = testing::Values(tests::kViewSample, tests::kEdgeScatter);
+const auto kMethods = testing::ValuesIn(tests::kMaskMethods);
 std::string name_of_case(const testing::TestParamInfo<tests::MaskMethod>& info) {
   return info.param.name;
 }

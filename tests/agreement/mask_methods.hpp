@@ -5,6 +5,7 @@
 #include "volumes/edge_scatter.hpp"
 #include "vsm/view_sample.hpp"
 
+#include <array>
 #include <memory>
 #include <ostream>
 
@@ -20,6 +21,17 @@ struct MaskMethod {
 };
 
 inline constexpr MaskMethod kViewSample{"view_sample", vsm::make_view_sample, true};
-inline constexpr MaskMethod kEdgeScatter{"edge_scatter", volumes::make_edge_scatter, false};
+template <bool kNative>
+std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
+                                                      const visibility::MethodOptions& given) {
+  visibility::MethodOptions options = given;
+  options["engine"] = kNative ? "native" : "vulkan";
+  return volumes::make_edge_scatter(device, options);
+}
+inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false>, false};
+inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, false};
+
+/// All of them.
+inline constexpr std::array kMaskMethods{kViewSample, kEdgeScatter, kNativeEdgeScatter};
 
 }  // namespace penumbra::tests

@@ -37,7 +37,7 @@ TEST_F(AgreementOn, ParallelogramLights) {
     scenes::Scene scene = scenes::read_scene(PENUMBRA_SCENES "/fusion.json");
     auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
     light.half_v += skew * light.half_u;
-    for (const tests::MaskMethod& method : {tests::kViewSample, tests::kEdgeScatter}) check(scene, 96, method);
+    for (const tests::MaskMethod& method : tests::kMaskMethods) check(scene, 96, method);
   }
 }
 
@@ -66,7 +66,7 @@ TEST_P(Agreement, WithTheRayCaster) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                          testing::Combine(testing::ValuesIn(shipped_scenes(false)),
-                                          testing::Values(tests::kViewSample, tests::kEdgeScatter)),
+                                          testing::ValuesIn(tests::kMaskMethods)),
                          name_of_case);
 
 class AgreementFull : public AgreementTest {};
@@ -75,7 +75,7 @@ TEST_P(AgreementFull, WithTheRayCaster) {
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, AgreementFull,
                          testing::Combine(testing::ValuesIn(shipped_scenes(true)),
-                                          testing::Values(tests::kViewSample, tests::kEdgeScatter)),
+                                          testing::ValuesIn(tests::kMaskMethods)),
                          name_of_case);
 
 }  // namespace

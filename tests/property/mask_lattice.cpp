@@ -69,8 +69,7 @@ std::string name_of_soups(const testing::TestParamInfo<std::tuple<int, tests::Ma
   return fmt::format("{}_{}", std::get<1>(info.param).name, std::get<0>(info.param));
 }
 INSTANTIATE_TEST_SUITE_P(Range, LatticeSoups,
-                         testing::Combine(testing::Values(1, 2, 4),
-                                          testing::Values(tests::kViewSample, tests::kEdgeScatter)),
+                         testing::Combine(testing::Values(1, 2, 4), testing::ValuesIn(tests::kMaskMethods)),
                          name_of_soups);
 
 class HardScenes : public tests::DeviceTest, public testing::WithParamInterface<tests::MaskMethod> {};
@@ -222,7 +221,7 @@ TEST_P(HardScenes, SphereLightsAreRefused) {
   EXPECT_THROW(GetParam().make(device(), {{"bias", "0.1"}}), UsageError);
 }
 
-INSTANTIATE_TEST_SUITE_P(By, HardScenes, testing::Values(tests::kViewSample, tests::kEdgeScatter),
+INSTANTIATE_TEST_SUITE_P(By, HardScenes, testing::ValuesIn(tests::kMaskMethods),
                          [](const auto& by) { return by.param.name; });
 
 }  // namespace

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "visibility/method.hpp"
+
+#include <memory>
+
+namespace penumbra::volumes {
+
+/// `edge-scatter` on the processor's own vector units (edge-scatter with engine=native): the same algorithm, and the
+/// same bits, since every one is the truth of its pair. Any number of light rows and columns. docs/edge-scatter.md.
+std::unique_ptr<visibility::Method> make_native_edge_scatter(visibility::MethodDescription description);
+
+}  // namespace penumbra::volumes

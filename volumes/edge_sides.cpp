@@ -1,0 +1,69 @@
+#include "volumes/edge_sides.hpp"
+
+#include "base/error.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::volumes {
+namespace {
+
+/// The light's plane as its stored points span it, in double, and the frame's rectangle in it.
+LightSide front_of_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale) {
+  const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center;
+  if (light.kind == visibility::LightKind::rectangle) {
+    return {center, to_u, glm::dvec3(light.center_v) - center, 1};
+  }
+  const glm::dvec3 normal = glm::normalize(glm::cross(to_u, glm::dvec3(light.center_v) - center));
+  const auto in_plane = [&](const glm::dvec3& d) { return d - normal * glm::dot(normal, d); };
+  const double unscaled = 1 / static_cast<double>(scale);
+  return {center + in_plane(glm::dvec3(frame.center) * unscaled - center), in_plane(glm::dvec3(frame.u) * unscaled),
+          in_plane(glm::dvec3(frame.v) * unscaled), 1};
+}
+
+}  // namespace
+
+std::vector<EdgeRecord> EdgeSides::prepare_mesh(const visibility::SceneFloats& scene) {
+  scene_ = &scene;
+  casters_ = edge_casters(scene, -1);
+  casters_without_ = -1;
+  return edge_records(scene, casters_, std::nullopt);
+}
+
+void EdgeSides::check_size(const visibility::Light& light, const visibility::LightFrame& frame) const {
+  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
+  const float largest = size(frame.center) + size(frame.u) + size(frame.v);
+  const float smallest = std::min(size(frame.u), size(frame.v));
+  if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
+  throw InputError(
+      "light \"{}\": {} handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size {:.3g} and "
+      "reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in scale",
+      light.name, method_, smallest, largest);
+}
+
+SidedRecords EdgeSides::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame,
+                                      float scale) {
+  check_size(light, frame);
+  const bool has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light.index) != scene_->emits.end();
+  const std::int32_t without = has_body ? light.index : -1;
+  if (casters_without_ != without) {
+    casters_ = edge_casters(*scene_, without);
+    casters_without_ = without;
+  }
+  const LightSide front = front_of_light(light, frame, scale);
+  SidedRecords records;
+  records.cut = reaches_behind(*scene_, front);
+  if (records.cut || has_body) {
+    records.front = edge_records(*scene_, casters_, records.cut ? std::optional(front) : std::nullopt);
+  }
+  if (records.cut && light.two_sided) {
+    LightSide back = front;
+    back.sign = -1;
+    records.back = edge_records(*scene_, casters_, back);
+  }
+  return records;
+}
+
+}  // namespace penumbra::volumes

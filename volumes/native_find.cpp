@@ -1,0 +1,267 @@
+// First stage of edge scatter on a processor: the walk of find_edges.comp, eight children, edges or triangles at a
+// time.
+
+#include "volumes/native_scatter.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <bit>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volumes/native_find.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, kWide>;
+using V = hn::Vec<D>;
+constexpr std::uint32_t kLeafBit = visibility::TriangleTree::kLeafBit;
+
+struct Point {
+  V x, y, z;
+};
+
+Point load(const WidePoints& points, std::size_t lane) {
+  const D d;
+  return {hn::Load(d, &points[0][lane]), hn::Load(d, &points[1][lane]), hn::Load(d, &points[2][lane])};
+}
+Point minus(const Point& p, const glm::vec3& q) {
+  const D d;
+  return {hn::Sub(p.x, hn::Set(d, q.x)), hn::Sub(p.y, hn::Set(d, q.y)), hn::Sub(p.z, hn::Set(d, q.z))};
+}
+/// In one fixed order, without fused multiplications: what later stages compute of the same floats must be the same.
+V dot(const Point& p, const glm::vec3& q) {
+  const D d;
+  return hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, q.x)), hn::Mul(p.y, hn::Set(d, q.y))), hn::Mul(p.z, hn::Set(d, q.z)));
+}
+V dot(const Point& p, const Point& q) {
+  return hn::Add(hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)), hn::Mul(p.z, q.z));
+}
+Point absolute(const Point& p) {
+  return {hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
+}
+V length(const Point& p) {
+  return hn::Sqrt(dot(p, p));
+}
+V scaled(V v, float factor) {
+  return hn::Mul(v, hn::Set(D(), factor));
+}
+
+std::uint32_t bits_of(hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D(), mask, bytes);
+  return bytes[0];
+}
+hn::Mask<D> used_lanes(std::uint32_t used, std::size_t lane) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(used >> lane)};
+  return hn::LoadMaskBits(D(), bytes);
+}
+
+/// Does something whose corners are all in n·x ≥ `least` for each of the four planes, between `low` and `high` along
+/// the axis, meet the shaft?
+struct ShaftTest {
+  const Shaft& shaft;
+
+  template <typename Least>
+  hn::Mask<D> operator()(V low, V high, Least least) const {
+    const D d;
+    hn::Mask<D> met = hn::And(hn::Le(low, hn::Set(d, shaft.highest)), hn::Ge(high, hn::Set(d, shaft.lowest)));
+    for (std::size_t i = 0; i < 4; ++i) {
+      const glm::vec3 n(shaft.nx[i], shaft.ny[i], shaft.nz[i]);
+      met = hn::And(met, hn::Le(least(n), hn::Set(d, shaft.beyond[i])));
+    }
+    return met;
+  }
+};
+
+hn::Mask<D> box_meets(const FindInput& in, const Shaft& shaft, const Point& middle, const Point& half) {
+  const V at = dot(middle, in.frame.axis), spread = dot(half, glm::abs(in.frame.axis));
+  return ShaftTest{shaft}(hn::Sub(at, spread), hn::Add(at, spread),
+                          [&](const glm::vec3& n) { return hn::Sub(dot(middle, n), dot(half, glm::abs(n))); });
+}
+
+/// (bound cone)
+hn::Mask<D> same_side(const FindInput& in, const WideNode& node, std::size_t lane, const Point& middle,
+                      const Point& half) {
+  const D d;
+  const glm::vec3& box = in.cluster.half_size;
+  const Point axis{hn::Load(d, &node.cone[0][lane]), hn::Load(d, &node.cone[1][lane]),
+                   hn::Load(d, &node.cone[2][lane])};
+  const V cosine = hn::Load(d, &node.cone[3][lane]);
+  const Point to = minus(middle, in.cluster.middle);
+  const Point e{hn::Add(half.x, hn::Set(d, box.x)), hn::Add(half.y, hn::Set(d, box.y)),
+                hn::Add(half.z, hn::Set(d, box.z))};
+  const V straight = hn::Abs(dot(axis, to)), squared = dot(to, to), zero = hn::Zero(d);
+  const V aside = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(straight, straight)), zero));
+  const V sine = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Mul(cosine, cosine)), zero));
+  const V spread = hn::Add(hn::Mul(dot(absolute(axis), e), cosine), hn::Mul(length(e), sine));
+  const V least = hn::Sub(hn::Mul(straight, cosine), hn::Mul(aside, sine));
+  const V slack = hn::Add(scaled(hn::Sqrt(squared), 0.0001F), hn::Set(d, 64 * kRound * in.frame.reach));
+  return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
+}
+
+/// Calls `leaf` for each leaf whose box meets the shaft.
+template <bool kCones, typename Leaf>
+void walk(const FindInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+          std::vector<std::uint32_t>& stack, Leaf leaf) {
+  if (nodes.empty()) return;
+  const D d;
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const WideNode& node = nodes[stack.back()];
+    stack.pop_back();
+    std::uint32_t hits = 0;
+    for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+      const Point middle = load(node.middle, lane), half = load(node.half, lane);
+      hn::Mask<D> met = box_meets(in, shaft, middle, half);
+      if constexpr (kCones) met = hn::AndNot(same_side(in, node, lane, middle, half), met);
+      hits |= bits_of(met) << lane;
+    }
+    for (hits &= node.used; hits != 0; hits &= hits - 1) {
+      const std::uint32_t child = node.reference[static_cast<std::size_t>(std::countr_zero(hits))];
+      if ((child & kLeafBit) != 0) {
+        leaf(child & ~kLeafBit);
+      } else {
+        stack.push_back(child);
+      }
+    }
+  }
+}
+
+/// One of an edge's triangles, relative to the cluster: n · p − at > error in front of it, < −error behind.
+struct EdgeSideWide {
+  Point n;
+  V at, error, anchor_far;
+  hn::Mask<D> none, positive, negative;  // positive: all of the cluster's p are in front
+};
+
+EdgeSideWide side_of(const FindInput& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
+  const D d;
+  const glm::vec3& box = in.cluster.half_size;
+  EdgeSideWide s;
+  s.n = load(leaf.n[side], lane);
+  const Point anchor = minus(load(leaf.anchor[side], lane), in.cluster.middle);
+  const Point size = absolute(s.n);
+  s.at = dot(s.n, anchor);
+  const V lengths = dot(size, absolute(anchor)), over_box = dot(size, box);
+  const V ones = dot(size, glm::vec3(1));
+  s.none = hn::Eq(ones, hn::Zero(d));
+  s.error = hn::IfThenElse(s.none, hn::Set(d, -1.0F), scaled(hn::Add(lengths, over_box), 10 * kRound));
+  const V spread = hn::Add(scaled(over_box, 1.001F), hn::Add(scaled(hn::Add(lengths, over_box), 32 * kRound),
+                                                             scaled(ones, 4 * kRound * in.frame.reach)));
+  const V f = hn::Neg(s.at);
+  s.positive = hn::AndNot(s.none, hn::Gt(f, spread));
+  s.negative = hn::AndNot(s.none, hn::Lt(f, hn::Neg(spread)));
+  s.anchor_far = length(anchor);
+  return s;
+}
+
+/// Are k_e's two parts opposite for all of the cluster, or both nothing? (bound side)
+hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
+  return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)), hn::And(s.none, t.none));
+}
+
+void add_edges(const FindInput& in, const Shaft& shaft, const WideEdges& leaf, EdgeTable& out) {
+  const D d;
+  out.reserve(out.count + kWide);
+  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+    const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
+    const V level_a = dot(a, in.frame.axis), level_b = dot(b, in.frame.axis);
+    const hn::Mask<D> met =
+        hn::And(used_lanes(leaf.used, lane),
+                ShaftTest{shaft}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
+                                 [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
+    if (hn::AllFalse(d, met)) continue;
+    const EdgeSideWide s = side_of(in, leaf, 0, lane), t = side_of(in, leaf, 1, lane);
+    const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) continue;
+    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
+    put(kAx, dot(from_a, in.frame.across));
+    put(kAy, dot(from_a, in.frame.along));
+    put(kAh, dot(from_a, in.frame.axis));
+    put(kBx, dot(from_b, in.frame.across));
+    put(kBy, dot(from_b, in.frame.along));
+    put(kBh, dot(from_b, in.frame.axis));
+    for (std::size_t side = 0; side < 2; ++side) {
+      const EdgeSideWide& its = side == 0 ? s : t;
+      const std::size_t first = side == 0 ? kN1x : kN2x;
+      put(first, its.n.x);
+      put(first + 1, its.n.y);
+      put(first + 2, its.n.z);
+      put(first + kD1 - kN1x, its.at);
+      put(first + kE1 - kN1x, its.error);
+      const hn::RebindToUnsigned<D> words;
+      put(first + kPlane1 - kN1x, hn::BitCast(d, hn::LoadU(words, &leaf.plane[side][lane])));
+    }
+    put(kFar, hn::Max(length(from_a), length(from_b)));
+    put(kAnchorFar, hn::Max(s.anchor_far, t.anchor_far));
+    out.count += more;
+  }
+}
+
+void add_triangles(const FindInput& in, const Shaft& shaft, const WideTriangles& leaf, TriangleTable& out) {
+  const D d;
+  out.reserve(out.count + kWide);
+  const hn::RebindToUnsigned<D> words;
+  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+    const Point a = load(leaf.corner[0], lane), b = load(leaf.corner[1], lane), c = load(leaf.corner[2], lane);
+    const V la = dot(a, in.frame.axis), lb = dot(b, in.frame.axis), lc = dot(c, in.frame.axis);
+    const hn::Mask<D> met =
+        ShaftTest{shaft}(hn::Min(la, hn::Min(lb, lc)), hn::Max(la, hn::Max(lb, lc)),
+                         [&](const glm::vec3& n) { return hn::Min(dot(a, n), hn::Min(dot(b, n), dot(c, n))); });
+    const auto body = hn::Eq(hn::LoadU(words, &leaf.emits[lane]), hn::Set(words, in.frame.light));
+    const hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane),
+                                     hn::AndNot(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, body))), met));
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) continue;
+    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    V far = hn::Zero(d);
+    std::size_t field = kCornerA;
+    for (const Point& corner : {a, b, c}) {
+      const Point from = minus(corner, in.cluster.middle);
+      put(field, dot(from, in.frame.across));
+      put(field + 1, dot(from, in.frame.along));
+      put(field + 2, dot(from, in.frame.axis));
+      far = hn::Max(far, length(from));
+      field += 3;
+    }
+    put(kTrianglePlane, hn::BitCast(d, hn::LoadU(words, &leaf.plane[lane])));
+    put(kTriangleFar, far);
+    out.count += more;
+  }
+}
+
+void find_here(const FindInput& in, std::vector<std::uint32_t>& stack, EdgeTable& edges, TriangleTable& triangles) {
+  edges.count = triangles.count = 0;
+  const glm::vec2 half = in.frame.half_cells;
+  const Shaft whole = make_shaft(in.frame, in.cluster.samples, -half, half);
+  walk<true>(in, whole, in.edges.nodes, stack,
+             [&](std::uint32_t leaf) { add_edges(in, whole, in.edges.leaves[leaf], edges); });
+  const Shaft corner = make_shaft(in.frame, in.cluster.samples, -half, -half);
+  walk<false>(in, corner, in.triangles.nodes, stack,
+              [&](std::uint32_t leaf) { add_triangles(in, corner, in.triangles.leaves[leaf], triangles); });
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::volumes::native {
+
+HWY_EXPORT(find_here);
+
+void find(const FindInput& input, std::vector<std::uint32_t>& stack, EdgeTable& edges, TriangleTable& triangles) {
+  HWY_DYNAMIC_DISPATCH(find_here)(input, stack, edges, triangles);
+}
+
+}  // namespace penumbra::volumes::native
+#endif

@@ -1,0 +1,77 @@
+#include "volumes/native_scatter.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace penumbra::volumes::native {
+namespace {
+
+float size1(const glm::dvec3& x) {
+  return static_cast<float>(std::abs(x.x) + std::abs(x.y) + std::abs(x.z));
+}
+
+/// The same numbers as the device's: (row · step) / 2¹⁶ modulo 1 into [−½, ½).
+float shift_of(std::uint32_t row, std::uint32_t step) {
+  return static_cast<float>(static_cast<int>((row * step + 32768U) & 0xffffU) - 32768) / 65536.0F;
+}
+
+}  // namespace
+
+Frame make_frame(const FrameInput& input) {
+  const glm::dvec3 u(input.light.u), v(input.light.v), n = glm::cross(u, v);
+  const double squared = glm::dot(n, n);
+  Frame frame;
+  frame.center = input.light.center;
+  frame.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
+  frame.first_cell = frame.half_cells - 0.5F;
+  frame.axis = glm::vec3(static_cast<double>(input.side) * n / std::sqrt(squared));
+  frame.across = glm::vec3(glm::cross(v, n) / squared * static_cast<double>(frame.half_cells.x));
+  frame.along = glm::vec3(glm::cross(n, u) / squared * static_cast<double>(frame.half_cells.y));
+  frame.per_length = std::max(glm::length(frame.across), glm::length(frame.along)) * 1.00001F;
+  frame.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
+  frame.deviation = input.light.deviation;
+  frame.reach = input.reach;
+  frame.cut_reach = input.cut_reach;
+  frame.side = input.side;
+  frame.rows = input.rows;
+  frame.columns = input.columns;
+  frame.light = input.light_index;
+  frame.padded_rows = (input.rows + 15) / 16 * 16;
+  for (std::uint32_t row = 0; row < frame.padded_rows; ++row) {
+    frame.shift.push_back(row < input.rows ? shift_of(row, input.light.shift_step) : 0);
+  }
+  return frame;
+}
+
+Shaft make_shaft(const Frame& frame, std::span<const Sample> samples, const glm::vec2& low, const glm::vec2& high) {
+  std::array<float, 4> slopes;
+  slopes.fill(-1e18F);
+  float height = 0;
+  for (const Sample& at : samples) {
+    const glm::vec2 from = at.foot - frame.first_cell;
+    const std::array over{from.x - high.x, low.x - from.x, from.y - high.y, low.y - from.y};
+    for (std::size_t i = 0; i < 4; ++i) slopes[i] = std::max(slopes[i], over[i] / at.height);
+    height = std::max(height, at.height);
+  }
+  const float widest = std::max(frame.half_cells.x, frame.half_cells.y);
+  const std::array beyond{high.x, -low.x, high.y, -low.y};
+  Shaft shaft;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::vec3 side = (i < 2 ? frame.across : frame.along) * (i % 2 == 0 ? 1.0F : -1.0F);
+    const glm::vec3 n = side - slopes[i] * frame.axis;
+    const float size = size1(n) + size1(side);
+    shaft.nx[i] = n.x;
+    shaft.ny[i] = n.y;
+    shaft.nz[i] = n.z;
+    shaft.beyond[i] = glm::dot(n, frame.center) + beyond[i] +
+                      64 * kRound * (2 * frame.reach * size + frame.skew * widest) + size * frame.deviation;
+  }
+  const float slack = 128 * kRound * frame.reach + frame.deviation, light = glm::dot(frame.axis, frame.center);
+  shaft.highest = light + height + slack;
+  shaft.lowest = light - slack;
+  return shaft;
+}
+
+}  // namespace penumbra::volumes::native
