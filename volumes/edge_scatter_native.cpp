@@ -95,6 +95,10 @@ class NativeEdgeScatter final : public visibility::Method {
     scale_ = render::device_scale(scene);
     tree_ = visibility::make_triangle_tree(scene);
     triangles_ = wide_triangle_tree(scene, tree_, scale_);
+    normal_is_known_.resize(scene.triangles.size());
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene.triangles.size()), [&](std::uint32_t i) {
+      normal_is_known_[i] = render::normal_is_known(scene.corners(i)) ? 1 : 0;
+    });
     whole_ = wide_edge_tree(edge_texels(sides_.prepare_mesh(scene), scale_));
   }
 
@@ -207,9 +211,9 @@ class NativeEdgeScatter final : public visibility::Method {
   void do_block(const Frame& frame, const Spot& corner, native::Scratch& scratch) {
     const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
     OpenJudge judge(pairs, frame);
-    const native::ViewInput view{*scene_, *samples_, frame_, frame, scale_};
+    const native::ViewInput view{*scene_, *samples_, frame_, frame, normal_is_known_, scale_};
     const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
-    std::vector<native::Placed> placed;
+    std::vector<Sample> placed;
     for (std::uint32_t i = 0; i < kBlock * kBlock; ++i) {
       const Spot at = spot(i);
       const std::uint32_t x = corner.x + at.x, y = corner.y + at.y;
@@ -217,7 +221,7 @@ class NativeEdgeScatter final : public visibility::Method {
       const auto pixel = static_cast<std::uint32_t>(first_pixel + std::size_t{y} * samples_->width + x);
       const native::Looked looked = native::look(view, pixel);
       std::uint32_t& visible = visible_[pixel - first_pixel];
-      if (looked.outlook == Outlook::scattered) placed.push_back({looked.p, looked.sample});
+      if (looked.outlook == Outlook::scattered) placed.push_back(looked.sample);
       if (looked.outlook == Outlook::all) visible = light_->sample_count();
       if (looked.outlook == Outlook::open && frame.side > 0) {  // one of two sides asks
         native::Open open;
@@ -228,13 +232,15 @@ class NativeEdgeScatter final : public visibility::Method {
         visible = seen.visible;
       }
     }
-    for (const native::Cluster& cluster : native::make_clusters(frame, std::move(placed))) {
+    for (native::Cluster& cluster : native::make_clusters(frame, std::move(placed))) {
       native::find({frame, edges_of(frame), triangles_, cluster}, scratch.stack, scratch.edges, scratch.triangles);
       scratch.listed += scratch.edges.count;
+      if (scratch.edges.count + scratch.triangles.count > 0)
+        for (Sample& at : cluster.samples) native::complete(frame, at);
       std::vector<Seen> seen(cluster.samples.size());
       for (std::size_t i = 0; i < seen.size(); ++i)
         seen[i].mask = &masks_[(cluster.samples[i].pixel - first_pixel) * mask_words()];
-      native::scatter({frame, cluster, scratch.edges, scratch.triangles}, scratch, judge, seen);
+      native::scatter({frame, triangles_, cluster, scratch.edges, scratch.triangles}, scratch, judge, seen);
       for (std::size_t i = 0; i < seen.size(); ++i) visible_[cluster.samples[i].pixel - first_pixel] = seen[i].visible;
     }
     scratch.open_pixels += judge.pixels();
@@ -246,6 +252,7 @@ class NativeEdgeScatter final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   float scale_ = 1;
   visibility::TriangleTree tree_;
+  std::vector<std::uint8_t> normal_is_known_;  // of each triangle
   WideTriangleTree triangles_;
   WideEdgeTree whole_;
   const visibility::Light* light_ = nullptr;

@@ -25,21 +25,16 @@ struct ViewInput {
   const visibility::ViewSamples& samples;
   const visibility::LightFrame& light;
   const Frame& frame;
+  std::span<const std::uint8_t> normal_is_known;  ///< of each triangle
   float scale;
 };
 struct Looked {
   Outlook outlook = Outlook::all;
-  glm::vec3 p{0};  ///< scaled
-  Sample sample;   ///< but for what depends on its cluster
+  Sample sample;  ///< but for what depends on its cluster
 };
 Looked look(const ViewInput& view, std::uint32_t pixel);
 
-/// A view sample of a block and where it is.
-struct Placed {
-  glm::vec3 p{0};
-  Sample sample;
-};
 /// Splits them where gaps are (an object before a floor), in at most four; each keeps their order.
-std::vector<Cluster> make_clusters(const Frame& frame, std::vector<Placed> samples);
+std::vector<Cluster> make_clusters(const Frame& frame, std::vector<Sample> samples);
 
 }  // namespace penumbra::volumes::native

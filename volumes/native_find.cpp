@@ -207,8 +207,9 @@ void add_edges(const FindInput& in, const Shaft& shaft, const WideEdges& leaf, E
   }
 }
 
-void add_triangles(const FindInput& in, const Shaft& shaft, const WideTriangles& leaf, TriangleTable& out) {
+void add_triangles(const FindInput& in, const Shaft& shaft, std::uint32_t number, TriangleTable& out) {
   const D d;
+  const WideTriangles& leaf = in.triangles.leaves[number];
   out.reserve(out.count + kWide);
   const hn::RebindToUnsigned<D> words;
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
@@ -235,6 +236,9 @@ void add_triangles(const FindInput& in, const Shaft& shaft, const WideTriangles&
     }
     put(kTrianglePlane, hn::BitCast(d, hn::LoadU(words, &leaf.plane[lane])));
     put(kTriangleFar, far);
+    const hn::RebindToSigned<D> numbers;
+    const auto first = static_cast<std::int32_t>(number * kWide + lane);
+    put(kTriangleSlot, hn::BitCast(d, hn::Iota(numbers, first)));
     out.count += more;
   }
 }
@@ -247,7 +251,7 @@ void find_here(const FindInput& in, std::vector<std::uint32_t>& stack, EdgeTable
              [&](std::uint32_t leaf) { add_edges(in, whole, in.edges.leaves[leaf], edges); });
   const Shaft corner = make_shaft(in.frame, in.cluster.samples, -half, -half);
   walk<false>(in, corner, in.triangles.nodes, stack,
-              [&](std::uint32_t leaf) { add_triangles(in, corner, in.triangles.leaves[leaf], triangles); });
+              [&](std::uint32_t leaf) { add_triangles(in, corner, leaf, triangles); });
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ Frame make_frame(const FrameInput& input) {
   const double squared = glm::dot(n, n);
   Frame frame;
   frame.center = input.light.center;
+  frame.corner = glm::dvec3(input.light.center) - u - v;
   frame.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
   frame.first_cell = frame.half_cells - 0.5F;
   frame.axis = glm::vec3(static_cast<double>(input.side) * n / std::sqrt(squared));
@@ -43,6 +44,19 @@ Frame make_frame(const FrameInput& input) {
     frame.shift.push_back(row < input.rows ? shift_of(row, input.light.shift_step) : 0);
   }
   return frame;
+}
+
+void complete(const Frame& frame, Sample& at) {
+  constexpr float kMore = 1.05F;  // for what is of second order
+  at.away = glm::length(at.p - frame.center) * 1.0001F;
+  const float cells = 16 * kRound * frame.skew * (frame.half_cells.x + frame.half_cells.y);
+  const float lengths = at.away / at.height;
+  at.per_way = kMore * (8 * kRound * frame.per_length * at.height + cells);
+  at.per_foot = kMore * kRound * (4 * lengths + 8);
+  at.fixed = kMore *
+             (kRound * frame.per_length * (4 * at.away + frame.cut_reach) + cells + frame.per_length * frame.deviation);
+  at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
+  at.per_lean = kRound * (8 * frame.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
 }
 
 Shaft make_shaft(const Frame& frame, std::span<const Sample> samples, const glm::vec2& low, const glm::vec2& high) {

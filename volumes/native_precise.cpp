@@ -177,6 +177,36 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, 
   cross_left_side(frame, seen, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
 }
 
+std::optional<bool> meets_corner(const Frame& frame, const glm::vec3& p, const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 from(p);
+  const glm::dvec3 way = frame.corner - from;
+  std::array<glm::dvec3, 3> d;
+  std::array<double, 3> size;
+  for (std::size_t i = 0; i < 3; ++i) {
+    d[i] = glm::dvec3(corners[i]) - from;
+    size[i] = glm::length(d[i]);
+  }
+  // A determinant of three rows that are right to a few units in the last place is right to 2⁻⁴⁸ of their lengths.
+  constexpr double kError = 0x1p-48;
+  const double length = glm::length(way);
+  int left = 0, right = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    const double side = glm::dot(way, glm::cross(d[i], d[next])), error = kError * length * size[i] * size[next];
+    left += side > error ? 1 : 0;
+    right += side < -error ? 1 : 0;
+  }
+  if (left > 0 && right > 0) return false;
+  const glm::dvec3 e1 = d[1] - d[0], e2 = d[2] - d[0], n = glm::cross(e1, e2);
+  const double area = glm::length(e1) * glm::length(e2);
+  const double at_p = -glm::dot(n, d[0]), at_light = glm::dot(n, way - d[0]);
+  const double error_p = kError * area * size[0], error_light = kError * area * (size[0] + length);
+  if ((at_p > error_p && at_light > error_light) || (at_p < -error_p && at_light < -error_light)) return false;
+  if (left < 3 && right < 3) return std::nullopt;
+  if (std::abs(at_p) <= error_p || std::abs(at_light) <= error_light) return std::nullopt;
+  return true;
+}
+
 template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>*, Open&);
 template void scatter_precisely(const PreciseInput&, const Changes<std::int32_t>*, Open&);
 

@@ -1,201 +1,23 @@
-// Second stage of edge scatter on a processor: what scatter_edges.comp does, with edges side by side instead of view
-// samples. A few neighbouring view samples sort out edges together; each then scatters what is left into its histogram.
+// Edge scatter on a processor: what scatter_edges.comp does, with edges side by side instead of view samples.
 
 #include "volumes/native_scatter.hpp"
 
 #include "volumes/native_precise.hpp"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include <bit>
-#include <cmath>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volumes/native_scatter.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+
+#include "volumes/native_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::native::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<float>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-using I = hn::RebindToSigned<D>;
-
-constexpr std::size_t kGroup = 8;  // view samples that sort out edges together
-
-V set(float x) {
-  return hn::Set(D(), x);
-}
-V bits(std::uint32_t x) {
-  return hn::BitCast(D(), hn::Set(hn::RebindToUnsigned<D>(), x));
-}
-M same_bits(V x, V y) {
-  const hn::RebindToUnsigned<D> words;
-  const auto equal = hn::Eq(hn::BitCast(words, x), hn::BitCast(words, y));
-  return hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(words, equal)));
-}
-M first_lanes(std::size_t count) {
-  return hn::FirstN(D(), count);
-}
-
-// ---- which edges matter to a group ---------------------------------------------------------------------------------
-
-struct Box3 {
-  glm::vec3 low{0}, high{0};
-};
-struct GroupBounds {
-  Box3 seen;  // (across, along, axis)
-  glm::vec3 middle{0}, half_size{0};
-  glm::vec2 foot_low{0}, foot_high{0};
-  float height_low = 0, height_high = 0, far = 0, per_way = 0, per_foot = 0, fixed = 0;
-};
-
-GroupBounds bounds_of(std::span<const Sample> samples) {
-  GroupBounds g;
-  const Sample& one = samples.front();
-  g.seen = {one.seen, one.seen};
-  Box3 local{one.local, one.local};
-  g.foot_low = g.foot_high = one.foot;
-  g.height_low = g.height_high = one.height;
-  for (const Sample& at : samples) {
-    g.seen = {glm::min(g.seen.low, at.seen), glm::max(g.seen.high, at.seen)};
-    local = {glm::min(local.low, at.local), glm::max(local.high, at.local)};
-    g.foot_low = glm::min(g.foot_low, at.foot);
-    g.foot_high = glm::max(g.foot_high, at.foot);
-    g.height_low = std::min(g.height_low, at.height);
-    g.height_high = std::max(g.height_high, at.height);
-    g.far = std::max(g.far, at.far);
-    g.per_way = std::max(g.per_way, at.per_way);
-    g.per_foot = std::max(g.per_foot, at.per_foot);
-    g.fixed = std::max(g.fixed, at.fixed);
-  }
-  g.middle = 0.5F * (local.low + local.high);
-  g.half_size = 0.5F * (local.high - local.low) * (1 + 8 * kRound);
-  return g;
-}
-
-/// Where an end of an edge appears for any view sample of the group.
-struct Range {
-  V low_x, low_y, high_x, high_y, error;
-  M bounded;
-  V level;  // over the light's plane
-};
-
-class GroupFilter {
- public:
-  GroupFilter(const ScatterInput& in, const GroupBounds& g, const glm::vec2& middle_foot, float middle_height)
-      : in_(in), g_(g), foot_(middle_foot), height_(middle_height) {}
-
-  void operator()(GroupTable& settled, GroupTable& unsettled) const {
-    settled.count = unsettled.count = 0;
-    settled.reserve(in_.edges.count);
-    unsettled.reserve(in_.edges.count);
-    const Frame& frame = in_.frame;
-    const float columns = static_cast<float>(frame.columns) - 0.5F, rows = static_cast<float>(frame.rows) - 0.5F;
-    for (std::size_t i = 0; i < in_.edges.count; i += hn::Lanes(D())) {
-      M kept = hn::And(first_lanes(in_.edges.count - i), may_be_silhouette(i));
-      if (hn::AllFalse(D(), kept)) continue;
-      const Range a = range_of(kAx, i), b = range_of(kBx, i);
-      const M bounded = hn::And(a.bounded, b.bounded);
-      const V low_x = hn::Min(a.low_x, b.low_x), high_x = hn::Max(a.high_x, b.high_x);
-      const V low_y = hn::Min(a.low_y, b.low_y), high_y = hn::Max(a.high_y, b.high_y);
-      const M before = hn::And(hn::And(hn::Le(low_x, set(columns)), hn::Ge(high_x, set(-0.5F))),
-                               hn::And(hn::Le(low_y, set(rows)), hn::Ge(high_y, set(-0.5F))));
-      const M crosses = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Ge(hn::Floor(high_y), hn::Ceil(low_y)));
-      const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * frame.reach));
-      kept = hn::AndNot(behind, kept);
-      put(settled, i, hn::And(kept, hn::And(bounded, hn::And(before, crosses))), hn::Max(a.error, b.error));
-      put(unsettled, i, hn::AndNot(bounded, kept), set(0));
-    }
-  }
-
- private:
-  [[nodiscard]] V column(std::size_t field, std::size_t i) const { return hn::Load(D(), in_.edges[field] + i); }
-
-  struct Sides {
-    M positive, negative, none;
-  };
-  /// What one of the edges' triangles is for all of the group's p. (bound side)
-  [[nodiscard]] Sides sides(std::size_t first, std::size_t i) const {
-    const V x = column(first, i), y = column(first + 1, i), z = column(first + 2, i);
-    const V f = hn::Sub(hn::MulAdd(x, set(g_.middle.x), hn::MulAdd(y, set(g_.middle.y), hn::Mul(z, set(g_.middle.z)))),
-                        column(first + kD1 - kN1x, i));
-    const V error = column(first + kE1 - kN1x, i), ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
-    const V wide =
-        hn::MulAdd(ax, set(g_.half_size.x), hn::MulAdd(ay, set(g_.half_size.y), hn::Mul(az, set(g_.half_size.z))));
-    const V ones = hn::Add(ax, hn::Add(ay, az));
-    const V spread =
-        hn::MulAdd(wide, set(1.001F), hn::MulAdd(error, set(3.2F), hn::Mul(ones, set(4 * kRound * in_.frame.reach))));
-    const M none = hn::Lt(error, set(0));
-    return {hn::AndNot(none, hn::Gt(f, spread)), hn::AndNot(none, hn::Lt(f, hn::Neg(spread))), none};
-  }
-  [[nodiscard]] M may_be_silhouette(std::size_t i) const {
-    const Sides s = sides(kN1x, i), t = sides(kN2x, i);
-    return hn::Not(
-        hn::Or(hn::And(s.none, t.none), hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive))));
-  }
-
-  /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so
-  /// the corners bound it.
-  [[nodiscard]] Range range_of(std::size_t first, std::size_t i) const {
-    const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
-    Range r;
-    r.level = hn::Add(column(first + 2, i), set(height_));
-    const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
-    r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.frame.reach)));
-    const V inverse = hn::Div(set(1), w_low), at_low = hn::Mul(r.level, inverse), at_high = hn::Div(r.level, w_high);
-    const auto span = [&](V from, float low, float high) {
-      const V e0 = hn::Sub(from, set(high)), e1 = hn::Sub(from, set(low));
-      const V p0 = hn::Mul(e0, at_low), p1 = hn::Mul(e0, at_high), p2 = hn::Mul(e1, at_low), p3 = hn::Mul(e1, at_high);
-      return std::pair(hn::Add(from, hn::Min(hn::Min(p0, p1), hn::Min(p2, p3))),
-                       hn::Add(from, hn::Max(hn::Max(p0, p1), hn::Max(p2, p3))));
-    };
-    const auto [low_x, high_x] = span(x, g_.foot_low.x, g_.foot_high.x);
-    const auto [low_y, high_y] = span(y, g_.foot_low.y, g_.foot_high.y);
-    const auto away = [&](V low, V high, float foot_low, float foot_high) {
-      return hn::Add(hn::Max(hn::Abs(hn::Sub(high, set(foot_low))), hn::Abs(hn::Sub(low, set(foot_high)))),
-                     set(foot_high - foot_low));
-    };
-    const V foot =
-        hn::Add(away(low_x, high_x, g_.foot_low.x, g_.foot_high.x), away(low_y, high_y, g_.foot_low.y, g_.foot_high.y));
-    const V way = hn::Mul(hn::Add(column(kFar, i), set(g_.far)), inverse);
-    // (bound X), a tenth more: the differences of height are not computed like the view samples'
-    r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(kPerReach), foot, set(g_.per_way)),
-                                            hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));
-    const V around = hn::Mul(set(4), r.error);
-    r.low_x = hn::Sub(low_x, around);
-    r.low_y = hn::Sub(low_y, around);
-    r.high_x = hn::Add(high_x, around);
-    r.high_y = hn::Add(high_y, around);
-    return r;
-  }
-
-  void put(GroupTable& table, std::size_t i, M kept, V error) const {
-    const std::size_t more = hn::CountTrue(D(), kept);
-    if (more == 0) return;
-    for (std::size_t field = 0; field <= kPlane2; ++field) {
-      hn::CompressStore(column(field, i), kept, D(), table[field] + table.count);
-    }
-    hn::CompressStore(error, kept, D(), table[kGroupError] + table.count);
-    const V numbers = hn::BitCast(D(), hn::Iota(I(), static_cast<std::int32_t>(i)));
-    hn::CompressStore(numbers, kept, D(), table[kGroupEdge] + table.count);
-    table.count += more;
-  }
-
-  const ScatterInput& in_;
-  const GroupBounds& g_;
-  glm::vec2 foot_;
-  float height_;
-};
-
-// ---- one view sample -----------------------------------------------------------------------------------------------
+constexpr std::size_t kGroup = 16;                 // view samples that sort out edges together
+constexpr std::uint32_t kUnsettled = 0x80000000U;  // of CrossingField's kEdge
 
 /// k_e at p, and whether rounding leaves it open. In one order, without fused multiplications, as everywhere where the
 /// same sign must come out for all edges of a triangle.
@@ -229,8 +51,9 @@ class SampleScatter {
   bool operator()(const Sample& at) {
     at_ = &at;
     s_.crossing.count = 0;
-    s_.crossing.reserve(s_.settled.count);
-    for (std::size_t i = 0; i < s_.settled.count; i += hn::Lanes(D())) project(i);
+    s_.crossing.reserve(s_.lists.settled.count + s_.lists.unsettled.count);
+    for (std::size_t i = 0; i < s_.lists.settled.count; i += hn::Lanes(D())) settled(i);
+    for (std::size_t i = 0; i < s_.lists.unsettled.count; i += hn::Lanes(D())) unsettled(i);
     std::size_t landed = 0;
     bool any = false;
     for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) any |= cross(i, landed);
@@ -238,7 +61,6 @@ class SampleScatter {
       Counter& cell = changes_.cells[s_.landing[i]];
       cell = static_cast<Counter>(cell + s_.jump[i]);
     }
-    for (std::size_t i = 0; i < s_.unsettled.count; i += hn::Lanes(D())) any |= unsettled(i);
     return any || landed > 0 || any_precise_ || s_.open.any();
   }
 
@@ -252,64 +74,120 @@ class SampleScatter {
   /// Edges of the group that are not for vectors.
   void precisely(const GroupTable& table, std::size_t i, M which, const Multiplicity& m, bool is_settled) {
     HWY_ALIGN float k[hn::MaxLanes(D())];
-    std::uint8_t chosen[8] = {}, open[8] = {};
+    std::uint8_t open[8] = {};
     hn::Store(m.k, D(), k);
-    hn::StoreMaskBits(D(), which, chosen);
     hn::StoreMaskBits(D(), m.open, open);
-    for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane) {
-      if ((chosen[lane / 8] >> (lane % 8) & 1) == 0) continue;
+    for_each_lane(which, [&](std::size_t lane) {
       precisely(std::bit_cast<std::uint32_t>(table[kGroupEdge][i + lane]), k[lane],
                 (open[lane / 8] >> (lane % 8) & 1) != 0, is_settled, true);
-    }
+    });
   }
 
-  bool unsettled(std::size_t i) {
-    const GroupTable& table = s_.unsettled;
-    const Multiplicity m = multiplicity(table, *at_, i);
-    const M which = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
-    if (hn::AllFalse(D(), which)) return false;
-    precisely(table, i, which, m, false);
-    return true;
+  struct Ways {
+    V x, y, w;
+  };
+  [[nodiscard]] Ways way_to(const GroupTable& table, std::size_t first, std::size_t i) const {
+    const auto column = [&](std::size_t field) { return hn::Load(D(), table[first + field] + i); };
+    return {hn::Sub(column(0), set(at_->seen.x)), hn::Sub(column(1), set(at_->seen.y)),
+            hn::Sub(set(at_->seen.z), column(2))};
+  }
+  struct Place {
+    V x, y;
+  };
+  [[nodiscard]] Place appears(const Ways& way) const {
+    const V q = hn::Div(set(at_->height), way.w);
+    return {hn::Add(set(at_->foot.x), hn::Mul(q, way.x)), hn::Add(set(at_->foot.y), hn::Mul(q, way.y))};
   }
 
-  /// Keeps what crosses light rows or the light's left side.
-  void project(std::size_t i) {
-    const D d;
-    const GroupTable& table = s_.settled;
+  /// Edges well above p.
+  void settled(std::size_t i) {
+    const GroupTable& table = s_.lists.settled;
     const Multiplicity m = multiplicity(table, *at_, i);
     const M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
-    if (hn::AllFalse(d, live)) return;
+    if (hn::AllFalse(D(), live)) return;
     const M open = hn::And(live, m.open);
-    if (!hn::AllFalse(d, open)) precisely(table, i, open, m, true);
-    const auto column = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
-    const Sample& at = *at_;
-    const V height = set(at.height), level = set(at.seen.z);
-    const V qa = hn::Div(height, hn::Sub(level, column(kAh))), qb = hn::Div(height, hn::Sub(level, column(kBh)));
-    const V x0 = hn::Add(set(at.foot.x), hn::Mul(qa, hn::Sub(column(kAx), set(at.seen.x))));
-    const V y0 = hn::Add(set(at.foot.y), hn::Mul(qa, hn::Sub(column(kAy), set(at.seen.y))));
-    const V x1 = hn::Add(set(at.foot.x), hn::Mul(qb, hn::Sub(column(kBx), set(at.seen.x))));
-    const V y1 = hn::Add(set(at.foot.y), hn::Mul(qb, hn::Sub(column(kBy), set(at.seen.y))));
-    const V error = column(kGroupError);
-    const V low_x = hn::Sub(hn::Min(x0, x1), error), high_x = hn::Add(hn::Max(x0, x1), error);
-    const V low_y = hn::Sub(hn::Min(y0, y1), error), high_y = hn::Add(hn::Max(y0, y1), error);
-    const V first = hn::Max(hn::Ceil(low_y), set(0));
-    const V last = hn::Min(hn::Floor(high_y), set(static_cast<float>(in_.frame.rows) - 1));
-    const M left = hn::And(hn::Lt(low_x, set(-0.5F)),
-                           hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, set(static_cast<float>(in_.frame.rows)))));
-    const M before =
-        hn::And(hn::Le(low_x, set(static_cast<float>(in_.frame.columns) - 0.5F)), hn::Ge(high_x, set(-0.5F)));
-    const M kept = hn::AndNot(open, hn::And(live, hn::And(before, hn::Or(left, hn::Le(first, last)))));
+    if (!hn::AllFalse(D(), open)) precisely(table, i, open, m, true);
+    const V error = hn::Load(D(), table[kGroupError] + i);
+    keep_crossing({appears(way_to(table, kAx, i)), appears(way_to(table, kBx, i)), m.k, error,
+                   hn::Load(D(), table[kGroupEdge] + i)},
+                  hn::AndNot(open, live));
+  }
+
+  /// Edges that may come near p's height, or go below: as scatter_precisely cuts them. (bound window)
+  void unsettled(std::size_t i) {
+    const D d;
+    const Frame& frame = in_.frame;
+    const GroupTable& table = s_.lists.unsettled;
+    const Multiplicity m = multiplicity(table, *at_, i);
+    M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
+    if (hn::AllFalse(d, live)) return;
+    const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
+    const glm::vec2 window = 2.0F * frame.half_cells + 2.0F, off = at_->foot - frame.first_cell;
+    V from = set(0), to = set(1);
+    for (int axis = 0; axis < 2; ++axis) {
+      const V xa = hn::Add(hn::Mul(axis == 0 ? a.x : a.y, set(at_->height)), hn::Mul(set(off[axis]), a.w));
+      const V xb = hn::Add(hn::Mul(axis == 0 ? b.x : b.y, set(at_->height)), hn::Mul(set(off[axis]), b.w));
+      const V wide_a = hn::Mul(set(window[axis]), a.w), wide_b = hn::Mul(set(window[axis]), b.w);
+      for (const bool upper : {false, true}) {
+        const V inside_a = upper ? hn::Add(wide_a, xa) : hn::Sub(wide_a, xa);
+        const V inside_b = upper ? hn::Add(wide_b, xb) : hn::Sub(wide_b, xb);
+        const V t = hn::Div(inside_a, hn::Sub(inside_a, inside_b));
+        const M out_a = hn::Lt(inside_a, set(0)), out_b = hn::Lt(inside_b, set(0));
+        from = hn::IfThenElse(out_a, hn::Max(from, hn::IfThenElse(out_b, set(2), t)), from);
+        to = hn::IfThenElse(hn::AndNot(out_a, out_b), hn::Min(to, t), to);
+      }
+    }
+    live = hn::And(live, hn::Le(from, to));
+    if (hn::AllFalse(d, live)) return;
+    const auto at = [&](V t, M cut, V x, V y, V uncut) {
+      return hn::IfThenElse(cut, hn::Add(hn::Mul(x, hn::Sub(set(1), t)), hn::Mul(y, t)), uncut);
+    };
+    const M cut_a = hn::Gt(from, set(0)), cut_b = hn::Lt(to, set(1));
+    const Ways start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y), at(from, cut_a, a.w, b.w, a.w)};
+    const Ways end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
+    const V edge = hn::Load(d, table[kGroupEdge] + i);
+    const V far = hn::Add(far_of(edge), set(at_->far));
+    const M through_p = hn::Lt(hn::Min(start.w, end.w), hn::Mul(set(64 * kRound), far));
+    const M special = hn::And(live, hn::Or(m.open, through_p));
+    if (!hn::AllFalse(d, special)) precisely(table, i, special, m, false);
+    const Place seen_a = appears(start), seen_b = appears(end);
+    const V error = hn::Mul(set(1.01F), hn::Max(error_of(seen_a, start.w, far), error_of(seen_b, end.w, far)));
+    keep_crossing({seen_a, seen_b, m.k, error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(special, live));
+  }
+
+  [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
+  /// (bound X)
+  [[nodiscard]] V error_of(const Place& seen, V w, V far) const {
+    const V foot = hn::Add(hn::Abs(hn::Sub(seen.x, set(at_->foot.x))), hn::Abs(hn::Sub(seen.y, set(at_->foot.y))));
+    return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(kPerReach), foot, set(at_->per_way)),
+                      hn::MulAdd(set(at_->per_foot), foot, set(at_->fixed)));
+  }
+
+  struct SeenEdge {
+    Place a, b;
+    V k, error, number;
+  };
+  /// What crosses light rows or the light's left side, or may.
+  void keep_crossing(const SeenEdge& e, M live) {
+    const D d;
+    const V low_x = hn::Sub(hn::Min(e.a.x, e.b.x), e.error), high_x = hn::Add(hn::Max(e.a.x, e.b.x), e.error);
+    const V low_y = hn::Sub(hn::Min(e.a.y, e.b.y), e.error), high_y = hn::Add(hn::Max(e.a.y, e.b.y), e.error);
+    const V rows = set(static_cast<float>(in_.frame.rows)), columns = set(static_cast<float>(in_.frame.columns));
+    const V first = hn::Max(hn::Ceil(low_y), set(0)), last = hn::Min(hn::Floor(high_y), hn::Sub(rows, set(1)));
+    const M left = hn::And(hn::Lt(low_x, set(-0.5F)), hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows)));
+    const M before = hn::And(hn::Le(low_x, columns), hn::Ge(high_x, set(-0.5F)));
+    const M kept = hn::And(live, hn::And(before, hn::Or(left, hn::Le(first, last))));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
     CrossingTable& out = s_.crossing;
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
-    put(kX0, x0);
-    put(kY0, y0);
-    put(kX1, x1);
-    put(kY1, y1);
-    put(kK, m.k);
-    put(kError, error);
-    put(kEdge, column(kGroupEdge));
+    put(kX0, e.a.x);
+    put(kY0, e.a.y);
+    put(kX1, e.b.x);
+    put(kY1, e.b.y);
+    put(kK, e.k);
+    put(kError, e.error);
+    put(kEdge, e.number);
     out.count += more;
   }
 
@@ -399,13 +277,10 @@ class SampleScatter {
   }
 
   void look_again(std::size_t i, M which) {
-    std::uint8_t chosen[8] = {};
-    hn::StoreMaskBits(D(), which, chosen);
-    for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane) {
-      if ((chosen[lane / 8] >> (lane % 8) & 1) == 0) continue;
-      precisely(std::bit_cast<std::uint32_t>(s_.crossing[kEdge][i + lane]), s_.crossing[kK][i + lane], false, true,
-                false);
-    }
+    for_each_lane(which, [&](std::size_t lane) {
+      const auto number = std::bit_cast<std::uint32_t>(s_.crossing[kEdge][i + lane]);
+      precisely(number & ~kUnsettled, s_.crossing[kK][i + lane], false, (number & kUnsettled) == 0, false);
+    });
   }
 
   const ScatterInput& in_;
@@ -414,62 +289,6 @@ class SampleScatter {
   const Sample* at_ = nullptr;
   bool any_precise_ = false;
 };
-
-/// How many triangles the segment from p to the light's lower left corner meets (Woop et al. 2013: in coordinates with
-/// the ray as third axis, what decides is three products in two dimensions). One is as good as many where no edge
-/// changes the count (`one_will_do`). (bound corner)
-std::uint32_t count_to_corner(const ScatterInput& in, const Sample& at, bool one_will_do, Open& open) {
-  const D d;
-  const TriangleTable& table = in.triangles;
-  const glm::vec2 lean = (glm::vec2(-0.5F) - at.foot) / at.height;  // the ray's way in cells for a unit of height
-  const float lengths = at.away / at.height, size_of_lean = std::sqrt(lean.x * lean.x + lean.y * lean.y);
-  const float per_far = kRound * (8 * in.frame.per_length * (1 + lengths) + (16 + 8 * lengths) * size_of_lean);
-  std::uint32_t met = 0;
-  for (std::size_t i = 0; i < table.count && !(one_will_do && met > 0); i += hn::Lanes(d)) {
-    const auto column = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
-    struct Corner {
-      V x, y, w;
-    };
-    const auto corner = [&](std::size_t first) {
-      const V w = hn::Sub(set(at.seen.z), column(first + 2));
-      return Corner{hn::Sub(hn::Sub(column(first), set(at.seen.x)), hn::Mul(set(lean.x), w)),
-                    hn::Sub(hn::Sub(column(first + 1), set(at.seen.y)), hn::Mul(set(lean.y), w)), w};
-    };
-    const Corner a = corner(kCornerA), b = corner(kCornerB), c = corner(kCornerC);
-    const auto cross = [&](const Corner& p, const Corner& q) { return hn::Sub(hn::Mul(p.x, q.y), hn::Mul(p.y, q.x)); };
-    const V fab = cross(a, b), fbc = cross(b, c), fca = cross(c, a);
-    const V far = hn::Add(column(kTriangleFar), set(at.far));
-    const V error_x = hn::Mul(set(per_far), far);
-    const auto size1 = [&](const Corner& p) { return hn::Add(hn::Abs(p.x), hn::Abs(p.y)); };
-    const V size = hn::Max(size1(a), hn::Max(size1(b), size1(c)));
-    const V twice = hn::Add(error_x, error_x);
-    const V error = hn::MulAdd(hn::MulAdd(set(4 * kRound), size, twice), size, hn::Mul(twice, error_x));
-    const V most = hn::Max(fab, hn::Max(fbc, fca)), least = hn::Min(fab, hn::Min(fbc, fca)), below = hn::Neg(error);
-    const M sided = hn::Or(hn::Gt(least, error), hn::Lt(most, below));
-    const M passes = hn::And(hn::Gt(most, error), hn::Lt(least, below));
-    const V w_most = hn::Max(a.w, hn::Max(b.w, c.w)), w_least = hn::Min(a.w, hn::Min(b.w, c.w));
-    // The height over p at which the line meets the triangle's plane: a mean of the corners', with weights f.
-    const V total = hn::Add(fab, hn::Add(fbc, fca));
-    const V meeting = hn::Div(hn::Add(hn::Mul(fbc, a.w), hn::Add(hn::Mul(fca, b.w), hn::Mul(fab, c.w))), total);
-    const V near_p = hn::Mul(set(16 * kRound), far),
-            near_light = hn::Mul(set(16 * kRound), hn::Add(far, set(in.frame.reach)));
-    const V error_w =
-        hn::Add(near_light, hn::Div(hn::Mul(set(6), hn::Mul(error, far)), hn::Max(hn::Abs(total), set(1e-30F))));
-    const V height = set(at.height);
-    const M within = hn::Or(hn::And(hn::Gt(meeting, error_w), hn::Lt(meeting, hn::Sub(height, error_w))),
-                            hn::And(hn::Gt(w_least, near_p), hn::Lt(w_most, hn::Sub(height, near_light))));
-    const M outside = hn::Or(
-        hn::Or(passes, hn::Lt(w_most, hn::Neg(near_p))),
-        hn::Or(hn::Gt(w_least, hn::Add(height, near_light)),
-               hn::And(sided, hn::Or(hn::Lt(meeting, hn::Neg(error_w)), hn::Gt(meeting, hn::Add(height, error_w))))));
-    const M asked =
-        hn::AndNot(hn::Or(outside, same_bits(column(kTrianglePlane), bits(at.plane))), first_lanes(table.count - i));
-    const M hit = hn::And(asked, hn::And(sided, within));
-    met += static_cast<std::uint32_t>(hn::CountTrue(d, hit));
-    if (!hn::AllFalse(d, hn::AndNot(hit, asked))) open.pixel = true;
-  }
-  return met;
-}
 
 // ---- depths to bits ------------------------------------------------------------------------------------------------
 
@@ -498,14 +317,9 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
       depths = hn::Add(depths, hn::LoadU(d, changes.cells + column * frame.padded_rows + row));
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(d, hn::Eq(depths, hn::Zero(d)), bytes);
-      auto* to = reinterpret_cast<std::uint8_t*>(seen.mask + column * words) + row / 8;
-      if (hn::Lanes(d) >= 16) {
-        std::memcpy(to, bytes, 2);
-      } else if (hn::Lanes(d) == 8) {
-        *to = bytes[0];
-      } else {  // 4: halves of a byte
-        *to = row % 8 == 0 ? bytes[0] : static_cast<std::uint8_t>(*to | bytes[0] << 4);
-      }
+      std::uint16_t& word = seen.mask[column * words + row / 16];
+      const std::uint32_t found = (bytes[0] | bytes[1] << 8U) << row % 16;
+      word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
     }
   }
   seen.visible = count_bits(seen.mask, frame.columns * words);
@@ -513,16 +327,28 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
 
 /// Light samples that are not strictly above the carrier's plane are not visible. (bound horizon)
 void cut_at_horizon(const Frame& frame, const Sample& at, Open& open, Seen& seen) {
+  const hn::CappedTag<float, 16> d;
   const std::size_t words = frame.padded_rows / 16;
-  for (std::uint32_t column = 0; column < frame.columns; ++column) {
-    for (std::uint32_t row = 0; row < frame.rows; ++row) {
-      const float s = (static_cast<float>(column) + frame.shift[row] - frame.first_cell.x) / frame.half_cells.x;
-      const float t = (static_cast<float>(row) - frame.first_cell.y) / frame.half_cells.y;
-      const float value = at.above.x * s + at.above.y * t + at.above.z;
-      if (value > at.above_error) continue;
-      std::uint16_t& word = seen.mask[column * words + row / 16];
-      word = static_cast<std::uint16_t>(word & ~(1U << row % 16));
-      if (value >= -at.above_error) open.samples.push_back(row * frame.columns + column);
+  const auto constant = [&](float x) { return hn::Set(d, x); };
+  const float per_column = at.above.x / frame.half_cells.x, per_row = at.above.y / frame.half_cells.y;
+  for (std::uint32_t first = 0; first < frame.padded_rows; first += static_cast<std::uint32_t>(hn::Lanes(d))) {
+    const auto rows = hn::Sub(hn::Iota(d, static_cast<float>(first)), constant(frame.first_cell.y));
+    const auto shifts = hn::Sub(hn::LoadU(d, &frame.shift[first]), constant(frame.first_cell.x));
+    const auto value_of_row =
+        hn::MulAdd(rows, constant(per_row), hn::MulAdd(shifts, constant(per_column), constant(at.above.z)));
+    for (std::uint32_t column = 0; column < frame.columns; ++column) {
+      const auto value = hn::MulAdd(constant(static_cast<float>(column)), constant(per_column), value_of_row);
+      std::uint8_t above[8] = {}, not_below[8] = {};
+      hn::StoreMaskBits(d, hn::Gt(value, constant(at.above_error)), above);
+      hn::StoreMaskBits(d, hn::Ge(value, constant(-at.above_error)), not_below);
+      std::uint16_t& word = seen.mask[column * words + first / 16];
+      const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
+      const std::uint32_t is_above = above[0] | above[1] << 8U, may_be = not_below[0] | not_below[1] << 8U;
+      word = static_cast<std::uint16_t>(word & ~((lanes & ~is_above) << place));
+      for (std::uint32_t left = may_be & ~is_above & lanes; left != 0; left &= left - 1) {
+        const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(left));
+        if (row < frame.rows) open.samples.push_back(row * frame.columns + column);
+      }
     }
   }
   seen.visible = count_bits(seen.mask, frame.columns * words);
@@ -543,8 +369,11 @@ template <typename Counter>
 void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& histogram,
                     std::vector<Counter>& left, const Sample& at, Seen& seen) {
   const Frame& frame = in.frame;
-  const bool edges = scratch.settled.count + scratch.unsettled.count > 0;
-  const std::uint32_t depth = count_to_corner(in, at, !edges, scratch.open);
+  const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
+  const std::uint32_t depth =
+      scratch.lists.triangles.count == 0
+          ? 0
+          : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges}, scratch.open);
   bool changes_any = false;
   if (edges) {
     histogram.assign(std::size_t{frame.columns} * frame.padded_rows, 0);
@@ -561,22 +390,16 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
 }
 
 void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
-  const Frame& frame = in.frame;
   const std::span<const Sample> samples(in.cluster.samples);
-  const glm::vec3 from_light = in.cluster.middle - frame.center;
-  const glm::vec2 foot =
-      glm::vec2(glm::dot(frame.across, from_light), glm::dot(frame.along, from_light)) + frame.first_cell;
-  const float height = glm::dot(frame.axis, from_light);
   if (scratch.landing.empty()) {
     scratch.landing.resize(4096);
     scratch.jump.resize(4096);
   }
   for (std::size_t first = 0; first < samples.size(); first += kGroup) {
     const auto group = samples.subspan(first, std::min(kGroup, samples.size() - first));
-    const GroupBounds bounds = bounds_of(group);
-    GroupFilter(in, bounds, foot, height)(scratch.settled, scratch.unsettled);
+    sort_out(in, group, scratch.lists);
     // Changes of a cell and its depth stay within ±(2 edges + triangles).
-    const bool narrow = 2 * (scratch.settled.count + scratch.unsettled.count) + in.triangles.count < 32000;
+    const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;
     for (std::size_t i = 0; i < group.size(); ++i) {
       scratch.open.clear();
       Seen& result = seen[first + i];

@@ -25,6 +25,7 @@ constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 struct Frame {
   glm::vec3 center{0}, axis{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
+  glm::dvec3 corner{0};  ///< of the light: where its rows and columns begin
   float per_length = 0, skew = 1, deviation = 0, reach = 0, cut_reach = 0;
   float side = 1;
   std::uint32_t rows = 0, columns = 0, light = 0;
@@ -38,9 +39,9 @@ struct FrameInput {
 };
 Frame make_frame(const FrameInput& input);
 
-/// A view sample: p relative to its cluster's middle, in world axes and in the frame's (across, along, axis).
+/// A view sample: p, scaled; relative to its cluster's middle, in world axes and in the frame's (across, along, axis).
 struct Sample {
-  glm::vec3 local{0}, seen{0};
+  glm::vec3 p{0}, local{0}, seen{0};
   glm::vec2 foot{0};
   float height = 0;
   float away = 0;  ///< |p − the light's centre|
@@ -48,6 +49,8 @@ struct Sample {
   /// The error of a projected point at height w over p, `far_x` from the cluster's middle, that appears F from the
   /// foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
   float per_way = 0, per_foot = 0, fixed = 0;
+  glm::vec2 lean{0};   ///< the way to the light's corner, in cells for a unit of height
+  float per_lean = 0;  ///< the error of a corner's place beside that way is (far_x + far) per_lean (bound corner)
   std::uint32_t plane = 0, pixel = 0;
   /// Light samples with above · (s, t, 1) > above_error are above the carrier's plane; < −above_error: below it.
   /// (bound horizon)
@@ -64,6 +67,9 @@ struct Shaft {
 };
 /// `low`, `high`: the rectangle, in cells from the light's middle.
 Shaft make_shaft(const Frame& frame, std::span<const Sample> samples, const glm::vec2& low, const glm::vec2& high);
+
+/// Sets what depends on where the view sample is alone and is needed once something may be before the light.
+void complete(const Frame& frame, Sample& at);
 
 /// View samples whose lists are found together, and their box.
 struct Cluster {
@@ -141,6 +147,7 @@ enum TriangleField : std::size_t {
   kCornerC = 6,
   kTrianglePlane = 9,
   kTriangleFar,
+  kTriangleSlot,  ///< of the hierarchy's leaves (bits)
   kTriangleFields
 };
 using TriangleTable = Table<kTriangleFields>;
@@ -182,11 +189,36 @@ class Judge {
   virtual void decide(const Sample& sample, const Open& open, Seen& seen) = 0;
 };
 
+struct ScatterInput {
+  const Frame& frame;
+  const WideTriangleTree& tree;
+  const Cluster& cluster;
+  const EdgeTable& edges;
+  const TriangleTable& triangles;
+};
+/// What matters to a group of view samples. Settled edges stay well above all of its p.
+struct GroupLists {
+  GroupTable settled, unsettled;
+  TriangleTable triangles;
+};
+void sort_out(const ScatterInput& input, std::span<const Sample> group, GroupLists& lists);
+
+/// How many triangles the segment from p to the light's lower left corner meets. One is as good as many where no edge
+/// changes the count (`one_will_do`).
+struct CornerInput {
+  const Frame& frame;
+  const WideTriangleTree& tree;
+  const TriangleTable& triangles;
+  const Sample& at;
+  bool one_will_do;
+};
+std::uint32_t count_to_corner(const CornerInput& input, Open& open);
+
 /// Buffers of one thread.
 struct Scratch {
   EdgeTable edges;
   TriangleTable triangles;
-  GroupTable settled, unsettled;
+  GroupLists lists;
   CrossingTable crossing;
   std::vector<std::uint32_t> stack;
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
@@ -196,12 +228,6 @@ struct Scratch {
   std::uint64_t open_pixels = 0, open_samples = 0, listed = 0;  // counted
 };
 
-struct ScatterInput {
-  const Frame& frame;
-  const Cluster& cluster;
-  const EdgeTable& edges;
-  const TriangleTable& triangles;
-};
 /// `seen`: one a view sample of the cluster; all or nothing of a mask is written.
 void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen);
 

@@ -1,0 +1,54 @@
+// Vectors of floats, as many as the processor has: included once a target by each of edge scatter's native stages.
+
+#if defined(PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
+#undef PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
+#else
+#define PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
+#endif
+
+#include "volumes/native_scatter.hpp"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+using I = hn::RebindToSigned<D>;
+
+[[maybe_unused]] V set(float x) {
+  return hn::Set(D(), x);
+}
+[[maybe_unused]] V bits(std::uint32_t x) {
+  return hn::BitCast(D(), hn::Set(hn::RebindToUnsigned<D>(), x));
+}
+[[maybe_unused]] M same_bits(V x, V y) {
+  const hn::RebindToUnsigned<D> words;
+  const auto equal = hn::Eq(hn::BitCast(words, x), hn::BitCast(words, y));
+  return hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(words, equal)));
+}
+[[maybe_unused]] M first_lanes(std::size_t count) {
+  return hn::FirstN(D(), count);
+}
+
+/// Calls `visit(lane)` for each lane that is set.
+template <typename Visit>
+void for_each_lane(M which, Visit visit) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D(), which, bytes);
+  for (std::size_t lane = 0; lane < hn::Lanes(D()); ++lane) {
+    if ((bytes[lane / 8] >> (lane % 8) & 1) != 0) visit(lane);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // once a target
