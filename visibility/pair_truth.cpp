@@ -2,6 +2,8 @@
 
 #include "visibility/pair_truth.hpp"
 
+#include "visibility/certain_meeting.hpp"
+
 #include "base/assert.hpp"
 
 #include <CGAL/MP_Float.h>
@@ -72,6 +74,8 @@ int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const 
 
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light) {
+  if (const std::optional<bool> certain = certainly_meets(glm::dvec3(p), glm::dvec3(l), corners))
+    return {*certain, false};
   const auto& [a, b, c] = corners;
   const Side side_p = side_of_plane(a, b, c, p), side_l = side_of_plane(a, b, c, l);
   const bool plane_zero = side_p == Side::on || side_l == Side::on;

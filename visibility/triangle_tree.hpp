@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -74,28 +75,32 @@ void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper,
 }
 
 /// The stretch of a segment from p along `way` (p→l), 0 … 1, that is in a box.
-struct SegmentInBox {
-  glm::dvec3 p, way;
+class SegmentInBox {
+ public:
+  SegmentInBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
 
   [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
     double enter = -0x1p-40, leave = 1 + 0x1p-40;
     for (int axis = 0; axis < 3; ++axis) {
-      const double from = lower[axis] - p[axis], to = upper[axis] - p[axis];
-      if (way[axis] == 0) {
+      const double from = lower[axis] - p_[axis], to = upper[axis] - p_[axis];
+      if (std::isinf(inverse_[axis])) {
         if (from > 0 || to < 0) return false;
         continue;
       }
-      const double t0 = from / way[axis], t1 = to / way[axis];
+      const double t0 = from * inverse_[axis], t1 = to * inverse_[axis];
       enter = std::max(enter, std::min(t0, t1) - 0x1p-40);
       leave = std::min(leave, std::max(t0, t1) + 0x1p-40);
     }
     return enter <= leave;
   }
+
+ private:
+  glm::dvec3 p_, inverse_;
 };
 
 template <typename Visit>
 bool TriangleTree::any_along(const glm::vec3& p, const glm::vec3& l, Visit&& visit) const {
-  const SegmentInBox segment{glm::dvec3(p), glm::dvec3(l) - glm::dvec3(p)};
+  const SegmentInBox segment(glm::dvec3(p), glm::dvec3(l) - glm::dvec3(p));
   std::vector<std::uint32_t> stack;
   if (!nodes.empty()) stack.push_back(0);
   while (!stack.empty()) {

@@ -62,12 +62,7 @@ DepthAnswers judge_depths(const DepthJudgeInput& input, std::span<const gpu::Dep
 int exact_depth(const DepthJudgeInput& input, std::size_t pixel, std::uint32_t light_sample) {
   const visibility::PairJudge judge{input.scene, input.tree, input.samples, input.light};
   const glm::vec3& l = input.light.points[light_sample];
-  int met = 0;
-  static_cast<void>(input.tree.any_along(input.samples.p[pixel], l, [&](std::uint32_t triangle) {
-    met += judge.meets(pixel, l, triangle) ? 1 : 0;
-    return false;
-  }));
-  return met;
+  return static_cast<int>(judge.depth(pixel, l));
 }
 
 }  // namespace penumbra::volumes

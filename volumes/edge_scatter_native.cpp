@@ -41,6 +41,11 @@ class OpenJudge final : public native::Judge {
  public:
   OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
 
+  std::uint32_t depth(const Sample& sample, std::uint32_t light_sample) override {
+    ++samples_;
+    return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
+  }
+
   void decide(const Sample& sample, const native::Open& open, Seen& seen) override {
     ++pixels_;
     if (open.pixel) {

@@ -1,11 +1,12 @@
 // Edge scatter on a processor: how many triangles are before the light's corner, from which edges count on.
 
-#include "volumes/native_precise.hpp"
+#include "visibility/certain_meeting.hpp"
 #include "volumes/native_scatter.hpp"
 
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volumes/native_corner.cpp"
@@ -28,8 +29,8 @@ std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Ope
       const WidePoints& x = leaf.corner[corner];
       corners[corner] = {x[0][slot % kWide], x[1][slot % kWide], x[2][slot % kWide]};
     }
-    const std::optional<bool> meets = meets_corner(in.frame, in.at.p, corners);
-    if (!meets) open.pixel = true;
+    const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(in.at.p), in.frame.corner, corners);
+    if (!meets) open.corner = true;
     met += meets.value_or(false) ? 1 : 0;
   });
   return met;

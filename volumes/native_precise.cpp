@@ -33,15 +33,16 @@ class Marks {
     open_.samples.push_back(static_cast<std::uint32_t>(row) * frame_.columns + static_cast<std::uint32_t>(column));
   }
   void pixel() { open_.pixel = true; }
+  void corner() { open_.corner = true; }
 
   /// What is open where the changes at (row, x) may be anywhere within `error` of x: the nearest light sample, if it is
-  /// that near; the row, if others are too, or if x may be on either side of where the row begins.
+  /// that near; the row, if others are too.
   void near(float row, float x, float error) {
     if (row < 0 || row >= static_cast<float>(frame_.rows)) return;
     const auto columns = static_cast<float>(frame_.columns);
     const float column = x - frame_.shift[static_cast<std::size_t>(row)], nearest = std::round(column);
     const bool wide = error >= 0.5F && column > -1 - error && column < columns + error;
-    if (wide || std::abs(x + 0.5F) < error) this->row(row);
+    if (wide) this->row(row);
     if (!wide && nearest >= 0 && nearest < columns && std::abs(column - nearest) < error) sample(row, nearest);
   }
 
@@ -80,31 +81,41 @@ float row_at_least(const Frame& frame, float y) {
   return std::clamp(std::ceil(y), 0.0F, static_cast<float>(frame.rows));
 }
 
+/// Returns the first row above where the edge crosses the light's left side, if it does: told by the same x as the
+/// changes of the rows, so that no row can count it twice, or not at all.
 template <typename Counter>
-void cross_rows(const Frame& frame, const Seen2& s, Counter jump, const Changes<Counter>* changes, Marks& marks) {
+float cross_rows(const Frame& frame, const Seen2& s, Counter jump, const Changes<Counter>* changes, Marks& marks) {
   const auto columns = static_cast<float>(frame.columns);
   const float weight =
       std::min(1.0F, (std::abs(s.near.y - frame.first_cell.y) + 2 * frame.half_cells.y) / std::abs(s.far.y - s.near.y));
   const float error = 1.2F * (s.error_near + weight * s.error_far) * (1 + s.steep) +
                       8 * kRound * (frame.half_cells.x + std::abs(s.near.x));
+  const bool upper_right = (s.near.y < s.far.y ? s.far.x : s.near.x) >= -0.5F;
   const float end = row_at_least(frame, s.high.y);
+  float from = end;
   for (float row = row_at_least(frame, s.low.y); row < end; ++row) {
     const auto r = static_cast<std::size_t>(row);
     const float x = std::clamp(s.near.x + (row - s.near.y) * s.slope, s.low.x, s.high.x);
     const float column = x - frame.shift[r], nearest = std::round(column), first = std::max(std::ceil(column), 0.0F);
+    if ((x >= -0.5F) == upper_right) from = std::min(from, row);
     if (changes != nullptr && x >= -0.5F && first < columns) {
       Counter& cell = changes->cells[static_cast<std::size_t>(first) * frame.padded_rows + r];
       cell = static_cast<Counter>(cell + jump);
     }
-    const bool one = std::abs(column - nearest) < error && nearest >= 0 && nearest < columns;
-    if ((one && error >= 0.5F) || std::abs(x + 0.5F) < error) marks.row(row);
-    if (one && error < 0.5F) marks.sample(row, nearest);
+    if (!(std::abs(column - nearest) < error && nearest >= 0 && nearest < columns)) continue;
+    if (error >= 0.5F) {
+      marks.row(row);
+    } else {
+      marks.sample(row, nearest);
+    }
   }
+  return from;
 }
 
-/// Where it crosses the light's left side.
+/// Where it crosses the light's left side: above the corner or below?
 template <typename Counter>
-void cross_left_side(const Frame& frame, const Seen2& s, Counter up, const Changes<Counter>* changes, Marks& marks) {
+void cross_left_side(const Frame& frame, const Seen2& s, float from, Counter up, const Changes<Counter>* changes,
+                     Marks& marks) {
   const glm::vec2 way = s.far - s.near;
   const float inverse = way.y / way.x;
   const float weight =
@@ -112,13 +123,8 @@ void cross_left_side(const Frame& frame, const Seen2& s, Counter up, const Chang
   const float error = 1.2F * (s.error_near + s.error_far * weight) * (1 + std::abs(inverse)) +
                       8 * kRound * (frame.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
-  if (y <= -0.5F - error) return;
-  const float nearest = std::round(y);
-  if (std::abs(y - nearest) < error) marks.row(nearest);
-  if (std::abs(y + 0.5F) < error) marks.pixel();
-  if (changes == nullptr || y <= -0.5F) return;
-  const float from = row_at_least(frame, y);
-  if (from >= static_cast<float>(frame.rows)) return;
+  if (std::abs(y + 0.5F) < error) marks.corner();
+  if (changes == nullptr || y <= -0.5F || from >= static_cast<float>(frame.rows)) return;
   Counter& row = changes->left[static_cast<std::size_t>(from)];
   row = static_cast<Counter>(row + up);
 }
@@ -172,39 +178,9 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, 
     if (std::abs(end.y - row) < error) marks.near(row, end.x, 1.2F * error * (1 + seen.steep));
   }
   const auto jump = static_cast<Counter>((seen.near.y < seen.far.y) == seen.turn ? k : -k);
-  cross_rows(frame, seen, jump, changes, marks);
+  const float from = cross_rows(frame, seen, jump, changes, marks);
   if ((seen_a.x < -0.5F) == (seen_b.x < -0.5F)) return;
-  cross_left_side(frame, seen, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
-}
-
-std::optional<bool> meets_corner(const Frame& frame, const glm::vec3& p, const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 from(p);
-  const glm::dvec3 way = frame.corner - from;
-  std::array<glm::dvec3, 3> d;
-  std::array<double, 3> size;
-  for (std::size_t i = 0; i < 3; ++i) {
-    d[i] = glm::dvec3(corners[i]) - from;
-    size[i] = glm::length(d[i]);
-  }
-  // A determinant of three rows that are right to a few units in the last place is right to 2⁻⁴⁸ of their lengths.
-  constexpr double kError = 0x1p-48;
-  const double length = glm::length(way);
-  int left = 0, right = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t next = (i + 1) % 3;
-    const double side = glm::dot(way, glm::cross(d[i], d[next])), error = kError * length * size[i] * size[next];
-    left += side > error ? 1 : 0;
-    right += side < -error ? 1 : 0;
-  }
-  if (left > 0 && right > 0) return false;
-  const glm::dvec3 e1 = d[1] - d[0], e2 = d[2] - d[0], n = glm::cross(e1, e2);
-  const double area = glm::length(e1) * glm::length(e2);
-  const double at_p = -glm::dot(n, d[0]), at_light = glm::dot(n, way - d[0]);
-  const double error_p = kError * area * size[0], error_light = kError * area * (size[0] + length);
-  if ((at_p > error_p && at_light > error_light) || (at_p < -error_p && at_light < -error_light)) return false;
-  if (left < 3 && right < 3) return std::nullopt;
-  if (std::abs(at_p) <= error_p || std::abs(at_light) <= error_light) return std::nullopt;
-  return true;
+  cross_left_side(frame, seen, from, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
 }
 
 template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>*, Open&);

@@ -2,8 +2,6 @@
 
 #include "volumes/native_scatter.hpp"
 
-#include <optional>
-
 /// One edge for one view sample, number by number: edges that come near p's height, and whatever may be within rounding
 /// of a light sample. The same operations as the vectors', so that a vertex is in one place. Inside volumes/ only.
 namespace penumbra::volumes::native {
@@ -27,8 +25,5 @@ struct PreciseInput {
 /// Marks what is open because of the edge; with `changes`, adds what it changes.
 template <typename Counter>
 void scatter_precisely(const PreciseInput& input, const Changes<Counter>* changes, Open& open);
-
-/// Does the segment from p to the light's lower left corner meet a triangle? In double; nothing: within its rounding.
-std::optional<bool> meets_corner(const Frame& frame, const glm::vec3& p, const std::array<glm::vec3, 3>& corners);
 
 }  // namespace penumbra::volumes::native

@@ -4,6 +4,7 @@
 
 #include "volumes/native_precise.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #undef HWY_TARGET_INCLUDE
@@ -145,7 +146,8 @@ class SampleScatter {
     const M cut_a = hn::Gt(from, set(0)), cut_b = hn::Lt(to, set(1));
     const Ways start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y), at(from, cut_a, a.w, b.w, a.w)};
     const Ways end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
-    const V edge = hn::Load(d, table[kGroupEdge] + i);
+    // Beyond the table's end there is anything.
+    const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
     const V far = hn::Add(far_of(edge), set(at_->far));
     const M through_p = hn::Lt(hn::Min(start.w, end.w), hn::Mul(set(64 * kRound), far));
     const M special = hn::And(live, hn::Or(m.open, through_p));
@@ -223,6 +225,9 @@ class SampleScatter {
     V row = hn::Min(hn::Max(hn::Ceil(low_y), set(0)), rows);
     const V end = hn::Min(hn::Max(hn::Ceil(high_y), set(0)), rows);
     const V stride = set(static_cast<float>(frame.padded_rows));
+    const M left = hn::And(used, hn::Xor(hn::Lt(x0, set(-0.5F)), hn::Lt(x1, set(-0.5F))));
+    const M upper_right = hn::Ge(hn::IfThenElse(hn::Lt(y0, y1), x1, x0), set(-0.5F));
+    V from = end;  // the first row above where it crosses the light's left side
     for (;;) {
       const M crossed = hn::And(used, hn::Lt(row, end));
       if (hn::AllFalse(d, crossed)) break;
@@ -230,30 +235,29 @@ class SampleScatter {
       const auto number = hn::ConvertTo(di, hn::IfThenElseZero(crossed, row));
       const V column = hn::Sub(x, hn::GatherIndex(d, frame.shift.data(), number));
       const V nearest = hn::Round(column), first = hn::Max(hn::Ceil(column), set(0));
-      const M lands = hn::And(crossed, hn::And(hn::Ge(x, set(-0.5F)), hn::Lt(first, columns)));
+      const M right = hn::Ge(x, set(-0.5F)), lands = hn::And(crossed, hn::And(right, hn::Lt(first, columns)));
+      from = hn::Min(from, hn::IfThenElse(hn::AndNot(hn::Xor(right, upper_right), crossed), row, end));
       const auto place = hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::Add(hn::Mul(first, stride), row)));
       hn::CompressStore(place, hn::RebindMask(di, lands), di, s_.landing.data() + landed);
       hn::CompressStore(hn::ConvertTo(di, jump), hn::RebindMask(di, lands), di, s_.jump.data() + landed);
       landed += hn::CountTrue(d, lands);
       const M near_column = hn::And(hn::Lt(hn::Abs(hn::Sub(column, nearest)), error_x),
                                     hn::And(hn::Ge(nearest, set(0)), hn::Lt(nearest, columns)));
-      open = hn::Or(open, hn::And(crossed, hn::Or(near_column, hn::Lt(hn::Abs(hn::Add(x, set(0.5F))), error_x))));
+      open = hn::Or(open, hn::And(crossed, near_column));
       row = hn::Add(row, set(1));
       if (landed + hn::Lanes(d) > s_.landing.size()) grow_landing();
     }
 
-    const M left = hn::And(used, hn::Xor(hn::Lt(x0, set(-0.5F)), hn::Lt(x1, set(-0.5F))));
     const bool any_left = !hn::AllFalse(d, left);
     if (any_left) {
       const V inverse = hn::Div(way_y, way_x);
       const V y = hn::Min(hn::Max(hn::Add(near_y, hn::Mul(hn::Sub(set(-0.5F), near_x), inverse)), low_y), high_y);
       const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
                                    hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.y), hn::Abs(near_y))));
-      const M at_row = hn::Lt(hn::Abs(hn::Sub(y, hn::Round(y))), error_y);
-      open = hn::Or(open, hn::And(left, hn::Or(at_row, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y))));
-      const M above = hn::And(left, hn::And(hn::Gt(y, set(-0.5F)), hn::Le(y, hn::Sub(rows, set(1)))));
+      open = hn::Or(open, hn::And(left, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y)));
+      const M above = hn::And(left, hn::And(hn::Gt(y, set(-0.5F)), hn::Lt(from, rows)));
       const V up = hn::IfThenElse(hn::Lt(x0, x1), k, hn::Neg(k));
-      change_left(hn::Max(hn::Ceil(y), set(0)), up, above);
+      change_left(from, up, above);
     }
     open = hn::And(open, used);
     if (!hn::AllFalse(d, open)) look_again(i, open);
@@ -364,23 +368,45 @@ void fill(const Frame& frame, bool visible, Seen& seen) {
   seen.visible = visible ? frame.rows * frame.columns : 0;
 }
 
+/// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
+template <typename Counter>
+std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& changes, Open& open, const Sample& at,
+                                    Judge& judge) {
+  for (std::uint32_t row = 0, left = 0; row < frame.rows; ++row) {
+    left += static_cast<std::uint32_t>(static_cast<std::int32_t>(changes.left[row]));
+    if (std::find(open.rows.begin(), open.rows.end(), row) != open.rows.end()) continue;
+    std::uint32_t depth = left;  // but for D(corner); modulo 2³²
+    for (std::uint32_t column = 0; column < frame.columns; ++column) {
+      depth += static_cast<std::uint32_t>(
+          static_cast<std::int32_t>(changes.cells[std::size_t{column} * frame.padded_rows + row]));
+      const std::uint32_t sample = row * frame.columns + column;
+      if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
+      return judge.depth(at, sample) - depth;
+    }
+  }
+  open.pixel = true;
+  return 0;
+}
+
 /// One view sample, its group's edges sorted out.
 template <typename Counter>
 void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& histogram,
-                    std::vector<Counter>& left, const Sample& at, Seen& seen) {
+                    std::vector<Counter>& left, const Sample& at, Judge& judge, Seen& seen) {
   const Frame& frame = in.frame;
   const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
-  const std::uint32_t depth =
-      scratch.lists.triangles.count == 0
-          ? 0
-          : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges}, scratch.open);
+  std::uint32_t depth = scratch.lists.triangles.count == 0
+                            ? 0
+                            : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges}, scratch.open);
   bool changes_any = false;
   if (edges) {
     histogram.assign(std::size_t{frame.columns} * frame.padded_rows, 0);
     left.assign(frame.padded_rows, 0);
     const Changes<Counter> changes{histogram.data(), left.data()};
     changes_any = SampleScatter<Counter>(in, scratch, changes)(at);
+    if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
     if (changes_any) sum_up(frame, changes, depth, seen);
+  } else if (scratch.open.corner) {
+    depth = judge.depth(at, 0);
   }
   if (!changes_any) {
     seen.visible = depth == 0 ? frame.rows * frame.columns : 0;
@@ -404,9 +430,9 @@ void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::s
       scratch.open.clear();
       Seen& result = seen[first + i];
       if (narrow) {
-        scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], result);
+        scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], judge, result);
       } else {
-        scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, group[i], result);
+        scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, group[i], judge, result);
       }
       if (scratch.open.any()) judge.decide(group[i], scratch.open, result);
     }

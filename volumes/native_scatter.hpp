@@ -164,11 +164,12 @@ void find(const FindInput& input, std::vector<std::uint32_t>& stack, EdgeTable& 
 
 /// What float arithmetic left open of a view sample.
 struct Open {
-  bool pixel = false;
+  bool pixel = false;                        ///< all of it
+  bool corner = false;                       ///< how many triangles are before the light's corner
   std::vector<std::uint32_t> rows, samples;  ///< light samples: row · columns + column; some twice
 
   void clear() {
-    pixel = false;
+    pixel = corner = false;
     rows.clear();
     samples.clear();
   }
@@ -186,6 +187,8 @@ struct Seen {
 class Judge {
  public:
   virtual ~Judge() = default;
+  /// How many triangles are before a light sample.
+  virtual std::uint32_t depth(const Sample& sample, std::uint32_t light_sample) = 0;
   virtual void decide(const Sample& sample, const Open& open, Seen& seen) = 0;
 };
 

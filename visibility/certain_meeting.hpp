@@ -1,0 +1,14 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <optional>
+
+namespace penumbra::visibility {
+
+/// Does the open segment p→l meet the triangle, if double arithmetic is certain: no sign on the way is within its
+/// rounding. As segment_meets_triangle (pair_truth.hpp) where both say something; p and l may be no floats.
+std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners);
+
+}  // namespace penumbra::visibility
