@@ -21,19 +21,24 @@ namespace {
 
 using native::Frame;
 using native::Outlook;
-using native::Sample;
+using native::Placed;
 using native::Seen;
 
-constexpr std::uint32_t kBlock = 8;                              // pixels
+constexpr std::uint32_t kBlock = 8;    // pixels, whose clusters have lists
+constexpr std::uint32_t kRegion = 16;  // pixels, whose blocks begin their walks at the same roots
 constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
 
-/// Where the pixels of a block are: groups of eight that follow one another are 4 × 2.
+/// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
 struct Spot {
   std::uint32_t x, y;
 };
 Spot spot(std::uint32_t i) {
-  const std::uint32_t group = i / 8, member = i % 8;
-  return {group % 2 * 4 + member % 4, group / 2 * 2 + member / 4};
+  Spot at{0, 0};
+  for (std::uint32_t bit = 0; 1U << 2 * bit < kRegion * kRegion; ++bit) {
+    at.x |= (i >> 2 * bit & 1) << bit;
+    at.y |= (i >> (2 * bit + 1) & 1) << bit;
+  }
+  return at;
 }
 
 /// What is not certain by exact predicates, on the spot.
@@ -41,12 +46,12 @@ class OpenJudge final : public native::Judge {
  public:
   OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
 
-  std::uint32_t depth(const Sample& sample, std::uint32_t light_sample) override {
+  std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) override {
     ++samples_;
     return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
   }
 
-  void decide(const Sample& sample, const native::Open& open, Seen& seen) override {
+  void decide(const Placed& sample, const native::Open& open, Seen& seen) override {
     ++pixels_;
     if (open.pixel) {
       for (std::uint32_t row = 0; row < frame_.rows; ++row) decide_row(sample, row, seen);
@@ -70,11 +75,11 @@ class OpenJudge final : public native::Judge {
     unique.erase(std::unique(unique.begin(), unique.end()), unique.end());
     return unique;
   }
-  void decide_row(const Sample& sample, std::uint32_t row, Seen& seen) {
+  void decide_row(const Placed& sample, std::uint32_t row, Seen& seen) {
     for (std::uint32_t column = 0; column < frame_.columns; ++column)
       decide_one(sample, row * frame_.columns + column, seen);
   }
-  void decide_one(const Sample& sample, std::uint32_t number, Seen& seen) {
+  void decide_one(const Placed& sample, std::uint32_t number, Seen& seen) {
     const std::uint32_t row = number / frame_.columns, column = number % frame_.columns;
     ++samples_;
     std::uint16_t& word = seen.mask[(std::size_t{column} * frame_.padded_rows + row) / 16];
@@ -131,8 +136,9 @@ class NativeEdgeScatter final : public visibility::Method {
 
   [[nodiscard]] std::uint32_t max_tile_rows() const override {
     PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-    const std::size_t rows = kMostMaskBytes / (mask_words() * 2 * samples_->width) / kBlock * kBlock;
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(rows, kBlock, samples_->height));
+    const std::size_t rows = kMostMaskBytes / (mask_words() * 2 * samples_->width) / kRegion * kRegion;
+    return static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(rows, std::min(kRegion, samples_->height), samples_->height));
   }
 
   void evaluate(const visibility::Tile& tile) override {
@@ -141,12 +147,12 @@ class NativeEdgeScatter final : public visibility::Method {
     masks_.resize(std::max(masks_.size(), pixels * mask_words()));
     visible_.assign(pixels, 0);
     const auto start = std::chrono::steady_clock::now();
-    const std::uint32_t across = (samples_->width + kBlock - 1) / kBlock, down = (tile.row_count + kBlock - 1) / kBlock;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, across * down, 4), [&](const auto& range) {
+    const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
+                        down = (tile.row_count + kRegion - 1) / kRegion;
+    tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
       native::Scratch& scratch = scratch_.local();
-      for (std::uint32_t block = range.begin(); block < range.end(); ++block) {
-        for (const Frame& frame : frames_) do_block(frame, {block % across * kBlock, block / across * kBlock}, scratch);
-      }
+      for (const Frame& frame : frames_)
+        do_region(frame, {region % across * kRegion, region / across * kRegion}, scratch);
     });
     milliseconds_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     for (native::Scratch& scratch : scratch_) {
@@ -213,43 +219,89 @@ class NativeEdgeScatter final : public visibility::Method {
     return frame.side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
   }
 
-  void do_block(const Frame& frame, const Spot& corner, native::Scratch& scratch) {
+  void do_region(const Frame& frame, const Spot& corner, native::Scratch& scratch) {
     const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
     OpenJudge judge(pairs, frame);
     const native::ViewInput view{*scene_, *samples_, frame_, frame, normal_is_known_, scale_};
     const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
-    std::vector<Sample> placed;
-    for (std::uint32_t i = 0; i < kBlock * kBlock; ++i) {
-      const Spot at = spot(i);
-      const std::uint32_t x = corner.x + at.x, y = corner.y + at.y;
-      if (x >= samples_->width || y >= tile_.row_count) continue;
-      const auto pixel = static_cast<std::uint32_t>(first_pixel + std::size_t{y} * samples_->width + x);
-      const native::Looked looked = native::look(view, pixel);
-      std::uint32_t& visible = visible_[pixel - first_pixel];
-      if (looked.outlook == Outlook::scattered) placed.push_back(looked.sample);
-      if (looked.outlook == Outlook::all) visible = light_->sample_count();
-      if (looked.outlook == Outlook::open && frame.side > 0) {  // one of two sides asks
-        native::Open open;
-        open.pixel = true;
-        Seen seen{&masks_[(pixel - first_pixel) * mask_words()], 0};
-        std::fill_n(seen.mask, mask_words(), std::uint16_t{0});
-        judge.decide(looked.sample, open, seen);
-        visible = seen.visible;
+    std::vector<Placed>& placed = scratch.placed;
+    std::array<std::size_t, kRegion * kRegion / (kBlock * kBlock)> ends{};  // of its blocks
+    placed.resize(kRegion * kRegion);
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
+      const Spot place = spot(i);
+      const std::uint32_t x = corner.x + place.x, y = corner.y + place.y;
+      if (x < samples_->width && y < tile_.row_count) {
+        const auto pixel = static_cast<std::uint32_t>(first_pixel + std::size_t{y} * samples_->width + x);
+        Placed& at = placed[count];
+        const Outlook outlook = native::look(view, pixel, at);
+        if (outlook == Outlook::scattered) ++count;
+        if (outlook == Outlook::all) visible_[pixel - first_pixel] = light_->sample_count();
+        if (outlook == Outlook::open && frame.side > 0) decide_all(at, judge);  // one of two sides asks
       }
+      ends[i / (kBlock * kBlock)] = count;
     }
-    for (native::Cluster& cluster : native::make_clusters(frame, std::move(placed))) {
-      native::find({frame, edges_of(frame), triangles_, cluster}, scratch.stack, scratch.edges, scratch.triangles);
-      scratch.listed += scratch.edges.count;
-      if (scratch.edges.count + scratch.triangles.count > 0)
-        for (Sample& at : cluster.samples) native::complete(frame, at);
-      std::vector<Seen> seen(cluster.samples.size());
-      for (std::size_t i = 0; i < seen.size(); ++i)
-        seen[i].mask = &masks_[(cluster.samples[i].pixel - first_pixel) * mask_words()];
-      native::scatter({frame, triangles_, cluster, scratch.edges, scratch.triangles}, scratch, judge, seen);
-      for (std::size_t i = 0; i < seen.size(); ++i) visible_[cluster.samples[i].pixel - first_pixel] = seen[i].visible;
+    placed.resize(count);
+    if (count > 0) {
+      const native::Cluster all = native::make_cluster(frame, placed);
+      native::find_roots({frame, edges_of(frame), triangles_, all}, scratch.roots);
+      std::size_t begin = 0;
+      for (const std::size_t end : ends) {
+        do_block(frame, std::span(placed).subspan(begin, end - begin), judge, scratch);
+        begin = end;
+      }
     }
     scratch.open_pixels += judge.pixels();
     scratch.open_samples += judge.samples();
+  }
+
+  void decide_all(const Placed& sample, OpenJudge& judge) {
+    const std::size_t pixel = sample.pixel - std::size_t{tile_.first_row} * samples_->width;
+    native::Open open;
+    open.pixel = true;
+    Seen seen{&masks_[pixel * mask_words()], 0};
+    std::fill_n(seen.mask, mask_words(), std::uint16_t{0});
+    judge.decide(sample, open, seen);
+    visible_[pixel] = seen.visible;
+  }
+
+  void do_block(const Frame& frame, std::span<Placed> block, OpenJudge& judge, native::Scratch& scratch) {
+    if (block.empty()) return;
+    std::size_t begin = 0;
+    for (const std::size_t end : native::split_at_gaps(block)) {
+      do_cluster(frame, block.subspan(begin, end - begin), judge, scratch);
+      begin = end;
+    }
+  }
+
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, OpenJudge& judge, native::Scratch& scratch) {
+    const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
+    scratch.edges.count = scratch.triangles.count = 0;
+    native::Cluster cluster;
+    if (!scratch.roots.edges.empty() || !scratch.roots.triangles.empty()) {
+      cluster = native::make_cluster(frame, placed);
+      native::find({frame, edges_of(frame), triangles_, cluster}, scratch.roots, scratch.stack, scratch.edges,
+                   scratch.triangles);
+      scratch.listed += scratch.edges.count;
+    }
+    const auto seen_of = [&](const Placed& at) { return Seen{&masks_[(at.pixel - first_pixel) * mask_words()], 0}; };
+    if (scratch.edges.count + scratch.triangles.count == 0) {
+      for (const Placed& at : placed) {
+        Seen seen = seen_of(at);
+        native::see_all(frame, at, scratch.open, judge, seen);
+        visible_[at.pixel - first_pixel] = seen.visible;
+      }
+      return;
+    }
+    scratch.samples.clear();
+    scratch.seen.clear();
+    for (const Placed& at : placed) {
+      scratch.samples.push_back(native::complete(frame, cluster, at));
+      scratch.seen.push_back(seen_of(at));
+    }
+    native::scatter({frame, triangles_, cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch, judge,
+                    scratch.seen);
+    for (std::size_t i = 0; i < placed.size(); ++i) visible_[placed[i].pixel - first_pixel] = scratch.seen[i].visible;
   }
 
   visibility::MethodDescription description_;

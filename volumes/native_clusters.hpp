@@ -13,7 +13,7 @@ namespace penumbra::volumes::native {
 
 /// What is certain of a view sample before any triangle is looked at.
 enum class Outlook : std::uint8_t {
-  scattered,  ///< the light is, or may be, before it: a Sample
+  scattered,  ///< the light is, or may be, before it
   all,        ///< not asked: background, or its triangle receives no shadow
   none,       ///< it is behind the light, or the light is below its horizon
   open,       ///< within rounding of the light's plane: exact predicates
@@ -28,13 +28,11 @@ struct ViewInput {
   std::span<const std::uint8_t> normal_is_known;  ///< of each triangle
   float scale;
 };
-struct Looked {
-  Outlook outlook = Outlook::all;
-  Sample sample;  ///< but for what depends on its cluster
-};
-Looked look(const ViewInput& view, std::uint32_t pixel);
+/// Fills `at` if it is scattered or open.
+Outlook look(const ViewInput& view, std::uint32_t pixel, Placed& at);
 
-/// Splits them where gaps are (an object before a floor), in at most four; each keeps their order.
-std::vector<Cluster> make_clusters(const Frame& frame, std::vector<Sample> samples);
+/// Splits view samples where gaps are (an object before a floor), in at most four parts that follow one another; in
+/// each they keep their order. Returns where each part ends.
+std::vector<std::size_t> split_at_gaps(std::span<Placed> samples);
 
 }  // namespace penumbra::volumes::native

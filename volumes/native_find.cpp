@@ -106,30 +106,55 @@ hn::Mask<D> same_side(const FindInput& in, const WideNode& node, std::size_t lan
   return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
 }
 
+/// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
+template <bool kCones>
+std::uint32_t children_met(const FindInput& in, const Shaft& shaft, const WideNode& node) {
+  const D d;
+  std::uint32_t hits = 0;
+  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+    const Point middle = load(node.middle, lane), half = load(node.half, lane);
+    hn::Mask<D> met = box_meets(in, shaft, middle, half);
+    if (kCones && !hn::AllFalse(d, met)) met = hn::AndNot(same_side(in, node, lane, middle, half), met);
+    hits |= bits_of(met) << lane;
+  }
+  return hits & node.used;
+}
+
 /// Calls `leaf` for each leaf whose box meets the shaft.
 template <bool kCones, typename Leaf>
 void walk(const FindInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
-          std::vector<std::uint32_t>& stack, Leaf leaf) {
-  if (nodes.empty()) return;
-  const D d;
-  stack.assign(1, 0);
+          const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
+  stack = roots;
   while (!stack.empty()) {
-    const WideNode& node = nodes[stack.back()];
+    const std::uint32_t next = stack.back();
     stack.pop_back();
-    std::uint32_t hits = 0;
-    for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
-      const Point middle = load(node.middle, lane), half = load(node.half, lane);
-      hn::Mask<D> met = box_meets(in, shaft, middle, half);
-      if constexpr (kCones) met = hn::AndNot(same_side(in, node, lane, middle, half), met);
-      hits |= bits_of(met) << lane;
+    if ((next & kLeafBit) != 0) {
+      leaf(next & ~kLeafBit);
+      continue;
     }
-    for (hits &= node.used; hits != 0; hits &= hits - 1) {
-      const std::uint32_t child = node.reference[static_cast<std::size_t>(std::countr_zero(hits))];
-      if ((child & kLeafBit) != 0) {
-        leaf(child & ~kLeafBit);
-      } else {
-        stack.push_back(child);
-      }
+    const WideNode& node = nodes[next];
+    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
+      stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
+    }
+  }
+}
+
+/// Goes down level by level until there are enough.
+template <bool kCones>
+void descend(const FindInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+             std::vector<std::uint32_t>& roots) {
+  constexpr std::size_t kEnough = 24;
+  roots.clear();
+  if (!nodes.empty()) roots.push_back(0);
+  for (std::size_t i = 0; i < roots.size() && roots.size() < kEnough;) {
+    if ((roots[i] & kLeafBit) != 0) {
+      ++i;
+      continue;
+    }
+    const WideNode& node = nodes[roots[i]];
+    roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(i));
+    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
+      roots.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
     }
   }
 }
@@ -243,14 +268,18 @@ void add_triangles(const FindInput& in, const Shaft& shaft, std::uint32_t number
   }
 }
 
-void find_here(const FindInput& in, std::vector<std::uint32_t>& stack, EdgeTable& edges, TriangleTable& triangles) {
+void find_roots_here(const FindInput& in, Roots& roots) {
+  descend<true>(in, in.cluster.whole, in.edges.nodes, roots.edges);
+  descend<false>(in, in.cluster.corner, in.triangles.nodes, roots.triangles);
+}
+
+void find_here(const FindInput& in, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
+               TriangleTable& triangles) {
   edges.count = triangles.count = 0;
-  const glm::vec2 half = in.frame.half_cells;
-  const Shaft whole = make_shaft(in.frame, in.cluster.samples, -half, half);
-  walk<true>(in, whole, in.edges.nodes, stack,
+  const Shaft &whole = in.cluster.whole, &corner = in.cluster.corner;
+  walk<true>(in, whole, in.edges.nodes, from.edges, stack,
              [&](std::uint32_t leaf) { add_edges(in, whole, in.edges.leaves[leaf], edges); });
-  const Shaft corner = make_shaft(in.frame, in.cluster.samples, -half, -half);
-  walk<false>(in, corner, in.triangles.nodes, stack,
+  walk<false>(in, corner, in.triangles.nodes, from.triangles, stack,
               [&](std::uint32_t leaf) { add_triangles(in, corner, leaf, triangles); });
 }
 
@@ -261,10 +290,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace penumbra::volumes::native {
 
+HWY_EXPORT(find_roots_here);
 HWY_EXPORT(find_here);
 
-void find(const FindInput& input, std::vector<std::uint32_t>& stack, EdgeTable& edges, TriangleTable& triangles) {
-  HWY_DYNAMIC_DISPATCH(find_here)(input, stack, edges, triangles);
+void find_roots(const FindInput& input, Roots& roots) {
+  HWY_DYNAMIC_DISPATCH(find_roots_here)(input, roots);
+}
+
+void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
+          TriangleTable& triangles) {
+  HWY_DYNAMIC_DISPATCH(find_here)(input, from, stack, edges, triangles);
 }
 
 }  // namespace penumbra::volumes::native

@@ -46,27 +46,18 @@ Frame make_frame(const FrameInput& input) {
   return frame;
 }
 
-void complete(const Frame& frame, Sample& at) {
-  constexpr float kMore = 1.05F;  // for what is of second order
-  at.away = glm::length(at.p - frame.center) * 1.0001F;
-  const float cells = 16 * kRound * frame.skew * (frame.half_cells.x + frame.half_cells.y);
-  const float lengths = at.away / at.height;
-  at.per_way = kMore * (8 * kRound * frame.per_length * at.height + cells);
-  at.per_foot = kMore * kRound * (4 * lengths + 8);
-  at.fixed = kMore *
-             (kRound * frame.per_length * (4 * at.away + frame.cut_reach) + cells + frame.per_length * frame.deviation);
-  at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
-  at.per_lean = kRound * (8 * frame.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
-}
+namespace {
 
-Shaft make_shaft(const Frame& frame, std::span<const Sample> samples, const glm::vec2& low, const glm::vec2& high) {
+/// `low`, `high`: the rectangle, in cells from the light's middle.
+Shaft make_shaft(const Frame& frame, std::span<const Placed> samples, const glm::vec2& low, const glm::vec2& high) {
   std::array<float, 4> slopes;
   slopes.fill(-1e18F);
   float height = 0;
-  for (const Sample& at : samples) {
+  for (const Placed& at : samples) {
     const glm::vec2 from = at.foot - frame.first_cell;
+    const float inverse = 1 / at.height;
     const std::array over{from.x - high.x, low.x - from.x, from.y - high.y, low.y - from.y};
-    for (std::size_t i = 0; i < 4; ++i) slopes[i] = std::max(slopes[i], over[i] / at.height);
+    for (std::size_t i = 0; i < 4; ++i) slopes[i] = std::max(slopes[i], over[i] * inverse);
     height = std::max(height, at.height);
   }
   const float widest = std::max(frame.half_cells.x, frame.half_cells.y);
@@ -86,6 +77,42 @@ Shaft make_shaft(const Frame& frame, std::span<const Sample> samples, const glm:
   shaft.highest = light + height + slack;
   shaft.lowest = light - slack;
   return shaft;
+}
+
+}  // namespace
+
+Cluster make_cluster(const Frame& frame, std::span<const Placed> samples) {
+  glm::vec3 lower(samples.front().p), upper(lower);
+  for (const Placed& at : samples) {
+    lower = glm::min(lower, at.p);
+    upper = glm::max(upper, at.p);
+  }
+  Cluster cluster;
+  cluster.middle = 0.5F * lower + 0.5F * upper;
+  cluster.half_size = glm::max(upper - cluster.middle, cluster.middle - lower) * (1 + 8 * kRound);
+  cluster.whole = make_shaft(frame, samples, -frame.half_cells, frame.half_cells);
+  cluster.corner = make_shaft(frame, samples, -frame.half_cells, -frame.half_cells);
+  return cluster;
+}
+
+Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed) {
+  Sample at{placed, {}, {}, 0, 0, 0, 0, 0, {}, 0};
+  at.local = at.p - cluster.middle;
+  // As dot() of native_find.cpp: one order, nothing fused.
+  const auto dot = [&](const glm::vec3& n) { return (at.local.x * n.x + at.local.y * n.y) + at.local.z * n.z; };
+  at.seen = {dot(frame.across), dot(frame.along), dot(frame.axis)};
+  at.far = glm::length(at.local) * 1.0001F;
+  at.away = glm::length(at.p - frame.center) * 1.0001F;
+  constexpr float kMore = 1.05F;  // for what is of second order
+  const float cells = 16 * kRound * frame.skew * (frame.half_cells.x + frame.half_cells.y);
+  const float lengths = at.away / at.height;
+  at.per_way = kMore * (8 * kRound * frame.per_length * at.height + cells);
+  at.per_foot = kMore * kRound * (4 * lengths + 8);
+  at.fixed = kMore *
+             (kRound * frame.per_length * (4 * at.away + frame.cut_reach) + cells + frame.per_length * frame.deviation);
+  at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
+  at.per_lean = kRound * (8 * frame.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
+  return at;
 }
 
 }  // namespace penumbra::volumes::native

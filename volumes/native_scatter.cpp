@@ -330,7 +330,7 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
 }
 
 /// Light samples that are not strictly above the carrier's plane are not visible. (bound horizon)
-void cut_at_horizon(const Frame& frame, const Sample& at, Open& open, Seen& seen) {
+void cut_at_horizon(const Frame& frame, const Placed& at, Open& open, Seen& seen) {
   const hn::CappedTag<float, 16> d;
   const std::size_t words = frame.padded_rows / 16;
   const auto constant = [&](float x) { return hn::Set(d, x); };
@@ -415,8 +415,17 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
   if (at.straddles) cut_at_horizon(frame, at, scratch.open, seen);
 }
 
+void see_all_here(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen) {
+  seen.visible = frame.rows * frame.columns;
+  if (!at.straddles) return;
+  open.clear();
+  fill(frame, true, seen);
+  cut_at_horizon(frame, at, open, seen);
+  if (open.any()) judge.decide(at, open, seen);
+}
+
 void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
-  const std::span<const Sample> samples(in.cluster.samples);
+  const std::span<const Sample> samples = in.samples;
   if (scratch.landing.empty()) {
     scratch.landing.resize(4096);
     scratch.jump.resize(4096);
@@ -446,7 +455,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace penumbra::volumes::native {
 
+HWY_EXPORT(see_all_here);
 HWY_EXPORT(scatter_here);
+
+void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen) {
+  HWY_DYNAMIC_DISPATCH(see_all_here)(frame, at, open, judge, seen);
+}
 
 void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
   HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, seen);

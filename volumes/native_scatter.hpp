@@ -39,24 +39,30 @@ struct FrameInput {
 };
 Frame make_frame(const FrameInput& input);
 
-/// A view sample: p, scaled; relative to its cluster's middle, in world axes and in the frame's (across, along, axis).
-struct Sample {
-  glm::vec3 p{0}, local{0}, seen{0};
+/// A view sample that the light is, or may be, before.
+struct Placed {
+  glm::vec3 p{0};  ///< scaled
+  std::uint32_t pixel = 0, plane = 0;
+  float height = 0;  ///< over the light's plane
   glm::vec2 foot{0};
-  float height = 0;
-  float away = 0;  ///< |p − the light's centre|
+  /// Light samples with above · (s, t, 1) > above_error are above the carrier's plane; < −above_error: below it.
+  /// (bound horizon)
+  glm::vec3 above{0};
+  float above_error = 0;
+  bool straddles = false;  ///< not all of the light is certainly above it
+};
+
+/// With what is needed once something may be before the light: p relative to its cluster's middle, in world axes and in
+/// the frame's (across, along, axis).
+struct Sample : Placed {
+  glm::vec3 local{0}, seen{0};
+  float away = 0;  ///< bounds |p − the light's centre|
   float far = 0;   ///< bounds |local|
   /// The error of a projected point at height w over p, `far_x` from the cluster's middle, that appears F from the
   /// foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
   float per_way = 0, per_foot = 0, fixed = 0;
   glm::vec2 lean{0};   ///< the way to the light's corner, in cells for a unit of height
   float per_lean = 0;  ///< the error of a corner's place beside that way is (far_x + far) per_lean (bound corner)
-  std::uint32_t plane = 0, pixel = 0;
-  /// Light samples with above · (s, t, 1) > above_error are above the carrier's plane; < −above_error: below it.
-  /// (bound horizon)
-  glm::vec3 above{0};
-  float above_error = 0;
-  bool straddles = false;  ///< not all of the light is certainly above it
 };
 constexpr float kPerReach = 8 * kRound;
 
@@ -65,17 +71,14 @@ struct Shaft {
   float lowest = 0, highest = 0;
   std::array<float, 4> nx{}, ny{}, nz{}, beyond{};
 };
-/// `low`, `high`: the rectangle, in cells from the light's middle.
-Shaft make_shaft(const Frame& frame, std::span<const Sample> samples, const glm::vec2& low, const glm::vec2& high);
 
-/// Sets what depends on where the view sample is alone and is needed once something may be before the light.
-void complete(const Frame& frame, Sample& at);
-
-/// View samples whose lists are found together, and their box.
+/// View samples whose lists are found together: their box, and the shafts to the light and to its lower left corner.
 struct Cluster {
   glm::vec3 middle{0}, half_size{0};
-  std::vector<Sample> samples;
+  Shaft whole, corner;
 };
+Cluster make_cluster(const Frame& frame, std::span<const Placed> samples);
+Sample complete(const Frame& frame, const Cluster& cluster, const Placed& at);
 
 /// Columns of floats, side by side.
 template <std::size_t kFields>
@@ -152,15 +155,22 @@ enum TriangleField : std::size_t {
 };
 using TriangleTable = Table<kTriangleFields>;
 
+/// Subtrees (TriangleTree::Child::reference) that hold all that a walk can find.
+struct Roots {
+  std::vector<std::uint32_t> edges, triangles;
+};
 struct FindInput {
   const Frame& frame;
   const WideEdgeTree& edges;
   const WideTriangleTree& triangles;
   const Cluster& cluster;
 };
+/// Where the walks of clusters that are part of this one may begin.
+void find_roots(const FindInput& input, Roots& roots);
 /// Edges that the shaft to the light meets and that may be silhouettes as seen from the cluster; triangles that the
 /// shaft to the light's corner meets.
-void find(const FindInput& input, std::vector<std::uint32_t>& stack, EdgeTable& edges, TriangleTable& triangles);
+void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
+          TriangleTable& triangles);
 
 /// What float arithmetic left open of a view sample.
 struct Open {
@@ -188,14 +198,15 @@ class Judge {
  public:
   virtual ~Judge() = default;
   /// How many triangles are before a light sample.
-  virtual std::uint32_t depth(const Sample& sample, std::uint32_t light_sample) = 0;
-  virtual void decide(const Sample& sample, const Open& open, Seen& seen) = 0;
+  virtual std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) = 0;
+  virtual void decide(const Placed& sample, const Open& open, Seen& seen) = 0;
 };
 
 struct ScatterInput {
   const Frame& frame;
   const WideTriangleTree& tree;
   const Cluster& cluster;
+  std::span<const Sample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
 };
@@ -219,10 +230,14 @@ std::uint32_t count_to_corner(const CornerInput& input, Open& open);
 
 /// Buffers of one thread.
 struct Scratch {
+  std::vector<Placed> placed;
+  std::vector<Sample> samples;
+  std::vector<Seen> seen;
   EdgeTable edges;
   TriangleTable triangles;
   GroupLists lists;
   CrossingTable crossing;
+  Roots roots;
   std::vector<std::uint32_t> stack;
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
   std::vector<std::int16_t> histogram, left;
@@ -231,7 +246,9 @@ struct Scratch {
   std::uint64_t open_pixels = 0, open_samples = 0, listed = 0;  // counted
 };
 
-/// `seen`: one a view sample of the cluster; all or nothing of a mask is written.
+/// Where nothing is before the light but the horizon.
+void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen);
+/// `seen`: one a view sample; of its mask all or nothing is written.
 void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen);
 
 }  // namespace penumbra::volumes::native
