@@ -21,6 +21,7 @@ struct CpuEntry {
   std::optional<double> host_ratio;  ///< of a device: its twin's median on the processor ÷ its own
   std::string device;                ///< empty: the processor
   std::map<std::string, std::uint64_t> counts;
+  std::map<std::string, double> passes;  ///< of a device: milliseconds of each, as `seconds`
   double load_before = 0;
 };
 

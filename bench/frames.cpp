@@ -19,13 +19,13 @@ namespace {
 using volumes::WedgeBuilder;
 using volumes::WedgesOn;
 
-constexpr int kFrames = 8;  // of a run
+constexpr std::uint32_t kFrames = 8;  // of a run
 
 /// The knot's light on a circle around where it was.
 std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, const glm::dvec3& origin) {
   scenes::Scene scene = still;
   std::vector<visibility::Light> lights;
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     const double angle = 2 * std::numbers::pi * frame / kFrames;
     auto moved = std::get<scenes::Rectangle>(still.lights.at(0).shape);
     moved.center += glm::dvec3(std::cos(angle), 0.25 * std::sin(2 * angle), std::sin(angle));
@@ -42,18 +42,23 @@ struct Rival {
     builder.prepare_mesh(floats);
   }
 
-  /// Seconds a frame; silhouette edges of all frames go to `edges`.
+  /// Seconds a frame; sums over the frames go to the members below.
   double run(const std::vector<visibility::Light>& lights) {
-    edges = 0;
+    edges = edges_on_host = facings_on_host = 0;
     const app::Stopwatch watch;
-    for (const visibility::Light& light : lights) edges += builder.build(light).wedges.edges.size();
+    for (const visibility::Light& light : lights) {
+      const WedgeBuilder::Built built = builder.build(light);
+      edges += built.wedges.edges.size();
+      edges_on_host += built.edges_on_host;
+      facings_on_host += built.facings_on_host;
+    }
     return watch.seconds() / static_cast<double>(lights.size());
   }
 
   const char* name;
   WedgeBuilder builder;
   std::vector<double> seconds;
-  std::uint64_t edges = 0;
+  std::uint64_t edges = 0, edges_on_host = 0, facings_on_host = 0;
 };
 
 }  // namespace
@@ -76,7 +81,8 @@ void measure_frames(const Options& options, const render::Device& device,
         throw std::logic_error(fmt::format("{} and {} silhouettes", rivals[0].edges, rivals[1].edges));
       }
     }
-    for (const Rival& rival : rivals) {
+    const auto frames = static_cast<double>(options.runs + 1) * kFrames;
+    for (Rival& rival : rivals) {
       CpuEntry entry;
       entry.name = fmt::format("wedges-per-frame/{}/triangles={}", rival.name, triangles);
       if (&rival == &rivals[1]) {
@@ -86,8 +92,9 @@ void measure_frames(const Options& options, const render::Device& device,
       entry.triangles = floats.triangles.size();
       entry.items = entry.edges = rival.edges / lights.size();
       entry.seconds = rival.seconds;
-      entry.counts = {{"edgesOnHost", rival.builder.counts().edges_on_host / ((options.runs + 1) * lights.size())},
-                      {"facingsOnHost", rival.builder.counts().facings_on_host / ((options.runs + 1) * lights.size())}};
+      entry.counts = {{"edgesOnHost", rival.edges_on_host / kFrames},
+                      {"facingsOnHost", rival.facings_on_host / kFrames}};
+      for (const auto& pass : rival.builder.take_pass_times()) entry.passes[pass.name] = pass.milliseconds / frames;
       entry.load_before = load;
       sink(entry);
     }

@@ -153,6 +153,7 @@ std::string json_line(const CpuEntry& entry, const Options& options) {
   if (entry.growth) line["growth"] = *entry.growth;
   if (entry.host_ratio) line["hostRatio"] = *entry.host_ratio;
   if (!entry.counts.empty()) line["counters"] = entry.counts;
+  if (!entry.passes.empty()) line["passes"] = entry.passes;
   return line.dump() + "\n";
 }
 

@@ -11,6 +11,10 @@ namespace penumbra::volumes::gpu {
 /// and 3: the same if it counts so seen (ShadowCasters::counted_sides), else 0.
 const uint kFrontBit = 1u, kBackBit = 2u, kBothBits = 3u, kCountedShift = 2u;
 
+/// An edge's triangles as the device reads them, triangle · 2, + 1 if it runs from b to a: two of them, where there is
+/// but one the other is a triangle that nothing counts of; or, with this bit, the edge's number among those with more.
+const uint kManyIncidences = 1u << 31;
+
 /// A triangle that floats cannot decide; in `side`, the host's answer.
 struct OpenFacing {
   uint triangle;

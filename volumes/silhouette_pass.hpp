@@ -30,7 +30,8 @@ struct SilhouetteMesh {
 /// must be before it is written.
 class SilhouettePass {
  public:
-  explicit SilhouettePass(const render::Device& device);
+  /// `most_bytes`: of any buffer; 0: the device's limit. Tests make it small.
+  explicit SilhouettePass(const render::Device& device, std::uint64_t most_bytes = 0);
   ~SilhouettePass();
   SilhouettePass(SilhouettePass&&) noexcept;
   SilhouettePass& operator=(SilhouettePass&&) noexcept;
@@ -54,7 +55,7 @@ class SilhouettePass {
   [[nodiscard]] const render::Buffer& ends() const;
   [[nodiscard]] const render::Buffer& positions() const;
 
-  [[nodiscard]] std::uint64_t open_facings() const;  ///< that floats left to the host, since prepare_mesh
+  [[nodiscard]] std::uint64_t open_facings() const;  ///< of the last evaluate(), that floats left to the host
   std::vector<visibility::PassTime> take_pass_times();
   [[nodiscard]] std::uint64_t memory_bytes() const;
 

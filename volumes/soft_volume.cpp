@@ -96,8 +96,9 @@ WedgeTests tests_of(const visibility::MethodOptions& options) {
   throw UsageError("method soft-volume: tests={} is none of none, z, both", value);
 }
 
-WedgeBuilder::Options builder_options(const visibility::MethodOptions& options) {
-  return {.on = second_of(options, "wedges", {"device", "host"}) ? WedgesOn::host : WedgesOn::device,
+WedgeBuilder::Options builder_options(const visibility::MethodDescription& method,
+                                      const visibility::MethodOptions& options) {
+  return {.on = wedges_on(method, options),
           .construction =
               second_of(options, "construction", {"original", "tight"}) ? Construction::tight : Construction::original,
           .layers = Layers::one_a_solid};
@@ -114,7 +115,8 @@ struct Part {
   std::vector<double> table;  // what the shader reads of this light
   double weight = 1;          // of the whole light, which is 1
   LightWedges wedges;
-  std::optional<std::vector<gpu::WedgeFace>> faces;  // for this view
+  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // WedgeBuilder::Built
+  std::optional<std::vector<gpu::WedgeFace>> faces;      // for this view
   struct Host {
     Host(const SceneFloats& scene, const Light& light)
         : casters(casters_of(scene, light)), visibility(scene, light, casters) {}
@@ -131,7 +133,7 @@ class SoftVolume final : public visibility::Method {
         device_(&device),
         split_(split_of(options)),
         table_(second_of(options, "coverage", {"analytic", "table"})),
-        builder_(device, builder_options(options)),
+        builder_(device, builder_options(description_, options)),
         tests_(tests_of(options)) {
     visibility::check_options(description_, options);
     for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<Part>(device));
@@ -244,6 +246,8 @@ void SoftVolume::prepare(Part& part, const Light& light) {
   WedgeBuilder::Built built = builder_.build(part.light);
   part.count.prepare_light(part.light, std::move(built.volumes));
   part.wedges = std::move(built.wedges);
+  part.facings_on_host = built.facings_on_host;
+  part.edges_on_host = built.edges_on_host;
   part.faces.reset();
   part.host.reset();
 }
@@ -318,12 +322,12 @@ std::vector<visibility::PassTime> SoftVolume::take_pass_times() {
 }
 
 std::map<std::string, std::uint64_t> SoftVolume::counters() const {
-  const WedgeBuilder::Counts built = builder_.counts();
-  std::map<std::string, std::uint64_t> result{
-      {"pixelsOnHost", doubtful_}, {"facingsOnHost", built.facings_on_host}, {"edgesOnHost", built.edges_on_host}};
+  std::map<std::string, std::uint64_t> result{{"pixelsOnHost", doubtful_}};
   for (const auto& part : parts_) {
     const VolumeCount::Totals& totals = part->count.totals();
     result["silhouetteEdges"] += totals.silhouette_edges;
+    result["facingsOnHost"] += part->facings_on_host;
+    result["edgesOnHost"] += part->edges_on_host;
     result["pixelsCountedOnHost"] += totals.doubtful_pixels;
     result["largestCount"] = std::max(result["largestCount"], totals.largest_count);
     for (const Wedge& wedge : part->wedges.wedges) {

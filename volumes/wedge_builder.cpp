@@ -3,6 +3,7 @@
 #include "volumes/wedge_builder.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 #include "mesh/parallel.hpp"
 #include "render/buffer.hpp"
 #include "render/commands.hpp"
@@ -62,8 +63,8 @@ std::vector<Wedge> merged(const std::vector<VolumeEdge>& edges, const std::vecto
 struct WedgeBuilder::State {
   /// What only the device needs.
   struct Device {
-    explicit Device(const render::Device& on)
-        : silhouettes(on),
+    Device(const render::Device& on, std::uint64_t most_bytes)
+        : silhouettes(on, most_bytes),
           build(on,
                 {.name = "wedge build", .spirv = shaders::kWedgeBuildComp, .push_bytes = sizeof(gpu::WedgeBuildPush)}),
           commands(on) {}
@@ -77,18 +78,24 @@ struct WedgeBuilder::State {
   };
 
   State(const render::Device& device, const Options& asked) : on(&device), options(asked) {
-    if (options.on == WedgesOn::device) gpu.emplace(device);
+    if (options.on == WedgesOn::device) gpu.emplace(device, options.most_bytes);
   }
 
   [[nodiscard]] std::vector<gpu::BuiltWedge> build_on_device(const LightHull& hull);
-  [[nodiscard]] LightWedges wedges_on_device(const LightVolumes& volumes, const visibility::Light& light);
+  void add_wedges(Built& built, const visibility::Light& light);
 
   const render::Device* on;
   Options options;
   std::optional<Device> gpu;
   std::optional<ShadowCasters> casters;
-  std::uint64_t edges_on_host = 0;
 };
+
+WedgesOn wedges_on(const visibility::MethodDescription& method, const visibility::MethodOptions& options) {
+  const auto found = options.find("wedges");
+  if (found == options.end() || found->second == "device") return WedgesOn::device;
+  if (found->second == "host") return WedgesOn::host;
+  throw UsageError("method {}: wedges={} is neither device nor host", method.name, found->second);
+}
 
 WedgeBuilder::WedgeBuilder(const render::Device& device, const Options& options)
     : state_(std::make_unique<State>(device, options)) {}
@@ -99,7 +106,6 @@ WedgeBuilder& WedgeBuilder::operator=(WedgeBuilder&&) noexcept = default;
 void WedgeBuilder::prepare_mesh(const SceneFloats& scene) {
   State& s = *state_;
   s.casters.emplace(scene, s.options.layers);
-  s.edges_on_host = 0;
   if (!s.gpu) return;
   s.gpu->holds_mesh = s.gpu->silhouettes.prepare_mesh({scene.positions, s.casters->triangles(), &s.casters->graph()});
 }
@@ -108,34 +114,37 @@ WedgeBuilder::Built WedgeBuilder::build(const visibility::Light& light) {
   State& s = *state_;
   PENUMBRA_ASSERT(s.casters.has_value(), "build before prepare_mesh");
   const glm::vec3 l = center_of(light);
-  if (!s.gpu || !s.gpu->holds_mesh) {
-    Built built{s.casters->seen_from(l, light), {}};
-    built.wedges = wedges_of(built.volumes, light, s.options.construction);
-    s.edges_on_host += built.volumes.edges.size();
-    return built;
+  const bool on_device = s.gpu && s.gpu->holds_mesh;
+  Built built;
+  if (on_device) {
+    SilhouettePass& silhouettes = s.gpu->silhouettes;
+    silhouettes.evaluate(l, s.casters->counted_sides(l, light));
+    built.volumes = s.casters->assembled(l, silhouettes.read_sides(), silhouettes.read_edges());
+    built.facings_on_host = silhouettes.open_facings();
+  } else {
+    built.volumes = s.casters->seen_from(l, light);
+    built.facings_on_host = s.casters->size();
   }
-  SilhouettePass& silhouettes = s.gpu->silhouettes;
-  silhouettes.evaluate(l, s.casters->counted_sides(l, light));
-  Built built{s.casters->assembled(l, silhouettes.read_sides(), silhouettes.read_edges()), {}};
-  if (s.options.construction == Construction::original) {
-    built.wedges = s.wedges_on_device(built.volumes, light);
+  if (on_device && s.options.construction == Construction::original) {
+    s.add_wedges(built, light);
   } else {
     built.wedges = wedges_of(built.volumes, light, s.options.construction);
-    s.edges_on_host += built.volumes.edges.size();
+    built.edges_on_host = built.volumes.edges.size();
   }
   return built;
 }
 
-LightWedges WedgeBuilder::State::wedges_on_device(const LightVolumes& volumes, const visibility::Light& light) {
+void WedgeBuilder::State::add_wedges(Built& built, const visibility::Light& light) {
+  const std::vector<VolumeEdge>& edges = built.volumes.edges;
   const LightHull hull = light_hull(light);
-  const std::vector<gpu::BuiltWedge> built = build_on_device(hull);
+  const std::vector<gpu::BuiltWedge> proposed = build_on_device(hull);
   std::vector<std::uint32_t> missing;
-  for (std::uint32_t i = 0; i < built.size(); ++i) {
-    if (built[i].proved == 0) missing.push_back(i);
+  for (std::uint32_t i = 0; i < proposed.size(); ++i) {
+    if (proposed[i].proved == 0) missing.push_back(i);
   }
-  edges_on_host += missing.size();
-  std::vector<Wedge> hosts = build_wedges(wedge_edges(volumes.edges, missing), hull, Construction::original);
-  return {volumes.edges, merged(volumes.edges, built, missing, std::move(hosts))};
+  built.edges_on_host = missing.size();
+  std::vector<Wedge> hosts = build_wedges(wedge_edges(edges, missing), hull, Construction::original);
+  built.wedges = {edges, merged(edges, proposed, missing, std::move(hosts))};
 }
 
 /// As many at a time as a buffer holds.
@@ -148,7 +157,8 @@ std::vector<gpu::BuiltWedge> WedgeBuilder::State::build_on_device(const LightHul
   d.corners->write(corners);
   gpu::WedgeBuildPush push{
       {hull.center.x, hull.center.y, hull.center.z}, 0, 0, static_cast<std::uint32_t>(corners.size()), 0};
-  const std::size_t most = on->limits().max_storage_buffer_range / sizeof(gpu::BuiltWedge);
+  const std::uint64_t most_bytes = options.most_bytes != 0 ? options.most_bytes : on->limits().max_storage_buffer_range;
+  const std::size_t most = most_bytes / sizeof(gpu::BuiltWedge);
   for (std::size_t first = 0; first < built.size(); first += most) {
     const std::span<gpu::BuiltWedge> batch = std::span(built).subspan(first, std::min(most, built.size() - first));
     render::grow(*on, d.wedges, "built wedges", batch.size_bytes());
@@ -162,10 +172,6 @@ std::vector<gpu::BuiltWedge> WedgeBuilder::State::build_on_device(const LightHul
     d.wedges->read(batch);
   }
   return built;
-}
-
-WedgeBuilder::Counts WedgeBuilder::counts() const {
-  return {state_->gpu ? state_->gpu->silhouettes.open_facings() : 0, state_->edges_on_host};
 }
 
 std::vector<visibility::PassTime> WedgeBuilder::take_pass_times() {

@@ -16,6 +16,9 @@ namespace penumbra::volumes {
 
 enum class WedgesOn { device, host };
 
+/// What a method's option "wedges" says: the device unless "host". Throws UsageError.
+WedgesOn wedges_on(const visibility::MethodDescription& method, const visibility::MethodOptions& options);
+
 /// The silhouettes of a light's centre and their wedges, anew for every light: what a moving light needs each frame.
 ///
 /// Silhouettes of device and host are the same edges in the same order. Wedges are not the same numbers, but either way
@@ -28,6 +31,7 @@ class WedgeBuilder {
     WedgesOn on = WedgesOn::device;
     Construction construction = Construction::original;
     Layers layers = Layers::one_a_solid;
+    std::uint64_t most_bytes = 0;  ///< of any buffer; 0: the device's limit. Tests make it small
   };
   WedgeBuilder(const render::Device& device, const Options& options);
   ~WedgeBuilder();
@@ -40,16 +44,12 @@ class WedgeBuilder {
   struct Built {
     LightVolumes volumes;
     LightWedges wedges;
+    std::uint64_t facings_on_host = 0;  ///< triangles whose side floats left open, or all
+    std::uint64_t edges_on_host = 0;    ///< whose wedges the host built, perhaps all
   };
   /// Planar lights.
   [[nodiscard]] Built build(const visibility::Light& light);
 
-  /// Since prepare_mesh.
-  struct Counts {
-    std::uint64_t facings_on_host = 0;  ///< triangles whose side floats left open
-    std::uint64_t edges_on_host = 0;    ///< whose wedges the host built
-  };
-  [[nodiscard]] Counts counts() const;
   std::vector<visibility::PassTime> take_pass_times();
   [[nodiscard]] std::uint64_t memory_bytes() const;
 

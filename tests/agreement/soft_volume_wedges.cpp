@@ -6,6 +6,7 @@
 
 #include "mesh/broken_meshes.hpp"
 #include "volumes/soft_volume.hpp"
+#include "volumes/soft_volume_blend.hpp"
 
 namespace penumbra::volumes {
 namespace {
@@ -60,6 +61,16 @@ TEST_F(SoftVolumeWedges, ShippedScenes) {
   expect_same("fusion, disk", with_disk(tests::shipped_scene("fusion")), 40, 30);
   expect_same("broken, split", tests::shipped_scene("broken"), 40, 30, {{"split", "2"}});
   expect_same("contact, tight", tests::shipped_scene("contact"), 40, 30, {{"construction", "tight"}});
+}
+
+TEST_F(SoftVolumeWedges, Blended) {
+  for (const char* name : {"broken", "fusion"}) {
+    const auto on_device = make_soft_volume_blend(device(), {}),
+               on_host = make_soft_volume_blend(device(), {{"wedges", "host"}});
+    expect_same(name, tests::shipped_scene(name), 40, 30, *on_device, *on_host);
+  }
+  EXPECT_THROW(static_cast<void>(make_soft_volume_blend(device(), {{"wedges", "moon"}})), UsageError);
+  EXPECT_THROW(static_cast<void>(make_soft_volume(device(), {{"wedges", ""}})), UsageError);
 }
 
 TEST_F(SoftVolumeWedges, ShippedScenesFull) {
