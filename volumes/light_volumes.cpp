@@ -4,7 +4,7 @@
 #include "volumes/light_volumes.hpp"
 
 #include "mesh/parallel.hpp"
-#include "volumes/silhouette.shared.h"
+#include "volumes/silhouette_pass.hpp"
 #include "volumes/volume_count.shared.h"
 
 #include <glm/common.hpp>
@@ -62,10 +62,6 @@ std::optional<std::int32_t> count(const LightVolumes& volumes, const Inside& ins
     sum += *is ? 1 : 0;
   }
   return sum;
-}
-
-std::uint32_t bits_of(mesh::Side side) {
-  return side == mesh::Side::front ? gpu::kFrontBit : side == mesh::Side::back ? gpu::kBackBit : 0;
 }
 
 }  // namespace

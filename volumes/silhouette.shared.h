@@ -33,7 +33,8 @@ struct SilhouetteFacingPush {
 };
 
 const uint kEdgesPerBlock = 32u;  // whose silhouettes are counted together, and written by one lane
-const uint kScanLanes = 256u;     // each adds up a stretch of the blocks: of 2²⁸ · 3 edges, less than 2¹⁷ blocks
+/// Each adds up a stretch of the blocks. A device that stops loops at 2¹⁶ turns can take 5 · 10⁸ edges.
+const uint kScanLanes = 256u;
 
 #ifdef __cplusplus
 }  // namespace penumbra::volumes::gpu

@@ -50,10 +50,6 @@ Incidences incidences_of(const mesh::EdgeGraph& graph, std::uint32_t nothing) {
   return result;
 }
 
-gpu::uint bits_of(mesh::Side side) {
-  return side == mesh::Side::front ? gpu::kFrontBit : side == mesh::Side::back ? gpu::kBackBit : 0;
-}
-
 }  // namespace
 
 struct SilhouettePass::State {

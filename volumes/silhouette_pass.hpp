@@ -17,6 +17,11 @@
 
 namespace penumbra::volumes {
 
+/// A side as words of triangles have it (silhouette.shared.h).
+inline std::uint32_t bits_of(mesh::Side side) {
+  return side == mesh::Side::front ? gpu::kFrontBit : side == mesh::Side::back ? gpu::kBackBit : 0;
+}
+
 /// The triangles that cast shadow, with their edges: all borrowed.
 struct SilhouetteMesh {
   std::span<const glm::vec3> positions;

@@ -19,14 +19,14 @@ layout(scalar, binding = 4) writeonly buffer Wedges { BuiltWedge wedges[]; };
 layout(scalar, push_constant) uniform Push { WedgeBuildPush push; };
 
 const double kProofError = 1.0LF / 562949953421312.0LF;  // 2⁻⁴⁹, of the sum of the terms' sizes
-const double kLeast = 1e-290LF;                          // far above what underflow may take
+const double kLeast = 7.6e-37LF;                         // 2⁻¹²⁰: positions below 2⁻¹²⁶ may have been read as 0
 const double kMostTurn = 1.0LF / 1048576.0LF;            // 2⁻²⁰, as bounding_plane
 
 double largest(dvec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 
 struct Sum {
   double value;
-  double bound;  // |exact − value| is less than half of it
+  double bound;  // |exact − value| is less
 };
 
 /// n · g + d, where g may be a difference of two doubles and d a product.

@@ -54,9 +54,7 @@ class SilhouettePassTest : public tests::DeviceTest {
     pass_.evaluate(l, counted);
     const std::vector<std::uint32_t> found = pass_.read_sides();
     for (std::size_t i = 0; i < sides.size(); ++i) {
-      const auto side = static_cast<std::uint32_t>(sides[i] == mesh::Side::front  ? gpu::kFrontBit
-                                                   : sides[i] == mesh::Side::back ? gpu::kBackBit
-                                                                                  : 0U);
+      const std::uint32_t side = bits_of(sides[i]);
       ASSERT_EQ(found[i], side | (side & counted[i]) << gpu::kCountedShift) << name << ", triangle " << i;
       tally_.ties += sides[i] == mesh::Side::on ? 1 : 0;
       if ((side & counted[i]) == 0) sides[i] = mesh::Side::on;
