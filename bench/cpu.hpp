@@ -15,10 +15,13 @@ namespace penumbra::bench {
 struct CpuEntry {
   std::string name;  ///< stable: "cpu/edge-graph/triangles=5000", "cpu/wedges/tight/edges=1000000"
   std::uint64_t triangles = 0, edges = 0;
-  std::uint64_t items = 0;       ///< that were made: edges, records, wedges
-  std::vector<double> seconds;   ///< of the timed runs, in order
-  std::optional<double> growth;  ///< median ÷ that of the mesh before
+  std::uint64_t items = 0;           ///< that were made: edges, records, wedges
+  std::vector<double> seconds;       ///< of the timed runs, in order
+  std::optional<double> growth;      ///< median ÷ that of the mesh before
+  std::optional<double> host_ratio;  ///< of a device: its twin's median on the processor ÷ its own
+  std::string device;                ///< empty: the processor
   std::map<std::string, std::uint64_t> counts;
+  std::map<std::string, double> passes;  ///< of a device: milliseconds of each, as `seconds`
   double load_before = 0;
 };
 

@@ -123,23 +123,26 @@ std::string json_lines(const Entry& entry, const Options& options) {
 }
 
 std::string cpu_table_head() {
-  return fmt::format("| {:<44} | {:>14} | {:>11} | {:>7} |\n| {:-<44} | {:->13}: | {:->10}: | {:->6}: |\n", "name",
-                     "seconds", "a second", "growth", "", "", "", "");
+  return fmt::format(
+      "| {:<44} | {:>14} | {:>11} | {:>7} | {:>9} |\n| {:-<44} | {:->13}: | {:->10}: | {:->6}: | {:->8}: |\n", "name",
+      "seconds", "a second", "growth", "host / it", "", "", "", "", "");
 }
 
 std::string cpu_table_row(const CpuEntry& entry) {
   const Timing timing = timing_of(entry.seconds);
-  return fmt::format("| {:<44} | {:>14} | {:>11.4g} | {:>7} |\n", entry.name, seconds(timing),
-                     static_cast<double>(entry.items) / timing.median, ratio_text(entry.growth));
+  return fmt::format("| {:<44} | {:>14} | {:>11.4g} | {:>7} | {:>9} |\n", entry.name, seconds(timing),
+                     static_cast<double>(entry.items) / timing.median, ratio_text(entry.growth),
+                     ratio_text(entry.host_ratio));
 }
 
 std::string json_line(const CpuEntry& entry, const Options& options) {
   const compare::Machine machine = compare::this_machine();
+  const std::string processor = fmt::format("{}, {} threads", machine.processor, machine.threads);
   const Timing timing = timing_of(entry.seconds);
   Json line{{"name", entry.name},
             {"commit", options.commit},
             {"buildType", PENUMBRA_BUILD_TYPE},
-            {"device", fmt::format("{}, {} threads", machine.processor, machine.threads)},
+            {"device", entry.device.empty() ? processor : entry.device},
             {"triangles", entry.triangles},
             {"edges", entry.edges},
             {"items", entry.items},
@@ -148,7 +151,9 @@ std::string json_line(const CpuEntry& entry, const Options& options) {
             {"seconds", to_json(timing)},
             {"itemsPerSecond", static_cast<double>(entry.items) / timing.median}};
   if (entry.growth) line["growth"] = *entry.growth;
+  if (entry.host_ratio) line["hostRatio"] = *entry.host_ratio;
   if (!entry.counts.empty()) line["counters"] = entry.counts;
+  if (!entry.passes.empty()) line["passes"] = entry.passes;
   return line.dump() + "\n";
 }
 

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "bench/cpu.hpp"
 #include "bench/entry.hpp"
+#include "bench/frames.hpp"
 #include "bench/lines.hpp"
 #include "bench/options.hpp"
 #include "bench/picture.hpp"
@@ -46,6 +47,17 @@ void run_cpu(const bench::Options& options, Output& output) {
   });
 }
 
+void run_frames(const bench::Options& options, Output& output) {
+  app::DeviceSource devices(options.device);
+  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
+             options.commit.empty() ? "unknown" : options.commit, options.runs);
+  output.write(bench::cpu_table_head(), "");
+  bench::measure_frames(options, devices.device(), [&](const bench::CpuEntry& entry) {
+    output.write(bench::cpu_table_row(entry), bench::json_line(entry, options));
+  });
+  devices.check_validation();
+}
+
 void run_methods(const bench::Options& options, Output& output) {
   app::require_writable(options.picture);
   app::DeviceSource devices(options.device);
@@ -72,6 +84,8 @@ int run(const std::vector<std::string>& arguments) {
   Output output(options);
   if (options.cpu) {
     run_cpu(options, output);
+  } else if (options.frames) {
+    run_frames(options, output);
   } else {
     run_methods(options, output);
   }

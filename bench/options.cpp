@@ -36,7 +36,10 @@ const char* const kHelp =
   --runs N             timed runs after one that is discarded (default 5)
   --budget SECONDS     who has used as much in timed runs gets no other
   --cpu                instead of methods: edge graphs, edge records, hierarchies and penumbra wedges on the processor
-  --triangles T        of --cpu's knots (default 5000, 50000, 500000); may be given again
+  --wedges-per-frame   instead of methods: silhouettes and wedges of a light that moves, built anew on the device and,
+                       in turns with it, on the processor
+  --triangles T        of the knots of --cpu (default 5000, 50000, 500000) and of --wedges-per-frame (default 10000,
+                       100000, 1000000); may be given again
   --edges N            of --cpu's wedges (default 1000000)
   --device NAME|INDEX|cpu
   --json FILE          append one JSON line a contestant
@@ -160,9 +163,12 @@ void set_defaults(Reading& reading) {
   }
   options.samples_in_name = !options.light_samples.empty();
   if (options.light_samples.empty()) options.light_samples = {256};
+  if (options.cpu && options.frames) throw UsageError("--cpu and --wedges-per-frame are two runs: give one of them");
+  const bool methods = !options.cpu && !options.frames;
+  if (options.triangles.empty() && options.frames) options.triangles = {10'000, 100'000, 1'000'000};
   if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
-  if (!options.cpu) options.subjects = make_subjects(reading.subjects);
-  if (!options.picture.empty() && (options.cpu || options.reference == Reference::none))
+  if (methods) options.subjects = make_subjects(reading.subjects);
+  if (!options.picture.empty() && (!methods || options.reference == Reference::none))
     throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
   std::vector<std::string> rivals = {"plain-rays", "raytrace"}, subjects, samples;  // those two always run
   for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
@@ -199,6 +205,8 @@ Options parse_options(const std::vector<std::string>& arguments) {
       reading.subjects.all = true;
     } else if (option == "--cpu") {
       reading.options.cpu = true;
+    } else if (option == "--wedges-per-frame") {
+      reading.options.frames = true;
     } else if (const auto take = options_with_value().find(option); take == options_with_value().end()) {
       throw UsageError("{}: no such option; --help lists what there is", option);
     } else if (next + 1 == arguments.size()) {

@@ -41,7 +41,8 @@ struct Options {
   std::filesystem::path json, picture;
   std::string commit;
   bool cpu = false;                      ///< the parts that run on the processor, not methods
-  std::vector<std::uint64_t> triangles;  ///< --cpu: of the knots
+  bool frames = false;                   ///< silhouettes and wedges of a moving light, on device and processor
+  std::vector<std::uint64_t> triangles;  ///< --cpu, --wedges-per-frame: of the knots
   std::uint64_t edges = 1'000'000;       ///< --cpu: that get wedges
   bool help = false;
 };

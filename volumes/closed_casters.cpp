@@ -7,7 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <optional>
+#include <array>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -63,44 +64,56 @@ double signed_volume(const MeshView& mesh, const Component& component, const std
   return sum;
 }
 
-/// Is the winding number of the part around c other than 0? The crossings of a segment that ends beyond its box.
-bool is_around(const MeshView& mesh, const Component& component, const std::vector<std::int8_t>& turn,
-               const visibility::Light& light, const glm::vec3& c) {
-  glm::dvec3 lower = corners_of(mesh, component.triangles.front())[0], upper = lower;
-  for (const std::uint32_t t : component.triangles) {
-    for (const glm::dvec3& corner : corners_of(mesh, t)) {
-      lower = glm::min(lower, corner);
-      upper = glm::max(upper, corner);
+}  // namespace
+
+ClosedParts::ClosedParts(const MeshView& mesh, const EdgeGraph& graph) : turn_(mesh.triangles.size(), 0) {
+  for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
+    if (turn_[first] != 0) continue;
+    Component component = wind_component(graph, first, turn_);
+    if (!component.closed) continue;
+    Part part;
+    part.outside = signed_volume(mesh, component, turn_) < 0 ? -1 : 1;
+    part.lower = part.upper = corners_of(mesh, first)[0];
+    for (const std::uint32_t t : component.triangles) {
+      for (const glm::dvec3& corner : corners_of(mesh, t)) {
+        part.lower = glm::min(part.lower, corner);
+        part.upper = glm::max(part.upper, corner);
+      }
     }
+    part.triangles = std::move(component.triangles);
+    parts_.push_back(std::move(part));
   }
+}
+
+/// Is the winding number of the part around c other than 0? The crossings of a segment that ends beyond its box.
+bool ClosedParts::is_around(const Part& part, const MeshView& mesh, const visibility::Light& light,
+                            const glm::vec3& c) const {
   const glm::dvec3 at(c);
-  if (glm::any(glm::lessThan(at, lower)) || glm::any(glm::greaterThan(at, upper))) return false;
-  const glm::vec3 beyond(upper + (upper - lower) + 1.0);
+  if (glm::any(glm::lessThan(at, part.lower)) || glm::any(glm::greaterThan(at, part.upper))) return false;
+  const glm::vec3 beyond(part.upper + (part.upper - part.lower) + 1.0);
   int winding = 0;
-  for (const std::uint32_t t : component.triangles) {
+  for (const std::uint32_t t : part.triangles) {
     const auto [a, b, d] = corners_of(mesh, t);
     const std::array<glm::vec3, 3> corners = {glm::vec3(a), glm::vec3(b), glm::vec3(d)};  // they were floats
     if (!visibility::segment_meets_triangle(c, beyond, corners, light).meets) continue;
-    winding += turn[t] * static_cast<int>(mesh::side_of_plane(corners[0], corners[1], corners[2], c));
+    winding += turn_[t] * static_cast<int>(mesh::side_of_plane(corners[0], corners[1], corners[2], c));
   }
   return winding != 0;
 }
 
-}  // namespace
+std::vector<Side> ClosedParts::light_sides(const MeshView& mesh, const visibility::Light& light,
+                                           const glm::vec3& c) const {
+  std::vector<Side> sides(mesh.triangles.size(), Side::on);
+  for (const Part& part : parts_) {
+    const int toward_light = is_around(part, mesh, light, c) ? -part.outside : part.outside;
+    for (const std::uint32_t t : part.triangles) sides[t] = static_cast<Side>(toward_light * turn_[t]);
+  }
+  return sides;
+}
 
 std::vector<Side> light_sides(const MeshView& mesh, const EdgeGraph& graph, const visibility::Light& light,
                               const glm::vec3& c) {
-  std::vector<Side> sides(mesh.triangles.size(), Side::on);
-  std::vector<std::int8_t> turn(mesh.triangles.size(), 0);
-  for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
-    if (turn[first] != 0) continue;
-    const Component component = wind_component(graph, first, turn);
-    if (!component.closed) continue;
-    int toward_light = signed_volume(mesh, component, turn) < 0 ? -1 : 1;
-    if (is_around(mesh, component, turn, light, c)) toward_light = -toward_light;
-    for (const std::uint32_t t : component.triangles) sides[t] = static_cast<Side>(toward_light * turn[t]);
-  }
-  return sides;
+  return ClosedParts(mesh, graph).light_sides(mesh, light, c);
 }
 
 void keep_one_layer(std::span<const Side> light_sides, bool from_light, std::span<Side> facings) {

@@ -19,9 +19,32 @@
 /// hole, a fin or a T-junction is open, and a segment through both its sides counts two.
 namespace penumbra::volumes {
 
-/// For each triangle of a closed part, the side (as mesh::Side, of the triangle as stored) on which the light's
-/// centre's region lies: outside of the part, or, if it is around c, inside. `on` for open ones. `light` reads ties.
-/// Exact but for which side is outside: the sign of the enclosed volume, in double.
+/// The closed parts of a mesh. Found once: lights may move.
+class ClosedParts {
+ public:
+  ClosedParts() = default;
+  ClosedParts(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph);
+
+  /// For each triangle of a closed part, the side (as mesh::Side, of the triangle as stored) on which the light's
+  /// centre's region lies: outside of the part, or, if it is around c, inside. `on` for open ones. `light` reads ties.
+  /// Exact but for which side is outside: the sign of the enclosed volume, in double. `mesh`: the same as before.
+  [[nodiscard]] std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const visibility::Light& light,
+                                                    const glm::vec3& c) const;
+
+ private:
+  struct Part {
+    std::vector<std::uint32_t> triangles;
+    int outside = 1;  // the side, once the triangles are wound by turn_
+    glm::dvec3 lower{0}, upper{0};
+  };
+  [[nodiscard]] bool is_around(const Part& part, const mesh::MeshView& mesh, const visibility::Light& light,
+                               const glm::vec3& c) const;
+
+  std::vector<Part> parts_;
+  std::vector<std::int8_t> turn_;  // ±1 for each triangle: as stored, or the other way round
+};
+
+/// The same for one light.
 std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph,
                                     const visibility::Light& light, const glm::vec3& c);
 

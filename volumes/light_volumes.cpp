@@ -4,8 +4,7 @@
 #include "volumes/light_volumes.hpp"
 
 #include "mesh/parallel.hpp"
-#include "mesh/silhouettes.hpp"
-#include "volumes/closed_casters.hpp"
+#include "volumes/silhouette_pass.hpp"
 #include "volumes/volume_count.shared.h"
 
 #include <glm/common.hpp>
@@ -75,36 +74,62 @@ ShadowCasters::ShadowCasters(const visibility::SceneFloats& scene, Layers layers
     triangles_.push_back(scene.triangles[i]);
   }
   graph_ = mesh::build_edge_graph({positions_, triangles_});
+  if (layers_ == Layers::one_a_solid) parts_ = ClosedParts({positions_, triangles_}, graph_);
+}
+
+std::vector<std::uint32_t> ShadowCasters::counted_sides(const glm::vec3& l, const visibility::Light& light) const {
+  std::vector<std::uint32_t> counted(casters_.size(), gpu::kBothBits);
+  if (layers_ == Layers::one_a_solid) {
+    const std::vector<mesh::Side> toward = parts_.light_sides({positions_, triangles_}, light, l);
+    for (std::size_t i = 0; i < counted.size(); ++i) {
+      if (toward[i] != mesh::Side::on) counted[i] = bits_of(toward[i]);
+    }
+  }
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    if (scene_->emits[casters_[i]] == light.index) counted[i] = 0;
+  }
+  return counted;
+}
+
+LightVolumes ShadowCasters::assembled(const glm::vec3& l, std::span<const std::uint32_t> sides,
+                                      std::span<const mesh::SilhouetteEdge> edges) const {
+  LightVolumes volumes{l, {}, {}, {}};
+  if (layers_ == Layers::one_a_solid) volumes.left_out.resize(scene_->triangles.size());
+  volumes.caps.reserve(casters_.size());
+  for (std::size_t i = 0; i < casters_.size(); ++i) {
+    const std::uint32_t counted = sides[i] >> gpu::kCountedShift;
+    if (!volumes.left_out.empty()) volumes.left_out[casters_[i]] = counted != (sides[i] & gpu::kBothBits) ? 1 : 0;
+    if (counted == 0) continue;
+    VolumeCap cap{scene_->corners(casters_[i]), scene_->plane[casters_[i]]};
+    if (counted == gpu::kBackBit) std::swap(cap.corners[1], cap.corners[2]);
+    volumes.caps.push_back(cap);
+  }
+  volumes.edges.reserve(edges.size());
+  for (const mesh::SilhouetteEdge& edge : edges) {
+    const auto [a, b] = graph_.edges[edge.edge];
+    volumes.edges.push_back({scene_->positions[a], scene_->positions[b], edge.multiplicity});
+  }
+  return volumes;
 }
 
 LightVolumes ShadowCasters::seen_from(const glm::vec3& l, const visibility::Light& light) const {
-  const mesh::MeshView view{positions_, triangles_};
-  std::vector<mesh::Side> sides = mesh::facings(view, graph_, l);
-  LightVolumes volumes{l, {}, {}, {}};
-  if (layers_ == Layers::one_a_solid) {
-    const std::vector<mesh::Side> all = sides;
-    keep_one_layer(light_sides(view, graph_, light, l), true, sides);
-    volumes.left_out.resize(scene_->triangles.size());
-    for (std::size_t i = 0; i < sides.size(); ++i) volumes.left_out[casters_[i]] = sides[i] != all[i] ? 1 : 0;
-  }
-  volumes.caps.reserve(casters_.size());
-  for (std::size_t i = 0; i < casters_.size(); ++i) {
-    if (scene_->emits[casters_[i]] == light.index) sides[i] = mesh::Side::on;
-    if (sides[i] == mesh::Side::on) continue;
-    VolumeCap cap{scene_->corners(casters_[i]), scene_->plane[casters_[i]]};
-    if (sides[i] == mesh::Side::back) std::swap(cap.corners[1], cap.corners[2]);
-    volumes.caps.push_back(cap);
+  std::vector<mesh::Side> facings = mesh::facings({positions_, triangles_}, graph_, l);
+  const std::vector<std::uint32_t> counted = counted_sides(l, light);
+  std::vector<std::uint32_t> sides(facings.size());
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const std::uint32_t side = bits_of(facings[i]);
+    sides[i] = side | (side & counted[i]) << gpu::kCountedShift;
+    if ((side & counted[i]) == 0) facings[i] = mesh::Side::on;
   }
   std::vector<std::int32_t> multiplicities(graph_.edges.size());
   mesh::for_each_index(multiplicities.size(), [&](std::size_t edge) {
-    multiplicities[edge] = mesh::signed_multiplicity(graph_, static_cast<std::uint32_t>(edge), sides);
+    multiplicities[edge] = mesh::signed_multiplicity(graph_, static_cast<std::uint32_t>(edge), facings);
   });
-  for (std::size_t edge = 0; edge < multiplicities.size(); ++edge) {
-    if (multiplicities[edge] == 0) continue;
-    const auto [a, b] = graph_.edges[edge];
-    volumes.edges.push_back({scene_->positions[a], scene_->positions[b], multiplicities[edge]});
+  std::vector<mesh::SilhouetteEdge> edges;
+  for (std::uint32_t edge = 0; edge < multiplicities.size(); ++edge) {
+    if (multiplicities[edge] != 0) edges.push_back({edge, multiplicities[edge]});
   }
-  return volumes;
+  return assembled(l, sides, edges);
 }
 
 std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction) {

@@ -1,14 +1,17 @@
 #pragma once
 
 #include "mesh/edge_graph.hpp"
+#include "mesh/silhouettes.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
+#include "volumes/closed_casters.hpp"
 
 #include <glm/vec3.hpp>
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace penumbra::volumes {
@@ -31,7 +34,8 @@ struct LightVolumes {
   glm::vec3 l{0};
   std::vector<VolumeEdge> edges;
   std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not hold l
-  std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: by Layers::one_a_solid; empty: none
+  std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: by Layers::one_a_solid, beside the
+                                       ///< light's own body; empty: none
 };
 
 /// Which triangles have a volume.
@@ -47,7 +51,18 @@ class ShadowCasters {
 
   /// Seen from `l`, without the body of that light. Exact.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
+
+  /// What of that needs no facing: for each caster, the sides on which l must be for it to count (bit 0: front, bit 1:
+  /// back).
+  [[nodiscard]] std::vector<std::uint32_t> counted_sides(const glm::vec3& l, const visibility::Light& light) const;
+  /// The rest, given for each caster the side that l is on in bits 0 and 1, those of them that count in bits 2 and 3,
+  /// and the edges with k_e(l) ≠ 0 of what counts.
+  [[nodiscard]] LightVolumes assembled(const glm::vec3& l, std::span<const std::uint32_t> sides,
+                                       std::span<const mesh::SilhouetteEdge> edges) const;
+
   [[nodiscard]] std::size_t size() const { return casters_.size(); }
+  [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
+  [[nodiscard]] const mesh::EdgeGraph& graph() const { return graph_; }
 
  private:
   const visibility::SceneFloats* scene_;
@@ -56,6 +71,7 @@ class ShadowCasters {
   std::vector<mesh::Triangle> triangles_;  // the same, corners
   mesh::EdgeGraph graph_;
   Layers layers_;
+  ClosedParts parts_;  // for one_a_solid
 };
 
 /// How many triangles the ray from l in this direction meets; nothing if double cannot tell.

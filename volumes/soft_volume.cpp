@@ -16,6 +16,7 @@
 #include "volumes/soft_volume.frag.spv.hpp"
 #include "volumes/texture_weights.hpp"
 #include "volumes/volume_count.hpp"
+#include "volumes/wedge_builder.hpp"
 #include "volumes/wedge_casters.hpp"
 #include "volumes/wedge_raster.hpp"
 
@@ -59,6 +60,8 @@ visibility::MethodDescription describe() {
                       {"coverage", "analytic|table", "analytic",
                        "integrate the light beyond each edge, or look it up between 1024 points of the light"},
                       {"construction", "original|tight", "original", "of the wedges, which say where to look"},
+                      {"wedges", "device|host", "device",
+                       "where silhouettes and wedges are built for each light (tight ones always on the host)"},
                       {"tests", "none|z|both", "both",
                        "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"}},
           .verdict_on = verdict_on};
@@ -93,9 +96,17 @@ WedgeTests tests_of(const visibility::MethodOptions& options) {
   throw UsageError("method soft-volume: tests={} is none of none, z, both", value);
 }
 
+WedgeBuilder::Options builder_options(const visibility::MethodDescription& method,
+                                      const visibility::MethodOptions& options) {
+  return {.on = wedges_on(method, options),
+          .construction =
+              second_of(options, "construction", {"original", "tight"}) ? Construction::tight : Construction::original,
+          .layers = Layers::one_a_solid};
+}
+
 /// The light, or one of the parts it is cut in.
 struct Part {
-  Part(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
+  explicit Part(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
 
   VolumeCount count;
   Light light;
@@ -104,7 +115,8 @@ struct Part {
   std::vector<double> table;  // what the shader reads of this light
   double weight = 1;          // of the whole light, which is 1
   LightWedges wedges;
-  std::optional<std::vector<gpu::WedgeFace>> faces;  // for this view
+  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // WedgeBuilder::Built
+  std::optional<std::vector<gpu::WedgeFace>> faces;      // for this view
   struct Host {
     Host(const SceneFloats& scene, const Light& light)
         : casters(casters_of(scene, light)), visibility(scene, light, casters) {}
@@ -121,8 +133,7 @@ class SoftVolume final : public visibility::Method {
         device_(&device),
         split_(split_of(options)),
         table_(second_of(options, "coverage", {"analytic", "table"})),
-        construction_(second_of(options, "construction", {"original", "tight"}) ? Construction::tight
-                                                                                : Construction::original),
+        builder_(device, builder_options(description_, options)),
         tests_(tests_of(options)) {
     visibility::check_options(description_, options);
     for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<Part>(device));
@@ -132,7 +143,8 @@ class SoftVolume final : public visibility::Method {
 
   void prepare_mesh(const SceneFloats& scene) override {
     scene_ = &scene;
-    for (const auto& part : parts_) part->count.prepare_mesh(scene);
+    builder_.prepare_mesh(scene);
+    for (const auto& part : parts_) part->count.prepare_scene(scene);
   }
 
   void prepare_light(const Light& light) override {
@@ -180,7 +192,7 @@ class SoftVolume final : public visibility::Method {
   std::vector<visibility::PassTime> take_pass_times() override;
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override {
-    std::uint64_t bytes = raster_ ? raster_->memory_bytes() : 0;
+    std::uint64_t bytes = builder_.memory_bytes() + (raster_ ? raster_->memory_bytes() : 0);
     for (const auto& part : parts_) bytes += part->count.memory_bytes();
     return bytes;
   }
@@ -196,7 +208,7 @@ class SoftVolume final : public visibility::Method {
   const render::Device* device_;
   std::uint32_t split_;
   bool table_;
-  Construction construction_;
+  WedgeBuilder builder_;
   WedgeTests tests_;
   std::vector<gpu::uint> kind_;     // of raster_: shape and measure
   const Part* prepared_ = nullptr;  // whose table raster_ has
@@ -231,8 +243,11 @@ void SoftVolume::prepare(Part& part, const Light& light) {
     if (part.texture) part.table = part.texture->words();
   }
   if (table_ && part.weight > 0) part.table = coverage_table(part.outline, part.texture ? &*part.texture : nullptr);
-  part.count.prepare_light(part.light);
-  part.wedges = wedges_of(part.count.volumes(), part.light, construction_);
+  WedgeBuilder::Built built = builder_.build(part.light);
+  part.count.prepare_light(part.light, std::move(built.volumes));
+  part.wedges = std::move(built.wedges);
+  part.facings_on_host = built.facings_on_host;
+  part.edges_on_host = built.edges_on_host;
   part.faces.reset();
   part.host.reset();
 }
@@ -300,7 +315,7 @@ double SoftVolume::share_above(const Part& part, std::size_t pixel) const {
 }
 
 std::vector<visibility::PassTime> SoftVolume::take_pass_times() {
-  std::vector<visibility::PassTime> sums;
+  std::vector<visibility::PassTime> sums = builder_.take_pass_times();
   for (const auto& part : parts_) add_times(sums, part->count.take_pass_times());
   if (raster_) add_times(sums, raster_->take_pass_times());
   return sums;
@@ -311,6 +326,8 @@ std::map<std::string, std::uint64_t> SoftVolume::counters() const {
   for (const auto& part : parts_) {
     const VolumeCount::Totals& totals = part->count.totals();
     result["silhouetteEdges"] += totals.silhouette_edges;
+    result["facingsOnHost"] += part->facings_on_host;
+    result["edgesOnHost"] += part->edges_on_host;
     result["pixelsCountedOnHost"] += totals.doubtful_pixels;
     result["largestCount"] = std::max(result["largestCount"], totals.largest_count);
     for (const Wedge& wedge : part->wedges.wedges) {

@@ -13,11 +13,13 @@
 #include "volumes/soft_volume_blend.frag.spv.hpp"
 #include "volumes/soft_volume_blend.shared.h"
 #include "volumes/volume_count.hpp"
+#include "volumes/wedge_builder.hpp"
 #include "volumes/wedge_casters.hpp"
 #include "volumes/wedge_raster.hpp"
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -45,25 +47,31 @@ visibility::MethodDescription describe() {
           .exact_for = "what soft-volume is exact for, if boxes around occluders on a quarter of the light are apart",
           .lights = {LightKind::rectangle},
           .textures = false,
-          .options = {},
+          .options = {{"wedges", "device|host", "device",
+                       "where silhouettes and wedges are built for each light, object by object"}},
           .verdict_on = verdict_on};
 }
 
 /// An object, as a scene in which nothing else casts shadow.
 struct Occluder {
-  Occluder(const render::Device& device, const SceneFloats& all, std::size_t object, bool and_later)
-      : scene(all), count(device, CountVariant::z_fail, Layers::one_a_solid) {
+  Occluder(const render::Device& device, WedgesOn wedges_on, const SceneFloats& all, std::size_t object, bool and_later)
+      : scene(all),
+        count(device, CountVariant::z_fail, Layers::one_a_solid),
+        builder(device, {.on = wedges_on, .layers = Layers::one_a_solid}) {
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
       const bool own = scene.object[t] == object || (and_later && scene.object[t] > object);
       if (!own) scene.casts_shadow[t] = 0;
     }
-    count.prepare_mesh(scene);
+    count.prepare_scene(scene);
+    builder.prepare_mesh(scene);
   }
 
   SceneFloats scene;
   VolumeCount count;
+  WedgeBuilder builder;
   LightWedges wedges;
-  std::optional<std::vector<gpu::WedgeFace>> faces;  // for this view
+  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // WedgeBuilder::Built
+  std::optional<std::vector<gpu::WedgeFace>> faces;      // for this view
 };
 
 /// A quarter's cover by one occluder, from the words that its edges add up to and the count at the centre.
@@ -96,6 +104,7 @@ class SoftVolumeBlend final : public visibility::Method {
   SoftVolumeBlend(const render::Device& device, const visibility::MethodOptions& options)
       : description_(describe()),
         device_(&device),
+        wedges_on_(wedges_on(description_, options)),
         raster_(device, {"blended wedges", shaders::kSoftVolumeBlendFrag, {}, gpu::kBlendWords, false}) {
     visibility::check_options(description_, options);
   }
@@ -125,14 +134,17 @@ class SoftVolumeBlend final : public visibility::Method {
   }
   std::vector<visibility::PassTime> take_pass_times() override {
     std::vector<visibility::PassTime> times;
-    for (const auto& occluder : occluders_) add_times(times, occluder->count.take_pass_times());
+    for (const auto& occluder : occluders_) {
+      add_times(times, occluder->builder.take_pass_times());
+      add_times(times, occluder->count.take_pass_times());
+    }
     add_times(times, raster_.take_pass_times());
     return times;
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override {
     std::uint64_t bytes = raster_.memory_bytes();
-    for (const auto& occluder : occluders_) bytes += occluder->count.memory_bytes();
+    for (const auto& occluder : occluders_) bytes += occluder->count.memory_bytes() + occluder->builder.memory_bytes();
     return bytes;
   }
 
@@ -143,6 +155,7 @@ class SoftVolumeBlend final : public visibility::Method {
 
   visibility::MethodDescription description_;
   const render::Device* device_;
+  WedgesOn wedges_on_;
   WedgeRaster raster_;
   std::vector<std::unique_ptr<Occluder>> occluders_;
   const SceneFloats* scene_ = nullptr;
@@ -165,18 +178,22 @@ void SoftVolumeBlend::prepare_mesh(const SceneFloats& scene) {
   for (std::size_t object = 0; object < casts.size() && occluders_.size() < kMostOccluders; ++object) {
     if (casts[object] == 0) continue;
     const bool last = occluders_.size() + 1 == kMostOccluders;
-    occluders_.push_back(std::make_unique<Occluder>(*device_, scene, object, last));
+    occluders_.push_back(std::make_unique<Occluder>(*device_, wedges_on_, scene, object, last));
   }
   // Where nothing casts shadow, one that does not, either: its count knows the horizon.
-  if (occluders_.empty()) occluders_.push_back(std::make_unique<Occluder>(*device_, scene, casts.size(), false));
+  if (occluders_.empty())
+    occluders_.push_back(std::make_unique<Occluder>(*device_, wedges_on_, scene, casts.size(), false));
 }
 
 void SoftVolumeBlend::prepare_light(const Light& light) {
   visibility::check_light(description_, light);
   light_ = &light;
   for (const auto& occluder : occluders_) {
-    occluder->count.prepare_light(light);
-    occluder->wedges = wedges_of(occluder->count.volumes(), light, Construction::original);
+    WedgeBuilder::Built built = occluder->builder.build(light);
+    occluder->count.prepare_light(light, std::move(built.volumes));
+    occluder->wedges = std::move(built.wedges);
+    occluder->facings_on_host = built.facings_on_host;
+    occluder->edges_on_host = built.edges_on_host;
     occluder->faces.reset();
   }
   doubtful_ = 0;
@@ -245,6 +262,8 @@ std::map<std::string, std::uint64_t> SoftVolumeBlend::counters() const {
   std::map<std::string, std::uint64_t> result{{"occluders", occluders_.size()}, {"pixelsOnHost", doubtful_}};
   for (const auto& occluder : occluders_) {
     result["silhouetteEdges"] += occluder->wedges.edges.size();
+    result["facingsOnHost"] += occluder->facings_on_host;
+    result["edgesOnHost"] += occluder->edges_on_host;
     if (!occluder->faces) continue;
     result["wedgesOnScreen"] += occluder->faces->size();
     result["fragments"] += fragments_of(*occluder->faces);

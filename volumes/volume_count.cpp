@@ -131,21 +131,30 @@ VolumeCount::VolumeCount(VolumeCount&&) noexcept = default;
 VolumeCount& VolumeCount::operator=(VolumeCount&&) noexcept = default;
 
 void VolumeCount::prepare_mesh(const SceneFloats& scene) {
+  prepare_scene(scene);
+  state_->casters.emplace(scene, state_->layers);
+}
+
+void VolumeCount::prepare_scene(const SceneFloats& scene) {
   State& s = *state_;
   s.scene = &scene;
   s.light = nullptr;
   s.samples = nullptr;
   s.tree.reset();
-  s.casters.emplace(scene, s.layers);
-  // Counts are sums of at most three faces a triangle and edge; far from what 32 bits hold.
-  PENUMBRA_ASSERT(s.casters->size() < (1u << 28), "{} triangles", s.casters->size());
+  s.casters.reset();
 }
 
 void VolumeCount::prepare_light(const visibility::Light& light) {
+  PENUMBRA_ASSERT(state_->casters.has_value(), "prepare_light before prepare_mesh");
+  prepare_light(light, state_->casters->seen_from(center_of(light), light));
+}
+
+void VolumeCount::prepare_light(const visibility::Light& light, LightVolumes volumes) {
   State& s = *state_;
-  PENUMBRA_ASSERT(s.casters.has_value(), "prepare_light before prepare_mesh");
+  // Counts are sums of at most three faces a triangle and edge; far from what 32 bits hold.
+  PENUMBRA_ASSERT(s.scene != nullptr && volumes.caps.size() < (1u << 28), "{} triangles", volumes.caps.size());
   s.light = &light;
-  s.volumes = s.casters->seen_from(center_of(light), light);
+  s.volumes = std::move(volumes);
   s.boxes_found = false;
   s.totals = {.silhouette_edges = s.volumes.edges.size(), .caps = s.volumes.caps.size()};
 }

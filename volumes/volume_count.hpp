@@ -39,6 +39,10 @@ class VolumeCount {
   void prepare_light(const visibility::Light& light);
   void prepare_view(const visibility::ViewSamples& samples);
 
+  /// In place of the first two where someone else finds the volumes of lights (ShadowCasters, with the same layers).
+  void prepare_scene(const visibility::SceneFloats& scene);
+  void prepare_light(const visibility::Light& light, LightVolumes volumes);
+
   /// Pixels whose light is decided without counting.
   enum class Kind : std::uint8_t {
     lit,      ///< background, the body of a light, or what receives no shadow

@@ -18,6 +18,7 @@ struct Plane {
   double a = 0, b = 0, c = 0, d = 0;
 
   [[nodiscard]] glm::dvec3 normal() const { return {a, b, c}; }
+  friend bool operator==(const Plane&, const Plane&) = default;
 };
 
 struct Box {

@@ -155,6 +155,20 @@ TEST_F(Bench, PartsOnTheProcessor) {
   EXPECT_EQ(all[7].at("counters").at("wedge"), 500);
 }
 
+TEST_F(Bench, AMovingLight) {
+  const Outcome outcome = run({"--wedges-per-frame", "--triangles", "600", "--runs", "1", "--json", path("lines")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::vector<json> all = lines("lines");
+  EXPECT_THAT(names_of(all),
+              ElementsAre("wedges-per-frame/host/triangles=600", "wedges-per-frame/device/triangles=600"));
+  EXPECT_EQ(all[0].at("items"), all[1].at("items"));
+  EXPECT_GT(all[1].at("items"), 10);
+  EXPECT_FALSE(all[0].contains("hostRatio"));
+  EXPECT_GT(all[1].at("hostRatio"), 0);
+  EXPECT_EQ(all[0].at("counters").at("edgesOnHost"), all[0].at("items"));
+  EXPECT_EQ(run({"--wedges-per-frame", "--cpu"}).code, 2);
+}
+
 TEST_F(Bench, WrongUseIsTold) {
   const std::string scene = tiny_scene();
   const std::vector<std::vector<std::string>> wrong = {

@@ -1,0 +1,104 @@
+#include "bench/frames.hpp"
+
+#include "app/session.hpp"
+#include "app/stopwatch.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "volumes/wedge_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace penumbra::bench {
+namespace {
+
+using volumes::WedgeBuilder;
+using volumes::WedgesOn;
+
+constexpr std::uint32_t kFrames = 8;  // of a run
+
+/// The knot's light on a circle around where it was.
+std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, const glm::dvec3& origin) {
+  scenes::Scene scene = still;
+  std::vector<visibility::Light> lights;
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    const double angle = 2 * std::numbers::pi * frame / kFrames;
+    auto moved = std::get<scenes::Rectangle>(still.lights.at(0).shape);
+    moved.center += glm::dvec3(std::cos(angle), 0.25 * std::sin(2 * angle), std::sin(angle));
+    scene.lights[0].shape = moved;
+    lights.push_back(visibility::make_light(scene, 0, origin, {}));
+  }
+  return lights;
+}
+
+/// One of the two that take turns.
+struct Rival {
+  Rival(const char* called, WedgesOn on, const render::Device& device, const visibility::SceneFloats& floats)
+      : name(called), builder(device, {.on = on}) {
+    builder.prepare_mesh(floats);
+  }
+
+  /// Seconds a frame; sums over the frames go to the members below.
+  double run(const std::vector<visibility::Light>& lights) {
+    edges = edges_on_host = facings_on_host = 0;
+    const app::Stopwatch watch;
+    for (const visibility::Light& light : lights) {
+      const WedgeBuilder::Built built = builder.build(light);
+      edges += built.wedges.edges.size();
+      edges_on_host += built.edges_on_host;
+      facings_on_host += built.facings_on_host;
+    }
+    return watch.seconds() / static_cast<double>(lights.size());
+  }
+
+  const char* name;
+  WedgeBuilder builder;
+  std::vector<double> seconds;
+  std::uint64_t edges = 0, edges_on_host = 0, facings_on_host = 0;
+};
+
+}  // namespace
+
+void measure_frames(const Options& options, const render::Device& device,
+                    const std::function<void(const CpuEntry&)>& sink) {
+  for (const std::uint64_t triangles : options.triangles) {
+    const scenes::Scene scene = knot_scene(triangles);
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    const std::vector<visibility::Light> lights = lights_on_the_way(scene, floats.origin);
+    std::array rivals = {Rival("host", WedgesOn::host, device, floats),
+                         Rival("device", WedgesOn::device, device, floats)};
+    const double load = load_of_machine();
+    for (std::uint32_t run = 0; run <= options.runs; ++run) {
+      for (Rival& rival : rivals) {
+        const double seconds = rival.run(lights);
+        if (run > 0) rival.seconds.push_back(seconds);  // the first is discarded
+      }
+      if (rivals[0].edges != rivals[1].edges) {
+        throw std::logic_error(fmt::format("{} and {} silhouettes", rivals[0].edges, rivals[1].edges));
+      }
+    }
+    const auto frames = static_cast<double>(options.runs + 1) * kFrames;
+    for (Rival& rival : rivals) {
+      CpuEntry entry;
+      entry.name = fmt::format("wedges-per-frame/{}/triangles={}", rival.name, triangles);
+      if (&rival == &rivals[1]) {
+        entry.device = device.info().name;
+        entry.host_ratio = app::median(rivals[0].seconds) / app::median(rival.seconds);
+      }
+      entry.triangles = floats.triangles.size();
+      entry.items = entry.edges = rival.edges / lights.size();
+      entry.seconds = rival.seconds;
+      entry.counts = {{"edgesOnHost", rival.edges_on_host / kFrames},
+                      {"facingsOnHost", rival.facings_on_host / kFrames}};
+      for (const auto& pass : rival.builder.take_pass_times()) entry.passes[pass.name] = pass.milliseconds / frames;
+      entry.load_before = load;
+      sink(entry);
+    }
+  }
+}
+
+}  // namespace penumbra::bench
