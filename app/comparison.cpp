@@ -212,7 +212,7 @@ class Comparison {
     }
     RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
     // An oracle without samples is not raced, and it may take minutes: once is enough.
-    if (description.family == visibility::Family::reference && description.output == Output::scalar) {
+    if (description.family == visibility::Family::reference && description.output != Output::mask) {
       plan.runs = 1;
       plan.discard_first = false;
     }

@@ -15,7 +15,7 @@ namespace {
 
 /// `same`: what to add if they are the methods' own.
 std::string samples_of_reference(const ReportInput& in, const char* same) {
-  if (in.reference.description.output == visibility::Output::scalar) return "areas, no light samples";
+  if (in.reference.description.output != visibility::Output::mask) return "areas, no light samples";
   return fmt::format("{} light samples{}", in.metrics.reference.light_samples, in.same_samples ? same : "");
 }
 
@@ -293,9 +293,10 @@ std::string methods_html(const ReportInput& in) {
     row(escape_html(in.metrics.methods[i].entry), in.methods[i].description, in.metrics.methods[i].stats.options);
   }
   return "<section id=\"methods\"><h2>The methods</h2>\n" + table_html(table) +
-         "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V has the "
-         "unshadowed "
-         "light multiplied by V.</p></section>\n";
+         "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V (scalar) "
+         "has "
+         "the unshadowed light multiplied by V; one that answers with radiance integrates the light that it sees "
+         "itself.</p></section>\n";
 }
 
 std::string machine_html(const ReportInput& in) {
