@@ -182,17 +182,20 @@ std::string errors_html(const ReportInput& in) {
   const std::string judged = count_text(in.metrics.judged_pixels), horizon = count_text(in.metrics.horizon_pixels);
   ReportTable table{"Error of V against " + escape_html(in.metrics.reference.method) + ". 0 would be perfect. " +
                         judged + " judged pixels, " + horizon + " horizon pixels.",
-                    {"Method", "Pixels", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias"},
+                    {"Method", "Pixels", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias",
+                     "RMSE of the beauty"},
                     {}};
   const MethodResult* best = smallest(in.metrics.methods, rmse_of);
   for (const MethodResult& result : in.metrics.methods) {
     std::vector<std::string> cells = error_cells(result.error);
     if (&result == best) cells[1] = "<span class=\"best\">" + cells[1] + "</span>";
     cells.insert(cells.begin(), {escape_html(result.entry), "judged"});
+    cells.push_back(result.beauty_error ? percent_text(result.beauty_error->relative_rmse) : "–");
     table.rows.push_back(cells);
     if (result.horizon_error) {
       cells = error_cells(result.horizon_error);
       cells.insert(cells.begin(), {label_html(result.entry, "horizon pixels"), "horizon"});
+      cells.emplace_back("–");
       table.rows.push_back(cells);
     }
   }

@@ -260,7 +260,9 @@ template <typename Number, typename Measure>
 Number measure_uncovered(Measure measure, std::vector<SweepEdge<Number>>& edges, FormFactorSum* form_factor) {
   if (form_factor == nullptr) return AreaSweep<Number, Measure>(std::move(measure)).uncovered_area(edges);
   using Both = FormFactorMeasure<Number, Measure>;
-  return AreaSweep<Number, Both>(Both(std::move(measure), *form_factor)).uncovered_area(edges);
+  const Number area = AreaSweep<Number, Both>(Both(std::move(measure), *form_factor)).uncovered_area(edges);
+  form_factor->finish();
+  return area;
 }
 
 /// The share of the light, by area or by luminance, that is region and not hidden. `edges` are the region's, and the

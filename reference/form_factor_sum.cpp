@@ -1,29 +1,81 @@
 #include "reference/form_factor_sum.hpp"
 
+#include "base/assert.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <span>
 
 namespace penumbra::reference {
 namespace {
 
-/// What of a convex polygon has sign · (t − border) ≥ 0.
-std::vector<glm::dvec2> clip(const std::vector<glm::dvec2>& polygon, double border, double sign) {
-  std::vector<glm::dvec2> inside;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+/// A convex polygon: a trapezoid cut by lines, each of which adds a corner at most.
+struct Corners {
+  std::array<glm::dvec2, 8> at{};
+  std::size_t count = 0;
+  void push(const glm::dvec2& corner) {
+    PENUMBRA_ASSERT(count < at.size(), "{} corners", count);
+    at[count++] = corner;
+  }
+  [[nodiscard]] std::span<const glm::dvec2> span() const { return std::span(at).first(count); }
+};
+
+/// What of it has sign · (t − border) ≥ 0.
+Corners clip(const Corners& polygon, double border, double sign) {
+  Corners inside;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::dvec2 &a = polygon.at[i], &b = polygon.at[i + 1 < polygon.count ? i + 1 : 0];
     const double at_a = sign * (a.y - border), at_b = sign * (b.y - border);
-    if (at_a >= 0) inside.push_back(a);
-    if ((at_a >= 0) != (at_b >= 0)) inside.emplace_back(a.x + at_a / (at_a - at_b) * (b.x - a.x), border);
+    if (at_a >= 0) inside.push(a);
+    if ((at_a >= 0) != (at_b >= 0)) inside.push({a.x + at_a / (at_a - at_b) * (b.x - a.x), border});
   }
   return inside;
 }
 
 }  // namespace
 
-void FormFactorSum::add(const Trapezoid& part) {
+void FormFactorSum::enter_slab(double from, double to) {
+  add_ended();
+  std::swap(before_, parts_);
+  if (from != to_ || between_columns(from)) add_ended();
+  from_ = from;
+  to_ = to;
+}
+
+void FormFactorSum::add_between(const Side& low, const Side& high) {
+  const auto same = [&](const Part& part) { return part.low == low.edge && part.high == high.edge; };
+  const auto found = std::ranges::find_if(before_, same);
+  Trapezoid shape{from_, to_, low.from, low.to, high.from, high.to};
+  if (found != before_.end()) {
+    shape.s0 = found->shape.s0;
+    shape.low0 = found->shape.low0;
+    shape.high0 = found->shape.high0;
+    before_.erase(found);
+  }
+  parts_.push_back({low.edge, high.edge, shape});
+}
+
+void FormFactorSum::finish() {
+  add_ended();
+  std::swap(before_, parts_);
+  add_ended();
+}
+
+void FormFactorSum::add_ended() {
+  for (const Part& part : before_) add(part.shape);
+  before_.clear();
+}
+
+/// As TextureMeasure makes its breaks: equal numbers.
+bool FormFactorSum::between_columns(double s) const {
+  if (texture_ == nullptr) return false;
+  const double columns = texture_->width;
+  return 2 * std::round((s + 1) / 2 * columns) / columns - 1 == s;
+}
+
+void FormFactorSum::add(const Trapezoid& shape) {
   const std::array<glm::dvec2, 4> corners{
-      glm::dvec2(part.s0, part.low0), {part.s1, part.low1}, {part.s1, part.high1}, {part.s0, part.high0}};
+      glm::dvec2(shape.s0, shape.low0), {shape.s1, shape.low1}, {shape.s1, shape.high1}, {shape.s0, shape.high0}};
   if (texture_ == nullptr) {
     sum_ += seen_.part(corners);
   } else {
@@ -49,12 +101,13 @@ void FormFactorSum::add_texels(const std::array<glm::dvec2, 4>& corners) {
   const double middle = (corners[0].x + corners[1].x) / 2;
   const auto row_of = [&](double t) { return std::clamp(std::floor((1 - t) / 2 * rows), 0.0, rows - 1); };
   const auto first = static_cast<std::uint32_t>(row_of(high)), last = static_cast<std::uint32_t>(row_of(low));
-  std::vector<glm::dvec2> rest(corners.begin(), corners.end());
-  for (std::uint32_t row = first; row <= last && !rest.empty(); ++row) {
+  Corners rest;
+  for (const glm::dvec2& corner : corners) rest.push(corner);
+  for (std::uint32_t row = first; row <= last; ++row) {
     const double border = 1 - 2.0 * (row + 1) / rows;
-    const std::vector<glm::dvec2> band = row == last ? rest : clip(rest, border, 1);
+    const Corners band = row == last ? rest : clip(rest, border, 1);
     const std::size_t texel = texture_->texel_at({middle, 1 - (2.0 * row + 1) / rows});
-    sum_ += seen_.part(band) * glm::dvec3(texture_->colors[texel]);
+    sum_ += seen_.part(band.span()) * glm::dvec3(texture_->colors[texel]);
     if (row != last) rest = clip(rest, border, -1);
   }
 }

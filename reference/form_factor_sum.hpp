@@ -10,8 +10,8 @@
 
 #include <array>
 #include <optional>
-#include <span>
 #include <utility>
+#include <vector>
 
 // Inside reference/ only: form factors of what the sweep finds uncovered.
 
@@ -22,24 +22,45 @@ struct Trapezoid {
   double s0, s1, low0, low1, high0, high1;
 };
 
-/// Adds up form factors of parts of a light, times the texels that they lie on.
+/// Adds up form factors of parts of a light, times the texels that they lie on. The sweep cuts its slabs wherever any
+/// edge ends; trapezoids between the same two edges in neighbouring slabs are joined again, which leaves few.
 class FormFactorSum {
  public:
   /// Both must outlive it. No texture: every texel is 1.
   FormFactorSum(const visibility::SeenLight& seen, const std::optional<visibility::LightTexture>& texture)
       : seen_(seen), texture_(texture ? &*texture : nullptr) {}
 
-  /// With a texture, within one column of texels.
-  void add(const Trapezoid& part);
+  /// Slabs from left to right, and in each what lies between two edges: with their heights at the slab's ends. With a
+  /// texture a slab lies within one column of texels.
+  void enter_slab(double from, double to);
+  struct Side {
+    const void* edge;  ///< only compared
+    double from, to;
+  };
+  void add_between(const Side& low, const Side& high);
+  /// After the last slab.
+  void finish();
+
   /// All of the light that is above the horizon; with a texture texel by texel.
   void add_whole();
+  /// Complete after finish().
   [[nodiscard]] const glm::dvec3& sum() const { return sum_; }
 
  private:
+  struct Part {
+    const void *low, *high;
+    Trapezoid shape;
+  };
+
+  void add(const Trapezoid& shape);
   void add_texels(const std::array<glm::dvec2, 4>& corners);
+  void add_ended();
+  [[nodiscard]] bool between_columns(double s) const;
 
   const visibility::SeenLight& seen_;
   const visibility::LightTexture* texture_;
+  double from_ = 0, to_ = 0;          // the slab
+  std::vector<Part> before_, parts_;  // of the last slab what has not been continued; of this one
   glm::dvec3 sum_{0};
 };
 
@@ -53,22 +74,21 @@ class FormFactorMeasure {
 
   void add_breaks(std::vector<Number>& breaks) const { measure_.add_breaks(breaks); }
   void enter_strip(const Number& middle) { measure_.enter_strip(middle); }
-  void enter_slab(const Number& from, const Number& to) {
-    from_ = to_double(from);
-    to_ = to_double(to);
-  }
+  void enter_slab(const Number& from, const Number& to) { sum_->enter_slab(to_double(from), to_double(to)); }
   [[nodiscard]] Number between(const ActiveEdge<Number>& low, const ActiveEdge<Number>& high) const {
-    sum_->add({from_, to_, to_double(low.from), to_double(low.to), to_double(high.from), to_double(high.to)});
+    sum_->add_between(side(low), side(high));
     return measure_.between(low, high);
   }
 
  private:
   static double to_double(double value) { return value; }
   static double to_double(const mpq_class& value) { return value.get_d(); }
+  static FormFactorSum::Side side(const ActiveEdge<Number>& edge) {
+    return {edge.edge, to_double(edge.from), to_double(edge.to)};
+  }
 
   Measure measure_;
   FormFactorSum* sum_;
-  double from_ = 0, to_ = 0;  // the slab
 };
 
 }  // namespace penumbra::reference

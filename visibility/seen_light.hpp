@@ -30,14 +30,13 @@ class SeenLight {
   [[nodiscard]] double part(std::span<const glm::dvec2> corners) const;
   /// Of the part from `low` to `high`.
   [[nodiscard]] double box(const glm::dvec2& low, const glm::dvec2& high) const;
-  /// The unit vector away from the side that p is on: cos θl is along · d / |d|, d from p to the light.
-  [[nodiscard]] const glm::dvec3& along() const { return along_; }
   [[nodiscard]] const glm::dvec3& normal() const { return n_; }
 
  private:
   const Light& light_;
-  glm::dvec3 p_, n_, along_{0};
-  glm::dvec3 center_, u_, v_;                        ///< the frame, relative to p
+  glm::dvec3 p_, n_;
+  glm::dvec3 along_{0};        ///< unit, perpendicular to the light, away from the side that p is on
+  glm::dvec3 center_, u_, v_;  ///< the frame, relative to p
   double height_ = 0, height_u_ = 0, height_v_ = 0;  ///< n · these
   int side_ = 0;  ///< +1: p is where u × v points, −1: behind (and the light has two sides), 0: dark
 };
