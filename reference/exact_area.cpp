@@ -130,6 +130,7 @@ struct ExactAreaData {
   GridBox box;
   std::vector<SweepEdge<double>> edges;  ///< of the region
   std::optional<TextureColumns> texture;
+  std::optional<TextureBlocks> blocks;  ///< of the same texture
 };
 
 namespace {
@@ -310,7 +311,10 @@ void ExactArea::set_light(const Light& light) {
   data_->box = box_around(data_->region);
   data_->edges = region_edges<double>(data_->region);
   data_->texture.reset();
-  if (light.texture) data_->texture.emplace(*light.texture);
+  data_->blocks.reset();
+  if (!light.texture) return;
+  data_->texture.emplace(*light.texture);
+  data_->blocks.emplace(*light.texture);
 }
 
 double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork* work) const {
@@ -321,11 +325,11 @@ double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmeti
 ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) const {
   PENUMBRA_ASSERT(data_->light != nullptr, "set_light comes first");
   const visibility::SeenLight seen(*data_->light, receiver.p, receiver.n);
-  FormFactorSum form_factor(seen, data_->light->texture);
+  FormFactorSum form_factor(seen, data_->blocks);
   ExactView view;
   view.visibility = look(receiver, arithmetic, view.work, &form_factor);
   if (view.visibility == 1 && view.work.edges != 0) {  // what is near the light hides none of it
-    FormFactorSum whole(seen, data_->light->texture);
+    FormFactorSum whole(seen, data_->blocks);
     whole.add_whole();
     view.form_factor = whole.sum();
   } else {

@@ -58,8 +58,8 @@ class ExactArea {
   [[nodiscard]] double visibility(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded,
                                   AreaWork* work = nullptr) const;
   /// The same, and the form factor (visibility/form_factor.hpp) of the visible region: the trapezoids that the sweep
-  /// finds uncovered, each in closed form; of a light that nothing hides, SeenLight::whole(). Cosines are those of
-  /// receiver.n.
+  /// finds uncovered, each in closed form, under a texture by texels or blocks of them (TextureBlocks); of a light that
+  /// nothing hides, SeenLight::whole(). Cosines are those of receiver.n.
   [[nodiscard]] ExactView view(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded) const;
   [[nodiscard]] std::uint64_t memory_bytes() const;
 

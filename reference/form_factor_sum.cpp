@@ -34,6 +34,33 @@ Corners clip(const Corners& polygon, double border, double sign) {
 
 }  // namespace
 
+TextureBlocks::TextureBlocks(const visibility::LightTexture& texture)
+    : width_(texture.width),
+      height_(texture.height),
+      across_((width_ + kMost - 1) / kMost),
+      down_((height_ + kMost - 1) / kMost),
+      columns_((width_ + across_ - 1) / across_),
+      rows_((height_ + down_ - 1) / down_),
+      colors_(std::size_t{columns_} * rows_, glm::dvec3(0)) {
+  std::vector<double> counts(colors_.size());
+  for (std::uint32_t y = 0; y < height_; ++y) {
+    for (std::uint32_t x = 0; x < width_; ++x) {
+      const std::size_t block = std::size_t{y / down_} * columns_ + x / across_;
+      colors_[block] += glm::dvec3(texture.colors[std::size_t{y} * width_ + x]);
+      counts[block] += 1;
+    }
+  }
+  for (std::size_t i = 0; i < colors_.size(); ++i) colors_[i] /= counts[i];
+}
+
+std::uint32_t TextureBlocks::column_at(double s) const {
+  return static_cast<std::uint32_t>(std::clamp(std::floor((s + 1) / 2 * width_), 0.0, width_ - 1.0)) / across_;
+}
+
+std::uint32_t TextureBlocks::row_at(double t) const {
+  return static_cast<std::uint32_t>(std::clamp(std::floor((1 - t) / 2 * height_), 0.0, height_ - 1.0)) / down_;
+}
+
 void FormFactorSum::enter_slab(double from, double to) {
   add_ended();
   std::swap(before_, parts_);
@@ -66,11 +93,10 @@ void FormFactorSum::add_ended() {
   before_.clear();
 }
 
-/// As TextureMeasure makes its breaks: equal numbers.
 bool FormFactorSum::between_columns(double s) const {
   if (texture_ == nullptr) return false;
-  const double columns = texture_->width;
-  return 2 * std::round((s + 1) / 2 * columns) / columns - 1 == s;
+  const std::uint32_t x = texture_->column_at(s);  // a border may round into either of its columns
+  return texture_->left(x) == s || texture_->left(x + 1) == s;
 }
 
 void FormFactorSum::add(const Trapezoid& shape) {
@@ -79,7 +105,7 @@ void FormFactorSum::add(const Trapezoid& shape) {
   if (texture_ == nullptr) {
     sum_ += seen_.part(corners);
   } else {
-    add_texels(corners);
+    add_blocks(corners);
   }
 }
 
@@ -88,26 +114,20 @@ void FormFactorSum::add_whole() {
     sum_ += seen_.whole();
     return;
   }
-  const std::uint32_t columns = texture_->width;
-  for (std::uint32_t x = 0; x < columns; ++x) {
-    add({2.0 * x / columns - 1, 2.0 * (x + 1) / columns - 1, -1, -1, 1, 1});
-  }
+  for (std::uint32_t x = 0; x < texture_->columns(); ++x) add({texture_->left(x), texture_->left(x + 1), -1, -1, 1, 1});
 }
 
-/// Cut in bands at the borders between rows of texels, from the top, where row 0 is.
-void FormFactorSum::add_texels(const std::array<glm::dvec2, 4>& corners) {
-  const auto rows = static_cast<double>(texture_->height);
+/// Cut in bands at the borders between rows, from the top, where row 0 is.
+void FormFactorSum::add_blocks(const std::array<glm::dvec2, 4>& corners) {
   const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
-  const double middle = (corners[0].x + corners[1].x) / 2;
-  const auto row_of = [&](double t) { return std::clamp(std::floor((1 - t) / 2 * rows), 0.0, rows - 1); };
-  const auto first = static_cast<std::uint32_t>(row_of(high)), last = static_cast<std::uint32_t>(row_of(low));
+  const std::uint32_t column = texture_->column_at((corners[0].x + corners[1].x) / 2);
+  const std::uint32_t first = texture_->row_at(high), last = texture_->row_at(low);
   Corners rest;
   for (const glm::dvec2& corner : corners) rest.push(corner);
   for (std::uint32_t row = first; row <= last; ++row) {
-    const double border = 1 - 2.0 * (row + 1) / rows;
+    const double border = texture_->top(row + 1);
     const Corners band = row == last ? rest : clip(rest, border, 1);
-    const std::size_t texel = texture_->texel_at({middle, 1 - (2.0 * row + 1) / rows});
-    sum_ += seen_.part(band.span()) * glm::dvec3(texture_->colors[texel]);
+    sum_ += seen_.part(band.span()) * texture_->color(column, row);
     if (row != last) rest = clip(rest, border, -1);
   }
 }

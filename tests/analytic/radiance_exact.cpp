@@ -208,6 +208,35 @@ TEST(ExactRadiance, ATextureIsTheSumOfItsTexelsLights) {
   }
 }
 
+TEST(ExactRadiance, MoreTexelsThanBlocksAreTheirMeans) {
+  // 130 columns: blocks of three, the last of one. A texture that is constant in each block is the same either way.
+  constexpr unsigned kSeed = 10;
+  std::mt19937 random(kSeed);
+  const auto level = [](std::uint32_t block) { return static_cast<float>(block * 7 % 5) + 1; };
+  scenes::Texture fine{"fine", 130, 2, {}};
+  for (std::uint32_t i = 0; i < 260; ++i) fine.texels.emplace_back(level(i % 130 / 3), i < 130 ? 2 : 0, 1);
+  for (int round = 0; round < 4; ++round) {
+    const scenes::Scene scene = area_scene(round == 0 ? std::vector<tests::Corners>() : random_triangles(random, 4));
+    const glm::vec3 p(random_dyadic(random, -1, 1), 0, random_dyadic(random, -0.5, 0.75));
+    scenes::AreaLight light = panel(0.25);
+    const auto shape = std::get<scenes::Rectangle>(light.shape);
+    light.texture = fine;
+    const glm::dvec3 result = view(AreaStage(with_light(scene, light), 1024), p).form_factor;
+    glm::dvec3 sum(0);
+    for (std::uint32_t x = 0; x < 44; ++x) {
+      const double left = 6.0 * x / 130 - 1, right = std::min(6.0 * (x + 1) / 130, 2.0) - 1;
+      for (const double half : {-0.5, 0.5}) {
+        const scenes::AreaLight block =
+            tests::rectangle_light(shape.center + (left + right) / 2 * shape.half_u + half * shape.half_v,
+                                   (right - left) / 2 * shape.half_u, shape.half_v / 2.0);
+        sum += view(AreaStage(with_light(scene, block)), p).form_factor * glm::dvec3(level(x), half > 0 ? 2 : 0, 1);
+      }
+    }
+    // The blocks as lights are rounded to float32, which moves their borders by 1e-7.
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(result[c], sum[c], 5e-6) << "seed " << kSeed << ", round " << round;
+  }
+}
+
 TEST(ExactRadiance, HalfADiskAndHalfASphere) {
   // A board hides x < 0 as seen from under the centre. A polygon of 4096 sides strays 3e-7 of the radius from the rim.
   for (const bool sphere : {false, true}) {

@@ -196,6 +196,31 @@ TEST(SeenLight, OnlyFromWhereItEmits) {
   EXPECT_EQ(whole({0.25f, 2, 0.5f}, {0, 1, 0}), 0);
 }
 
+TEST(SeenLight, OnALatticeEveryFormFactorIsOneAndPartsAddUp) {
+  // Elements on edges, corners and planes of lights, edges through the element, horizons along edges.
+  constexpr unsigned kSeed = 11;
+  std::mt19937 random(kSeed);
+  const auto lattice = [&] { return static_cast<int>(random() % 5) - 2; };
+  const auto vector = [&] { return glm::dvec3(lattice(), lattice(), lattice()); };
+  int lit = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const glm::dvec3 u = vector(), v = vector(), n = vector();
+    if (glm::length(glm::cross(u, v)) == 0 || glm::length(n) == 0) continue;
+    scenes::AreaLight source = tests::rectangle_light(vector(), u, v);
+    source.two_sided = round % 2 == 0;
+    const Light light = light_of(source, {1});
+    const glm::vec3 p(vector());
+    const SeenLight seen(light, p, glm::vec3(n));
+    const double whole = seen.whole(), parts = seen.box({-1, -1}, {0, 0}) + seen.box({0, -1}, {1, 0}) +
+                                               seen.box({-1, 0}, {0, 1}) + seen.box({0, 0}, {1, 1});
+    ASSERT_GE(whole, 0) << "seed " << kSeed << ", round " << round;
+    ASSERT_LE(whole, 1 + 16 * kUlp) << "seed " << kSeed << ", round " << round;
+    ASSERT_NEAR(whole, parts, 32 * kUlp) << "seed " << kSeed << ", round " << round;
+    lit += whole > 0.01 ? 1 : 0;
+  }
+  EXPECT_GT(lit, 2000);
+}
+
 TEST(SeenLight, ASphereIsItsFacingDisk) {
   const Light light = light_of(shape("sphere"), {1});
   const glm::vec3 p(0.5f, 0, 0.25f);
