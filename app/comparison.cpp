@@ -167,6 +167,7 @@ class Comparison {
     report_.metrics.horizon_pixels = horizon_.size();
     report_.reference = pictures_of("reference", reference_, done);
     reference_visibility_ = std::move(done.run.visibility.front());
+    reference_beauty_ = std::move(done.beauty);
   }
 
   void run_entry(const MethodEntry& entry) {
@@ -183,6 +184,7 @@ class Comparison {
     result.stats = make_stats(session_, session_.lights, label, done.run);
     result.error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, judged_);
     result.horizon_error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, horizon_);
+    result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, judged_);
     if (judge) {
       result.pairs = judge->counts();
       const compare::PairVerdicts verdicts = judge->decide(progress_);
@@ -212,7 +214,7 @@ class Comparison {
     }
     RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
     // An oracle without samples is not raced, and it may take minutes: once is enough.
-    if (description.family == visibility::Family::reference && description.output == Output::scalar) {
+    if (description.family == visibility::Family::reference && description.output != Output::mask) {
       plan.runs = 1;
       plan.discard_first = false;
     }
@@ -293,7 +295,8 @@ class Comparison {
   std::optional<std::vector<std::uint32_t>> wanted_;  ///< both, if --sample-pixels chose; nothing: all pixels
   std::vector<std::uint32_t> reference_masks_;        ///< of the first light; empty unless pairs can be compared
   std::vector<float> reference_visibility_;           ///< of the first light
-  std::vector<std::vector<float>> visibility_;        ///< of each entry, of the first light
+  std::vector<glm::vec3> reference_beauty_;
+  std::vector<std::vector<float>> visibility_;  ///< of each entry, of the first light
   std::vector<std::string> warnings_;
   compare::ReportInput report_;
 };

@@ -21,9 +21,9 @@ std::vector<std::string> light_names(const MethodDescription& method) {
 }
 
 void print_table(const std::vector<const MethodDescription*>& methods) {
-  fmt::print("{:<18} {:<10} {:<7} {:<32} {}\n", "method", "family", "output", "lights", "paper");
+  fmt::print("{:<18} {:<10} {:<8} {:<32} {}\n", "method", "family", "output", "lights", "paper");
   for (const MethodDescription* method : methods) {
-    fmt::print("{:<18} {:<10} {:<7} {:<32} {}\n", method->name, visibility::name_of(method->family),
+    fmt::print("{:<18} {:<10} {:<8} {:<32} {}\n", method->name, visibility::name_of(method->family),
                visibility::name_of(method->output), fmt::format("{}", fmt::join(light_names(*method), ", ")),
                method->paper);
     fmt::print("{:<18} exact for: {}\n", "", method->exact_for);

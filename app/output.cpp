@@ -21,6 +21,18 @@ std::string options_text(const visibility::MethodOptions& options) {
   return text;
 }
 
+const char* beauty_text(visibility::Output output) {
+  switch (output) {
+    case visibility::Output::mask:
+      return "radiance and cosines integrated sample by sample, each with its cell of the light";
+    case visibility::Output::scalar:
+      return "V times the unshadowed integral";
+    case visibility::Output::radiance:
+      return "radiance and cosines integrated over the visible part of the light";
+  }
+  return "?";
+}
+
 /// Rows [tile.first_row, + row_count) as view samples of their own.
 visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibility::Tile& tile) {
   const auto first = static_cast<std::ptrdiff_t>(std::size_t{tile.first_row} * all.width);
@@ -55,11 +67,9 @@ void BeautyAccumulator::add(const TileResult& result) {
   // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
   const visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
   compare::LightVisibility seen;
-  if (result.masks.empty()) {
-    seen.visibility = result.visibility;
-  } else {
-    seen.masks = result.masks;
-  }
+  seen.form_factors = result.form_factors;
+  seen.masks = result.masks;
+  if (result.form_factors.empty() && result.masks.empty()) seen.visibility = result.visibility;
   const auto band =
       compare::integrate_beauty({session_.floats, rows, colors_, lights_.subspan(result.light, 1)}, {&seen, 1});
   const std::size_t first = std::size_t{result.tile.first_row} * session_.width;
@@ -129,12 +139,10 @@ void write_picture(const std::filesystem::path& path, const Session& session, st
   image.channels.push_back({"Z", std::span<const float>(samples.depth), 1});
   image.channels.push_back({"id", std::span<const std::uint32_t>(id), 1});
 
-  const bool masks = label.description.output == visibility::Output::mask;
   image.attributes = {{"penumbra.method", label.description.name},
                       {"penumbra.options", options_text(label.options)},
                       {"penumbra.output", visibility::name_of(label.description.output)},
-                      {"penumbra.beauty",
-                       masks ? "radiance and cosines integrated sample by sample" : "V times the unshadowed integral"},
+                      {"penumbra.beauty", beauty_text(label.description.output)},
                       {"penumbra.lightSamples", fmt::format("{}", lights.front().sample_count())},
                       {"penumbra.samplePattern", visibility::name_of(lights.front().pattern)},
                       {"penumbra.scene", session.scene.name},

@@ -85,7 +85,12 @@ class Host {
     }
     masks_.clear();
     if (method_.description().output == Output::mask) read_masks(light, classes);
-    if (sink_) sink_({light_index, tile, values, masks_});
+    form_factors_.clear();
+    if (method_.description().output == Output::radiance) {
+      form_factors_.resize(count);
+      method_.read_form_factors(form_factors_);
+    }
+    if (sink_) sink_({light_index, tile, values, masks_, form_factors_});
   }
 
   void read_masks(const Light& light, std::span<const PixelClass> classes) {
@@ -108,6 +113,7 @@ class Host {
   const TileSink& sink_;
   Progress& progress_;
   std::vector<std::uint32_t> masks_;
+  std::vector<glm::dvec3> form_factors_;
 };
 
 }  // namespace

@@ -20,6 +20,9 @@ struct TileResult {
   visibility::Tile tile;
   std::span<const float> visibility;     ///< V of each pixel of the tile; NaN: not evaluated (RunPlan::pixels)
   std::span<const std::uint32_t> masks;  ///< words_per_mask() words a pixel; empty for a method without masks
+  /// Method::read_form_factors as read; empty unless the method's output is radiance. Pixels that lie in the light by
+  /// rule have none: beauty knows theirs.
+  std::span<const glm::dvec3> form_factors;
 };
 
 /// Gets each tile of each light once, in order, from the last run.

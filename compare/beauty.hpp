@@ -12,11 +12,12 @@
 
 namespace penumbra::compare {
 
-/// What a method said about one light: masks (words_per_mask() words a pixel) if it makes them, else V (one a pixel).
-/// Exactly one of the two is not empty.
+/// What a method said about one light, one entry a pixel: form factors if it integrates cosines itself, else masks
+/// (words_per_mask() words a pixel) if it makes them, else V. Exactly one of the three is not empty.
 struct LightVisibility {
-  std::span<const std::uint32_t> masks;
-  std::span<const float> visibility;
+  std::span<const std::uint32_t> masks = {};
+  std::span<const float> visibility = {};
+  std::span<const glm::dvec3> form_factors = {};  ///< Method::read_form_factors
 };
 
 /// What is shaded, and from where the light comes.
@@ -27,15 +28,21 @@ struct BeautyScene {
   std::span<const visibility::Light> lights;
 };
 
-/// The linear beauty of each pixel, for diffuse surfaces lit directly. With light points l_j, d = l_j − p, θp between
-/// d and the view sample's normal, θl between −d and the light's (its absolute cosine for a two-sided light):
+/// The linear beauty of each pixel, for diffuse surfaces lit directly:
 ///
-///   masks:  colour / π · Σ_lights area / N · radiance · Σ_j visible_j · max(0, cos θp) · max(0, cos θl) / d²
-///   V:      the same with every visible_j = 1, times V
+///   Σ_lights colour · radiance · F,    F = 1/π ∫ visible · max(0, cos θp) · cos θl / d² dl
 ///
-/// The first is equation 1.3 of the rendering integral with visibility inside, the second equation 1.4, which takes
+/// d from the view sample to the light, θp between d and the view sample's normal, θl between −d and the light's, on
+/// sides that emit. A texture multiplies radiance by the texel at l.
+///
+///   form factors:  F as the method gives it
+///   masks:         F of the visible cells, or of the visible samples (compare/visible_light.hpp)
+///   V:             V · F of the whole light, in closed form
+///
+/// The second is equation 1.3 of the rendering integral with visibility inside, the third equation 1.4, which takes
 /// visibility out of the integral: where the light is half hidden the two differ by what a method that only knows V
-/// cannot know. A texture multiplies radiance by the texel at each l_j, in both.
+/// cannot know. As the number of light samples grows, the second becomes the integral. Where nothing hides the light
+/// all are the same to the last bit. docs/radiance.md has derivations and errors.
 ///
 /// Pixels of a light's body show its radiance (with a texture, times the texel that is there or nearest; black if that
 /// light is not among `lights`: it is off), the background is 0, and what receives no shadow is lit as if nothing stood

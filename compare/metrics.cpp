@@ -2,6 +2,8 @@
 
 #include "base/assert.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -79,6 +81,26 @@ std::optional<VisibilityError> visibility_error(std::span<const float> visibilit
   error.p999 = *place;
   error.max = *std::max_element(place, magnitudes.end());
   return error;
+}
+
+std::optional<BeautyError> beauty_error(std::span<const glm::vec3> beauty, std::span<const glm::vec3> reference,
+                                        std::span<const std::uint32_t> pixels) {
+  const auto luminance = [](const glm::vec3& color) {
+    return glm::dot(glm::dvec3(0.2126, 0.7152, 0.0722), glm::dvec3(color));
+  };
+  double squares = 0, sum = 0, truth = 0;
+  for (const std::uint32_t pixel : pixels) {
+    PENUMBRA_ASSERT(pixel < beauty.size() && pixel < reference.size(), "pixel {} of {} and {}", pixel, beauty.size(),
+                    reference.size());
+    const double expected = luminance(reference[pixel]), e = luminance(beauty[pixel]) - expected;
+    PENUMBRA_ASSERT(std::isfinite(e), "beauty is off by {} at pixel {}", e, pixel);
+    squares += e * e;
+    sum += e;
+    truth += expected;
+  }
+  if (!(truth > 0)) return std::nullopt;
+  const auto count = static_cast<double>(pixels.size());
+  return BeautyError{std::sqrt(squares / count) / (truth / count), sum / truth};
 }
 
 PairCounts& PairCounts::operator+=(const PairCounts& other) {

@@ -2,6 +2,8 @@
 
 #include "visibility/view_samples.hpp"
 
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -34,6 +36,19 @@ struct VisibilityError {
 /// PixelClass::horizon.
 std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
                                                 std::span<const std::uint32_t> pixels);
+
+/// How far the beauty is off over a set of pixels: with e the difference of luminances (Rec. 709), both over the mean
+/// luminance of the reference.
+struct BeautyError {
+  double relative_rmse = 0;  ///< √ of the mean of e²
+  double relative_bias = 0;  ///< mean of e; positive: too bright
+
+  bool operator==(const BeautyError&) const = default;
+};
+
+/// Over the given pixels; nothing if there are none, or if the reference is black on all of them.
+std::optional<BeautyError> beauty_error(std::span<const glm::vec3> beauty, std::span<const glm::vec3> reference,
+                                        std::span<const std::uint32_t> pixels);
 
 /// Masks of one method and of its reference on the same light samples, words_per_mask words a pixel.
 struct MaskPair {

@@ -15,7 +15,7 @@ namespace {
 
 /// `same`: what to add if they are the methods' own.
 std::string samples_of_reference(const ReportInput& in, const char* same) {
-  if (in.reference.description.output == visibility::Output::scalar) return "areas, no light samples";
+  if (in.reference.description.output != visibility::Output::mask) return "areas, no light samples";
   return fmt::format("{} light samples{}", in.metrics.reference.light_samples, in.same_samples ? same : "");
 }
 
@@ -182,17 +182,20 @@ std::string errors_html(const ReportInput& in) {
   const std::string judged = count_text(in.metrics.judged_pixels), horizon = count_text(in.metrics.horizon_pixels);
   ReportTable table{"Error of V against " + escape_html(in.metrics.reference.method) + ". 0 would be perfect. " +
                         judged + " judged pixels, " + horizon + " horizon pixels.",
-                    {"Method", "Pixels", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias"},
+                    {"Method", "Pixels", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias",
+                     "RMSE of the beauty"},
                     {}};
   const MethodResult* best = smallest(in.metrics.methods, rmse_of);
   for (const MethodResult& result : in.metrics.methods) {
     std::vector<std::string> cells = error_cells(result.error);
     if (&result == best) cells[1] = "<span class=\"best\">" + cells[1] + "</span>";
     cells.insert(cells.begin(), {escape_html(result.entry), "judged"});
+    cells.push_back(result.beauty_error ? percent_text(result.beauty_error->relative_rmse) : "–");
     table.rows.push_back(cells);
     if (result.horizon_error) {
       cells = error_cells(result.horizon_error);
       cells.insert(cells.begin(), {label_html(result.entry, "horizon pixels"), "horizon"});
+      cells.emplace_back("–");
       table.rows.push_back(cells);
     }
   }
@@ -293,9 +296,10 @@ std::string methods_html(const ReportInput& in) {
     row(escape_html(in.metrics.methods[i].entry), in.methods[i].description, in.metrics.methods[i].stats.options);
   }
   return "<section id=\"methods\"><h2>The methods</h2>\n" + table_html(table) +
-         "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V has the "
-         "unshadowed "
-         "light multiplied by V.</p></section>\n";
+         "<p>A method that answers with a mask is shaded light sample by light sample; one that knows only V (scalar) "
+         "has "
+         "the unshadowed light multiplied by V; one that answers with radiance integrates the light that it sees "
+         "itself.</p></section>\n";
 }
 
 std::string machine_html(const ReportInput& in) {

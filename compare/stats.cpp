@@ -28,6 +28,9 @@ Json to_json(const MethodResult& result) {
   json["entry"] = result.entry;
   json["error"] = to_json(result.error);
   json["horizonError"] = to_json(result.horizon_error);
+  const auto& beauty = result.beauty_error;
+  json["beautyError"] =
+      beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
   const auto& pairs = result.pairs;
   json["pairs"] = pairs ? Json(pairs->penumbra) : Json();
   json["pairsAll"] = pairs ? Json(pairs->all) : Json();

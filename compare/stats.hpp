@@ -49,6 +49,7 @@ struct MethodResult {
   Stats stats;
   std::optional<VisibilityError> error;          ///< over judged pixels
   std::optional<VisibilityError> horizon_error;  ///< over horizon pixels
+  std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
   std::optional<PairCounts> pairs;               ///< two sample-based methods on the same samples
   std::optional<PairVerdicts> verdicts;          ///< if every differing pair was decided exactly
 };

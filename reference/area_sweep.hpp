@@ -28,12 +28,14 @@ struct ActiveEdge {
 };
 
 /// Measures area as it is. A measure says what lies between two edges that do not cross within a slab, as the mean over
-/// the slab of what a vertical line finds between them; where further strips begin; and in which strip the sweep is.
+/// the slab of what a vertical line finds between them; where further strips begin; and in which strip and slab the
+/// sweep is.
 template <typename Number>
 struct PlainMeasure {
   static constexpr bool kNeedsEnds = false;
   void add_breaks(std::vector<Number>& /*breaks*/) const {}
   void enter_strip(const Number& /*middle*/) {}
+  void enter_slab(const Number& /*from*/, const Number& /*to*/) {}
   [[nodiscard]] Number between(const ActiveEdge<Number>& low, const ActiveEdge<Number>& high) const {
     return high.t - low.t;
   }
@@ -110,6 +112,7 @@ class AreaSweep {
     sort_active();
     if (!some_cross()) {
       set_ends(0, 1);
+      measure_.enter_slab(left, right);
       return width * uncovered_length();
     }
 
@@ -125,6 +128,7 @@ class AreaSweep {
       for (Active& active : active_) active.t = active.left + share * (active.right - active.left);
       sort_active();
       set_ends((crossings_[i] - left) / width, (crossings_[i + 1] - left) / width);
+      measure_.enter_slab(crossings_[i], crossings_[i + 1]);
       area += (crossings_[i + 1] - crossings_[i]) * uncovered_length();
     }
     return area;

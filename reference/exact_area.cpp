@@ -15,11 +15,15 @@
 #include "mesh/predicates.hpp"
 #include "reference/area_sweep.hpp"
 #include "reference/back_projection.hpp"
+#include "reference/form_factor_sum.hpp"
 #include "reference/light_region.hpp"
 #include "reference/light_shaft.hpp"
 #include "reference/texture_measure.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/seen_light.hpp"
 #include "visibility/triangle_tree.hpp"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -126,6 +130,7 @@ struct ExactAreaData {
   GridBox box;
   std::vector<SweepEdge<double>> edges;  ///< of the region
   std::optional<TextureColumns> texture;
+  std::optional<TextureBlocks> blocks;  ///< of the same texture
 };
 
 namespace {
@@ -243,24 +248,46 @@ class OccluderEdges {
   std::uint64_t triangles_ = 0;
 };
 
+/// One question: the region of the light that is above the horizon, and what may hide it.
+struct Question {
+  const ExactAreaData& data;
+  const Region& region;
+  const OccluderEdges& occluders;
+  FormFactorSum* form_factor;  ///< null: nobody asks
+};
+
+/// The sweep's measure of the uncovered part; form factors on the way, if they are wanted.
+template <typename Number, typename Measure>
+Number measure_uncovered(Measure measure, std::vector<SweepEdge<Number>>& edges, FormFactorSum* form_factor) {
+  if (form_factor == nullptr) return AreaSweep<Number, Measure>(std::move(measure)).uncovered_area(edges);
+  using Both = FormFactorMeasure<Number, Measure>;
+  const Number area = AreaSweep<Number, Both>(Both(std::move(measure), *form_factor)).uncovered_area(edges);
+  form_factor->finish();
+  return area;
+}
+
 /// The share of the light, by area or by luminance, that is region and not hidden. `edges` are the region's, and the
 /// workspace.
 template <typename Number>
-double share_left(const ExactAreaData& data, const Region& region, std::vector<SweepEdge<Number>> edges,
-                  const OccluderEdges& occluders, AreaWork& work) {
+double share_left(const Question& question, std::vector<SweepEdge<Number>> edges, AreaWork& work) {
+  const ExactAreaData& data = question.data;
   const std::size_t of_region = edges.size();
-  occluders.append_to(edges);
-  work = {occluders.triangles(), edges.size() - of_region};
-  if (work.edges == 0 && &region == &data.region) return 1;
-  if (data.texture) {
-    AreaSweep<Number, TextureMeasure<Number>> sweep{TextureMeasure<Number>(*data.texture)};
-    const mpq_class left = mpq_class(sweep.uncovered_area(edges)) / data.texture->integral();
-    return std::clamp(left.get_d(), 0.0, 1.0);
+  question.occluders.append_to(edges);
+  work = {question.occluders.triangles(), edges.size() - of_region};
+  if (work.edges == 0 && &question.region == &data.region) {
+    if (question.form_factor != nullptr) question.form_factor->add_whole();
+    return 1;
   }
-  if (work.edges == 0) return mpq_class(area_of(region) / data.area).get_d();
-  AreaSweep<Number> sweep;
-  const mpq_class left = mpq_class(sweep.uncovered_area(edges)) / data.area;
-  return std::clamp(left.get_d(), 0.0, 1.0);
+  if (data.texture) {
+    const auto left = measure_uncovered<Number>(TextureMeasure<Number>(*data.texture), edges, question.form_factor);
+    return std::clamp(mpq_class(mpq_class(left) / data.texture->integral()).get_d(), 0.0, 1.0);
+  }
+  if (work.edges == 0) {
+    if (question.form_factor != nullptr) question.form_factor->add_whole();
+    return mpq_class(area_of(question.region) / data.area).get_d();
+  }
+  const auto left = measure_uncovered<Number>(PlainMeasure<Number>(), edges, question.form_factor);
+  return std::clamp(mpq_class(mpq_class(left) / data.area).get_d(), 0.0, 1.0);
 }
 
 }  // namespace
@@ -284,15 +311,38 @@ void ExactArea::set_light(const Light& light) {
   data_->box = box_around(data_->region);
   data_->edges = region_edges<double>(data_->region);
   data_->texture.reset();
-  if (light.texture) data_->texture.emplace(*light.texture);
+  data_->blocks.reset();
+  if (!light.texture) return;
+  data_->texture.emplace(*light.texture);
+  data_->blocks.emplace(*light.texture);
 }
 
 double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork* work) const {
+  AreaWork ignored;
+  return look(receiver, arithmetic, work != nullptr ? *work : ignored, nullptr);
+}
+
+ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) const {
+  PENUMBRA_ASSERT(data_->light != nullptr, "set_light comes first");
+  const visibility::SeenLight seen(*data_->light, receiver.p, receiver.n);
+  FormFactorSum form_factor(seen, data_->blocks);
+  ExactView view;
+  view.visibility = look(receiver, arithmetic, view.work, &form_factor);
+  if (view.visibility == 1 && view.work.edges != 0) {  // what is near the light hides none of it
+    FormFactorSum whole(seen, data_->blocks);
+    whole.add_whole();
+    view.form_factor = whole.sum();
+  } else {
+    view.form_factor = glm::max(form_factor.sum(), glm::dvec3(0));
+  }
+  return view;
+}
+
+double ExactArea::look(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work,
+                       FormFactorSum* form_factor) const {
   PENUMBRA_ASSERT(data_->light != nullptr, "set_light comes first");
   const Light& light = *data_->light;
-  AreaWork ignored;
-  AreaWork& counts = work != nullptr ? *work : ignored;
-  counts = {};
+  work = {};
   if (!in_front_of_light(light, receiver.p)) return 0;
   const LightFrame frame = light.kind == LightKind::sphere ? light_frame(light, receiver.p) : data_->frame;
   IntegerGrid grid = data_->grid;
@@ -311,10 +361,9 @@ double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmeti
   projection.set_box(box);
   const LightShaft shaft(frame, projection.mirrored(), receiver.p, box);
   const OccluderEdges occluders(*data_, receiver, projection, shaft);
-  if (arithmetic == SweepArithmetic::rational) {
-    return share_left(*data_, region, region_edges<mpq_class>(region), occluders, counts);
-  }
-  return share_left(*data_, region, whole ? data_->edges : region_edges<double>(region), occluders, counts);
+  const Question question{*data_, region, occluders, form_factor};
+  if (arithmetic == SweepArithmetic::rational) return share_left(question, region_edges<mpq_class>(region), work);
+  return share_left(question, whole ? data_->edges : region_edges<double>(region), work);
 }
 
 std::uint64_t ExactArea::memory_bytes() const {

@@ -20,6 +20,7 @@ struct Receiver {
   glm::vec3 p{0};
   std::uint32_t carrier = 0;
   std::int8_t facing = 0;  ///< ViewSamples::facing
+  glm::vec3 n{0};          ///< ViewSamples::n; for the form factor alone
 };
 
 /// What one view sample's area was made of.
@@ -28,7 +29,16 @@ struct AreaWork {
   std::uint64_t edges = 0;      ///< on the light: signed edges that do not cancel, and cuts
 };
 
+/// All that can be said of what one view sample sees of the light.
+struct ExactView {
+  double visibility = 0;
+  /// 1/π ∫ visible texel cos θp cos θl / d² dl, without a texture in all three components.
+  glm::dvec3 form_factor{0};
+  AreaWork work;
+};
+
 struct ExactAreaData;
+class FormFactorSum;
 
 /// V of a view sample as an area, not a count: the part of the light's exact region that is strictly above the
 /// carrier's plane and in no triangle's back-projection, over the region's own area. The region is what
@@ -47,9 +57,15 @@ class ExactArea {
   /// In [0, 1]; 0 if p is not strictly on an emitting side of the light (or is the centre of a sphere).
   [[nodiscard]] double visibility(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded,
                                   AreaWork* work = nullptr) const;
+  /// The same, and the form factor (visibility/form_factor.hpp) of the visible region: the trapezoids that the sweep
+  /// finds uncovered, each in closed form, under a texture by texels or blocks of them (TextureBlocks); of a light that
+  /// nothing hides, SeenLight::whole(). Cosines are those of receiver.n.
+  [[nodiscard]] ExactView view(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded) const;
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
+  double look(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work, FormFactorSum* form_factor) const;
+
   std::unique_ptr<ExactAreaData> data_;
 };
 

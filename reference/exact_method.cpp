@@ -37,16 +37,18 @@ class Exact final : public visibility::Method {
   [[nodiscard]] std::uint32_t max_tile_rows() const override { return kTileRows; }
   void evaluate(const Tile& tile) override;
   void read_visibility(std::span<float> visibility) override;
+  void read_form_factors(std::span<glm::dvec3> form_factors) override;
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
     return {{"viewSamples", view_samples_}, {"triangles", triangles_}, {"edges", edges_}};
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override {
-    return (area_ ? area_->memory_bytes() : 0) + visibility_.capacity() * sizeof(float);
+    return (area_ ? area_->memory_bytes() : 0) + visibility_.capacity() * sizeof(float) +
+           form_factors_.capacity() * sizeof(glm::dvec3);
   }
 
  private:
   [[nodiscard]] bool is_question(std::size_t pixel) const;
-  float evaluate_pixel(std::size_t pixel);
+  ExactView evaluate_pixel(std::size_t pixel);
 
   visibility::MethodDescription description_;
   SweepArithmetic arithmetic_ = SweepArithmetic::rounded;
@@ -55,6 +57,7 @@ class Exact final : public visibility::Method {
   std::optional<ExactArea> area_;
   std::optional<std::vector<std::uint32_t>> wanted_;  // ascending; nothing: every pixel
   std::vector<float> visibility_;                     // of the tile last evaluated
+  std::vector<glm::dvec3> form_factors_;              // likewise
   std::atomic<std::uint64_t> view_samples_ = 0, triangles_ = 0, edges_ = 0;
 };
 
@@ -71,11 +74,11 @@ Exact::Exact(const visibility::MethodOptions& options) {
   description_.paper =
       "area of the union of back-projected triangles, by signed edges (after Laine et al., Soft shadow volumes for ray "
       "tracing, 2005) and a sweep";
-  description_.output = visibility::Output::scalar;
+  description_.output = visibility::Output::radiance;
   description_.exact_for =
-      "rectangle (textured or not) and polygon lights and any triangle soup, up to float32 of V; disk and sphere "
-      "lights "
-      "within 7.6e-8 (a polygon of 4096 sides)";
+      "rectangle (textured or not) and polygon lights and any triangle soup, up to float32 of V, and for "
+      "the beauty under constant radiance and textures of up to 64 x 64 texels; disk and sphere lights within 7.6e-8 "
+      "(a polygon of 4096 sides)";
   description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
   description_.verdict_on = verdict_on;
   description_.options = {{"sweep", "rounded|rational", "rounded",
@@ -109,15 +112,14 @@ bool Exact::is_question(std::size_t pixel) const {
   return scene_->emits[carrier] < 0 && scene_->receives_shadow[carrier] != 0;
 }
 
-float Exact::evaluate_pixel(std::size_t pixel) {
-  AreaWork work;
+ExactView Exact::evaluate_pixel(std::size_t pixel) {
   const Receiver receiver{samples_->p[pixel], static_cast<std::uint32_t>(samples_->triangle[pixel]),
-                          samples_->facing[pixel]};
-  const double visible = area_->visibility(receiver, arithmetic_, &work);
+                          samples_->facing[pixel], samples_->n[pixel]};
+  const ExactView view = area_->view(receiver, arithmetic_);
   view_samples_.fetch_add(1, std::memory_order_relaxed);
-  triangles_.fetch_add(work.triangles, std::memory_order_relaxed);
-  edges_.fetch_add(work.edges, std::memory_order_relaxed);
-  return static_cast<float>(visible);
+  triangles_.fetch_add(view.work.triangles, std::memory_order_relaxed);
+  edges_.fetch_add(view.work.edges, std::memory_order_relaxed);
+  return view;
 }
 
 void Exact::evaluate(const Tile& tile) {
@@ -127,9 +129,11 @@ void Exact::evaluate(const Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   const std::size_t end = first + std::size_t{tile.row_count} * samples_->width;
   visibility_.assign(end - first, wanted_ ? kNotEvaluated : 1.0f);
+  form_factors_.assign(end - first, glm::dvec3(wanted_ ? kNotEvaluated : 0.0f));
   std::vector<std::size_t> questions;
   const auto ask = [&](std::size_t pixel) {
     visibility_[pixel - first] = 1;
+    form_factors_[pixel - first] = glm::dvec3(0);
     if (is_question(pixel)) questions.push_back(pixel);
   };
   if (wanted_) {
@@ -140,7 +144,9 @@ void Exact::evaluate(const Tile& tile) {
   }
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, questions.size(), 4), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      visibility_[questions[i] - first] = evaluate_pixel(questions[i]);
+      const ExactView view = evaluate_pixel(questions[i]);
+      visibility_[questions[i] - first] = static_cast<float>(view.visibility);
+      form_factors_[questions[i] - first] = view.form_factor;
     }
   });
 }
@@ -149,6 +155,12 @@ void Exact::read_visibility(std::span<float> visibility) {
   PENUMBRA_ASSERT(visibility.size() == visibility_.size(), "{} pixels asked for, {} evaluated", visibility.size(),
                   visibility_.size());
   std::ranges::copy(visibility_, visibility.begin());
+}
+
+void Exact::read_form_factors(std::span<glm::dvec3> form_factors) {
+  PENUMBRA_ASSERT(form_factors.size() == form_factors_.size(), "{} pixels asked for, {} evaluated", form_factors.size(),
+                  form_factors_.size());
+  std::ranges::copy(form_factors_, form_factors.begin());
 }
 
 }  // namespace

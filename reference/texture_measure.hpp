@@ -59,6 +59,8 @@ class TextureMeasure {
 
   void enter_strip(const Number& middle) { column_ = cell((middle + 1) / 2 * columns_->width(), columns_->width()); }
 
+  void enter_slab(const Number& /*from*/, const Number& /*to*/) {}
+
   [[nodiscard]] Number between(const ActiveEdge<Number>& low, const ActiveEdge<Number>& high) const {
     return mean_under(high) - mean_under(low);
   }

@@ -24,6 +24,8 @@ const char* name_of(Output output) {
       return "mask";
     case Output::scalar:
       return "scalar";
+    case Output::radiance:
+      return "radiance";
   }
   return "?";
 }
@@ -33,6 +35,11 @@ void Method::read_masks(std::span<std::uint32_t> masks) {
       "method {} gives V alone, not one bit a light sample ({} words asked for); take a method whose output "
       "is a mask (see `penumbra methods`)",
       description().name, masks.size());
+}
+
+void Method::read_form_factors(std::span<glm::dvec3> form_factors) {
+  throw UsageError("method {} does not integrate radiance itself ({} form factors asked for)", description().name,
+                   form_factors.size());
 }
 
 void check_light(const MethodDescription& description, const Light& light) {

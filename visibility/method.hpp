@@ -15,8 +15,9 @@ namespace penumbra::visibility {
 
 enum class Family { reference, geometry, image };
 enum class Output {
-  mask,    ///< one bit a light sample: visible or not
-  scalar,  ///< V alone
+  mask,      ///< one bit a light sample: visible or not
+  scalar,    ///< V alone
+  radiance,  ///< V, and form factors of what is visible: cosines and colours integrated by the method itself
 };
 const char* name_of(Family family);
 const char* name_of(Output output);
@@ -84,6 +85,10 @@ class Method {
   /// Output::mask only: for each pixel of the tile last evaluated, words_per_mask() words in which bit j mod 32 of word
   /// j / 32 is set iff light sample j is visible. Background pixels: all N bits set. Bits beyond N are 0.
   virtual void read_masks(std::span<std::uint32_t> masks);
+  /// Output::radiance only: for each pixel of the tile last evaluated, 1/π ∫ visible texel cos θp cos θl / d² dl over
+  /// the light (form_factor.hpp; with a texture each colour's own, else three equal numbers), which with a surface's
+  /// colour and the light's radiance is its beauty. Background 0, what was not wanted NaN.
+  virtual void read_form_factors(std::span<glm::dvec3> form_factors);
   /// V of each pixel of the tile last evaluated; background 1.
   virtual void read_visibility(std::span<float> visibility) = 0;
 

@@ -67,46 +67,50 @@ double corner_form_factor(double a, double b, double c) {
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * kPi);
 }
 
+/// Of a square of half-size 1 at height 2.
+const double kStraightAbove = 4 * corner_form_factor(1, 1, 2);
+
 TEST(Beauty, OneSampleStraightAbove) {
   Floor floor({{0, 0, 0}});
   floor.lights = {rectangle(2, 1, 1, 1, 1)};
   const std::vector<std::uint32_t> seen{1}, hidden{0};
-  // colour / π · area 4 / 1 sample · radiance 10 · 1 · 1 / 2²
+  // All that there is is visible: the light's form factor, not the sample's. colour · radiance · F
   const glm::vec3 color = floor.shade({{seen, {}}})[0];
-  EXPECT_FLOAT_EQ(color.r, static_cast<float>(0.5 * 10 / kPi));
-  EXPECT_FLOAT_EQ(color.g, static_cast<float>(0.25 * 20 / kPi));
-  EXPECT_FLOAT_EQ(color.b, static_cast<float>(1 * 30 / kPi));
+  EXPECT_FLOAT_EQ(color.r, static_cast<float>(0.5 * 10 * kStraightAbove));
+  EXPECT_FLOAT_EQ(color.g, static_cast<float>(0.25 * 20 * kStraightAbove));
+  EXPECT_FLOAT_EQ(color.b, static_cast<float>(1 * 30 * kStraightAbove));
   EXPECT_EQ(floor.shade({{hidden, {}}})[0], glm::vec3(0));
 }
 
-TEST(Beauty, ASlantedSampleHasBothCosines) {
+TEST(Beauty, ALightToOneSide) {
   Floor floor({{3, 0, 0}});
   floor.lights = {rectangle(4, 1, 1, 1, 1)};
   const std::vector<std::uint32_t> seen{1};
-  // d = (−3, 4, 0), |d| = 5, both cosines 4/5: 0.5 / π · 4 · 10 · 0.64 / 25
-  EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 / kPi * 4 * 10 * 0.64 / 25));
+  // From 2 to 4 beside the element: the rectangle up to 4 less that up to 2, and two of them.
+  const double expected = 2 * (corner_form_factor(4, 1, 4) - corner_form_factor(2, 1, 4));
+  EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 * expected));
 }
 
-TEST(Beauty, ConvergesToTheRectanglesFormFactor) {
+TEST(Beauty, IsTheRectanglesFormFactor) {
   // Under the middle, and under the corner (±2, ±1): E = π · radiance · F, beauty = colour · radiance · F.
   Floor floor({{0, 0, 0}, {2, 0, 1}});
-  floor.lights = {rectangle(3, 2, 1, 64, 64)};
-  const std::vector<std::uint32_t> seen(2 * 128, 0xffffffffu);
+  floor.lights = {rectangle(3, 2, 1, 4, 8)};
+  const std::vector<std::uint32_t> seen(2, 0xffffffffu);
   const auto colors = floor.shade({{seen, {}}});
-  EXPECT_NEAR(colors[0].r, 0.5 * 10 * 4 * corner_form_factor(2, 1, 3), 2e-4);
-  EXPECT_NEAR(colors[1].r, 0.5 * 10 * corner_form_factor(4, 2, 3), 2e-4);
+  EXPECT_FLOAT_EQ(colors[0].r, static_cast<float>(0.5 * 10 * 4 * corner_form_factor(2, 1, 3)));
+  EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(0.5 * 10 * corner_form_factor(4, 2, 3)));
 }
 
 TEST(Beauty, AMaskCountsItsOwnSamplesOnly) {
-  // Two samples at x = ∓1 of a light 4 × 2 at height 2, seen from x = 1: d = (−2, 2, 0), weight 4 · / 8² · 4 and
-  // d = (0, 2, 0), weight 1/4. cos · cos / d²: (½) / 8 = 1/16, and 1/4.
+  // Two samples at x = ∓1 of a light 4 × 2 at height 2, seen from x = 1: d = (−2, 2, 0) and (0, 2, 0). cos θp / d³ are
+  // as 1/8² and 1/4²: 1 part and 4 parts of the whole, which is 3 long on one side, 1 on the other.
   Floor floor({{1, 0, 0}});
   floor.lights = {rectangle(2, 2, 1, 1, 2)};
-  const double scale = 0.5 / kPi * 10 * 8 / 2;
+  const double whole = 0.5 * 10 * 2 * (corner_form_factor(3, 1, 2) + corner_form_factor(1, 1, 2));
   const std::vector<std::uint32_t> first{1}, second{2}, both{3}, beyond{0xfffffffcu};
-  EXPECT_FLOAT_EQ(floor.shade({{first, {}}})[0].r, static_cast<float>(scale / 16));
-  EXPECT_FLOAT_EQ(floor.shade({{second, {}}})[0].r, static_cast<float>(scale / 4));
-  EXPECT_FLOAT_EQ(floor.shade({{both, {}}})[0].r, static_cast<float>(scale * 5 / 16));
+  EXPECT_FLOAT_EQ(floor.shade({{first, {}}})[0].r, static_cast<float>(whole / 5));
+  EXPECT_FLOAT_EQ(floor.shade({{second, {}}})[0].r, static_cast<float>(whole * 4 / 5));
+  EXPECT_FLOAT_EQ(floor.shade({{both, {}}})[0].r, static_cast<float>(whole));
   EXPECT_EQ(floor.shade({{beyond, {}}})[0].r, 0) << "bits beyond the last sample are no samples";
 }
 
@@ -126,7 +130,7 @@ TEST(Beauty, OnlyTheEmittingSideShines) {
   floor.lights = {rectangle(2, 1, 1, 1, 1, false)};
   EXPECT_EQ(floor.shade({{seen, {}}})[0].r, 0);
   floor.lights[0].two_sided = true;
-  EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 / kPi));
+  EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 * kStraightAbove));
   floor.lights = {rectangle(-2, 1, 1, 1, 1, false)};  // below the floor, emitting up
   EXPECT_EQ(floor.shade({{seen, {}}})[0].r, 0);
 }
@@ -155,6 +159,17 @@ TEST(Beauty, ASphereIsTheDiskThatFacesThePoint) {
   EXPECT_NEAR(colors[1].r, 0.5 * 10 * 0.8 / 2500, 0.5 * 10 * 0.8 / 2500 * 1e-3);
 }
 
+TEST(Beauty, FormFactorsAreTakenAsTheyAre) {
+  Floor floor({{0, 0, 0}, {1, 0, 0}});
+  floor.lights = {rectangle(2, 1, 1, 2, 2)};
+  floor.scene.receives_shadow[1] = 0;
+  const std::vector<glm::dvec3> seen{{0.125, 0.25, 0.5}, {0, 0, 0}};
+  const std::vector<std::uint32_t> all{15, 15};
+  const auto colors = floor.shade({{.form_factors = seen}});
+  EXPECT_EQ(colors[0], glm::vec3(0.5 * 10 * 0.125, 0.25 * 20 * 0.25, 30 * 0.5));
+  EXPECT_EQ(colors[1], floor.shade({{.masks = all}})[1]);
+}
+
 TEST(Beauty, LightsAddUp) {
   Floor floor({{0.5f, 0, 0}});
   const std::vector<std::uint32_t> one{1}, four{15};
@@ -180,7 +195,7 @@ TEST(Beauty, BackgroundEmittersAndReceiversOfNoShadow) {
   EXPECT_EQ(colors[0], glm::vec3(0));
   EXPECT_EQ(colors[1], glm::vec3(10, 20, 30));
   EXPECT_EQ(colors[2], glm::vec3(0));
-  EXPECT_FLOAT_EQ(colors[3].r, static_cast<float>(0.5 * 10 / kPi));
+  EXPECT_FLOAT_EQ(colors[3].r, static_cast<float>(0.5 * 10 * kStraightAbove));
 }
 
 TEST(Beauty, DoesNotDependOnTheNumberOfThreads) {

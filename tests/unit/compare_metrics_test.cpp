@@ -65,6 +65,22 @@ struct Masks {
   [[nodiscard]] MaskPair pair() const { return {method, reference, 34}; }
 };
 
+TEST(BeautyErrorTest, IsRelativeToTheReferencesMean) {
+  const std::vector<glm::vec3> reference{{1, 1, 1}, {3, 3, 3}, {9, 9, 9}}, beauty{{2, 2, 2}, {2, 2, 2}, {9, 9, 9}};
+  const std::vector<std::uint32_t> first_two{0, 1}, none;
+  const auto error = beauty_error(beauty, reference, first_two);
+  ASSERT_TRUE(error.has_value());
+  EXPECT_NEAR(error->relative_rmse, 0.5, 1e-15);  // errors of 1 under a mean of 2
+  EXPECT_NEAR(error->relative_bias, 0, 1e-15);
+  // Red alone counts 0.2126.
+  const std::vector<glm::vec3> red{{2, 1, 1}};
+  const std::vector<std::uint32_t> first{0};
+  EXPECT_NEAR(beauty_error(red, reference, first)->relative_bias, 0.2126, 1e-15);
+  EXPECT_FALSE(beauty_error(beauty, reference, none).has_value());
+  const std::vector<glm::vec3> black(3, glm::vec3(0));
+  EXPECT_FALSE(beauty_error(beauty, black, first_two).has_value());
+}
+
 TEST(Pairs, EqualMasks) {
   const Masks masks;
   const PairCounts counts = count_pairs(masks.pair(), masks.pixels);

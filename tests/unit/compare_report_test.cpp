@@ -119,15 +119,29 @@ TEST(Report, SaysTheNumbers) {
   in.metrics.methods[0].pairs = PairCounts{67108864, 12345678, 37};
   in.metrics.methods[0].verdicts = PairVerdicts{37, 31, 6, 5};
   in.metrics.methods[0].horizon_error = VisibilityError{0.25, 0.3125, 0.5, 0.625, 0.75, 0.0625};
+  in.metrics.methods[0].beauty_error = BeautyError{0.0625, 0.03125};
   in.metrics.horizon_pixels = 4321;
   const std::string html = report_html(in);
-  for (const char* text :
-       {"<td>0.0012</td>", "0.0034</span></td>", "<td>0.5</td>", "<td>0.1 %</td>", "<td>−0.0002</td>",  // error
-        "<td>0.25</td>", "<td>+0.0625</td>", "4\u202f321 horizon pixels",                               // horizon's row
-        "<td>37</td>", "<td>67\u202f108\u202f864</td>", "<td>12\u202f345\u202f678</td>", "<td>31</td>",  // pairs
-        "<td>2.00× faster</td>",  // 4 s of the reference against 2 s
-        "<td>500 ms</td>", "1.5 s", "<td>1\u202f234\u202f567</td>", "test &amp; count",
-        "./run.sh compare &#39;scenes/my scene.json&#39; -o out", "penumbra 1.2.3"}) {
+  for (const char* text : {"<td>0.0012</td>",
+                           "0.0034</span></td>",
+                           "<td>0.5</td>",
+                           "<td>0.1 %</td>",
+                           "<td>−0.0002</td>",
+                           "<td>6.25 %</td>",  // error
+                           "<td>0.25</td>",
+                           "<td>+0.0625</td>",
+                           "4\u202f321 horizon pixels",  // horizon's row
+                           "<td>37</td>",
+                           "<td>67\u202f108\u202f864</td>",
+                           "<td>12\u202f345\u202f678</td>",
+                           "<td>31</td>",            // pairs
+                           "<td>2.00× faster</td>",  // 4 s of the reference against 2 s
+                           "<td>500 ms</td>",
+                           "1.5 s",
+                           "<td>1\u202f234\u202f567</td>",
+                           "test &amp; count",
+                           "./run.sh compare &#39;scenes/my scene.json&#39; -o out",
+                           "penumbra 1.2.3"}) {
     EXPECT_NE(html.find(text), std::string::npos) << text;
   }
 }

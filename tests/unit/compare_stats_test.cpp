@@ -68,6 +68,7 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   result.stats = some_stats();
   result.error = VisibilityError{0.1, 0.2, 0.3, 0.4, 0.5, -0.6};
   result.pairs = PairCounts{400, 300, 2};
+  result.beauty_error = BeautyError{0.25, -0.125};
   metrics.methods = {result, MethodResult{}};
   const auto json = to_json(metrics);
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "methods"}));
@@ -77,12 +78,14 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   EXPECT_EQ(first["seconds"]["evaluate"], 1.0);
   EXPECT_EQ(keys_of(first["error"]), (std::vector<std::string>{"mean", "rmse", "p999", "max", "over05", "bias"}));
   EXPECT_EQ(first["error"]["bias"], -0.6);
+  EXPECT_EQ(keys_of(first["beautyError"]), (std::vector<std::string>{"relativeRmse", "relativeBias"}));
+  EXPECT_EQ(first["beautyError"]["relativeRmse"], 0.25);
   EXPECT_EQ(first["pairs"], 300);
   EXPECT_EQ(first["pairsAll"], 400);
   EXPECT_EQ(first["pairsDiffering"], 2);
   EXPECT_TRUE(first["pairsZeroPredicate"].is_null()) << "nothing was decided exactly";
   const auto& second = json["methods"][1];
-  for (const char* key : {"error", "pairs", "pairsAll", "pairsDiffering", "pairsZeroPredicate"}) {
+  for (const char* key : {"error", "beautyError", "pairs", "pairsAll", "pairsDiffering", "pairsZeroPredicate"}) {
     EXPECT_TRUE(second.contains(key) && second[key].is_null()) << key;
   }
 }

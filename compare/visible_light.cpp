@@ -1,0 +1,194 @@
+// Equation 1.3 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time Shadows (2011), direct light on diffuse surfaces,
+// from masks. The book adds point samples; here a visible cell counts with its form factor, and sums of samples are
+// scaled by what the whole light is known to give. Loops over 32 samples are for compilers to make vector
+// instructions of.
+#include "compare/visible_light.hpp"
+
+#include "base/assert.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace penumbra::compare {
+namespace {
+
+using visibility::Light;
+using visibility::LightKind;
+using visibility::SeenLight;
+
+using Mask = std::span<const std::uint32_t>;
+
+constexpr std::size_t kBlock = 32;  // samples in one word of a mask
+constexpr std::size_t kLanes = 4;   // partial sums, so that additions need not wait for one another
+
+/// The bits of four neighbouring samples as factors.
+constexpr auto kFactors = [] {
+  std::array<std::array<double, kLanes>, 16> factors{};
+  for (unsigned bits = 0; bits < 16; ++bits) {
+    for (unsigned lane = 0; lane < kLanes; ++lane) factors[bits][lane] = bits >> lane & 1;
+  }
+  return factors;
+}();
+
+/// A block's light points.
+struct Block {
+  const double *x, *y, *z;
+};
+
+/// max(0, n · d) / d⁴ of the block's samples: cos θp · cos θl / d² but for a factor that all share.
+std::array<double, kBlock> weigh(const glm::dvec3& p, const glm::dvec3& n, const Block& block) {
+  const double *x = block.x, *y = block.y, *z = block.z;
+  std::array<double, kBlock> weight;
+  for (std::size_t j = 0; j < kBlock; ++j) {
+    const double dx = x[j] - p.x, dy = y[j] - p.y, dz = z[j] - p.z;
+    const double squared = dx * dx + dy * dy + dz * dz;
+    // d = 0 makes the numerator 0 as well; float32 coordinates keep every other d⁴ above 1e-180.
+    weight[j] = std::max(0.0, n.x * dx + n.y * dy + n.z * dz) / std::max(squared * squared, 1e-300);
+  }
+  return weight;
+}
+
+double sum_of(const std::array<double, kBlock>& weight, std::uint32_t bits) {
+  std::array<double, kLanes> sum{};
+  for (std::size_t j = 0; j < kBlock; j += kLanes) {
+    const auto& factor = kFactors[bits >> j & 15];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sum[lane] += weight[j + lane] * factor[lane];
+  }
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+glm::dvec3 sum_of(const std::array<double, kBlock>& weight, std::uint32_t bits, const glm::vec3* colors) {
+  glm::dvec3 sum(0);
+  for (; bits != 0; bits &= bits - 1) {
+    const auto j = static_cast<std::size_t>(std::countr_zero(bits));
+    sum += weight[j] * glm::dvec3(colors[j]);
+  }
+  return sum;
+}
+
+/// The first sample from `from` on, before `end`, whose bit is `wanted`; else `end`.
+std::uint32_t find_bit(Mask mask, std::uint32_t from, std::uint32_t end, bool wanted) {
+  while (from < end) {
+    const std::uint32_t word = wanted ? mask[from / 32] : ~mask[from / 32];
+    if (const std::uint32_t left = word >> from % 32; left != 0) {
+      return std::min(end, from + static_cast<std::uint32_t>(std::countr_zero(left)));
+    }
+    from = (from / 32 + 1) * 32;
+  }
+  return end;
+}
+
+std::vector<std::uint32_t> full_mask(std::uint32_t sample_count) {
+  std::vector<std::uint32_t> mask((sample_count + 31) / 32, 0xffffffffu);
+  if (sample_count % 32 != 0) mask.back() = (1u << sample_count % 32) - 1;
+  return mask;
+}
+
+}  // namespace
+
+VisibleLight::Points::Points(std::span<const glm::vec3> points)
+    : x((points.size() + kBlock - 1) / kBlock * kBlock), y(x.size()), z(x.size()) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    x[i] = points[i].x;
+    y[i] = points[i].y;
+    z[i] = points[i].z;
+  }
+}
+
+VisibleLight::VisibleLight(const Light& light)
+    : light_(&light), points_(light.points), all_(full_mask(light.sample_count())) {}
+
+glm::dvec3 VisibleLight::unshadowed(const LitPoint& at) const {
+  const double whole = at.seen.whole();
+  if (!light_->texture || whole == 0) return glm::dvec3(whole);
+  return of_samples(at, whole, all_);
+}
+
+glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask) const {
+  PENUMBRA_ASSERT(mask.size() == all_.size(), "{} words of {}", mask.size(), all_.size());
+  bool some = false, all = true;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    const std::uint32_t bits = mask[i] & all_[i];
+    some |= bits != 0;
+    all &= bits == all_[i];
+  }
+  if (!some || !at.seen.shines()) return glm::dvec3(0);
+  if (all) return unshadowed(at);
+  const bool cells = light_->kind == LightKind::rectangle && light_->rows != 0 && !light_->texture;
+  const double whole = at.seen.whole();
+  return cells ? of_runs(at, whole, mask) : of_samples(at, whole, mask);
+}
+
+double VisibleLight::cell_border(std::uint32_t row, std::uint32_t column) const {
+  if (column == 0) return -1;
+  if (column == light_->columns) return 1;
+  const double shift = light_->row_shift.empty() ? 0.0 : light_->row_shift[row];
+  return 2 * (column + shift) / light_->columns - 1;
+}
+
+double VisibleLight::of_cells(const SeenLight& seen, Mask mask) const {
+  const std::uint32_t columns = light_->columns;
+  const auto t = [&](std::uint32_t row) { return 2.0 * row / light_->rows - 1; };
+  double sum = 0;
+  std::uint32_t full = 0;  // rows just before this one in which all is visible: one rectangle
+  const auto add_full = [&](std::uint32_t end) {
+    if (full != 0) sum += seen.box({-1, t(end - full)}, {1, t(end)});
+    full = 0;
+  };
+  for (std::uint32_t row = 0; row < light_->rows; ++row) {
+    const std::uint32_t begin = row * columns, end = begin + columns;
+    std::uint32_t from = find_bit(mask, begin, end, true), to = find_bit(mask, from, end, false);
+    if (from == begin && to == end) {
+      ++full;
+      continue;
+    }
+    add_full(row);
+    for (; from < end; from = find_bit(mask, to, end, true), to = find_bit(mask, from, end, false)) {
+      sum += seen.box({cell_border(row, from - begin), t(row)}, {cell_border(row, to - begin), t(row + 1)});
+    }
+  }
+  add_full(light_->rows);
+  return sum;
+}
+
+glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) const {
+  if (at.seen.above_horizon()) return glm::dvec3(of_cells(at.seen, mask));
+  // No sample below the horizon is visible: its cell, though part of it may be above, has no say.
+  std::vector<std::uint32_t> above(mask.begin(), mask.end());
+  const glm::dvec3 p(at.p);
+  for (std::size_t j = 0; j < light_->points.size(); ++j) {
+    if (glm::dot(at.seen.normal(), glm::dvec3(light_->points[j]) - p) > 0) above[j / 32] |= 1u << j % 32;
+  }
+  const double known = of_cells(at.seen, above);
+  return glm::dvec3(known > 0 ? whole * (of_cells(at.seen, mask) / known) : 0.0);
+}
+
+glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask) const {
+  std::vector<glm::vec3> facing;  // a sphere's points
+  if (light_->kind == LightKind::sphere) {
+    facing.resize(light_->sample_count());
+    visibility::light_points_for(*light_, at.p, facing.data());
+  }
+  const Points own(facing);
+  const Points& points = facing.empty() ? points_ : own;
+  double all = 0, some = 0;
+  glm::dvec3 colored(0);
+  for (std::size_t word = 0; word < all_.size(); ++word) {
+    const std::size_t i = word * kBlock;
+    const auto weight = weigh(glm::dvec3(at.p), at.seen.normal(), {&points.x[i], &points.y[i], &points.z[i]});
+    const std::uint32_t bits = mask[word] & all_[word];
+    all += sum_of(weight, all_[word]);
+    if (light_->texture) {
+      colored += sum_of(weight, bits, &light_->sample_colors[i]);
+    } else {
+      some += sum_of(weight, bits);
+    }
+  }
+  if (!(all > 0)) return glm::dvec3(0);  // every sample is at or below the horizon
+  return light_->texture ? whole / all * colored : glm::dvec3(whole * (some / all));
+}
+
+}  // namespace penumbra::compare

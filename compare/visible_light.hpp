@@ -1,0 +1,65 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+#include "visibility/seen_light.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::compare {
+
+/// A view sample and how it sees the light when nothing is in between.
+struct LitPoint {
+  const visibility::SeenLight& seen;
+  glm::vec3 p{0};
+};
+
+/// From masks of one light to form factors (visibility/form_factor.hpp) of what is visible of it, with a texture each
+/// colour's own: Σ over texels of texel · form factor.
+///
+/// All of the light: its form factor in closed form, so that methods agree wherever nothing is in between.
+///
+/// Cells. A rectangle with light samples in rows (patterns rows and grid) falls in cells: row r of L is the band of t
+/// between 2r/L − 1 and 2(r + 1)/L − 1, and in it belongs to each sample what is nearer to it than to the row's other
+/// samples. Borders are half way between samples; the first cell begins, the last ends, where the light does, so the
+/// light is covered once: where a row is shifted by σ cells the first is 1 + σ cells wide, the last 1 − σ. A run of
+/// visible samples is one rectangle. At view samples whose horizon cuts the light the sum over the visible cells is
+/// scaled by that over the cells whose samples are above it.
+///
+/// Samples. Every other light (disk, polygon, sphere, texture, patterns sobol and jittered) is summed sample by sample,
+/// and the sum scaled so that all samples together give the form factor of the whole light:
+///
+///   whole · Σ_j visible_j texel_j w_j / Σ_j w_j,    w_j = max(0, cos θp) cos θl / d² of sample j
+///
+/// cos θl = h / d with the same h for all samples of a plane, so that h cancels.
+class VisibleLight {
+ public:
+  /// `light` must outlive it.
+  explicit VisibleLight(const visibility::Light& light);
+
+  [[nodiscard]] const visibility::Light& light() const { return *light_; }
+  [[nodiscard]] glm::dvec3 unshadowed(const LitPoint& at) const;
+  /// `mask`: words_per_mask() words; bits beyond the last sample are ignored.
+  [[nodiscard]] glm::dvec3 visible(const LitPoint& at, std::span<const std::uint32_t> mask) const;
+
+ private:
+  /// Light points one coordinate after the other, filled up to whole blocks of 32.
+  struct Points {
+    std::vector<double> x, y, z;
+    explicit Points(std::span<const glm::vec3> points);
+  };
+
+  [[nodiscard]] double of_cells(const visibility::SeenLight& seen, std::span<const std::uint32_t> mask) const;
+  [[nodiscard]] double cell_border(std::uint32_t row, std::uint32_t column) const;
+  [[nodiscard]] glm::dvec3 of_runs(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;
+  [[nodiscard]] glm::dvec3 of_samples(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;
+
+  const visibility::Light* light_;
+  Points points_;                   ///< not of a sphere
+  std::vector<std::uint32_t> all_;  ///< the mask in which every sample is visible
+};
+
+}  // namespace penumbra::compare

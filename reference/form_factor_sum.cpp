@@ -1,0 +1,135 @@
+#include "reference/form_factor_sum.hpp"
+
+#include "base/assert.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace penumbra::reference {
+namespace {
+
+/// A convex polygon: a trapezoid cut by lines, each of which adds a corner at most.
+struct Corners {
+  std::array<glm::dvec2, 8> at{};
+  std::size_t count = 0;
+  void push(const glm::dvec2& corner) {
+    PENUMBRA_ASSERT(count < at.size(), "{} corners", count);
+    at[count++] = corner;
+  }
+  [[nodiscard]] std::span<const glm::dvec2> span() const { return std::span(at).first(count); }
+};
+
+/// What of it has sign · (t − border) ≥ 0.
+Corners clip(const Corners& polygon, double border, double sign) {
+  Corners inside;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const glm::dvec2 &a = polygon.at[i], &b = polygon.at[i + 1 < polygon.count ? i + 1 : 0];
+    const double at_a = sign * (a.y - border), at_b = sign * (b.y - border);
+    if (at_a >= 0) inside.push(a);
+    if ((at_a >= 0) != (at_b >= 0)) inside.push({a.x + at_a / (at_a - at_b) * (b.x - a.x), border});
+  }
+  return inside;
+}
+
+}  // namespace
+
+TextureBlocks::TextureBlocks(const visibility::LightTexture& texture)
+    : width_(texture.width),
+      height_(texture.height),
+      across_((width_ + kMost - 1) / kMost),
+      down_((height_ + kMost - 1) / kMost),
+      columns_((width_ + across_ - 1) / across_),
+      rows_((height_ + down_ - 1) / down_),
+      colors_(std::size_t{columns_} * rows_, glm::dvec3(0)) {
+  std::vector<double> counts(colors_.size());
+  for (std::uint32_t y = 0; y < height_; ++y) {
+    for (std::uint32_t x = 0; x < width_; ++x) {
+      const std::size_t block = std::size_t{y / down_} * columns_ + x / across_;
+      colors_[block] += glm::dvec3(texture.colors[std::size_t{y} * width_ + x]);
+      counts[block] += 1;
+    }
+  }
+  for (std::size_t i = 0; i < colors_.size(); ++i) colors_[i] /= counts[i];
+}
+
+std::uint32_t TextureBlocks::column_at(double s) const {
+  return static_cast<std::uint32_t>(std::clamp(std::floor((s + 1) / 2 * width_), 0.0, width_ - 1.0)) / across_;
+}
+
+std::uint32_t TextureBlocks::row_at(double t) const {
+  return static_cast<std::uint32_t>(std::clamp(std::floor((1 - t) / 2 * height_), 0.0, height_ - 1.0)) / down_;
+}
+
+void FormFactorSum::enter_slab(double from, double to) {
+  add_ended();
+  std::swap(before_, parts_);
+  if (from != to_ || between_columns(from)) add_ended();
+  from_ = from;
+  to_ = to;
+}
+
+void FormFactorSum::add_between(const Side& low, const Side& high) {
+  const auto same = [&](const Part& part) { return part.low == low.edge && part.high == high.edge; };
+  const auto found = std::ranges::find_if(before_, same);
+  Trapezoid shape{from_, to_, low.from, low.to, high.from, high.to};
+  if (found != before_.end()) {
+    shape.s0 = found->shape.s0;
+    shape.low0 = found->shape.low0;
+    shape.high0 = found->shape.high0;
+    before_.erase(found);
+  }
+  parts_.push_back({low.edge, high.edge, shape});
+}
+
+void FormFactorSum::finish() {
+  add_ended();
+  std::swap(before_, parts_);
+  add_ended();
+}
+
+void FormFactorSum::add_ended() {
+  for (const Part& part : before_) add(part.shape);
+  before_.clear();
+}
+
+bool FormFactorSum::between_columns(double s) const {
+  if (texture_ == nullptr) return false;
+  const std::uint32_t x = texture_->column_at(s);  // a border may round into either of its columns
+  return texture_->left(x) == s || texture_->left(x + 1) == s;
+}
+
+void FormFactorSum::add(const Trapezoid& shape) {
+  const std::array<glm::dvec2, 4> corners{
+      glm::dvec2(shape.s0, shape.low0), {shape.s1, shape.low1}, {shape.s1, shape.high1}, {shape.s0, shape.high0}};
+  if (texture_ == nullptr) {
+    sum_ += seen_.part(corners);
+  } else {
+    add_blocks(corners);
+  }
+}
+
+void FormFactorSum::add_whole() {
+  if (texture_ == nullptr) {
+    sum_ += seen_.whole();
+    return;
+  }
+  for (std::uint32_t x = 0; x < texture_->columns(); ++x) add({texture_->left(x), texture_->left(x + 1), -1, -1, 1, 1});
+}
+
+/// Cut in bands at the borders between rows, from the top, where row 0 is.
+void FormFactorSum::add_blocks(const std::array<glm::dvec2, 4>& corners) {
+  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
+  const std::uint32_t column = texture_->column_at((corners[0].x + corners[1].x) / 2);
+  const std::uint32_t first = texture_->row_at(high), last = texture_->row_at(low);
+  Corners rest;
+  for (const glm::dvec2& corner : corners) rest.push(corner);
+  for (std::uint32_t row = first; row <= last; ++row) {
+    const double border = texture_->top(row + 1);
+    const Corners band = row == last ? rest : clip(rest, border, 1);
+    sum_ += seen_.part(band.span()) * texture_->color(column, row);
+    if (row != last) rest = clip(rest, border, -1);
+  }
+}
+
+}  // namespace penumbra::reference

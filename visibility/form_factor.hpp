@@ -1,0 +1,73 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <span>
+
+namespace penumbra::visibility {
+
+/// How much of what a diffuse light emits arrives at a surface element with the unit normal n, in closed form:
+///
+///   F = 1/π ∫ max(0, cos θp) |cos θl| / d² dl        (of radiance 1: irradiance / π; all that n can see: 1)
+///
+/// By Stokes' theorem it is an integral along the light's boundary: J. H. Lambert, Photometria (1760); here as in
+/// D. Baum, H. Rushmeier, J. Winget, "Improving radiosity solutions through the use of analytically determined
+/// form-factors" (SIGGRAPH 1989). With corners rᵢ as seen from the element,
+///
+///   F = 1/2π Σ θᵢ n · γᵢ,    θᵢ the angle between rᵢ and rᵢ₊₁, γᵢ the unit vector along rᵢ × rᵢ₊₁.
+///
+/// All positions are relative to the element. Signs: positive if the polygon runs clockwise as seen from the element.
+///
+/// Horizon. What is below the element's plane must be cut off. All cuts through a flat light lie on one line, and along
+/// a line angles add up: so each edge is cut for itself, cuts downward and upward are joined in pairs as they come, and
+/// that is right for polygons that are not convex, too.
+///
+/// Errors. θ is taken by atan2, rᵢ × rᵢ₊₁ as ½ (rᵢ + rᵢ₊₁) × (rᵢ₊₁ − rᵢ). With ε = 2⁻⁵³ the product is off by about
+/// 4ε |rᵢ + rᵢ₊₁| |edge| / 2: no more than if both corners were moved by a few ulps of their distance. An edge that is
+/// short for its distance (tan θ ≤ 1/8) adds an error of a few ε |edge| / distance, so that a light of size a at the
+/// distance d has a relative error of a few ε d / a, not ε d² / a²: its edges' terms cancel, their errors are as small
+/// as they are. (Where the horizon cuts so small a light it is ε d² / a².) An edge that nearly contains the element (θ
+/// near π) is ill-conditioned: F itself changes by up to 1/2 when the element crosses it.
+///
+/// An edge run backward gives exactly the negative: pieces with common edges add up to their union but for the rounding
+/// of the sum.
+
+/// One edge, with its direction b − a given (more digits may be known than the difference has). 0 for an edge of no
+/// length, and for one that contains the element.
+struct FormFactorEdge {
+  glm::dvec3 a{0}, b{0}, direction{0};
+};
+double form_factor_term(const FormFactorEdge& edge, const glm::dvec3& n);
+
+/// The edges of a flat polygon in order, each from where the last one ended; cut at the horizon. Complete once the
+/// polygon is closed.
+class FormFactorLoop {
+ public:
+  explicit FormFactorLoop(const glm::dvec3& n) : n_(n) {}
+  /// With the heights n · a and n · b over the element's plane.
+  void add(const FormFactorEdge& edge, double height_a, double height_b);
+  [[nodiscard]] double sum() const { return sum_; }
+
+ private:
+  void close(const glm::dvec3& down, const glm::dvec3& up);
+
+  glm::dvec3 n_;
+  double sum_ = 0;
+  std::optional<glm::dvec3> down_, up_;  // a cut that waits for its partner; never both
+};
+
+/// Of a closed polygon, planar, convex or not.
+double form_factor(std::span<const glm::dvec3> corners, const glm::dvec3& n);
+
+/// Of a disk whose plane does not contain the element, whichever side it shows: never negative. In closed form, horizon
+/// or no: with h its height, ρ the element's distance from its axis, A = R² + ρ² + h² and B = 2ρR, the integral along
+/// the rim is one of 1, cos φ and sin φ over A − B cos φ.
+struct FormFactorDisk {
+  glm::dvec3 center{0};  ///< relative to the element
+  glm::dvec3 normal{0};  ///< unit
+  double radius = 0;
+};
+double form_factor(const FormFactorDisk& disk, const glm::dvec3& n);
+
+}  // namespace penumbra::visibility

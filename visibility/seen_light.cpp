@@ -1,0 +1,92 @@
+#include "visibility/seen_light.hpp"
+
+#include "visibility/form_factor.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace penumbra::visibility {
+
+SeenLight::SeenLight(const Light& light, const glm::vec3& p, const glm::vec3& n)
+    : light_(light), p_(p), n_(glm::normalize(glm::dvec3(n))), center_(glm::dvec3(light.center) - p_) {
+  if (light.kind == LightKind::sphere) {
+    const LightAxes axes = light_axes(light, p);
+    u_ = axes.u;
+    v_ = axes.v;
+    const double distance = glm::length(center_);
+    side_ = distance > 0 ? 1 : 0;
+    if (side_ != 0) along_ = center_ / distance;
+  } else {
+    u_ = glm::dvec3(light.center_u) - glm::dvec3(light.center);
+    v_ = glm::dvec3(light.center_v) - glm::dvec3(light.center);
+    const glm::dvec3 front = glm::normalize(glm::cross(u_, v_));
+    // Which side is exact, as for a pair; a point of the plane itself is on neither.
+    const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
+    if (side == Side::front) side_ = 1;
+    if (side == Side::back && light.two_sided) side_ = -1;
+    along_ = side == Side::front ? -front : front;
+  }
+  height_ = glm::dot(n_, center_);
+  height_u_ = glm::dot(n_, u_);
+  height_v_ = glm::dot(n_, v_);
+}
+
+bool SeenLight::above_horizon() const {
+  if (light_.kind == LightKind::rectangle) return height_ > std::abs(height_u_) + std::abs(height_v_);
+  if (light_.kind == LightKind::polygon) {
+    return std::ranges::all_of(light_.outline,
+                               [&](const glm::vec3& q) { return glm::dot(n_, glm::dvec3(q) - p_) > 0; });
+  }
+  return height_ > std::hypot(height_u_, height_v_);
+}
+
+double SeenLight::whole() const {
+  if (!shines()) return 0;
+  switch (light_.kind) {
+    case LightKind::rectangle:
+      return box(glm::dvec2(-1), glm::dvec2(1));
+    case LightKind::disk:
+    case LightKind::sphere:
+      return form_factor(FormFactorDisk{center_, along_, light_.radius}, n_);
+    case LightKind::polygon:
+      break;
+  }
+  FormFactorLoop loop(n_);
+  for (std::size_t i = 0; i < light_.outline.size(); ++i) {
+    const glm::dvec3 from(light_.outline[i]), to(light_.outline[(i + 1) % light_.outline.size()]);
+    const glm::dvec3 a = from - p_, b = to - p_;
+    loop.add({a, b, to - from}, glm::dot(n_, a), glm::dot(n_, b));
+  }
+  return std::abs(loop.sum());  // an outline may run either way around
+}
+
+double SeenLight::part(std::span<const glm::dvec2> corners) const {
+  if (!shines() || corners.empty()) return 0;
+  const auto point = [&](const glm::dvec2& st) { return center_ + st.x * u_ + st.y * v_; };
+  const auto height = [&](const glm::dvec2& st) { return height_ + st.x * height_u_ + st.y * height_v_; };
+  FormFactorLoop loop(n_);
+  glm::dvec2 from = corners.back();
+  glm::dvec3 a = point(from);
+  double height_a = height(from);
+  for (const glm::dvec2& to : corners) {
+    const glm::dvec3 b = point(to);
+    const double height_b = height(to);
+    const glm::dvec2 step = to - from;
+    loop.add({a, b, step.x * u_ + step.y * v_}, height_a, height_b);
+    from = to;
+    a = b;
+    height_a = height_b;
+  }
+  return -side_ * loop.sum();  // counter-clockwise in (s, t) is what is seen from the front
+}
+
+double SeenLight::box(const glm::dvec2& low, const glm::dvec2& high) const {
+  const std::array<glm::dvec2, 4> corners{low, {high.x, low.y}, high, {low.x, high.y}};
+  return std::max(0.0, part(corners));
+}
+
+}  // namespace penumbra::visibility
