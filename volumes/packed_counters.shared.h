@@ -1,0 +1,21 @@
+// Written once for C++ and GLSL: how counters of light samples are packed (docs/depth-complexity.md, variant=forest).
+#ifdef __cplusplus
+#pragma once
+#include <cstdint>
+namespace penumbra::volumes::gpu {
+using uint = std::uint32_t;
+#endif
+
+/// Light samples, at most.
+const uint kMostPacked = 16;
+
+/// A counter is a digit of `bits` bits, from the lowest on. A sum of digits d_j · 2^(bits · j) modulo 2⁶⁴, in any order,
+/// says each d_j as long as every |d_j| < 2^(bits − 1) at the end.
+/// The last word is the sum of |k_e| of all edges that changed a counter: no |d_j| is larger.
+
+/// In WedgeReceiver::counted: the bits of a float, a share of the way from p to the light. A crossing nearer to p than
+/// that may be of a triangle on the carrier's plane, which p was rounded off.
+
+#ifdef __cplusplus
+}  // namespace penumbra::volumes::gpu
+#endif
