@@ -22,6 +22,7 @@
 #include "volumes/volume_count.shared.h"
 #include "volumes/wedge_raster.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -62,6 +63,27 @@ LightHull hull_of(const Light& light) {
   hull.corners.push_back(center);
   for (const glm::vec3& l : light.points) hull.corners.emplace_back(l);
   return hull;
+}
+
+/// What packed_counters.frag reads of the light.
+std::vector<double> table_of(const Light& light) {
+  const gpu::WedgePush frame = frame_of(light);
+  const auto vector = [](const double(&x)[3]) { return glm::dvec3(x[0], x[1], x[2]); };
+  glm::dvec2 lower(0), upper(0);  // the centre
+  double off = 0;
+  for (const glm::vec3& l : light.points) {
+    const glm::dvec3 from_center = glm::dvec3(l) - vector(frame.c);
+    const glm::dvec2 at(glm::dot(vector(frame.u_dual), from_center), glm::dot(vector(frame.v_dual), from_center));
+    lower = glm::min(lower, at);
+    upper = glm::max(upper, at);
+    off = std::max(off, std::abs(glm::dot(vector(frame.n), from_center)));
+  }
+  const glm::dvec2 room = 0x1p-10 * (upper - lower);
+  // A sample that is `off` the plane appears from height H, and F away from p's foot, off / H · F beside its place.
+  const double least = 0.5 * std::min(room.x, room.y);
+  std::vector<double> table{lower.x - room.x, lower.y - room.y, upper.x + room.x, upper.y + room.y, least, off};
+  for (const glm::vec3& l : light.points) table.insert(table.end(), {l.x, l.y, l.z});
+  return table;
 }
 
 /// Does the triangle touch the way from the light's centre to this sample? Not if its plane holds the centre: then it
@@ -205,9 +227,7 @@ void PackedCounters::prepare_light(const Light& light) {
             .name = "wedges", .fragment = shaders::kPackedCountersFrag, .constants = constants, .words = words() + 1});
     constants_ = constants;
   }
-  std::vector<double> points;
-  for (const glm::vec3& l : light.points) points.insert(points.end(), {l.x, l.y, l.z});
-  raster_->set_table(points);
+  raster_->set_table(table_of(light));
   count_.prepare_light(light);
   wedges_.edges = count_.volumes().edges;
   std::vector<WedgeEdge> edges;

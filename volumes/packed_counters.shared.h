@@ -16,6 +16,11 @@ const uint kMostPacked = 16;
 /// In WedgeReceiver::counted: the bits of a float, a share of the way from p to the light. A crossing nearer to p than
 /// that may be of a triangle on the carrier's plane, which p was rounded off.
 
+/// Doubles before the light samples (packed_counters.frag).
+const uint kPackedHead = 6;
+/// X and Y are off by less than so much of the terms that they are sums of: 2⁻⁴⁶ is 2⁴ times their error and more.
+const double kAppearError = 1.0 / 70368744177664.0;
+
 #ifdef __cplusplus
 }  // namespace penumbra::volumes::gpu
 #endif
