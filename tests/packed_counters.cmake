@@ -2,6 +2,7 @@
 find_package(TBB REQUIRED)
 add_executable(packed_counters_tests
   ${CMAKE_CURRENT_LIST_DIR}/property/packed_counters.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/agreement/packed_counters_scenes.cpp
   ${CMAKE_CURRENT_LIST_DIR}/agreement/edge_crop.cpp)
 target_compile_definitions(packed_counters_tests PRIVATE PENUMBRA_SCENES="${PROJECT_SOURCE_DIR}/scenes")
 target_link_libraries(packed_counters_tests PRIVATE

@@ -13,13 +13,13 @@
 #include "visibility/pair_truth.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "visibility/visible_share.hpp"
+#include "volumes/carrier_horizon.hpp"
 #include "volumes/depth_judge.hpp"
 #include "volumes/light_hull.hpp"
 #include "volumes/packed_counters.frag.spv.hpp"
 #include "volumes/packed_counters.shared.h"
 #include "volumes/pass_times.hpp"
 #include "volumes/volume_count.hpp"
-#include "volumes/volume_count.shared.h"
 #include "volumes/wedge_raster.hpp"
 
 #include <glm/common.hpp>
@@ -29,7 +29,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -40,10 +39,6 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
-
-double norm1(const glm::dvec3& v) {
-  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
 
 /// All that a crossing has to do with: the light's hull, its centre and its samples. Where rounding to float32 has
 /// moved some of these out of the hull, they are corners, too.
@@ -101,38 +96,6 @@ bool touches(const std::array<glm::vec3, 3>& corners, const glm::vec3& center, c
   return !(front && back);
 }
 
-/// What the carrier's plane says of a view sample.
-struct Horizon {
-  std::uint32_t above = 0;  ///< bits of the light samples strictly above it
-  float nearest = 1;        ///< WedgeReceiver::counted
-};
-
-/// A triangle on the carrier's plane is crossed at a height of no more than |h(p)| over the plane, h affine: on the way
-/// from p to a point between c and l, no farther than |h(p)| / min(h(c), h(l)) of it.
-Horizon horizon_of(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& p,
-                   const glm::vec3& center, const Light& light) {
-  const glm::dvec3 a(carrier[0]), ab = glm::dvec3(carrier[1]) - a, ac = glm::dvec3(carrier[2]) - a;
-  const glm::dvec3 n = static_cast<double>(facing) * glm::cross(ab, ac);
-  const double size = gpu::kDeterminantError * norm1(ab) * norm1(ac);
-  const auto height = [&](const glm::vec3& x) { return glm::dot(n, glm::dvec3(x) - a); };
-  const auto error = [&](const glm::vec3& x) { return size * norm1(glm::dvec3(x) - a); };
-  Horizon horizon;
-  double lowest = height(center) - error(center);
-  for (std::size_t j = 0; j < light.points.size(); ++j) {
-    const glm::vec3& l = light.points[j];
-    const double h = height(l), e = error(l);
-    const bool above = h > e || (h >= -e && visibility::above_horizon(carrier, facing, l));
-    if (!above) continue;
-    horizon.above |= 1U << j;
-    lowest = std::min(lowest, h - e);
-  }
-  const double off = std::abs(height(p)) + error(p);
-  // The device's place of a crossing is off by less than a quarter of it where its signs are certain.
-  const double share = lowest > off ? 1.5 * off / lowest : 1;  // 1: all crossings are in doubt
-  horizon.nearest = std::max(static_cast<float>(share), std::numeric_limits<float>::min());
-  return horizon;
-}
-
 class PackedCounters final : public DepthCounters {
  public:
   PackedCounters(const render::Device& device, std::uint32_t bits)
@@ -146,6 +109,10 @@ class PackedCounters final : public DepthCounters {
     scene_ = &scene;
     count_.prepare_mesh(scene);
     tree_ = visibility::make_triangle_tree(scene);
+    on_plane_.assign(scene.triangles.size(), 0);
+    for (const std::uint32_t plane : scene.plane) {
+      if (plane != SceneFloats::kNoPlane) ++on_plane_[plane];
+    }
   }
   void prepare_light(const Light& light) override;
   void prepare_view(const ViewSamples& samples) override {
@@ -193,6 +160,7 @@ class PackedCounters final : public DepthCounters {
   std::uint32_t bits_;
   VolumeCount count_;
   visibility::TriangleTree tree_;
+  std::vector<std::uint32_t> on_plane_;  // how many triangles are on each SceneFloats::plane
   std::unique_ptr<WedgeRaster> raster_;
   std::vector<std::uint32_t> constants_;  // of raster_
   LightWedges wedges_;
@@ -267,14 +235,16 @@ std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
     if (!visibility::in_front_of_light(*light_, p)) return;
     const auto carrier = static_cast<std::uint32_t>(samples_->triangle[first + i]);
     const Horizon horizon =
-        horizon_of(scene_->corners(carrier), samples_->facing[first + i], p, count_.center(), *light_);
+        CarrierHorizon(*scene_, tree_, carrier, samples_->facing[first + i], on_plane_[scene_->plane[carrier]] == 1)
+            .at(p, count_.center(), *light_);
     above_[i] = horizon.above;
     // On a triangle: it is crossed where p→l leaves it, but not met.
     const bool doubtful = count_.doubts()[i] != 0 || !appears_in_place(samples_->camera, p, first + i);
     if (kinds[i] == Kind::dark || doubtful) {
       open_[i] = horizon.above;
     } else {
-      receivers[i] = {p, std::bit_cast<std::uint32_t>(horizon.nearest)};
+      open_[i] = horizon.open;
+      receivers[i] = {p, 1};
     }
   });
   return receivers;
@@ -293,7 +263,7 @@ std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) 
 void PackedCounters::resolve(std::size_t pixel) {
   const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
   const bool overflow = raster_->sums()[pixel * (words() + 1) + words()] > most;
-  open_[pixel] = overflow ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
+  open_[pixel] |= overflow ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
   for (std::uint32_t j = 0; j < light_->sample_count(); ++j) {
     const bool visible = count_.counts()[pixel] + change_of(pixel, j) == 0;
     masks_[pixel] |= visible ? above_[pixel] & ~open_[pixel] & 1U << j : 0;

@@ -74,7 +74,6 @@ void main() {
   const uint slot = pixel.y * push.width + pixel.x;
   const WedgeReceiver receiver = receivers[slot];
   if (receiver.counted == 0) return;
-  const double nearest = double(uintBitsToFloat(receiver.counted));
   const dvec3 p = dvec3(receiver.p), a = dvec3(face_a), b = dvec3(face_b);
   const uint looked_at = may_appear(a, b, p) ? kSamples : 0;
   const dvec3 to_a = a - p, to_b = b - p, to_c = push.c - p, a_from_c = a - push.c, b_from_c = b - push.c;
@@ -104,10 +103,7 @@ void main() {
     const uint around = at_center | opposite(signs(here.value, here.bound)) | signs(beyond.value, beyond.bound);
     const uint from = signs(first.value, first.bound), to = signs(last.value, last.bound);
     const bool apart = from == kUp && to == kUp || from == kDown && to == kDown;
-    // How far on the way from p to the light it does: (1 − the share of p) of the crossing's barycentric coordinates.
-    const double near = abs(center.value) + abs(here.value);
-    const bool at_p = near <= nearest * (near + abs(beyond.value));
-    const bool clear = differ(around) || apart, open = !clear && (doubted(around) || doubted(from | to) || at_p);
+    const bool clear = differ(around) || apart, open = !clear && (doubted(around) || doubted(from | to));
     doubt |= open ? 1u << j : 0;
     if (clear || open) continue;
     words[j / kEach] += int64_t(change) * (int64_t(1) << (kBits * (j % kEach)));

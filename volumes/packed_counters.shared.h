@@ -13,9 +13,6 @@ const uint kMostPacked = 16;
 /// says each d_j as long as every |d_j| < 2^(bits − 1) at the end.
 /// The last word is the sum of |k_e| of all edges that changed a counter: no |d_j| is larger.
 
-/// In WedgeReceiver::counted: the bits of a float, a share of the way from p to the light. A crossing nearer to p than
-/// that may be of a triangle on the carrier's plane, which p was rounded off.
-
 /// Doubles before the light samples (packed_counters.frag).
 const uint kPackedHead = 6;
 /// X and Y are off by less than so much of the terms that they are sums of: 2⁻⁴⁶ is 2⁴ times their error and more.

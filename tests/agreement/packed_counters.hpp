@@ -4,6 +4,7 @@
 // triangles, as docs/depth-complexity.md says what a counter is.
 
 #include "tests/agreement/support.hpp"
+#include "visibility/triangle_tree.hpp"
 #include "volumes/packed_counters.hpp"
 #include "volumes/wedge_casters.hpp"
 
@@ -20,7 +21,9 @@ class PackedTwin {
         light_(light),
         center_(visibility::center_of(light)),
         casters_(volumes::casters_of(floats, light)),
-        silhouettes_(mesh::silhouette_edges(casters_.view(), casters_.graph, glm::dvec3(center_))) {}
+        silhouettes_(mesh::silhouette_edges(casters_.view(), casters_.graph, glm::dvec3(center_))) {
+    if (floats.triangles.size() > kMostTried) tree_ = visibility::make_triangle_tree(floats);
+  }
 
   /// The count at the light's centre and what silhouettes change it by on the straight way to each light sample, as
   /// forest has it; nothing where a sign is exactly zero.
@@ -67,18 +70,26 @@ class PackedTwin {
   template <typename Visit>
   void for_each_met(std::size_t pixel, const glm::vec3& l, const Visit& visit) const {
     const auto carrier = static_cast<std::uint32_t>(samples_.triangle[pixel]);
-    for (std::uint32_t i = 0; i < floats_.triangles.size(); ++i) {
-      if (!visibility::may_occlude(floats_, light_, carrier, i)) continue;
+    const auto try_it = [&](std::uint32_t i) {
+      if (!visibility::may_occlude(floats_, light_, carrier, i)) return false;
       if (visibility::segment_meets_triangle(samples_.p[pixel], l, floats_.corners(i), light_).meets) visit(i);
+      return false;
+    };
+    if (tree_) {
+      tree_->any_along(samples_.p[pixel], l, try_it);
+      return;
     }
+    for (std::uint32_t i = 0; i < floats_.triangles.size(); ++i) try_it(i);
   }
 
+  static constexpr std::size_t kMostTried = 2000;  // triangles; of more, those near the segment
   const visibility::SceneFloats& floats_;
   const visibility::ViewSamples& samples_;
   const visibility::Light& light_;
   glm::vec3 center_;
   volumes::Casters casters_;
   std::vector<mesh::SilhouetteEdge> silhouettes_;
+  std::optional<visibility::TriangleTree> tree_;
 };
 
 struct PackedTotals {

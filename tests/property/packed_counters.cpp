@@ -168,6 +168,32 @@ TEST_F(Packed, BoardsAreExact) {
   }
 }
 
+/// A sheet in shallow pleats, so turned that no view sample is on its plane but for rounding, under light along it:
+/// ways to the light run through planes of carriers, past edges that are no silhouettes.
+TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
+  const glm::dvec3 u = glm::normalize(glm::dvec3(0.8, 0.31, -0.23)),
+                   v = glm::normalize(glm::cross(u, glm::dvec3(0.17, 0.9, 0.41))), n = glm::cross(v, u);
+  constexpr int kPleats = 60;
+  const auto at = [&](int i, double y) {
+    return 2.0 * (static_cast<double>(i) / kPleats - 0.5) * u + y * v + (i % 2 == 0 ? 1e-4 : -1e-4) * n;
+  };
+  std::vector<tests::Corners> sheet;
+  for (int i = 0; i < kPleats; ++i) {
+    sheet.push_back({at(i, -1), at(i + 1, -1), at(i + 1, 1)});
+    sheet.push_back({at(i, -1), at(i + 1, 1), at(i, 1)});
+  }
+  scenes::Scene scene;
+  tests::add_object(scene, "pleats", sheet);
+  tests::add_object(scene, "far away", tests::quad(-60.0 * n, u, v));  // the origin is half-way: coarse floats
+  scene.lights.push_back(tests::rectangle_light(4.0 * u + 0.03 * n, 0.5 * v, 0.028 * n));
+  scene.lights[0].two_sided = true;
+  scene.cameras.push_back(tests::camera(2.5 * n + 0.1 * u, {0, 0, 0}, 40));
+  const PackedTotals found = check("pleats", scene, 64, 48, {16, 0, 0, visibility::SamplePattern::rows, 0}, 200);
+  say();
+  EXPECT_GT(open_, 0U);
+  EXPECT_GT(found.known, found.pairs / 10);
+}
+
 /// A ball: too bright where the light's corners see past the centre's silhouette, never too dark.
 TEST_F(Packed, ABallIsTooBright) {
   const PackedTotals found = check("ball", tests::with_a_floor(mesh::make_icosphere({0, 1.2, 0}, 0.8, 2)), 48, 36,
