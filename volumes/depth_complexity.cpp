@@ -296,8 +296,8 @@ visibility::MethodDescription depth_complexity_description() {
       .output = visibility::Output::mask,
       .exact_for =
           "variant=soup: every pair of view sample and light sample, for any triangle soup; variant=laine: "
-          "the same for closed meshes, approximate for others; variant=forest: occluders of which every view sample "
-          "and the light's centre see opposite sides",
+          "the same for closed meshes, approximate for others; variant=forest: the same where no occluding triangle's "
+          "plane passes through the light, too bright elsewhere",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
       .options = {{"variant", "soup|laine|forest", "soup",
                    "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes; "

@@ -74,7 +74,6 @@ std::vector<double> table_of(const Light& light) {
     off = std::max(off, std::abs(glm::dot(vector(frame.n), from_center)));
   }
   const glm::dvec2 room = 0x1p-10 * (upper - lower);
-  // A sample that is `off` the plane appears from height H, and F away from p's foot, off / H · F beside its place.
   const double least = 0.5 * std::min(room.x, room.y);
   std::vector<double> table{lower.x - room.x, lower.y - room.y, upper.x + room.x, upper.y + room.y, least, off};
   for (const glm::vec3& l : light.points) table.insert(table.end(), {l.x, l.y, l.z});

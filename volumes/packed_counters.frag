@@ -20,8 +20,8 @@ layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // th
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };              // a bit a light sample
-// A box around c and the light samples in the light's frame: lower X, Y, upper X, Y; how much room it has on every side;
-// how far a sample is off the light's plane, at most, in lengths of n; then the light samples, x y z.
+// A box around c and the light samples in the light's frame: lower X, Y, upper X, Y; half of the room it has on every
+// side; how far a sample is off the light's plane, at most, in lengths of n; then the light samples, x y z.
 layout(scalar, binding = 4) readonly buffer Samples { double samples[]; };
 layout(scalar, push_constant) uniform Push { WedgePush push; };
 
@@ -53,20 +53,23 @@ void cut_range(double d, double e, inout double first, inout double last) {
   if (d >= 0.0LF && e < 0.0LF) last = min(last, at);
 }
 
-/// False if the edge certainly does not appear among c and the light samples. Nothing hangs on it but time.
+/// False only if the edge does not appear among c and the light samples: most fragments need no sign. A point that is
+/// off the light's plane by g appears from p, G away from it, beside its place by less than 2 g / G of its way from p's
+/// foot: no more than the box has room for, or nothing is left out.
 bool may_appear(dvec3 a, dvec3 b, dvec3 p) {
   const Foot foot = foot_of(p);
   const dvec3 from = project(a - p, foot), to = project(b - p, foot);
-  const double slack = kAppearError * size_of(a, b, p, from, to);
   const dvec2 lower = dvec2(samples[0], samples[1]), upper = dvec2(samples[2], samples[3]);
+  const dvec2 away = abs(foot.at) + max(abs(lower), abs(upper));
+  const double far = away.x + away.y, terms = norm1(a - p) + norm1(b - p) + norm1(p - push.c) * (abs(from.z) + abs(to.z));
+  const double slack =
+      kAppearError * terms * (norm1(push.u_dual) + norm1(push.v_dual) + norm1(push.n) * abs(foot.inverse) * far);
   double first = 0.0LF, last = 1.0LF;
   cut_range(upper.x * from.z - from.x + slack, upper.x * to.z - to.x + slack, first, last);
   cut_range(upper.y * from.z - from.y + slack, upper.y * to.z - to.y + slack, first, last);
   cut_range(from.x - lower.x * from.z + slack, to.x - lower.x * to.z + slack, first, last);
   cut_range(from.y - lower.y * from.z + slack, to.y - lower.y * to.z + slack, first, last);
-  // What is off the light's plane appears on it elsewhere.
-  const dvec2 away = abs(foot.at) + max(abs(lower), abs(upper));
-  return !(first >= last) || samples[5] * abs(foot.inverse) * (away.x + away.y) > samples[4];
+  return !(first >= last) || samples[5] * abs(foot.inverse) * far > samples[4];
 }
 
 void main() {

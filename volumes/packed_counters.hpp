@@ -15,7 +15,7 @@ namespace penumbra::volumes {
 ///
 /// A counter is Σ σ_T over the triangles T that p→l meets, σ_T = 1 where p and c are on opposite sides of T, −1 where
 /// they are on the same side, 0 where c is on its plane. So what it calls blocked is blocked; it may only be too
-/// bright, and only where p→l meets a triangle that c sees from the same side as p, or edge-on.
+/// bright, and only where p→l meets a triangle whose plane passes through c or between c and l.
 ///
 /// `counter_bits`: 6, 8 or 16. Where counters may have overflowed, pairs are decided exactly. read_counters knows only
 /// counters of light samples above the horizon.

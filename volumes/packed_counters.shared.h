@@ -15,7 +15,8 @@ const uint kMostPacked = 16;
 
 /// Doubles before the light samples (packed_counters.frag).
 const uint kPackedHead = 6;
-/// X and Y are off by less than so much of the terms that they are sums of: 2⁻⁴⁶ is 2⁴ times their error and more.
+/// Relative to the terms that X, Y and W are sums of, three roundings each: 2⁻⁴⁶ is more than 2⁴ times their error, so
+/// that what is kept of an edge is longer than its parameters' rounding, too.
 const double kAppearError = 1.0 / 70368744177664.0;
 
 #ifdef __cplusplus

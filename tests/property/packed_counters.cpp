@@ -135,7 +135,7 @@ TEST_F(Packed, SoupsAroundEveryKindOfLight) {
   EXPECT_GT(totals_.too_bright, 0U);      // the paper's approximation shows
 }
 
-/// Boards whose triangles face neither light nor floor from the other side anywhere: one silhouette for all.
+/// Occluders no plane of which passes through the light: all of it sees the same silhouettes.
 scenes::Scene boards() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));
