@@ -151,6 +151,7 @@ class PackedCounters final : public DepthCounters {
   void refuse_what_reaches_through() const;
   [[nodiscard]] std::vector<gpu::WedgeReceiver> classify();
   [[nodiscard]] std::int64_t change_of(std::size_t pixel, std::uint32_t sample) const;
+  [[nodiscard]] bool may_have_overflowed(std::size_t pixel) const;
   void resolve(std::size_t pixel);
   void answer();
 
@@ -258,11 +259,15 @@ std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) 
   return static_cast<std::int64_t>(digit) - static_cast<std::int64_t>(half);
 }
 
+/// No counter has changed by more than the last word says.
+bool PackedCounters::may_have_overflowed(std::size_t pixel) const {
+  const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
+  return raster_->sums()[pixel * (words() + 1) + words()] > most;
+}
+
 /// A counted pixel's mask.
 void PackedCounters::resolve(std::size_t pixel) {
-  const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
-  const bool overflow = raster_->sums()[pixel * (words() + 1) + words()] > most;
-  open_[pixel] |= overflow ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
+  open_[pixel] |= may_have_overflowed(pixel) ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
   for (std::uint32_t j = 0; j < light_->sample_count(); ++j) {
     const bool visible = count_.counts()[pixel] + change_of(pixel, j) == 0;
     masks_[pixel] |= visible ? above_[pixel] & ~open_[pixel] & 1U << j : 0;
@@ -270,7 +275,6 @@ void PackedCounters::resolve(std::size_t pixel) {
 }
 
 void PackedCounters::evaluate(const Tile& tile) {
-  using Kind = VolumeCount::Kind;
   tile_ = tile;
   if (!faces_) faces_ = faces_of(wedges_, *samples_, WedgeTests::both, glm::dvec3(count_.center()));
   count_.count(tile);
@@ -279,13 +283,15 @@ void PackedCounters::evaluate(const Tile& tile) {
   mesh::for_each_index(receivers.size(), [&](std::size_t i) {
     if (receivers[i].counted != 0) resolve(i);
   });
-  const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
+  std::uint64_t overflows = 0, at_horizon = 0, open = 0;
   for (std::size_t i = 0; i < receivers.size(); ++i) {
-    const bool counted = receivers[i].counted != 0;
-    totals_["overflowPixels"] += counted && raster_->sums()[i * (words() + 1) + words()] > most ? 1U : 0U;
-    const bool dark = count_.kinds()[i] == Kind::dark;
-    totals_[dark ? "horizonPairs" : "openPairs"] += static_cast<std::uint64_t>(std::popcount(open_[i]));
+    overflows += receivers[i].counted != 0 && may_have_overflowed(i) ? 1U : 0U;
+    const bool dark = count_.kinds()[i] == VolumeCount::Kind::dark;
+    (dark ? at_horizon : open) += static_cast<std::uint64_t>(std::popcount(open_[i]));
   }
+  totals_["overflowPixels"] += overflows;
+  totals_["horizonPairs"] += at_horizon;
+  totals_["openPairs"] += open;
   answer();
 }
 
