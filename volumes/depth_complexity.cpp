@@ -13,7 +13,10 @@
 #include "volumes/count_edges.comp.spv.hpp"
 #include "volumes/depth_judge.hpp"
 #include "volumes/edge_lists.hpp"
+#include "volumes/packed_counters.hpp"
 #include "volumes/settle_rows.comp.spv.hpp"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -28,7 +31,7 @@ constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
 constexpr std::uint32_t kQueued = 64;         // edges, as in count_edges.comp
 constexpr std::size_t kMostEdges = 1U << 29;  // |k_e| of a record is at most 2: no counter can overflow
 
-enum class Variant { soup, laine };
+enum class Variant { soup, laine, forest };
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
@@ -39,24 +42,32 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
+/// The value of an option that is one of these, the first if it is not given.
+std::string choice(const visibility::MethodOptions& options, const std::string& key,
+                   const std::vector<std::string>& values) {
+  const auto option = options.find(key);
+  if (option == options.end()) return values.front();
+  if (std::ranges::find(values, option->second) != values.end()) return option->second;
+  throw UsageError("depth-complexity: {}={} is not known; take one of {}", key, option->second,
+                   fmt::join(values, ", "));
+}
+
 Variant variant_of(const visibility::MethodOptions& options) {
-  const auto option = options.find("variant");
-  if (option == options.end() || option->second == "soup") return Variant::soup;
-  if (option->second == "laine") return Variant::laine;
-  if (option->second == "forest") {
-    throw UsageError("depth-complexity: variant=forest (Forest et al. 2008) is not there yet; take soup or laine");
-  }
-  throw UsageError("depth-complexity: variant={} is not known; take soup or laine", option->second);
+  const std::string name = choice(options, "variant", {"soup", "laine", "forest"});
+  const Variant variant = name == "soup" ? Variant::soup : name == "laine" ? Variant::laine : Variant::forest;
+  const char* without = variant == Variant::forest ? "crop" : "counter-bits";
+  if (options.contains(without)) throw UsageError("depth-complexity: variant={} has no option {}", name, without);
+  return variant;
 }
 
 class DepthComplexity final : public DepthCounters {
  public:
-  DepthComplexity(const render::Device& device, Variant variant, bool keeps_depths)
+  DepthComplexity(const render::Device& device, Variant variant, bool crops, bool keeps_depths)
       : description_(depth_complexity_description()),
         variant_(variant),
         keeps_depths_(keeps_depths),
         device_(&device),
-        edges_(device, description_.name),
+        edges_(device, description_.name, crops),
         settle_(device,
                 {.name = "settle samples", .spirv = shaders::kSettleRowsComp, .push_bytes = sizeof(std::uint32_t)}),
         commands_(device) {}
@@ -281,25 +292,35 @@ visibility::MethodDescription depth_complexity_description() {
   return {
       .name = "depth-complexity",
       .family = visibility::Family::geometry,
-      .paper = "Laine et al. 2005; any soup: ours, after Bergeron 1986",
+      .paper = "Laine et al. 2005; Lehtinen et al. 2006; Forest et al. 2008; any soup: ours, after Bergeron 1986",
       .output = visibility::Output::mask,
       .exact_for =
           "variant=soup: every pair of view sample and light sample, for any triangle soup; variant=laine: "
-          "the same for closed meshes, approximate for others",
+          "the same for closed meshes, approximate for others; variant=forest: the same where no occluding triangle's "
+          "plane passes through the light, too bright elsewhere",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
-      .options = {{"variant", "soup|laine", "soup",
-                   "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes"}},
+      .options = {{"variant", "soup|laine|forest", "soup",
+                   "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes; "
+                   "forest: silhouettes of the light's centre and hard volumes, at most 16 light samples"},
+                  {"crop", "on|off", "on",
+                   "soup, laine: leave out edges that are no silhouettes as seen from a group of view samples; V is "
+                   "the same"},
+                  {"counter-bits", "6|8|16", "16", "forest: of a packed counter; where it overflows, pairs are exact"}},
       .verdict_on = verdict_on};
 }
 
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
                                                           const visibility::MethodOptions& options) {
   visibility::check_options(depth_complexity_description(), options);
-  return std::make_unique<DepthComplexity>(device, variant_of(options), false);
+  const Variant variant = variant_of(options);
+  const std::string crop = choice(options, "crop", {"on", "off"});
+  const std::string bits = choice(options, "counter-bits", {"16", "8", "6"});
+  if (variant == Variant::forest) return make_packed_counters(device, static_cast<std::uint32_t>(std::stoul(bits)));
+  return std::make_unique<DepthComplexity>(device, variant, crop == "on", false);
 }
 
 std::unique_ptr<DepthCounters> make_depth_counters(const render::Device& device) {
-  return std::make_unique<DepthComplexity>(device, Variant::soup, true);
+  return std::make_unique<DepthComplexity>(device, Variant::soup, true, true);
 }
 
 }  // namespace penumbra::volumes

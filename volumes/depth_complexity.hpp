@@ -15,14 +15,18 @@ namespace penumbra::volumes {
 ///
 /// variant=soup (default; ours): signed multiplicities and a certified reference; any triangle soup, every bit the
 /// truth of its pair. variant=laine (Laine et al. 2005): silhouettes count ±1 and one reference ray a view sample gives
-/// the constant; right for closed meshes, wrong where an open one folds over.
+/// the constant; right for closed meshes, wrong where an open one folds over. variant=forest (Forest et al. 2008): the
+/// silhouettes of the light's centre alone, at most 16 light samples (packed_counters.hpp).
+///
+/// crop=off (soup and laine): an edge is a candidate wherever it is before the light, be it a silhouette or not; the
+/// same masks, slower (Lehtinen et al. 2006).
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
                                                           const visibility::MethodOptions& options);
 
 /// What it is; needs no device.
 visibility::MethodDescription depth_complexity_description();
 
-/// variant=soup that keeps its counters beside its masks, four bytes a pair: to look at them.
+/// A variant that keeps its counters beside its masks: to look at them.
 class DepthCounters : public visibility::Method {
  public:
   /// Left to exact predicates, or of a view sample that sees nothing of the light.
@@ -31,6 +35,7 @@ class DepthCounters : public visibility::Method {
   /// For each pixel of the tile last evaluated, one counter a light sample. Light samples below the horizon have one.
   virtual void read_counters(std::span<std::int32_t> counters) = 0;
 };
+/// variant=soup.
 std::unique_ptr<DepthCounters> make_depth_counters(const render::Device& device);
 
 }  // namespace penumbra::volumes

@@ -29,8 +29,8 @@ render::Buffer make_texels(const render::Device& device, const char* name, const
 
 }  // namespace
 
-EdgeLists::EdgeLists(const render::Device& device, std::string method)
-    : device_(&device), method_(std::move(method)), sides_(method_) {
+EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crops)
+    : device_(&device), method_(std::move(method)), sides_(method_), crops_(crops) {
   const std::uint32_t lanes = device.limits().subgroup_size;
   if (lanes >= TriangleTree::kWidth && kBlock * kBlock % lanes == 0) return;
   throw ResourceError("{} needs subgroups of 8, 16, 32 or 64 lanes; {} has {}", method_, device.info().name, lanes);
@@ -94,8 +94,8 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
 /// a hierarchy.
 void EdgeLists::build_pass() {
   const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
-  const std::vector<std::uint32_t> constants{lanes, lanes,
-                                             teams * TriangleTree::kWidth * (std::max(tree_.depth, whole_.depth) + 10)};
+  const std::vector<std::uint32_t> constants{
+      lanes, lanes, teams * TriangleTree::kWidth * (std::max(tree_.depth, whole_.depth) + 10), crops_ ? 1U : 0U};
   if (pass_ && constants == constants_) return;
   pass_.emplace(*device_, render::ComputePassOptions{.name = "find edges",
                                                      .spirv = shaders::kFindEdgesComp,

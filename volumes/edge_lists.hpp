@@ -25,8 +25,8 @@ namespace penumbra::volumes {
 /// planar light. Lists that are too short grow; nothing is cut off.
 class EdgeLists {
  public:
-  /// `method` names errors.
-  EdgeLists(const render::Device& device, std::string method);
+  /// `method` names errors. `crops`: else also edges that are no silhouettes as seen from their cluster.
+  EdgeLists(const render::Device& device, std::string method, bool crops = true);
 
   void prepare_mesh(const visibility::SceneFloats& scene);
   /// `frame`: make_light_frame(light, scale()). Throws InputError where float32 cannot span light and scene together.
@@ -70,6 +70,7 @@ class EdgeLists {
   const render::Device* device_;
   std::string method_;
   EdgeSides sides_;
+  bool crops_;
   std::optional<render::ComputePass> pass_;
   std::vector<std::uint32_t> constants_;
 

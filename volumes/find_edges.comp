@@ -7,6 +7,7 @@
 // from it; and the triangles that the much thinner shaft to one corner of the light meets.
 
 layout(constant_id = 2) const uint kStackSize = 64;
+layout(constant_id = 3) const uint kCrops = 1;              // 0: list edges that are no silhouettes, too
 
 layout(binding = 3) uniform usamplerBuffer edge_nodes;      // 3 texels a child: (centre, reference), (half extent, –),
                                                             // cone of normals (axis, cosine)
@@ -56,7 +57,7 @@ bool edge_matters(Shaft shaft, uint slot) {
   const vec3 a = uintBitsToFloat(t0.xyz), b = uintBitsToFloat(t1.xyz);
   const int side1 = side_for_all(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), middle, half_size);
   const int side2 = side_for_all(uintBitsToFloat(t4.xyz), uintBitsToFloat(t5.xyz), middle, half_size);
-  const bool silhouette = side1 == 2 || side2 == 2 || side1 + side2 != 0;
+  const bool silhouette = kCrops == 0 || side1 == 2 || side2 == 2 || side1 + side2 != 0;
   const vec2 level = vec2(dot(axis, a), dot(axis, b));
   return t2.w != 0 && silhouette && meets(shaft, level.xyy, min(along_shaft(shaft, a), along_shaft(shaft, b)));
 }
@@ -106,7 +107,7 @@ uint walk(Shaft shaft, bool edges) {
       const vec4 least = along_shaft(shaft, center) - (abs(shaft.nx) * extent.x + abs(shaft.ny) * extent.y + abs(shaft.nz) * extent.z);
       const bool met = team < taken && first.w != kNone && at - spread <= shaft.highest && at + spread >= shaft.lowest &&
                        all(lessThanEqual(least, shaft.beyond));
-      const bool hit = met && !(edges && same_side(center, extent, uintBitsToFloat(third)));
+      const bool hit = met && !(edges && kCrops != 0 && same_side(center, extent, uintBitsToFloat(third)));
       const bool leaf = (first.w & kLeafBit) != 0;
       const uvec4 inner_hits = subgroupBallot(hit && !leaf), leaf_hits = subgroupBallot(hit && leaf);
       subgroupMemoryBarrierShared();

@@ -360,6 +360,9 @@ std::span<const std::int32_t> VolumeCount::counts() const {
 std::span<const VolumeCount::Kind> VolumeCount::kinds() const {
   return state_->kinds;
 }
+std::span<const std::uint32_t> VolumeCount::doubts() const {
+  return state_->doubts;
+}
 glm::vec3 VolumeCount::center() const {
   return state_->volumes.l;
 }

@@ -55,6 +55,8 @@ class VolumeCount {
   /// Of the tile last counted, row by row. 0 where the kind is not `counted`.
   [[nodiscard]] std::span<const std::int32_t> counts() const;
   [[nodiscard]] std::span<const Kind> kinds() const;
+  /// 1 where the host counted: a sign is within rounding. So wherever p is on a triangle that has a volume.
+  [[nodiscard]] std::span<const std::uint32_t> doubts() const;
 
   /// What the volumes belong to.
   [[nodiscard]] glm::vec3 center() const;

@@ -106,7 +106,6 @@ TEST_F(DepthHard, SoupsAllAroundTheLight) {
 }
 
 TEST_F(DepthHard, WrongOptionsAndLightsAreRefused) {
-  EXPECT_THROW(make_depth_complexity(device(), {{"variant", "forest"}}), UsageError);
   EXPECT_THROW(make_depth_complexity(device(), {{"variant", "rays"}}), UsageError);
   EXPECT_THROW(make_depth_complexity(device(), {{"bias", "0.1"}}), UsageError);
   scenes::Scene scene;

@@ -1,0 +1,24 @@
+// Written once for C++ and GLSL: how counters of light samples are packed (docs/depth-complexity.md, variant=forest).
+#ifdef __cplusplus
+#pragma once
+#include <cstdint>
+namespace penumbra::volumes::gpu {
+using uint = std::uint32_t;
+#endif
+
+/// Light samples, at most.
+const uint kMostPacked = 16;
+
+/// A counter is a digit of `bits` bits, from the lowest on. A sum of digits d_j · 2^(bits · j) modulo 2⁶⁴, in any order,
+/// says each d_j as long as every |d_j| < 2^(bits − 1) at the end.
+/// The last word is the sum of |k_e| of all edges that changed a counter: no |d_j| is larger.
+
+/// Doubles before the light samples (packed_counters.frag).
+const uint kPackedHead = 6;
+/// Relative to the terms that X, Y and W are sums of, three roundings each: 2⁻⁴⁶ is more than 2⁴ times their error, so
+/// that what is kept of an edge is longer than its parameters' rounding, too.
+const double kAppearError = 1.0 / 70368744177664.0;
+
+#ifdef __cplusplus
+}  // namespace penumbra::volumes::gpu
+#endif
