@@ -1,4 +1,5 @@
-// Vectors of floats, as many as the processor has: included once a target by each of edge scatter's native stages.
+// Vectors of floats, as many as the processor has: included once a target by each of edge scatter's native stages. Inside
+// volumes/ only.
 
 #if defined(PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
