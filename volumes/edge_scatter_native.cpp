@@ -6,7 +6,8 @@
 #include "visibility/pair_judge.hpp"
 #include "visibility/visible_share.hpp"
 #include "volumes/edge_sides.hpp"
-#include "volumes/native_clusters.hpp"
+#include "native/clusters.hpp"
+#include "volumes/native_scatter.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -19,10 +20,7 @@
 namespace penumbra::volumes {
 namespace {
 
-using native::Frame;
 using native::Outlook;
-using native::Placed;
-using native::Seen;
 
 constexpr std::uint32_t kBlock = 8;    // pixels, whose clusters have lists
 constexpr std::uint32_t kRegion = 16;  // pixels, whose blocks begin their walks at the same roots
@@ -42,7 +40,7 @@ Spot spot(std::uint32_t i) {
 }
 
 /// What is not certain by exact predicates, on the spot.
-class OpenJudge final : public native::Judge {
+class OpenJudge final : public Judge {
  public:
   OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
 
@@ -104,12 +102,12 @@ class NativeEdgeScatter final : public visibility::Method {
     scene_ = &scene;
     scale_ = render::device_scale(scene);
     tree_ = visibility::make_triangle_tree(scene);
-    triangles_ = wide_triangle_tree(scene, tree_, scale_);
+    triangles_ = native::wide_triangle_tree(scene, tree_, scale_);
     normal_is_known_.resize(scene.triangles.size());
     tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene.triangles.size()), [&](std::uint32_t i) {
       normal_is_known_[i] = render::normal_is_known(scene.corners(i)) ? 1 : 0;
     });
-    whole_ = wide_edge_tree(edge_texels(sides_.prepare_mesh(scene), scale_));
+    whole_ = wide_edges(sides_.prepare_mesh(scene));
   }
 
   void prepare_light(const visibility::Light& light) override {
@@ -122,8 +120,8 @@ class NativeEdgeScatter final : public visibility::Method {
     const SidedRecords records = sides_.prepare_light(light, frame_, scale_);
     front_.reset();
     back_.reset();
-    if (records.front) front_ = wide_edge_tree(edge_texels(*records.front, scale_));
-    if (records.back) back_ = wide_edge_tree(edge_texels(*records.back, scale_));
+    if (records.front) front_ = wide_edges(*records.front);
+    if (records.back) back_ = wide_edges(*records.back);
     frames_.clear();
     for (const float side : {1.0F, -1.0F}) {
       if (side < 0 && !light.two_sided) continue;
@@ -150,12 +148,12 @@ class NativeEdgeScatter final : public visibility::Method {
     const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
                         down = (tile.row_count + kRegion - 1) / kRegion;
     tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
-      native::Scratch& scratch = scratch_.local();
+      Scratch& scratch = scratch_.local();
       for (const Frame& frame : frames_)
         do_region(frame, {region % across * kRegion, region / across * kRegion}, scratch);
     });
     milliseconds_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    for (native::Scratch& scratch : scratch_) {
+    for (Scratch& scratch : scratch_) {
       counters_["openPixels"] += std::exchange(scratch.open_pixels, 0);
       counters_["openPairs"] += std::exchange(scratch.open_samples, 0);
       counters_["listedEdges"] += std::exchange(scratch.listed, 0);
@@ -215,11 +213,15 @@ class NativeEdgeScatter final : public visibility::Method {
     }
     return reach;
   }
-  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const {
+  [[nodiscard]] native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records) const {
+    const EdgeTexels texels = edge_texels(records, scale_);
+    return texels.depth == 0 ? native::WideEdgeTree{} : native::wide_edge_tree(texels.nodes, texels.slots);
+  }
+  [[nodiscard]] const native::WideEdgeTree& edges_of(const Frame& frame) const {
     return frame.side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
   }
 
-  void do_region(const Frame& frame, const Spot& corner, native::Scratch& scratch) {
+  void do_region(const Frame& frame, const Spot& corner, Scratch& scratch) {
     const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
     OpenJudge judge(pairs, frame);
     const native::ViewInput view{*scene_, *samples_, frame_, frame, normal_is_known_, scale_};
@@ -265,7 +267,7 @@ class NativeEdgeScatter final : public visibility::Method {
     visible_[pixel] = seen.visible;
   }
 
-  void do_block(const Frame& frame, std::span<Placed> block, OpenJudge& judge, native::Scratch& scratch) {
+  void do_block(const Frame& frame, std::span<Placed> block, OpenJudge& judge, Scratch& scratch) {
     if (block.empty()) return;
     std::size_t begin = 0;
     for (const std::size_t end : native::split_at_gaps(block)) {
@@ -274,7 +276,7 @@ class NativeEdgeScatter final : public visibility::Method {
     }
   }
 
-  void do_cluster(const Frame& frame, std::span<const Placed> placed, OpenJudge& judge, native::Scratch& scratch) {
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, OpenJudge& judge, Scratch& scratch) {
     const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
     scratch.edges.count = scratch.triangles.count = 0;
     native::Cluster cluster;
@@ -288,7 +290,7 @@ class NativeEdgeScatter final : public visibility::Method {
     if (scratch.edges.count + scratch.triangles.count == 0) {
       for (const Placed& at : placed) {
         Seen seen = seen_of(at);
-        native::see_all(frame, at, scratch.open, judge, seen);
+        see_all(frame, at, scratch.open, judge, seen);
         visible_[at.pixel - first_pixel] = seen.visible;
       }
       return;
@@ -299,8 +301,8 @@ class NativeEdgeScatter final : public visibility::Method {
       scratch.samples.push_back(native::complete(frame, cluster, at));
       scratch.seen.push_back(seen_of(at));
     }
-    native::scatter({frame, triangles_, cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch, judge,
-                    scratch.seen);
+    scatter({frame, triangles_, cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch, judge,
+            scratch.seen);
     for (std::size_t i = 0; i < placed.size(); ++i) visible_[placed[i].pixel - first_pixel] = scratch.seen[i].visible;
   }
 
@@ -310,17 +312,17 @@ class NativeEdgeScatter final : public visibility::Method {
   float scale_ = 1;
   visibility::TriangleTree tree_;
   std::vector<std::uint8_t> normal_is_known_;  // of each triangle
-  WideTriangleTree triangles_;
-  WideEdgeTree whole_;
+  native::WideTriangleTree triangles_;
+  native::WideEdgeTree whole_;
   const visibility::Light* light_ = nullptr;
   visibility::LightFrame frame_;
   std::vector<Frame> frames_;
-  std::optional<WideEdgeTree> front_, back_;  // where `whole_` will not do
+  std::optional<native::WideEdgeTree> front_, back_;  // where `whole_` will not do
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::Tile tile_;
   std::vector<std::uint16_t> masks_;  // of the tile: bit column · padded_rows + row; unless all or none are visible
   std::vector<std::uint32_t> visible_;
-  tbb::enumerable_thread_specific<native::Scratch> scratch_;
+  tbb::enumerable_thread_specific<Scratch> scratch_;
   double milliseconds_ = 0;
   std::map<std::string, std::uint64_t> counters_;
 };

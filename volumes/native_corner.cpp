@@ -12,11 +12,14 @@
 #define HWY_TARGET_INCLUDE "volumes/native_corner.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "volumes/native_vectors-inl.hpp"
+#include "native/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
 
 /// Of the triangles that float arithmetic leaves open.
 std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Open& open) {
@@ -94,11 +97,11 @@ std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
 }
 
 }  // namespace
-}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+}  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::volumes::native {
+namespace penumbra::volumes {
 
 HWY_EXPORT(count_to_corner_here);
 
@@ -106,5 +109,5 @@ std::uint32_t count_to_corner(const CornerInput& input, Open& open) {
   return HWY_DYNAMIC_DISPATCH(count_to_corner_here)(input, open);
 }
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::volumes
 #endif

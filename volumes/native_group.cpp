@@ -12,11 +12,14 @@
 #define HWY_TARGET_INCLUDE "volumes/native_group.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "volumes/native_vectors-inl.hpp"
+#include "native/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
 
 struct Box3 {
   glm::vec3 low{0}, high{0};
@@ -222,11 +225,11 @@ void sort_out_here(const ScatterInput& in, std::span<const Sample> group, GroupL
 }
 
 }  // namespace
-}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+}  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::volumes::native {
+namespace penumbra::volumes {
 
 HWY_EXPORT(sort_out_here);
 
@@ -234,5 +237,5 @@ void sort_out(const ScatterInput& input, std::span<const Sample> group, GroupLis
   HWY_DYNAMIC_DISPATCH(sort_out_here)(input, group, lists);
 }
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::volumes
 #endif

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::volumes::native {
+namespace penumbra::volumes {
 namespace {
 
 /// A way from p: across, along, and up to the light. It appears at foot + height / w (x, y).
@@ -186,4 +186,4 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, 
 template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>*, Open&);
 template void scatter_precisely(const PreciseInput&, const Changes<std::int32_t>*, Open&);
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::volumes

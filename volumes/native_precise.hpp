@@ -4,7 +4,7 @@
 
 /// One edge for one view sample, number by number: edges that come near p's height, and whatever may be within rounding
 /// of a light sample. The same operations as the vectors', so that a vertex is in one place. Inside volumes/ only.
-namespace penumbra::volumes::native {
+namespace penumbra::volumes {
 
 /// Changes of the depth: [column · padded_rows + row], and where edges cross the light's left side, a row each.
 template <typename Counter>
@@ -26,4 +26,4 @@ struct PreciseInput {
 template <typename Counter>
 void scatter_precisely(const PreciseInput& input, const Changes<Counter>* changes, Open& open);
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::volumes

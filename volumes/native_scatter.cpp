@@ -11,11 +11,14 @@
 #define HWY_TARGET_INCLUDE "volumes/native_scatter.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "volumes/native_vectors-inl.hpp"
+#include "native/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
 
 constexpr std::size_t kGroup = 16;                 // view samples that sort out edges together
 constexpr std::uint32_t kUnsettled = 0x80000000U;  // of CrossingField's kEdge
@@ -449,11 +452,11 @@ void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::s
 }
 
 }  // namespace
-}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+}  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::volumes::native {
+namespace penumbra::volumes {
 
 HWY_EXPORT(see_all_here);
 HWY_EXPORT(scatter_here);
@@ -466,5 +469,5 @@ void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::spa
   HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, seen);
 }
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::volumes
 #endif

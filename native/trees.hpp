@@ -1,16 +1,18 @@
 #pragma once
 
 #include "render/tree_texels.hpp"
-#include "volumes/edge_set.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/triangle_tree.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-/// The hierarchies of edge scatter as a processor's vector units like them: eight children, edges or triangles side by
+/// Hierarchies as a processor's vector units like them: eight children, edges or triangles side by
 /// side, all numbers scaled like the device's.
-namespace penumbra::volumes {
+namespace penumbra::native {
 
 constexpr std::size_t kWide = 8;
 using WideFloats = std::array<float, kWide>;
@@ -19,12 +21,12 @@ using WidePoints = std::array<WideFloats, 3>;  ///< x, y, z
 
 struct alignas(64) WideNode {
   WidePoints middle, half;
-  std::array<WideFloats, 4> cone;  ///< of normals: axis, cosine (EdgeTexels)
+  std::array<WideFloats, 4> cone;  ///< of normals: axis, cosine
   WideWords reference;             ///< TriangleTree::Child::reference
   std::uint32_t used = 0;          ///< a bit a child
 };
 
-/// EdgeRecords. Unused ones have used = 0.
+/// Edges, each with the planes of two of its triangles. Unused ones have used = 0.
 struct alignas(64) WideEdges {
   WidePoints a, b;
   std::array<WidePoints, 2> n, anchor;
@@ -47,8 +49,10 @@ struct WideTriangleTree {
   std::vector<WideTriangles> leaves;
 };
 
-WideEdgeTree wide_edge_tree(const EdgeTexels& texels);
+/// `nodes`: three texels a child; `slots`: an edge's six (volumes/edge_set.hpp, EdgeTexels). Without nodes: empty.
+WideEdgeTree wide_edge_tree(std::span<const render::Texel> nodes,
+                            const std::array<std::vector<render::Texel>, 6>& slots);
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale);
 
-}  // namespace penumbra::volumes
+}  // namespace penumbra::native

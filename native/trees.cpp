@@ -1,8 +1,8 @@
-#include "volumes/native_trees.hpp"
+#include "native/trees.hpp"
 
 #include <bit>
 
-namespace penumbra::volumes {
+namespace penumbra::native {
 namespace {
 
 using render::Texel;
@@ -32,22 +32,22 @@ std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stri
 
 }  // namespace
 
-WideEdgeTree wide_edge_tree(const EdgeTexels& texels) {
+WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::vector<Texel>, 6>& slots) {
   WideEdgeTree tree;
-  if (texels.depth == 0) return tree;
-  tree.nodes = wide_nodes(texels.nodes, 3);
-  tree.leaves.resize(texels.slots[0].size() / kWide);
+  if (nodes.empty()) return tree;
+  tree.nodes = wide_nodes(nodes, 3);
+  tree.leaves.resize(slots[0].size() / kWide);
   for (std::size_t slot = 0; slot < tree.leaves.size() * kWide; ++slot) {
     WideEdges& leaf = tree.leaves[slot / kWide];
     const std::size_t lane = slot % kWide;
-    put(leaf.a, lane, texels.slots[0][slot].value);
-    put(leaf.b, lane, texels.slots[1][slot].value);
+    put(leaf.a, lane, slots[0][slot].value);
+    put(leaf.b, lane, slots[1][slot].value);
     for (std::size_t side = 0; side < 2; ++side) {
-      leaf.plane[side][lane] = texels.slots[side][slot].number;
-      put(leaf.n[side], lane, texels.slots[2 + 2 * side][slot].value);
-      put(leaf.anchor[side], lane, texels.slots[3 + 2 * side][slot].value);
+      leaf.plane[side][lane] = slots[side][slot].number;
+      put(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
+      put(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
     }
-    if (texels.slots[2][slot].number != 0) leaf.used |= 1U << lane;
+    if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
   }
   return tree;
 }
@@ -72,4 +72,4 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
   return wide;
 }
 
-}  // namespace penumbra::volumes
+}  // namespace penumbra::native

@@ -1,7 +1,7 @@
 // First stage of edge scatter on a processor: the walk of find_edges.comp, eight children, edges or triangles at a
 // time.
 
-#include "volumes/native_scatter.hpp"
+#include "native/find.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -9,12 +9,12 @@
 #include <bit>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "volumes/native_find.cpp"
+#define HWY_TARGET_INCLUDE "native/find.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace penumbra::native::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -284,11 +284,11 @@ void find_here(const FindInput& in, const Roots& from, std::vector<std::uint32_t
 }
 
 }  // namespace
-}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+}  // namespace penumbra::native::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::volumes::native {
+namespace penumbra::native {
 
 HWY_EXPORT(find_roots_here);
 HWY_EXPORT(find_here);
@@ -302,5 +302,5 @@ void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>&
   HWY_DYNAMIC_DISPATCH(find_here)(input, from, stack, edges, triangles);
 }
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::native
 #endif

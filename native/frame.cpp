@@ -1,11 +1,11 @@
-#include "volumes/native_scatter.hpp"
+#include "native/frame.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <cmath>
 
-namespace penumbra::volumes::native {
+namespace penumbra::native {
 namespace {
 
 float size1(const glm::dvec3& x) {
@@ -115,4 +115,4 @@ Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed
   return at;
 }
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::native

@@ -1,4 +1,4 @@
-#include "volumes/native_clusters.hpp"
+#include "native/clusters.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::volumes::native {
+namespace penumbra::native {
 namespace {
 
 float size1(const glm::vec3& x) {
@@ -78,4 +78,4 @@ std::vector<std::size_t> split_at_gaps(std::span<Placed> samples) {
   return ends;
 }
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::native

@@ -1,19 +1,20 @@
-// Vectors of floats, as many as the processor has: included once a target by each of edge scatter's native stages. Inside
-// volumes/ only.
+// Vectors of floats, as many as the processor has: included once a target by each stage of a method on the processor.
+// Inside native/ only, but for methods' own stages.
 
-#if defined(PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
-#undef PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
+#if defined(PENUMBRA_NATIVE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_NATIVE_VECTORS_INL_HPP
+#undef PENUMBRA_NATIVE_VECTORS_INL_HPP
 #else
-#define PENUMBRA_VOLUMES_NATIVE_VECTORS_INL_HPP
+#define PENUMBRA_NATIVE_VECTORS_INL_HPP
 #endif
-
-#include "volumes/native_scatter.hpp"
 
 #include <hwy/highway.h>
 
+#include <cstddef>
+#include <cstdint>
+
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::volumes::native::HWY_NAMESPACE {
+namespace penumbra::native::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -49,7 +50,7 @@ void for_each_lane(M which, Visit visit) {
 }
 
 }  // namespace
-}  // namespace penumbra::volumes::native::HWY_NAMESPACE
+}  // namespace penumbra::native::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // once a target

@@ -2,14 +2,14 @@
 
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
-#include "volumes/native_scatter.hpp"
+#include "native/frame.hpp"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-/// From pixels to clusters of view samples. Inside volumes/ only.
-namespace penumbra::volumes::native {
+/// From pixels to clusters of view samples. Inside native/ only.
+namespace penumbra::native {
 
 /// What is certain of a view sample before any triangle is looked at.
 enum class Outlook : std::uint8_t {
@@ -35,4 +35,4 @@ Outlook look(const ViewInput& view, std::uint32_t pixel, Placed& at);
 /// each they keep their order. Returns where each part ends.
 std::vector<std::size_t> split_at_gaps(std::span<Placed> samples);
 
-}  // namespace penumbra::volumes::native
+}  // namespace penumbra::native

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "native/frame.hpp"
+
+#include <cstdint>
+#include <vector>
+
+/// Which light samples a view sample sees, and what is not certain of that.
+namespace penumbra::native {
+
+/// What float arithmetic left open of a view sample.
+struct Open {
+  bool pixel = false;                        ///< all of it
+  bool corner = false;                       ///< how many triangles are before the light's corner
+  std::vector<std::uint32_t> rows, samples;  ///< light samples: row · columns + column; some twice
+
+  void clear() {
+    pixel = corner = false;
+    rows.clear();
+    samples.clear();
+  }
+  [[nodiscard]] bool any() const { return pixel || !rows.empty() || !samples.empty(); }
+};
+
+/// Visible light samples of a view sample: how many, and, unless all or none are, which: bit column · padded_rows +
+/// row.
+struct Seen {
+  std::uint16_t* mask = nullptr;
+  std::uint32_t visible = 0;
+};
+
+/// Decides what is open by exact predicates.
+class Judge {
+ public:
+  virtual ~Judge() = default;
+  /// How many triangles are before a light sample.
+  virtual std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) = 0;
+  virtual void decide(const Placed& sample, const Open& open, Seen& seen) = 0;
+};
+
+}  // namespace penumbra::native
