@@ -2,11 +2,17 @@
 
 #include "native/frame.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 /// Which light samples a view sample sees, and what is not certain of that.
 namespace penumbra::native {
+
+/// Sixteen light samples each: bit column · padded_rows + row.
+inline std::size_t mask_words(const Frame& frame) {
+  return std::size_t{frame.columns} * frame.padded_rows / 16;
+}
 
 /// What float arithmetic left open of a view sample.
 struct Open {
@@ -22,8 +28,7 @@ struct Open {
   [[nodiscard]] bool any() const { return pixel || !rows.empty() || !samples.empty(); }
 };
 
-/// Visible light samples of a view sample: how many, and, unless all or none are, which: bit column · padded_rows +
-/// row.
+/// Visible light samples of a view sample: how many, and, unless all or none are, which.
 struct Seen {
   std::uint16_t* mask = nullptr;
   std::uint32_t visible = 0;

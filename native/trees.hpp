@@ -55,4 +55,9 @@ WideEdgeTree wide_edge_tree(std::span<const render::Texel> nodes,
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale);
 
+template <typename Tree>
+std::uint64_t bytes_of(const Tree& tree) {
+  return tree.nodes.size() * sizeof(tree.nodes[0]) + tree.leaves.size() * sizeof(tree.leaves[0]);
+}
+
 }  // namespace penumbra::native

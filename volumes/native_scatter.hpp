@@ -53,9 +53,7 @@ std::uint32_t count_to_corner(const CornerInput& input, Open& open);
 
 /// Buffers of one thread.
 struct Scratch {
-  std::vector<Placed> placed;
   std::vector<Sample> samples;
-  std::vector<Seen> seen;
   EdgeTable edges;
   TriangleTable triangles;
   GroupLists lists;
@@ -66,7 +64,7 @@ struct Scratch {
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
   Open open;
-  std::uint64_t open_pixels = 0, open_samples = 0, listed = 0;  // counted
+  std::uint64_t listed = 0;  // edges, counted
 };
 
 /// Where nothing is before the light but the horizon.

@@ -1,0 +1,209 @@
+#include "native/mask_method.hpp"
+
+#include "base/assert.hpp"
+#include "native/open_judge.hpp"
+#include "visibility/visible_share.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace penumbra::native {
+namespace {
+
+constexpr std::uint32_t kBlock = 8;    // pixels, whose clusters have lists
+constexpr std::uint32_t kRegion = 16;  // pixels, whose blocks begin their walks at the same roots
+constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
+
+/// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
+struct Spot {
+  std::uint32_t x = 0, y = 0;
+};
+Spot spot(std::uint32_t i) {
+  Spot at;
+  for (std::uint32_t bit = 0; 1U << 2 * bit < kRegion * kRegion; ++bit) {
+    at.x |= (i >> 2 * bit & 1) << bit;
+    at.y |= (i >> (2 * bit + 1) & 1) << bit;
+  }
+  return at;
+}
+
+/// Buffers of one thread.
+struct Buffers {
+  std::vector<Placed> placed;
+  std::vector<Seen> seen;
+};
+Buffers& buffers() {
+  static tbb::enumerable_thread_specific<Buffers> all;
+  return all.local();
+}
+
+}  // namespace
+
+MaskMethod::MaskMethod(visibility::MethodDescription description, std::string pass)
+    : description_(std::move(description)), pass_(std::move(pass)) {}
+
+void MaskMethod::prepare_mesh(const visibility::SceneFloats& scene) {
+  scene_ = &scene;
+  scale_ = render::device_scale(scene);
+  tree_ = visibility::make_triangle_tree(scene);
+  triangles_ = wide_triangle_tree(scene, tree_, scale_);
+  normal_is_known_.resize(scene.triangles.size());
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene.triangles.size()),
+                    [&](std::uint32_t i) { normal_is_known_[i] = render::normal_is_known(scene.corners(i)) ? 1 : 0; });
+}
+
+void MaskMethod::prepare_light(const visibility::Light& light) {
+  visibility::check_light(description_, light);
+  PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
+  light_ = &light;
+  counters_.clear();
+  light_frame_ = visibility::make_light_frame(light, scale_);
+  PENUMBRA_ASSERT(light_frame_.rows, "light {} has no rows that a step describes", light.name);
+  const bool cut = prepare_casters();
+  frames_.clear();
+  for (const float side : {1.0F, -1.0F}) {
+    if (side < 0 && !light.two_sided) continue;
+    frames_.push_back(make_frame({light_frame_, light.rows, light.columns, static_cast<std::uint32_t>(light.index),
+                                  side, reach(), cut ? 4 * reach() : 0}));
+  }
+}
+
+/// At least the largest coordinate, in size, of anything in the scene, scaled.
+float MaskMethod::reach() const {
+  float reach = 0;
+  for (int i = 0; i < 3; ++i) {
+    reach =
+        std::max({reach, std::abs(light_frame_.center[i]) + std::abs(light_frame_.u[i]) + std::abs(light_frame_.v[i]),
+                  std::abs(scene_->lower[i]) * scale_, std::abs(scene_->upper[i]) * scale_});
+  }
+  return reach;
+}
+
+std::uint32_t MaskMethod::max_tile_rows() const {
+  PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
+  const std::size_t rows = kMostMaskBytes / (mask_words(frames_[0]) * 2 * samples_->width) / kRegion * kRegion;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(rows, std::min(kRegion, samples_->height), samples_->height));
+}
+
+void MaskMethod::evaluate(const visibility::Tile& tile) {
+  tile_ = tile;
+  const std::size_t pixels = std::size_t{tile.row_count} * samples_->width;
+  masks_.resize(std::max(masks_.size(), pixels * mask_words(frames_[0])));
+  visible_.assign(pixels, 0);
+  const auto start = std::chrono::steady_clock::now();
+  const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
+                      down = (tile.row_count + kRegion - 1) / kRegion;
+  tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
+    for (const Frame& frame : frames_) do_region(frame, region % across * kRegion, region / across * kRegion);
+  });
+  milliseconds_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  counters_["openPixels"] += open_pixels_.exchange(0);
+  counters_["openPairs"] += open_pairs_.exchange(0);
+  count(counters_);
+}
+
+void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t top) {
+  const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
+  OpenJudge judge(pairs, frame);
+  const ViewInput view{*scene_, *samples_, light_frame_, frame, normal_is_known_, scale_};
+  const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
+  std::vector<Placed>& placed = buffers().placed;
+  std::array<std::size_t, kRegion * kRegion / (kBlock * kBlock)> ends{};  // of its blocks
+  placed.resize(kRegion * kRegion);
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
+    const Spot place = spot(i);
+    const std::uint32_t x = left + place.x, y = top + place.y;
+    if (x < samples_->width && y < tile_.row_count) {
+      const std::size_t pixel = std::size_t{y} * samples_->width + x;
+      Placed& at = placed[count];
+      const Outlook outlook = look(view, static_cast<std::uint32_t>(first_pixel + pixel), at);
+      if (outlook == Outlook::scattered) ++count;
+      if (outlook == Outlook::all) visible_[pixel] = light_->sample_count();
+      if (outlook == Outlook::open && frame.side > 0) decide_all(at, judge);  // one of two sides asks
+    }
+    ends[i / (kBlock * kBlock)] = count;
+  }
+  placed.resize(count);
+  if (count > 0) {
+    begin_region(frame, make_cluster(frame, placed));
+    std::size_t begin = 0;
+    for (const std::size_t end : ends) {
+      do_block(frame, std::span(placed).subspan(begin, end - begin), judge);
+      begin = end;
+    }
+  }
+  open_pixels_ += judge.pixels();
+  open_pairs_ += judge.pairs();
+}
+
+void MaskMethod::do_block(const Frame& frame, std::span<Placed> block, Judge& judge) {
+  if (block.empty()) return;
+  std::vector<Seen>& seen = buffers().seen;
+  std::size_t begin = 0;
+  for (const std::size_t end : split_at_gaps(block)) {
+    const auto cluster = block.subspan(begin, end - begin);
+    seen.clear();
+    for (const Placed& at : cluster) seen.push_back({mask_of(at), 0});
+    do_cluster(frame, cluster, judge, seen);
+    for (std::size_t i = 0; i < cluster.size(); ++i) visible_[tile_pixel(cluster[i])] = seen[i].visible;
+    begin = end;
+  }
+}
+
+void MaskMethod::decide_all(const Placed& sample, Judge& judge) {
+  Open open;
+  open.pixel = true;
+  Seen seen{mask_of(sample), 0};
+  std::fill_n(seen.mask, mask_words(frames_[0]), std::uint16_t{0});
+  judge.decide(sample, open, seen);
+  visible_[tile_pixel(sample)] = seen.visible;
+}
+
+void MaskMethod::read_masks(std::span<std::uint32_t> masks) {
+  const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count(), columns = light_->columns;
+  const std::size_t own = mask_words(frames_[0]), padded = frames_[0].padded_rows;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible_.size(), 256), [&](const auto& range) {
+    for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      const auto mask = masks.subspan(pixel * words, words);
+      std::fill(mask.begin(), mask.end(), 0U);
+      if (visible_[pixel] == 0) continue;
+      const std::uint16_t* from = &masks_[pixel * own];
+      for (std::uint32_t j = 0; j < count; ++j) {
+        const std::size_t bit = j % columns * padded + j / columns;
+        const bool visible = visible_[pixel] == count || (from[bit / 16] >> bit % 16 & 1) != 0;
+        mask[j / 32] |= (visible ? 1U : 0U) << (j % 32);
+      }
+    }
+  });
+}
+
+void MaskMethod::read_visibility(std::span<float> visibility) {
+  if (!light_->weights.empty()) {
+    std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
+    read_masks(masks);
+    visibility::visible_shares(*light_, masks, visibility);
+    return;
+  }
+  const auto all = static_cast<double>(light_->sample_count());
+  std::transform(visible_.begin(), visible_.end(), visibility.begin(),
+                 [&](std::uint32_t count) { return static_cast<float>(count / all); });
+}
+
+std::vector<visibility::PassTime> MaskMethod::take_pass_times() {
+  return {{pass_, std::exchange(milliseconds_, 0)}};
+}
+
+std::uint64_t MaskMethod::memory_bytes() const {
+  return bytes_of(triangles_) + masks_.size() * sizeof(masks_[0]) + visible_.size() * sizeof(visible_[0]);
+}
+
+}  // namespace penumbra::native

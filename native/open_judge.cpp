@@ -1,0 +1,46 @@
+#include "native/open_judge.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace penumbra::native {
+
+std::uint32_t OpenJudge::depth(const Placed& sample, std::uint32_t light_sample) {
+  ++pairs_;
+  return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
+}
+
+void OpenJudge::decide(const Placed& sample, const Open& open, Seen& seen) {
+  ++pixels_;
+  const auto each = [&](const std::vector<std::uint32_t>& numbers, const auto& visit) {
+    numbers_ = numbers;
+    std::sort(numbers_.begin(), numbers_.end());
+    numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
+    for (const std::uint32_t number : numbers_) visit(number);
+  };
+  if (open.pixel) {
+    for (std::uint32_t row = 0; row < frame_.rows; ++row) decide_row(sample, row, seen);
+  } else {
+    each(open.rows, [&](std::uint32_t row) { decide_row(sample, row, seen); });
+    each(open.samples, [&](std::uint32_t one) { decide_one(sample, one, seen); });
+  }
+  seen.visible = 0;
+  for (std::size_t i = 0; i < mask_words(frame_); ++i)
+    seen.visible += static_cast<std::uint32_t>(std::popcount(seen.mask[i]));
+}
+
+void OpenJudge::decide_row(const Placed& sample, std::uint32_t row, Seen& seen) {
+  for (std::uint32_t column = 0; column < frame_.columns; ++column)
+    decide_one(sample, row * frame_.columns + column, seen);
+}
+
+void OpenJudge::decide_one(const Placed& sample, std::uint32_t light_sample, Seen& seen) {
+  ++pairs_;
+  const std::uint32_t row = light_sample / frame_.columns, column = light_sample % frame_.columns;
+  std::uint16_t& word = seen.mask[(std::size_t{column} * frame_.padded_rows + row) / 16];
+  const std::uint32_t bit = 1U << row % 16;
+  const bool visible = judge_.is_visible(sample.pixel, judge_.light.points[light_sample]);
+  word = static_cast<std::uint16_t>(visible ? word | bit : word & ~bit);
+}
+
+}  // namespace penumbra::native

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "native/masks.hpp"
+#include "visibility/pair_judge.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::native {
+
+/// Decides by exact predicates what is not certain, on the spot, and counts that.
+class OpenJudge final : public Judge {
+ public:
+  OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
+
+  std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) override;
+  void decide(const Placed& sample, const Open& open, Seen& seen) override;
+
+  [[nodiscard]] std::uint64_t pixels() const { return pixels_; }
+  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
+
+ private:
+  void decide_row(const Placed& sample, std::uint32_t row, Seen& seen);
+  void decide_one(const Placed& sample, std::uint32_t light_sample, Seen& seen);
+
+  const visibility::PairJudge& judge_;
+  const Frame& frame_;
+  std::vector<std::uint32_t> numbers_;
+  std::uint64_t pixels_ = 0, pairs_ = 0;
+};
+
+}  // namespace penumbra::native
