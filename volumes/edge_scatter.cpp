@@ -261,6 +261,13 @@ bool runs_natively(const render::Device& device, const visibility::MethodOptions
   throw UsageError("edge-scatter: engine is auto, vulkan or native, not \"{}\"", engine);
 }
 
+bool rows_are_exact(const visibility::MethodOptions& options) {
+  const auto found = options.find("rows");
+  if (found == options.end() || found->second == "samples") return false;
+  if (found->second == "exact") return true;
+  throw UsageError("edge-scatter: rows is samples or exact, not \"{}\"", found->second);
+}
+
 }  // namespace
 
 visibility::MethodDescription edge_scatter_description() {
@@ -273,7 +280,9 @@ visibility::MethodDescription edge_scatter_description() {
           .any_pattern = false,
           .options = {{"engine", "auto|vulkan|native", "auto",
                        "vulkan: on the device; native: on the processor's own vector units; auto: native where the "
-                       "Vulkan device is the processor anyway. The same bits"}},
+                       "Vulkan device is the processor anyway. The same bits"},
+                      {"rows", "samples|exact", "samples",
+                       "exact: V of the whole light, without light samples, on the processor; no masks"}},
           .verdict_on = verdict_on};
 }
 
@@ -281,7 +290,16 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
                                                       const visibility::MethodOptions& options) {
   visibility::MethodDescription description = edge_scatter_description();
   visibility::check_options(description, options);
-  if (runs_natively(device, options)) return make_native_edge_scatter(std::move(description));
+  const bool native = runs_natively(device, options);
+  if (rows_are_exact(options)) {
+    if (!native && options.contains("engine")) {
+      throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
+    }
+    description.output = visibility::Output::scalar;
+    description.textures = false;
+    return make_native_edge_scatter(std::move(description), true);
+  }
+  if (native) return make_native_edge_scatter(std::move(description), false);
   return std::make_unique<EdgeScatter>(device, options);
 }
 

@@ -2,8 +2,10 @@
 
 #include "volumes/edge_scatter_native.hpp"
 
+#include "base/assert.hpp"
 #include "native/mask_method.hpp"
 #include "volumes/edge_sides.hpp"
+#include "volumes/native_rows.hpp"
 #include "volumes/native_scatter.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -14,9 +16,10 @@
 namespace penumbra::volumes {
 namespace {
 
-class NativeEdgeScatter final : public native::MaskMethod {
+/// Finds each cluster's edges and triangles.
+class NativeEdges : public native::MaskMethod {
  public:
-  explicit NativeEdgeScatter(visibility::MethodDescription given)
+  explicit NativeEdges(visibility::MethodDescription given)
       : MaskMethod(std::move(given), "scatter edges"), sides_(description().name) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
@@ -49,38 +52,94 @@ class NativeEdgeScatter final : public native::MaskMethod {
     find_roots({frame, edges_of(frame), triangles(), all}, scratch_.local().roots);
   }
 
-  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
-    Scratch& scratch = scratch_.local();
-    scratch.edges.count = scratch.triangles.count = 0;
-    Cluster cluster;
-    if (!scratch.roots.edges.empty() || !scratch.roots.triangles.empty()) {
-      cluster = make_cluster(frame, placed);
-      find({frame, edges_of(frame), triangles(), cluster}, scratch.roots, scratch.stack, scratch.edges,
-           scratch.triangles);
-      scratch.listed += scratch.edges.count;
-    }
-    if (scratch.edges.count + scratch.triangles.count == 0) {
-      for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], scratch.open, judge, seen[i]);
-      return;
-    }
+ protected:
+  /// Fills the buffers; false: nothing is before the light.
+  bool find_all(const Frame& frame, std::span<const Placed> placed, Cluster& cluster, Scratch& scratch) {
+    if (scratch.roots.edges.empty() && scratch.roots.triangles.empty()) return false;
+    cluster = make_cluster(frame, placed);
+    find({frame, edges_of(frame), triangles(), cluster}, scratch.roots, scratch.stack, scratch.edges,
+         scratch.triangles);
+    scratch.listed += scratch.edges.count;
+    if (scratch.edges.count + scratch.triangles.count == 0) return false;
     scratch.samples.clear();
     for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
-    scatter({frame, triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch, judge, seen);
+    return true;
   }
 
+ private:
   void count(std::map<std::string, std::uint64_t>& counters) override {
-    for (Scratch& scratch : scratch_) counters["listedEdges"] += std::exchange(scratch.listed, 0);
+    for (Scratch& scratch : scratch_) {
+      counters["listedEdges"] += std::exchange(scratch.listed, 0);
+      const std::uint64_t sampled = std::exchange(scratch.sampled, 0);
+      if (sampled > 0) counters["sampledPixels"] += sampled;
+    }
   }
 
   EdgeSides sides_;
   WideEdgeTree whole_;
   std::optional<WideEdgeTree> front_, back_;  // where `whole_` will not do
+
+ protected:
   tbb::enumerable_thread_specific<Scratch> scratch_;
+};
+
+/// Light samples.
+class NativeEdgeScatter final : public NativeEdges {
+ public:
+  using NativeEdges::NativeEdges;
+
+ private:
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+    Scratch& scratch = scratch_.local();
+    Cluster cluster;
+    if (!find_all(frame, placed, cluster, scratch)) {
+      for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], scratch.open, judge, seen[i]);
+      return;
+    }
+    scatter({frame, triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch, judge, seen);
+  }
+};
+
+/// rows=exact: shares of the light.
+class NativeEdgeRows final : public NativeEdges {
+ public:
+  using NativeEdges::NativeEdges;
+
+  void evaluate(const visibility::Tile& tile) override {
+    shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
+    NativeEdges::evaluate(tile);
+  }
+  void read_masks(std::span<std::uint32_t>) override {
+    PENUMBRA_ASSERT(false, "{} has no masks with rows=exact", description().name);
+  }
+  void read_visibility(std::span<float> visibility) override {
+    NativeEdges::read_visibility(visibility);
+    for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = shares_[i].value_or(visibility[i]);
+  }
+
+ private:
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+    Scratch& scratch = scratch_.local();
+    Cluster cluster;
+    std::vector<float> shares(placed.size(), 1.0F);
+    if (!find_all(frame, placed, cluster, scratch)) {
+      for (std::size_t i = 0; i < placed.size(); ++i)
+        if (placed[i].straddles) shares[i] = share_above_horizon(frame, placed[i]);
+    } else {
+      integrate({frame, triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles, true}, scratch, judge,
+                seen, shares);
+    }
+    for (std::size_t i = 0; i < placed.size(); ++i) shares_[tile_pixel(placed[i])] = shares[i];
+  }
+
+  std::vector<std::optional<float>> shares_;  // of the tile; none: light samples say it
 };
 
 }  // namespace
 
-std::unique_ptr<visibility::Method> make_native_edge_scatter(visibility::MethodDescription description) {
+std::unique_ptr<visibility::Method> make_native_edge_scatter(visibility::MethodDescription description,
+                                                             bool exact_rows) {
+  if (exact_rows) return std::make_unique<NativeEdgeRows>(std::move(description));
   return std::make_unique<NativeEdgeScatter>(std::move(description));
 }
 

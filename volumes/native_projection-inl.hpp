@@ -64,6 +64,9 @@ class Projection {
   }
 
  private:
+  /// Without light samples a sign within rounding moves an outline by no more than rounding.
+  [[nodiscard]] M open_ones(const Multiplicity& m) const { return in_.between_rows ? hn::FirstN(D(), 0) : m.open; }
+
   struct Ways {
     V x, y, w;
   };
@@ -87,7 +90,7 @@ class Projection {
     const Multiplicity m = multiplicity(table, at_, i);
     const M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
     if (hn::AllFalse(D(), live)) return;
-    const M open = hn::And(live, m.open);
+    const M open = hn::And(live, open_ones(m));
     if (!hn::AllFalse(D(), open)) special({table, i, open, m, true});
     const V error = hn::Load(D(), table[kGroupError] + i);
     keep_crossing({appears(way_to(table, kAx, i)), appears(way_to(table, kBx, i)), m.k, error,
@@ -132,7 +135,7 @@ class Projection {
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
     const V far = hn::Add(far_of(edge), set(at_.far));
     const M through_p = hn::Lt(hn::Min(start.w, end.w), hn::Mul(set(64 * kRound), far));
-    const M other = hn::And(live, hn::Or(m.open, through_p));
+    const M other = hn::And(live, hn::Or(open_ones(m), through_p));
     if (!hn::AllFalse(d, other)) special({table, i, other, m, false});
     const Place seen_a = appears(start), seen_b = appears(end);
     const V error = hn::Mul(set(1.01F), hn::Max(error_of(seen_a, start.w, far), error_of(seen_b, end.w, far)));
@@ -160,7 +163,9 @@ class Projection {
     const V first = hn::Max(hn::Ceil(low_y), set(0)), last = hn::Min(hn::Floor(high_y), hn::Sub(rows, set(1)));
     const M left = hn::And(hn::Lt(low_x, set(-0.5F)), hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows)));
     const M before = hn::And(hn::Le(low_x, columns), hn::Ge(high_x, set(-0.5F)));
-    const M kept = hn::And(live, hn::And(before, hn::Or(left, hn::Le(first, last))));
+    const M on_light = hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows));
+    const M matters = in_.between_rows ? on_light : hn::Or(left, hn::Le(first, last));
+    const M kept = hn::And(live, hn::And(before, matters));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out_[field] + out_.count); };

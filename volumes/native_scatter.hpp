@@ -33,6 +33,7 @@ struct ScatterInput {
   std::span<const Sample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
+  bool between_rows = false;  ///< edges that cross no light row matter, too
 };
 /// What matters to a group of view samples. Settled edges stay well above all of its p.
 struct GroupLists {
@@ -65,12 +66,18 @@ struct Scratch {
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
   Open open;
-  std::uint64_t listed = 0;  // edges, counted
+  std::uint64_t sampled = 0;  // view samples that `integrate` left to light samples
+  std::uint64_t listed = 0;   // edges, counted
 };
 
 /// Where nothing is before the light but the horizon.
 void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen);
 /// `seen`: one a view sample; of its mask all or nothing is written.
 void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen);
+
+/// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample that an edge passes
+/// through, or that rounding leaves in contradiction, gets the share of visible light samples, decided exactly.
+void integrate(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen,
+               std::span<float> shares);
 
 }  // namespace penumbra::volumes

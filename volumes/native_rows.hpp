@@ -1,0 +1,65 @@
+#pragma once
+
+#include "volumes/native_scatter.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+/// The share of a light that a view sample sees, without light samples: rows=exact of edge scatter. Inside volumes/
+/// only.
+namespace penumbra::volumes {
+
+/// A projected edge in the light, in cells from its lower left corner, upward or level: crossing it to the right, the
+/// depth changes by −k.
+struct RowEdge {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  std::int32_t k = 0;
+};
+
+/// Rows of the light put where the outline bends: at ends of edges, at crossings of two, at the light's sides. Between
+/// two such rows the visible length of a row is linear in its height, and the row in the middle says it exactly.
+/// docs/edge-scatter.md, "Without light samples".
+class RowSum {
+ public:
+  explicit RowSum(const Frame& frame) : frame_(frame) {}
+
+  /// Takes over the crossings of a view sample: cut to the light; what crosses its left side.
+  void set(const CrossingTable& edges);
+  /// Rounding hides whether an edge passes the light's corner above or below.
+  [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
+  /// The depth at a light sample, but for that at the light's corner; nothing: an edge is within rounding of it.
+  [[nodiscard]] std::optional<std::int32_t> relative_depth(std::uint32_t light_sample) const;
+  /// What lies below the carrier's plane counts as one layer more.
+  void add_horizon(const Placed& at);
+  /// The share that is visible. Less than no layer somewhere that is not within rounding of an edge: nothing.
+  [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner);
+
+ private:
+  struct Step {
+    double y = 0;
+    std::int32_t change = 0;
+  };
+  struct Spanning {
+    const RowEdge* edge = nullptr;
+    double x = 0;
+  };
+  void add(RowEdge edge, double error);
+  [[nodiscard]] double visible_area(double from, double to, std::int32_t depth, int halvings);
+  [[nodiscard]] double visible_length(std::int32_t depth, double height);
+
+  const Frame& frame_;
+  std::vector<RowEdge> edges_;
+  std::vector<Step> left_;  // of the depth at the light's left side, going up
+  std::vector<double> bends_;
+  std::vector<Spanning> active_;
+  bool corner_is_open_ = false;
+  std::int32_t at_corner_ = 0;  // what add_horizon adds
+  double impossible_ = 0;       // area of less than no layer
+};
+
+/// The share of the light above the horizon of a view sample, nothing else before it.
+float share_above_horizon(const Frame& frame, const Placed& at);
+
+}  // namespace penumbra::volumes
