@@ -192,8 +192,9 @@ hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
   return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)), hn::And(s.none, t.none));
 }
 
-void add_edges(const FindInput& in, const Shaft& shaft, const WideEdges& leaf, EdgeTable& out) {
+void add_edges(const FindInput& in, const Shaft& shaft, std::uint32_t number, EdgeTable& out) {
   const D d;
+  const WideEdges& leaf = in.edges.leaves[number];
   out.reserve(out.count + kWide);
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
@@ -228,6 +229,7 @@ void add_edges(const FindInput& in, const Shaft& shaft, const WideEdges& leaf, E
     }
     put(kFar, hn::Max(length(from_a), length(from_b)));
     put(kAnchorFar, hn::Max(s.anchor_far, t.anchor_far));
+    put(kEdgeSlot, hn::BitCast(d, hn::Iota(hn::RebindToSigned<D>(), static_cast<std::int32_t>(number * kWide + lane))));
     out.count += more;
   }
 }
@@ -278,7 +280,7 @@ void find_here(const FindInput& in, const Roots& from, std::vector<std::uint32_t
   edges.count = triangles.count = 0;
   const Shaft &whole = in.cluster.whole, &corner = in.cluster.corner;
   walk<true>(in, whole, in.edges.nodes, from.edges, stack,
-             [&](std::uint32_t leaf) { add_edges(in, whole, in.edges.leaves[leaf], edges); });
+             [&](std::uint32_t leaf) { add_edges(in, whole, leaf, edges); });
   walk<false>(in, corner, in.triangles.nodes, from.triangles, stack,
               [&](std::uint32_t leaf) { add_triangles(in, corner, leaf, triangles); });
 }

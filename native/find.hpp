@@ -35,6 +35,7 @@ enum EdgeField : std::size_t {
   kPlane2,
   kFar,
   kAnchorFar,
+  kEdgeSlot,  ///< of the hierarchy's leaves (bits)
   kEdgeFields
 };
 using EdgeTable = Table<kEdgeFields>;

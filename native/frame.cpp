@@ -27,9 +27,12 @@ Frame make_frame(const FrameInput& input) {
   frame.corner = glm::dvec3(input.light.center) - u - v;
   frame.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
   frame.first_cell = frame.half_cells - 0.5F;
-  frame.axis = glm::vec3(static_cast<double>(input.side) * n / std::sqrt(squared));
-  frame.across = glm::vec3(glm::cross(v, n) / squared * static_cast<double>(frame.half_cells.x));
-  frame.along = glm::vec3(glm::cross(n, u) / squared * static_cast<double>(frame.half_cells.y));
+  frame.axes = {glm::cross(v, n) / squared * static_cast<double>(frame.half_cells.x),
+                glm::cross(n, u) / squared * static_cast<double>(frame.half_cells.y),
+                static_cast<double>(input.side) * n / std::sqrt(squared)};
+  frame.across = glm::vec3(frame.axes[0]);
+  frame.along = glm::vec3(frame.axes[1]);
+  frame.axis = glm::vec3(frame.axes[2]);
   frame.per_length = std::max(glm::length(frame.across), glm::length(frame.along)) * 1.00001F;
   frame.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
   frame.deviation = input.light.deviation;

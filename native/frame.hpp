@@ -21,7 +21,8 @@ constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 struct Frame {
   glm::vec3 center{0}, axis{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
-  glm::dvec3 corner{0};  ///< of the light: where its rows and columns begin
+  glm::dvec3 corner{0};              ///< of the light: where its rows and columns begin
+  std::array<glm::dvec3, 3> axes{};  ///< across, along, axis before rounding
   float per_length = 0, skew = 1, deviation = 0, reach = 0, cut_reach = 0;
   float side = 1;
   std::uint32_t rows = 0, columns = 0, light = 0;

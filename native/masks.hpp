@@ -38,8 +38,10 @@ struct Seen {
 class Judge {
  public:
   virtual ~Judge() = default;
-  /// How many triangles are before a light sample.
-  virtual std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) = 0;
+  /// How many triangles are before the light point centre + s u + t v, up to its rounding to float.
+  virtual std::uint32_t depth(const Placed& sample, const glm::dvec2& st) = 0;
+  /// (A, B, C): the light point centre + s u + t v is above the carrier's plane where A s + B t + C > 0. In double.
+  virtual glm::dvec3 horizon(const Placed& sample) = 0;
   virtual void decide(const Placed& sample, const Open& open, Seen& seen) = 0;
 };
 

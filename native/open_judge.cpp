@@ -1,13 +1,28 @@
 #include "native/open_judge.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <bit>
 
 namespace penumbra::native {
 
-std::uint32_t OpenJudge::depth(const Placed& sample, std::uint32_t light_sample) {
+std::uint32_t OpenJudge::depth(const Placed& sample, const glm::dvec2& st) {
   ++pairs_;
-  return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
+  const glm::dvec3 center(judge_.light.center);
+  const glm::dvec3 point = center + st.x * (glm::dvec3(judge_.light.center_u) - center) +
+                           st.y * (glm::dvec3(judge_.light.center_v) - center);
+  return judge_.depth(sample.pixel, glm::vec3(point));
+}
+
+glm::dvec3 OpenJudge::horizon(const Placed& sample) {
+  const auto carrier = static_cast<std::uint32_t>(judge_.samples.triangle[sample.pixel]);
+  const auto corners = judge_.scene.corners(carrier);
+  const glm::dvec3 a(corners[0]), center(judge_.light.center);
+  const glm::dvec3 n = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a) *
+                       static_cast<double>(judge_.samples.facing[sample.pixel]);
+  return {glm::dot(n, glm::dvec3(judge_.light.center_u) - center),
+          glm::dot(n, glm::dvec3(judge_.light.center_v) - center), glm::dot(n, center - a)};
 }
 
 void OpenJudge::decide(const Placed& sample, const Open& open, Seen& seen) {

@@ -13,7 +13,8 @@ class OpenJudge final : public Judge {
  public:
   OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
 
-  std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) override;
+  std::uint32_t depth(const Placed& sample, const glm::dvec2& st) override;
+  glm::dvec3 horizon(const Placed& sample) override;
   void decide(const Placed& sample, const Open& open, Seen& seen) override;
 
   [[nodiscard]] std::uint64_t pixels() const { return pixels_; }

@@ -44,15 +44,15 @@ class NativeEdges : public native::MaskMethod {
     const EdgeTexels texels = edge_texels(records, scale());
     return texels.depth == 0 ? WideEdgeTree{} : wide_edge_tree(texels.nodes, texels.slots);
   }
-  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const {
-    return frame.side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
-  }
-
   void begin_region(const Frame& frame, const Cluster& all) override {
     find_roots({frame, edges_of(frame), triangles(), all}, scratch_.local().roots);
   }
 
  protected:
+  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const {
+    return frame.side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
+  }
+
   /// Fills the buffers; false: nothing is before the light.
   bool find_all(const Frame& frame, std::span<const Placed> placed, Cluster& cluster, Scratch& scratch) {
     if (scratch.roots.edges.empty() && scratch.roots.triangles.empty()) return false;
@@ -96,7 +96,8 @@ class NativeEdgeScatter final : public NativeEdges {
       for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], scratch.open, judge, seen[i]);
       return;
     }
-    scatter({frame, triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch, judge, seen);
+    scatter({frame, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch,
+            judge, seen);
   }
 };
 
@@ -124,10 +125,10 @@ class NativeEdgeRows final : public NativeEdges {
     std::vector<float> shares(placed.size(), 1.0F);
     if (!find_all(frame, placed, cluster, scratch)) {
       for (std::size_t i = 0; i < placed.size(); ++i)
-        if (placed[i].straddles) shares[i] = share_above_horizon(frame, placed[i]);
+        if (placed[i].straddles) shares[i] = share_above_horizon(frame, judge.horizon(placed[i]));
     } else {
-      integrate({frame, triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles, true}, scratch, judge,
-                seen, shares);
+      integrate({frame, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles, true},
+                scratch, judge, seen, shares);
     }
     for (std::size_t i = 0; i < placed.size(); ++i) shares_[tile_pixel(placed[i])] = shares[i];
   }

@@ -4,6 +4,9 @@
 #include "volumes/native_rows.hpp"
 #include "volumes/native_scatter.hpp"
 
+#include <glm/common.hpp>
+
+#include <bit>
 #include <optional>
 
 #undef HWY_TARGET_INCLUDE
@@ -19,12 +22,15 @@ namespace {
 
 constexpr std::size_t kGroup = 16;  // view samples that sort out edges together
 
-/// The depth at the light's corner, from that at a light sample that no edge comes near: exact predicates count there.
-std::optional<std::int32_t> depth_by_other_sample(const Frame& frame, const RowSum& rows, const Placed& at,
-                                                  Judge& judge) {
-  for (std::uint32_t sample = 0; sample < frame.rows * frame.columns; ++sample) {
-    const std::optional<std::int32_t> relative = rows.relative_depth(sample);
-    if (relative) return static_cast<std::int32_t>(judge.depth(at, sample)) - *relative;
+/// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
+std::optional<std::int32_t> depth_by_other_place(const Frame& frame, const RowSum& rows, const Placed& at,
+                                                 Judge& judge) {
+  constexpr int kTries = 64;
+  for (int i = 0; i < kTries; ++i) {
+    // Kronecker's sequence with the square roots of 2 and 3: on no lattice.
+    const glm::dvec2 share = glm::fract(glm::dvec2(0.4142135623, 0.7320508075) * (i + 1.0));
+    const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(frame.half_cells));
+    if (relative) return static_cast<std::int32_t>(judge.depth(at, 2.0 * share - 1.0)) - *relative;
   }
   return std::nullopt;
 }
@@ -39,17 +45,27 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
     depth = static_cast<std::int32_t>(
         count_to_corner({in.frame, in.tree, scratch.lists.triangles, at, !edges && !at.straddles}, open));
   }
-  const auto special = [&](const SpecialEdges&) { open.pixel = true; };
-  Projection{in, at, scratch.lists, scratch.crossing}(special);
-  if (open.pixel) return std::nullopt;
-  rows.set(scratch.crossing);
+  CrossingTable& crossing = scratch.crossing;
+  // The vectors only sort out; what they cannot place is looked at as well.
+  const auto special = [&](const SpecialEdges& edges) {
+    for_each_lane(edges.which, [&](std::size_t lane) {
+      crossing[kEdge][crossing.count++] = edges.table[kGroupEdge][edges.first + lane];
+    });
+  };
+  Projection{in, at, scratch.lists, crossing}(special);
+  rows.clear();
+  for (std::size_t i = 0; i < crossing.count; ++i) {
+    const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
+    const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
+    if (!rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, at)) return std::nullopt;
+  }
   if (open.corner || rows.corner_is_open()) {
-    const std::optional<std::int32_t> found = depth_by_other_sample(in.frame, rows, at, judge);
+    const std::optional<std::int32_t> found = depth_by_other_place(in.frame, rows, at, judge);
     if (!found) return std::nullopt;
     depth = *found;
   }
   if (at.straddles) {
-    rows.add_horizon(at);
+    rows.add_horizon(judge.horizon(at));
   } else if (scratch.crossing.count == 0) {
     return depth == 0 ? 1 : 0;
   }

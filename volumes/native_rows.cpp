@@ -1,7 +1,11 @@
 #include "volumes/native_rows.hpp"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -11,31 +15,83 @@ double at_height(const RowEdge& edge, double y) {
   return edge.x0 + t * (edge.x1 - edge.x0);
 }
 
+glm::dvec3 point(const WidePoints& points, std::size_t lane) {
+  return {points[0][lane], points[1][lane], points[2][lane]};
+}
+
+/// p over the light's plane.
+struct View {
+  glm::dvec2 foot{0};  // from the light's corner, in cells
+  double height = 0;
+
+  /// Where a way (across, along, up) from p ends on the light.
+  [[nodiscard]] glm::dvec2 appears(const glm::dvec3& way) const {
+    return foot + height / way.z * glm::dvec2(way.x, way.y);
+  }
+};
+
+/// The part of an edge that appears in a window of about twice the light, before any division. (bound window)
+std::optional<std::pair<glm::dvec3, glm::dvec3>> cut_to_window(const Frame& frame, const View& view,
+                                                               const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec2 middle(frame.half_cells), window = 2.0 * middle + 2.0;
+  double from = 0, to = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double off = view.foot[axis] - middle[axis];
+    const double xa = a[axis] * view.height + off * a.z, xb = b[axis] * view.height + off * b.z;
+    for (const double sign : {-1.0, 1.0}) {
+      const double inside_a = window[axis] * a.z + sign * xa, inside_b = window[axis] * b.z + sign * xb;
+      if (inside_a < 0 && inside_b < 0) return std::nullopt;
+      const double t = inside_a / (inside_a - inside_b);
+      if (inside_a < 0) from = std::max(from, t);
+      if (inside_b < 0) to = std::min(to, t);
+    }
+  }
+  if (from > to) return std::nullopt;
+  return std::pair(from > 0 ? glm::mix(a, b, from) : a, to < 1 ? glm::mix(a, b, to) : b);
+}
+
 }  // namespace
 
-void RowSum::set(const CrossingTable& edges) {
+void RowSum::clear() {
   edges_.clear();
   left_.clear();
   bends_.clear();
   at_corner_ = 0;
   impossible_ = 0;
   corner_is_open_ = false;
-  for (std::size_t i = 0; i < edges.count; ++i) {
-    const float k = frame_.side < 0 ? -edges[kK][i] : edges[kK][i];
-    if (k == 0) continue;
-    add({edges[kX0][i] + 0.5, edges[kY0][i] + 0.5, edges[kX1][i] + 0.5, edges[kY1][i] + 0.5,
-         static_cast<std::int32_t>(k)},
-        edges[kError][i]);
-  }
 }
 
-void RowSum::add(RowEdge edge, double error) {
+bool RowSum::add(const WideEdges& leaf, std::size_t lane, const Sample& at) {
+  const glm::dvec3 p(at.p);
+  int k = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (leaf.plane[side][lane] == at.plane) continue;  // its own plane hides nothing
+    const double f = glm::dot(point(leaf.n[side], lane), p - point(leaf.anchor[side], lane));
+    k += f > 0 ? 1 : f < 0 ? -1 : 0;
+  }
+  if (k == 0) return true;
+  const auto way = [&](const WidePoints& end) {
+    const glm::dvec3 d = point(end, lane) - p;
+    return glm::dvec3(glm::dot(frame_.axes[0], d), glm::dot(frame_.axes[1], d), -glm::dot(frame_.axes[2], d));
+  };
+  const glm::dvec3 from_corner = p - frame_.corner;
+  const View view{{glm::dot(frame_.axes[0], from_corner), glm::dot(frame_.axes[1], from_corner)},
+                  glm::dot(frame_.axes[2], from_corner)};
+  const glm::dvec3 a = way(leaf.a), b = way(leaf.b);
+  const std::optional<std::pair<glm::dvec3, glm::dvec3>> part = cut_to_window(frame_, view, a, b);
+  if (!part) return true;
+  if (std::min(part->first.z, part->second.z) < 0x1p-45 * (glm::length(a) + glm::length(b))) return false;
+  const glm::dvec2 from = view.appears(part->first), to = view.appears(part->second);
+  add({from.x, from.y, to.x, to.y, frame_.side < 0 ? -k : k});
+  return true;
+}
+
+void RowSum::add(RowEdge edge) {
   const double width = frame_.columns, height = frame_.rows;
   if (edge.y0 > edge.y1) edge = {edge.x1, edge.y1, edge.x0, edge.y0, -edge.k};
   if ((edge.x0 < 0) != (edge.x1 < 0)) {
     const double y = edge.y0 + (0 - edge.x0) / (edge.x1 - edge.x0) * (edge.y1 - edge.y0);
-    const double steep = std::abs((edge.y1 - edge.y0) / (edge.x1 - edge.x0));
-    if (std::abs(y) < 2.41 * error * (1 + steep)) corner_is_open_ = true;
+    if (std::abs(y) < 1e-7) corner_is_open_ = true;
     // Crossing it upwards, if it runs to the right: +k.
     if (y > 0 && y < height) left_.push_back({y, edge.x0 < edge.x1 ? edge.k : -edge.k});
   }
@@ -63,10 +119,9 @@ void RowSum::add(RowEdge edge, double error) {
   if (edge.y0 < edge.y1) edges_.push_back(edge);
 }
 
-std::optional<std::int32_t> RowSum::relative_depth(std::uint32_t light_sample) const {
-  constexpr double kNear = 1e-3;
-  const std::uint32_t row = light_sample / frame_.columns;
-  const double x = light_sample % frame_.columns + 0.5 + static_cast<double>(frame_.shift[row]), y = row + 0.5;
+std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
+  const auto [x, y] = std::pair(place.x, place.y);
+  constexpr double kNear = 1e-5;  // far more than what rounding the light point to float moves it by
   std::int32_t depth = 0;
   for (const Step& step : left_) {
     if (std::abs(step.y - y) < kNear) return std::nullopt;
@@ -82,19 +137,26 @@ std::optional<std::int32_t> RowSum::relative_depth(std::uint32_t light_sample) c
   return depth;
 }
 
-void RowSum::add_horizon(const Placed& at) {
+void RowSum::add_horizon(const glm::dvec3& above) {
   const double width = frame_.columns, height = frame_.rows;
   // above · (s, t, 1) as a X + b Y + c, from the light's corner.
-  const double a = 2 * static_cast<double>(at.above.x) / width, b = 2 * static_cast<double>(at.above.y) / height;
-  const double c = static_cast<double>(at.above.z) - static_cast<double>(at.above.x) - static_cast<double>(at.above.y);
-  if (c <= 0) ++at_corner_;
-  if (a == 0 && b == 0) return;
+  const double a = 2 * above.x / width, b = 2 * above.y / height;
+  const double c = above.z - above.x - above.y;
+  const double low = c, high = b * height + c;  // at the ends of the light's left side
+  if (a == 0 && b == 0) {
+    at_corner_ = low > 0 ? 0 : 1;
+    return;
+  }
+  const std::size_t before = left_.size();
   // Far beyond the light on either side, along the line.
   const double squared = a * a + b * b, foot = -(c + a * width / 2 + b * height / 2) / squared;
   const double x = width / 2 + a * foot, y = height / 2 + b * foot, far = 2 * (width + height) / std::sqrt(squared);
   const double sign = a > 0 ? 1 : -1;  // upward
   // To the right of it, where it runs upward, is above the plane if a > 0: one layer less.
-  add({x + sign * b * far, y - sign * a * far, x - sign * b * far, y + sign * a * far, a > 0 ? 1 : -1}, 0);
+  add({x + sign * b * far, y - sign * a * far, x - sign * b * far, y + sign * a * far, a > 0 ? 1 : -1});
+  // At the end of the side that is farther from the line, so that a line through the corner is counted once.
+  const std::int32_t change = left_.size() > before ? left_.back().change : 0;
+  at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
 /// The visible length of a row whose crossings are in order.
@@ -167,10 +229,10 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
   return area / (width * height);
 }
 
-float share_above_horizon(const Frame& frame, const Placed& at) {
+float share_above_horizon(const Frame& frame, const glm::dvec3& above) {
   RowSum rows(frame);
-  rows.set(CrossingTable{});
-  rows.add_horizon(at);
+  rows.clear();
+  rows.add_horizon(above);
   return static_cast<float>(rows.visible_share(0).value_or(0));
 }
 

@@ -25,14 +25,16 @@ class RowSum {
  public:
   explicit RowSum(const Frame& frame) : frame_(frame) {}
 
-  /// Takes over the crossings of a view sample: cut to the light; what crosses its left side.
-  void set(const CrossingTable& edges);
+  void clear();
+  /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
+  /// off by what float rounds. False: it passes through p but for rounding.
+  [[nodiscard]] bool add(const WideEdges& leaf, std::size_t lane, const Sample& at);
   /// Rounding hides whether an edge passes the light's corner above or below.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
-  /// The depth at a light sample, but for that at the light's corner; nothing: an edge is within rounding of it.
-  [[nodiscard]] std::optional<std::int32_t> relative_depth(std::uint32_t light_sample) const;
-  /// What lies below the carrier's plane counts as one layer more.
-  void add_horizon(const Placed& at);
+  /// The depth at a place of the light, in cells from its corner, but for that at the corner; nothing: an edge is near.
+  [[nodiscard]] std::optional<std::int32_t> relative_depth(const glm::dvec2& place) const;
+  /// What lies below the carrier's plane (Judge::horizon) counts as one layer more.
+  void add_horizon(const glm::dvec3& above);
   /// The share that is visible. Less than no layer somewhere that is not within rounding of an edge: nothing.
   [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner);
 
@@ -45,7 +47,7 @@ class RowSum {
     const RowEdge* edge = nullptr;
     double x = 0;
   };
-  void add(RowEdge edge, double error);
+  void add(RowEdge edge);
   [[nodiscard]] double visible_area(double from, double to, std::int32_t depth, int halvings);
   [[nodiscard]] double visible_length(std::int32_t depth, double height);
 
@@ -59,7 +61,7 @@ class RowSum {
   double impossible_ = 0;       // area of less than no layer
 };
 
-/// The share of the light above the horizon of a view sample, nothing else before it.
-float share_above_horizon(const Frame& frame, const Placed& at);
+/// The share of the light above the horizon of a view sample, nothing else before it. `above`: Judge::horizon.
+float share_above_horizon(const Frame& frame, const glm::dvec3& above);
 
 }  // namespace penumbra::volumes

@@ -238,6 +238,12 @@ void fill(const Frame& frame, bool visible, Seen& seen) {
   seen.visible = visible ? frame.rows * frame.columns : 0;
 }
 
+/// (s, t) of a light sample.
+glm::dvec2 place_of(const Frame& frame, std::uint32_t row, std::uint32_t column) {
+  return {2 * (column + 0.5 + static_cast<double>(frame.shift[row])) / frame.columns - 1,
+          2 * (row + 0.5) / frame.rows - 1};
+}
+
 /// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
 template <typename Counter>
 std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& changes, Open& open, const Sample& at,
@@ -251,7 +257,7 @@ std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& 
           static_cast<std::int32_t>(changes.cells[std::size_t{column} * frame.padded_rows + row]));
       const std::uint32_t sample = row * frame.columns + column;
       if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
-      return judge.depth(at, sample) - depth;
+      return judge.depth(at, place_of(frame, row, column)) - depth;
     }
   }
   open.pixel = true;
@@ -276,7 +282,7 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
     if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
     if (changes_any) sum_up(frame, changes, depth, seen);
   } else if (scratch.open.corner) {
-    depth = judge.depth(at, 0);
+    depth = judge.depth(at, {0, 0});
   }
   if (!changes_any) {
     seen.visible = depth == 0 ? frame.rows * frame.columns : 0;

@@ -28,6 +28,7 @@ using CrossingTable = Table<kCrossingFields>;
 
 struct ScatterInput {
   const Frame& frame;
+  const WideEdgeTree& edge_tree;
   const WideTriangleTree& tree;
   const Cluster& cluster;
   std::span<const Sample> samples;

@@ -1,0 +1,184 @@
+// edge-scatter with rows=exact against the exact areas: no light samples on either side.
+
+#include "base/error.hpp"
+#include "reference/exact_method.hpp"
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/soft_stage.hpp"
+#include "volumes/edge_scatter.hpp"
+
+#include <numeric>
+
+namespace penumbra::volumes {
+namespace {
+
+using tests::SoftStage;
+using visibility::Light;
+using visibility::SceneFloats;
+using visibility::ViewSamples;
+
+class ExactRows : public tests::DeviceTest {
+ protected:
+  static std::unique_ptr<visibility::Method> make() { return make_edge_scatter(device(), {{"rows", "exact"}}); }
+
+  static std::vector<float> run(visibility::Method& method, const SceneFloats& floats, const Light& light,
+                                const ViewSamples& samples) {
+    method.prepare_mesh(floats);
+    method.prepare_light(light);
+    method.prepare_view(samples);
+    std::vector<float> result(samples.size());
+    const std::uint32_t rows = method.max_tile_rows();
+    for (std::uint32_t first = 0; first < samples.height; first += rows) {
+      const visibility::Tile tile{first, std::min(rows, samples.height - first)};
+      method.evaluate(tile);
+      method.read_visibility(
+          std::span(result).subspan(std::size_t{first} * samples.width, std::size_t{tile.row_count} * samples.width));
+    }
+    return result;
+  }
+
+  struct Found {
+    std::size_t pixels = 0, partly = 0, sampled = 0, wrong = 0;
+    double largest = 0;
+  };
+  /// Adds what differs from the exact areas; pixels that fell back on light samples are not off by more than those are.
+  static void compare(const SceneFloats& floats, const Light& light, const ViewSamples& samples, double tolerance,
+                      Found& found) {
+    const auto rows = make();
+    const auto exact = reference::make_exact({});
+    const std::vector<float> shares = run(*rows, floats, light, samples), truth = run(*exact, floats, light, samples);
+    const auto counters = rows->counters();
+    const auto sampled = counters.find("sampledPixels");
+    const std::size_t spared = sampled == counters.end() ? 0 : sampled->second;
+    found.sampled += spared;
+    std::size_t wrong = 0;
+    const std::vector<visibility::PixelClass> classes = visibility::classify_pixels(floats, samples, light);
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      if (classes[i] <= visibility::PixelClass::unshadowed) continue;  // not asked
+      const double error = std::abs(static_cast<double>(shares[i]) - static_cast<double>(truth[i]));
+      ++found.pixels;
+      found.partly += truth[i] > 0 && truth[i] < 1 ? 1 : 0;
+      if (!(error <= tolerance)) {
+        ++wrong;
+      } else {
+        found.largest = std::max(found.largest, error);
+      }
+    }
+    found.wrong += wrong > spared ? wrong - spared : 0;
+  }
+};
+
+/// Both add up in double, or better, and round to float once: two units in the last place of numbers below 1, and one
+/// more for sums of some hundred doubles.
+constexpr double kTolerance = 3 * 0x1p-24;
+
+class ExactRowsOnScenes : public ExactRows, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ExactRowsOnScenes, AreTheExactAreas) {
+  const SoftStage stage(tests::shipped_scene(GetParam()), device(), 64, 64);
+  Found found;
+  compare(stage.floats, stage.light, stage.samples, kTolerance, found);
+  fmt::print("{}: {} pixels, {} partly lit, {} sampled, off by {:.1e} at most\n", GetParam(), found.pixels,
+             found.partly, found.sampled, found.largest);
+  EXPECT_EQ(found.wrong, 0U);
+  EXPECT_GT(found.partly, 60U);
+  EXPECT_LE(found.sampled, found.pixels / 500);
+}
+INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOnScenes,
+                         testing::Values("broken", "bunny", "contact", "fusion", "parallel-square", "room",
+                                         "self-shadow", "thin"),
+                         [](const auto& it) {
+                           std::string name = it.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+/// Everything coincides with something: lights that triangles pass through, doubles, p in other triangles' planes.
+TEST_F(ExactRows, LatticeSoups) {
+  Found found;
+  for (const int range : {1, 2, 4}) {
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+      tests::LatticeSoup soup(seed + 5000 * static_cast<std::uint32_t>(range), range);
+      visibility::SampleRequest request;
+      const scenes::Scene scene = lattice_scene(soup, request);
+      const SceneFloats floats = visibility::make_scene_floats(scene);
+      const Light light = visibility::make_light(scene, 0, floats.origin, request);
+      const ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, soup.random());
+      SCOPED_TRACE(fmt::format("seed {} range {}", seed, range));
+      const std::size_t before = found.wrong;
+      compare(floats, light, samples, kTolerance, found);
+      EXPECT_EQ(found.wrong, before);
+    }
+  }
+  fmt::print("{} view samples, {} partly lit, {} sampled, off by {:.1e} at most\n", found.pixels, found.partly,
+             found.sampled, found.largest);
+  EXPECT_GT(found.partly, found.pixels / 20);
+}
+
+/// Parallelograms, and lights that emit to both sides.
+TEST_F(ExactRows, OtherRectangles) {
+  Found found;
+  for (const double skew : {0.0, 0.3, -0.9}) {
+    scenes::Scene scene = tests::shipped_scene("fusion");
+    auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
+    light.half_v += skew * light.half_u;
+    scene.lights[0].two_sided = true;
+    if (skew == 0) std::swap(light.half_u, light.half_v);  // emits upward, and, two-sided, down
+    const SoftStage stage(scene, device(), 48, 48);
+    compare(stage.floats, stage.light, stage.samples, kTolerance, found);
+  }
+  EXPECT_EQ(found.wrong, 0U);
+  EXPECT_GT(found.partly, 300U);
+}
+
+/// The order of triangles changes the order of a sum, and with it the last digit.
+TEST_F(ExactRows, OrderOfTriangles) {
+  const scenes::Scene scene = tests::shipped_scene("self-shadow");
+  const SoftStage stage(scene, device(), 64, 64);
+  SceneFloats turned = stage.floats;
+  std::mt19937 random(7);
+  std::vector<std::uint32_t> order(turned.triangles.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::shuffle(order.begin(), order.end(), random);
+  std::vector<std::uint32_t> place(order.size());
+  const auto permuted = [&](auto& list) {
+    const auto old = list;
+    for (std::size_t i = 0; i < order.size(); ++i) list[i] = old[order[i]];
+  };
+  permuted(turned.triangles);
+  permuted(turned.object);
+  permuted(turned.plane);
+  permuted(turned.rank);
+  permuted(turned.casts_shadow);
+  permuted(turned.receives_shadow);
+  permuted(turned.emits);
+  for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+  // Numbers of planes are their first triangle's.
+  for (std::uint32_t& plane : turned.plane) {
+    if (plane != SceneFloats::kNoPlane) plane = place[plane];
+  }
+  ViewSamples samples = stage.samples;
+  for (std::int32_t& triangle : samples.triangle) {
+    if (triangle >= 0) triangle = static_cast<std::int32_t>(place[static_cast<std::size_t>(triangle)]);
+  }
+  const auto method = make();
+  const std::vector<float> one = run(*method, stage.floats, stage.light, stage.samples);
+  const std::vector<float> other = run(*method, turned, stage.light, samples);
+  double largest = 0;
+  for (std::size_t i = 0; i < one.size(); ++i)
+    largest = std::max(largest, std::abs(static_cast<double>(one[i]) - static_cast<double>(other[i])));
+  // Clusters are the same, so every edge is where it was; double sums of some hundred terms, rounded to float once.
+  EXPECT_LE(largest, 0x1p-24);
+}
+
+TEST_F(ExactRows, SaysWhatItCannotDo) {
+  EXPECT_THROW(make_edge_scatter(device(), {{"rows", "exact"}, {"engine", "vulkan"}}), UsageError);
+  EXPECT_THROW(make_edge_scatter(device(), {{"rows", "fine"}}), UsageError);
+  EXPECT_THROW(make_edge_scatter(device(), {{"engine", "abacus"}}), UsageError);
+  const SoftStage stage(tests::shipped_scene("textured-light"), device(), 8, 8);
+  const auto method = make();
+  method->prepare_mesh(stage.floats);
+  EXPECT_THROW(method->prepare_light(stage.light), InputError);
+}
+
+}  // namespace
+}  // namespace penumbra::volumes
