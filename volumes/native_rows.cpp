@@ -159,47 +159,81 @@ void RowSum::add_horizon(const glm::dvec3& above) {
   at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
-/// The visible length of a row whose crossings are in order.
+/// The visible length of the row in the middle, its crossings in order.
 double RowSum::visible_length(std::int32_t depth, double height) {
   const double width = frame_.columns;
   double length = 0, from = 0;
-  const auto pass = [&](double x) {
+  for (const Spanning& spanning : active_) {
+    const double x = 0.5 * (spanning.low + spanning.high);
     if (depth == 0) length += x - from;
     if (depth < 0) impossible_ += (x - from) * height;
     from = x;
-  };
-  for (const Spanning& spanning : active_) {
-    pass(spanning.x);
-    depth -= spanning.edge->k;
+    depth -= spanning.k;
   }
-  pass(width);
+  if (depth == 0) length += width - from;
+  if (depth < 0) impossible_ += (width - from) * height;
   return length;
 }
 
-/// Between two rows that no edge begins or ends between. If edges cross there, up to where they first do, and on.
+/// Between two rows that no edge begins or ends between, `low` and `high` of all edges being there.
 double RowSum::visible_area(double from, double to, std::int32_t depth, int halvings) {
-  const double middle = 0.5 * (from + to), height = to - from;
-  for (Spanning& spanning : active_) spanning.x = at_height(*spanning.edge, middle);
-  // Few, and nearly in order from the row before.
+  // Few, and nearly in order from the rows before.
   for (std::size_t i = 1; i < active_.size(); ++i) {
+    if (active_[i - 1].twice_middle() <= active_[i].twice_middle()) continue;
     const Spanning moved = active_[i];
     std::size_t j = i;
-    for (; j > 0 && active_[j - 1].x > moved.x; --j) active_[j] = active_[j - 1];
+    for (; j > 0 && active_[j - 1].twice_middle() > moved.twice_middle(); --j) active_[j] = active_[j - 1];
     active_[j] = moved;
   }
-  if (halvings > 0) {
-    for (std::size_t i = 1; i < active_.size(); ++i) {
-      const RowEdge &l = *active_[i - 1].edge, &r = *active_[i].edge;
-      const double at_from = at_height(r, from) - at_height(l, from), at_to = at_height(r, to) - at_height(l, to);
-      // Crossings of less than a millionth of a cell change no digit that a float has.
-      if (at_from > -1e-6 && at_to > -1e-6) continue;
-      const double cut =
-          std::clamp(from + height * at_from / (at_from - at_to), from + 1e-3 * height, to - 1e-3 * height);
-      const double below = visible_area(from, cut, depth, halvings - 1);
-      return below + visible_area(cut, to, depth, halvings - 1);
+  for (std::size_t i = 1; i < active_.size() && halvings > 0; ++i) {
+    const double below = active_[i].low - active_[i - 1].low, above = active_[i].high - active_[i - 1].high;
+    // Crossings of less than a millionth of a cell change no digit that a float has.
+    if (std::min(below, above) > -1e-6) continue;
+    // Two edges cross: up to there, and on.
+    const double height = to - from;
+    const double cut = std::clamp(from + height * below / (below - above), from + 1e-3 * height, to - 1e-3 * height);
+    for (Spanning& spanning : active_) spanning.high = spanning.at(cut);
+    const double area = visible_area(from, cut, depth, halvings - 1);
+    for (Spanning& spanning : active_) {
+      spanning.low = spanning.high;
+      spanning.high = spanning.at(to);
     }
+    return area + visible_area(cut, to, depth, halvings - 1);
   }
-  return visible_length(depth, height) * height;
+  return visible_length(depth, to - from) * (to - from);
+}
+
+/// Edges that go on, and those that begin, between two rows. One that begins where another ends takes its place, so
+/// that outlines stay in order.
+void RowSum::go_on(double from, double to, std::size_t& next) {
+  std::size_t kept = 0, first = next;
+  while (next < edges_.size() && edges_[next].y0 <= from) ++next;
+  const auto begins = [&](const RowEdge& edge) {
+    const double slope = (edge.x1 - edge.x0) / (edge.y1 - edge.y0);
+    return Spanning{edge.x0 - slope * edge.y0, slope, edge.y1, edge.x0, edge.x1, 0, edge.k};
+  };
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    Spanning& spanning = active_[i];
+    if (spanning.end <= from) {
+      const auto heir = std::find_if(edges_.begin() + static_cast<std::ptrdiff_t>(first),
+                                     edges_.begin() + static_cast<std::ptrdiff_t>(next),
+                                     [&](const RowEdge& edge) { return edge.x0 == spanning.last_x; });
+      if (heir == edges_.begin() + static_cast<std::ptrdiff_t>(next)) continue;
+      spanning = begins(*heir);
+      std::swap(*heir, edges_[first++]);
+      spanning.high = spanning.at(from);
+    }
+    spanning.low = spanning.high;
+    spanning.high = spanning.at(to);
+    if (kept != i) active_[kept] = spanning;
+    ++kept;
+  }
+  active_.resize(kept);
+  for (; first < next; ++first) {
+    active_.push_back(begins(edges_[first]));
+    active_.back().low = active_.back().at(from);
+    active_.back().high = active_.back().at(to);
+  }
 }
 
 std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
@@ -219,10 +253,7 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
     const double from = bends_[i], to = bends_[i + 1];
     for (; step < left_.size() && left_[step].y <= from; ++step) depth += left_[step].change;
     if (!(to > from)) continue;
-    std::erase_if(active_, [&](const Spanning& s) { return s.edge->y1 <= from; });
-    for (; next < edges_.size() && edges_[next].y0 <= from; ++next) {
-      if (edges_[next].y1 > from) active_.push_back({&edges_[next], 0});
-    }
+    go_on(from, to, next);
     area += visible_area(from, to, depth, kMostHalvings);
   }
   if (impossible_ > 1e-4 * width * height) return std::nullopt;

@@ -43,11 +43,16 @@ class RowSum {
     double y = 0;
     std::int32_t change = 0;
   };
+  /// An edge between two rows: x = offset + slope y, up to `end`; its x at the lower row and the upper.
   struct Spanning {
-    const RowEdge* edge = nullptr;
-    double x = 0;
+    double offset = 0, slope = 0, end = 0, low = 0, last_x = 0, high = 0;
+    std::int32_t k = 0;
+
+    [[nodiscard]] double at(double y) const { return offset + slope * y; }
+    [[nodiscard]] double twice_middle() const { return low + high; }
   };
   void add(RowEdge edge);
+  void go_on(double from, double to, std::size_t& next);
   [[nodiscard]] double visible_area(double from, double to, std::int32_t depth, int halvings);
   [[nodiscard]] double visible_length(std::int32_t depth, double height);
 
