@@ -46,6 +46,7 @@ Frame make_frame(const FrameInput& input) {
   for (std::uint32_t row = 0; row < frame.padded_rows; ++row) {
     frame.shift.push_back(row < input.rows ? shift_of(row, input.light.shift_step) : 0);
   }
+  for (const glm::vec3& point : input.points) frame.points.push_back(point * input.scale);
   return frame;
 }
 

@@ -28,11 +28,13 @@ struct Frame {
   std::uint32_t rows = 0, columns = 0, light = 0;
   std::uint32_t padded_rows = 0;  ///< to a multiple of 16
   std::vector<float> shift;       ///< of each (padded) row, in cells
+  std::vector<glm::vec3> points;  ///< the light samples as stored, scaled
 };
 struct FrameInput {
   const visibility::LightFrame& light;
   std::uint32_t rows, columns, light_index;
-  float side, reach, cut_reach;
+  float side, reach, cut_reach, scale;
+  std::span<const glm::vec3> points;  ///< light samples
 };
 Frame make_frame(const FrameInput& input);
 

@@ -71,7 +71,7 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   for (const float side : {1.0F, -1.0F}) {
     if (side < 0 && !light.two_sided) continue;
     frames_.push_back(make_frame({light_frame_, light.rows, light.columns, static_cast<std::uint32_t>(light.index),
-                                  side, reach(), cut ? 4 * reach() : 0}));
+                                  side, reach(), cut ? 4 * reach() : 0, scale_, light.points}));
   }
 }
 

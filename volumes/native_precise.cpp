@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace penumbra::volumes {
@@ -81,41 +82,77 @@ float row_at_least(const Frame& frame, float y) {
   return std::clamp(std::ceil(y), 0.0F, static_cast<float>(frame.rows));
 }
 
+/// On which side of the edge's plane through p is a light sample: > 0 left of the edge a→b as it appears; 0: within
+/// double rounding.
+int side_of_sample(const PreciseInput& in, std::uint32_t light_sample) {
+  const auto slot = std::bit_cast<std::uint32_t>(in.scatter.edges[kEdgeSlot][in.edge]);
+  const WideEdges& leaf = in.scatter.edge_tree.leaves[slot / kWide];
+  const auto from_p = [&](const WidePoints& end) {
+    const std::size_t lane = slot % kWide;
+    return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]) - glm::dvec3(in.at.p);
+  };
+  const glm::dvec3 l = glm::dvec3(in.scatter.frame.points[light_sample]) - glm::dvec3(in.at.p);
+  const glm::dvec3 a = from_p(leaf.a), b = from_p(leaf.b);
+  const double side = glm::dot(l, glm::cross(a, b));
+  // As in visibility::certainly_meets.
+  const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
+  if (std::abs(side) <= error) return 0;
+  // From above, where the light is, the frame is turned over.
+  return (side > 0) == (in.scatter.frame.side < 0) ? 1 : -1;
+}
+
 /// Returns the first row above where the edge crosses the light's left side, if it does: told by the same x as the
 /// changes of the rows, so that no row can count it twice, or not at all.
 template <typename Counter>
-float cross_rows(const Frame& frame, const Seen2& s, Counter jump, const Changes<Counter>* changes, Marks& marks) {
+float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Changes<Counter>& changes, Marks& marks) {
+  const Frame& frame = in.scatter.frame;
   const auto columns = static_cast<float>(frame.columns);
   const float weight =
       std::min(1.0F, (std::abs(s.near.y - frame.first_cell.y) + 2 * frame.half_cells.y) / std::abs(s.far.y - s.near.y));
   const float error = 1.2F * (s.error_near + weight * s.error_far) * (1 + s.steep) +
                       8 * kRound * (frame.half_cells.x + std::abs(s.near.x));
   const bool upper_right = (s.near.y < s.far.y ? s.far.x : s.near.x) >= -0.5F;
+  const bool runs_up = (s.near.y < s.far.y) != s.turn;
   const float end = row_at_least(frame, s.high.y);
+  const auto change = [&](float column, float row, Counter by) {
+    if (column >= columns) return;
+    Counter& cell = changes.cells[static_cast<std::size_t>(column) * frame.padded_rows + static_cast<std::size_t>(row)];
+    cell = static_cast<Counter>(cell + by);
+  };
   float from = end;
   for (float row = row_at_least(frame, s.low.y); row < end; ++row) {
-    const auto r = static_cast<std::size_t>(row);
     const float x = std::clamp(s.near.x + (row - s.near.y) * s.slope, s.low.x, s.high.x);
-    const float column = x - frame.shift[r], nearest = std::round(column), first = std::max(std::ceil(column), 0.0F);
+    const float column = x - frame.shift[static_cast<std::size_t>(row)], nearest = std::round(column);
+    const float computed = std::max(std::ceil(column), 0.0F);
     if ((x >= -0.5F) == upper_right) from = std::min(from, row);
-    if (changes != nullptr && x >= -0.5F && first < columns) {
-      Counter& cell = changes->cells[static_cast<std::size_t>(first) * frame.padded_rows + r];
-      cell = static_cast<Counter>(cell + jump);
+    float first = computed;
+    if (std::abs(column - nearest) < error && nearest >= 0 && nearest < columns) {
+      const auto light_sample = static_cast<std::uint32_t>(row) * frame.columns + static_cast<std::uint32_t>(nearest);
+      // Where an end may be on either side of the row, so may be what crosses it.
+      const bool at_end = std::abs(s.near.y - row) < 2 * s.error_near || std::abs(s.far.y - row) < 2 * s.error_far;
+      const int side =
+          error >= 0.5F || in.open || at_end || x < -0.5F || frame.cut_reach > 0 ? 0 : side_of_sample(in, light_sample);
+      if (side != 0) {
+        // Right of an edge that runs up: the crossing is left of the light sample, which is the first that it changes.
+        first = (side < 0) == runs_up ? nearest : nearest + 1;
+      } else if (error >= 0.5F) {
+        marks.row(row);
+      } else {
+        marks.sample(row, nearest);
+      }
     }
-    if (!(std::abs(column - nearest) < error && nearest >= 0 && nearest < columns)) continue;
-    if (error >= 0.5F) {
-      marks.row(row);
-    } else {
-      marks.sample(row, nearest);
-    }
+    if (x < -0.5F || (in.placed && first == computed)) continue;
+    if (in.placed) change(computed, row, static_cast<Counter>(-jump));
+    change(first, row, jump);
   }
   return from;
 }
 
 /// Where it crosses the light's left side: above the corner or below?
 template <typename Counter>
-void cross_left_side(const Frame& frame, const Seen2& s, float from, Counter up, const Changes<Counter>* changes,
+void cross_left_side(const PreciseInput& in, const Seen2& s, float from, Counter up, const Changes<Counter>& changes,
                      Marks& marks) {
+  const Frame& frame = in.scatter.frame;
   const glm::vec2 way = s.far - s.near;
   const float inverse = way.y / way.x;
   const float weight =
@@ -124,8 +161,8 @@ void cross_left_side(const Frame& frame, const Seen2& s, float from, Counter up,
                       8 * kRound * (frame.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
   if (std::abs(y + 0.5F) < error) marks.corner();
-  if (changes == nullptr || y <= -0.5F || from >= static_cast<float>(frame.rows)) return;
-  Counter& row = changes->left[static_cast<std::size_t>(from)];
+  if (in.placed || y <= -0.5F || from >= static_cast<float>(frame.rows)) return;
+  Counter& row = changes.left[static_cast<std::size_t>(from)];
   row = static_cast<Counter>(row + up);
 }
 
@@ -153,8 +190,10 @@ Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way&
 }  // namespace
 
 template <typename Counter>
-void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, Open& open) {
-  const auto& [frame, at, edges, edge, k, is_open, settled] = in;
+void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, Open& open) {
+  const auto& [scatter, at, edge, k, is_open, settled, placed] = in;
+  const Frame& frame = scatter.frame;
+  const EdgeTable& edges = scatter.edges;
   Marks marks(frame, open);
   const Way a(edges[kAx][edge] - at.seen.x, edges[kAy][edge] - at.seen.y, at.seen.z - edges[kAh][edge]);
   const Way b(edges[kBx][edge] - at.seen.x, edges[kBy][edge] - at.seen.y, at.seen.z - edges[kBh][edge]);
@@ -165,7 +204,8 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, 
     marks.pixel();
     return;
   }
-  const glm::vec2 seen_a = appears(at, part.start), seen_b = appears(at, part.end);
+  const glm::vec2 seen_a = placed ? (*placed)[0] : appears(at, part.start);
+  const glm::vec2 seen_b = placed ? (*placed)[1] : appears(at, part.end);
   const float foot_a = glm::length(seen_a - at.foot), foot_b = glm::length(seen_b - at.foot);
   // Where p is within rounding of a triangle's plane, samples that the triangle may hide are as near to its edges as if
   // those were off their places by this. (bound sliver)
@@ -178,12 +218,12 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, 
     if (std::abs(end.y - row) < error) marks.near(row, end.x, 1.2F * error * (1 + seen.steep));
   }
   const auto jump = static_cast<Counter>((seen.near.y < seen.far.y) == seen.turn ? k : -k);
-  const float from = cross_rows(frame, seen, jump, changes, marks);
+  const float from = cross_rows(in, seen, jump, changes, marks);
   if ((seen_a.x < -0.5F) == (seen_b.x < -0.5F)) return;
-  cross_left_side(frame, seen, from, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
+  cross_left_side(in, seen, from, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
 }
 
-template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>*, Open&);
-template void scatter_precisely(const PreciseInput&, const Changes<std::int32_t>*, Open&);
+template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>&, Open&);
+template void scatter_precisely(const PreciseInput&, const Changes<std::int32_t>&, Open&);
 
 }  // namespace penumbra::volumes

@@ -2,6 +2,11 @@
 
 #include "volumes/native_scatter.hpp"
 
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <optional>
+
 /// One edge for one view sample, number by number: edges that come near p's height, and whatever may be within rounding
 /// of a light sample. The same operations as the vectors', so that a vertex is in one place. Inside volumes/ only.
 namespace penumbra::volumes {
@@ -14,16 +19,18 @@ struct Changes {
 };
 
 struct PreciseInput {
-  const Frame& frame;
+  const ScatterInput& scatter;
   const Sample& at;
-  const EdgeTable& edges;
-  std::size_t edge;
-  float k;       ///< as seen from the light's front
-  bool open;     ///< p is within rounding of one of its triangles' planes
-  bool settled;  ///< well above p
+  std::size_t edge;  ///< in the EdgeTable
+  float k;           ///< as seen from the light's front
+  bool open;         ///< p is within rounding of one of its triangles' planes
+  bool settled;      ///< well above p
+  /// Where the vectors placed its ends, if they have added its changes: what lies on the wrong side of a light sample
+  /// is moved.
+  std::optional<std::array<glm::vec2, 2>> placed;
 };
-/// Marks what is open because of the edge; with `changes`, adds what it changes.
+/// Adds what the edge changes, and marks what is open because of it.
 template <typename Counter>
-void scatter_precisely(const PreciseInput& input, const Changes<Counter>* changes, Open& open);
+void scatter_precisely(const PreciseInput& input, const Changes<Counter>& changes, Open& open);
 
 }  // namespace penumbra::volumes

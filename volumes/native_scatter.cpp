@@ -5,7 +5,9 @@
 #include "volumes/native_precise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <optional>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volumes/native_scatter.cpp"
@@ -45,11 +47,11 @@ class SampleScatter {
   }
 
  private:
-  void precisely(std::size_t edge, float k, bool open, bool is_settled, bool adds) {
+  void precisely(std::size_t edge, float k, bool open, bool is_settled,
+                 const std::optional<std::array<glm::vec2, 2>>& placed) {
     const float turned = in_.frame.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
-    scatter_precisely<Counter>({in_.frame, *at_, in_.edges, edge, turned, open, is_settled}, adds ? &changes_ : nullptr,
-                               s_.open);
-    any_precise_ |= adds;
+    scatter_precisely<Counter>({in_, *at_, edge, turned, open, is_settled, placed}, changes_, s_.open);
+    any_precise_ |= !placed;
   }
   /// Edges of the group that are not for vectors.
   void precisely(const SpecialEdges& edges) {
@@ -59,7 +61,7 @@ class SampleScatter {
     hn::StoreMaskBits(D(), edges.multiplicity.open, open);
     for_each_lane(edges.which, [&](std::size_t lane) {
       precisely(std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]), k[lane],
-                (open[lane / 8] >> (lane % 8) & 1) != 0, edges.settled, true);
+                (open[lane / 8] >> (lane % 8) & 1) != 0, edges.settled, std::nullopt);
     });
   }
 
@@ -150,10 +152,13 @@ class SampleScatter {
     }
   }
 
-  void look_again(std::size_t i, M which) {
+  void look_again(std::size_t first, M which) {
+    const CrossingTable& table = s_.crossing;
     for_each_lane(which, [&](std::size_t lane) {
-      const auto number = std::bit_cast<std::uint32_t>(s_.crossing[kEdge][i + lane]);
-      precisely(number & ~kUnsettled, s_.crossing[kK][i + lane], false, (number & kUnsettled) == 0, false);
+      const std::size_t i = first + lane;
+      const auto number = std::bit_cast<std::uint32_t>(table[kEdge][i]);
+      const std::array placed{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
+      precisely(number & ~kUnsettled, table[kK][i], false, (number & kUnsettled) == 0, placed);
     });
   }
 
