@@ -58,6 +58,7 @@ struct Seen2 {
   glm::vec2 near, far, low, high;
   float error_near, error_far, slope, steep;
   bool turn;
+  bool may_be_cut = false;  // at the light's plane: its stored ends are rounded
 };
 
 Seen2 as_seen(const Frame& frame, const glm::vec2& a, const glm::vec2& b, float error_a, float error_b) {
@@ -101,6 +102,21 @@ int side_of_sample(const PreciseInput& in, std::uint32_t light_sample) {
   return (side > 0) == (in.scatter.frame.side < 0) ? 1 : -1;
 }
 
+/// Of the light samples of a row, the first that the edge is left of: between `lowest` and one after `highest`.
+float first_right_of(const PreciseInput& in, float row, float lowest, float highest, bool runs_up, Marks& marks) {
+  float first = lowest;
+  for (; first <= highest; ++first) {
+    const int side = side_of_sample(
+        in, static_cast<std::uint32_t>(row) * in.scatter.frame.columns + static_cast<std::uint32_t>(first));
+    if (side == 0) {
+      marks.sample(row, first);
+    } else if ((side < 0) == runs_up) {  // right of an edge that runs up
+      break;
+    }
+  }
+  return first;
+}
+
 /// Returns the first row above where the edge crosses the light's left side, if it does: told by the same x as the
 /// changes of the rows, so that no row can count it twice, or not at all.
 template <typename Counter>
@@ -122,27 +138,28 @@ float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Cha
   float from = end;
   for (float row = row_at_least(frame, s.low.y); row < end; ++row) {
     const float x = std::clamp(s.near.x + (row - s.near.y) * s.slope, s.low.x, s.high.x);
-    const float column = x - frame.shift[static_cast<std::size_t>(row)], nearest = std::round(column);
+    const float column = x - frame.shift[static_cast<std::size_t>(row)];
     const float computed = std::max(std::ceil(column), 0.0F);
-    if ((x >= -0.5F) == upper_right) from = std::min(from, row);
-    float first = computed;
-    if (std::abs(column - nearest) < error && nearest >= 0 && nearest < columns) {
-      const auto light_sample = static_cast<std::uint32_t>(row) * frame.columns + static_cast<std::uint32_t>(nearest);
+    const bool on_light = x >= -0.5F;  // else it is one of those that the left side's depth has in it
+    if (on_light == upper_right) from = std::min(from, row);
+    // Light samples that it may be on either side of.
+    const float lowest = std::max(std::ceil(column - error), 0.0F);
+    const float highest = std::min(std::floor(column + error), columns - 1);
+    float first = on_light ? computed : 0;
+    if (lowest <= highest) {
       // Where an end may be on either side of the row, so may be what crosses it.
       const bool at_end = std::abs(s.near.y - row) < 2 * s.error_near || std::abs(s.far.y - row) < 2 * s.error_far;
-      const int side =
-          error >= 0.5F || in.open || at_end || x < -0.5F || frame.cut_reach > 0 ? 0 : side_of_sample(in, light_sample);
-      if (side != 0) {
-        // Right of an edge that runs up: the crossing is left of the light sample, which is the first that it changes.
-        first = (side < 0) == runs_up ? nearest : nearest + 1;
-      } else if (error >= 0.5F) {
-        marks.row(row);
+      if (in.open || at_end || s.may_be_cut) {
+        if (lowest < highest) marks.row(row);
+        if (lowest == highest) marks.sample(row, lowest);
       } else {
-        marks.sample(row, nearest);
+        first = first_right_of(in, row, lowest, highest, runs_up, marks);
       }
     }
-    if (x < -0.5F || (in.placed && first == computed)) continue;
-    if (in.placed) change(computed, row, static_cast<Counter>(-jump));
+    if (on_light && !in.placed) change(first, row, jump);
+    const float was = on_light ? computed : 0;
+    if (first == was || (on_light && !in.placed)) continue;
+    change(was, row, static_cast<Counter>(-jump));
     change(first, row, jump);
   }
   return from;
@@ -191,28 +208,32 @@ Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way&
 
 template <typename Counter>
 void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, Open& open) {
-  const auto& [scatter, at, edge, k, is_open, settled, placed] = in;
-  const Frame& frame = scatter.frame;
-  const EdgeTable& edges = scatter.edges;
+  const Frame& frame = in.scatter.frame;
+  const Sample& at = in.at;
+  const EdgeTable& edges = in.scatter.edges;
+  const std::size_t edge = in.edge;
+  const float k = in.k;
   Marks marks(frame, open);
   const Way a(edges[kAx][edge] - at.seen.x, edges[kAy][edge] - at.seen.y, at.seen.z - edges[kAh][edge]);
   const Way b(edges[kBx][edge] - at.seen.x, edges[kBy][edge] - at.seen.y, at.seen.z - edges[kBh][edge]);
-  const Cut part = settled ? Cut{a, b} : cut_to_window(frame, at, a, b);
-  if (part.nothing || (k == 0 && !is_open)) return;
+  const Cut part = in.settled ? Cut{a, b} : cut_to_window(frame, at, a, b);
+  if (part.nothing || (k == 0 && !in.open)) return;
   const float far = edges[kFar][edge], lowest = std::min(part.start.z, part.end.z);
-  if (!settled && lowest < 64 * kRound * (far + at.far)) {  // it passes through p, but for rounding
+  if (!in.settled && lowest < 64 * kRound * (far + at.far)) {  // it passes through p, but for rounding
     marks.pixel();
     return;
   }
-  const glm::vec2 seen_a = placed ? (*placed)[0] : appears(at, part.start);
-  const glm::vec2 seen_b = placed ? (*placed)[1] : appears(at, part.end);
+  const glm::vec2 seen_a = in.placed ? (*in.placed)[0] : appears(at, part.start);
+  const glm::vec2 seen_b = in.placed ? (*in.placed)[1] : appears(at, part.end);
   const float foot_a = glm::length(seen_a - at.foot), foot_b = glm::length(seen_b - at.foot);
   // Where p is within rounding of a triangle's plane, samples that the triangle may hide are as near to its edges as if
   // those were off their places by this. (bound sliver)
-  const float sliver = is_open ? 40 * kRound * (edges[kAnchorFar][edge] + at.far) : 0;
+  const float sliver = in.open ? 40 * kRound * (edges[kAnchorFar][edge] + at.far) : 0;
   const auto off = [&](float foot, float w) { return (at.height * frame.per_length + foot) / w * sliver; };
-  const Seen2 seen = as_seen(frame, seen_a, seen_b, error_of(at, far, part.start.z, foot_a) + off(foot_a, part.start.z),
-                             error_of(at, far, part.end.z, foot_b) + off(foot_b, part.end.z));
+  Seen2 seen = as_seen(frame, seen_a, seen_b, error_of(at, far, part.start.z, foot_a) + off(foot_a, part.start.z),
+                       error_of(at, far, part.end.z, foot_b) + off(foot_b, part.end.z));
+  const float lowest_over_light = at.height - std::max(a.z, b.z);
+  seen.may_be_cut = frame.cut_reach > 0 && lowest_over_light < 256 * kRound * frame.reach;
   for (const auto& [end, error] : {std::pair(seen.near, seen.error_near), std::pair(seen.far, seen.error_far)}) {
     const float row = std::round(end.y);
     if (std::abs(end.y - row) < error) marks.near(row, end.x, 1.2F * error * (1 + seen.steep));

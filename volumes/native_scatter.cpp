@@ -51,7 +51,7 @@ class SampleScatter {
                  const std::optional<std::array<glm::vec2, 2>>& placed) {
     const float turned = in_.frame.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
     scatter_precisely<Counter>({in_, *at_, edge, turned, open, is_settled, placed}, changes_, s_.open);
-    any_precise_ |= !placed;
+    any_precise_ = true;
   }
   /// Edges of the group that are not for vectors.
   void precisely(const SpecialEdges& edges) {
@@ -106,15 +106,15 @@ class SampleScatter {
       const V x = hn::Min(hn::Max(hn::Add(near_x, hn::Mul(hn::Sub(row, near_y), slope)), low_x), high_x);
       const auto number = hn::ConvertTo(di, hn::IfThenElseZero(crossed, row));
       const V column = hn::Sub(x, hn::GatherIndex(d, frame.shift.data(), number));
-      const V nearest = hn::Round(column), first = hn::Max(hn::Ceil(column), set(0));
+      const V first = hn::Max(hn::Ceil(column), set(0));
       const M right = hn::Ge(x, set(-0.5F)), lands = hn::And(crossed, hn::And(right, hn::Lt(first, columns)));
       from = hn::Min(from, hn::IfThenElse(hn::AndNot(hn::Xor(right, upper_right), crossed), row, end));
       const auto place = hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::Add(hn::Mul(first, stride), row)));
       hn::CompressStore(place, hn::RebindMask(di, lands), di, s_.landing.data() + landed);
       hn::CompressStore(hn::ConvertTo(di, jump), hn::RebindMask(di, lands), di, s_.jump.data() + landed);
       landed += hn::CountTrue(d, lands);
-      const M near_column = hn::And(hn::Lt(hn::Abs(hn::Sub(column, nearest)), error_x),
-                                    hn::And(hn::Ge(nearest, set(0)), hn::Lt(nearest, columns)));
+      const V on_light = hn::Min(hn::Max(hn::Round(column), set(0)), hn::Sub(columns, set(1)));
+      const M near_column = hn::Lt(hn::Abs(hn::Sub(column, on_light)), error_x);
       open = hn::Or(open, hn::And(crossed, near_column));
       row = hn::Add(row, set(1));
       if (landed + hn::Lanes(d) > s_.landing.size()) grow_landing();
@@ -197,7 +197,7 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(d, hn::Eq(depths, hn::Zero(d)), bytes);
       std::uint16_t& word = seen.mask[column * words + row / 16];
-      const std::uint32_t found = (bytes[0] | bytes[1] << 8U) << row % 16;
+      const std::uint32_t found = (bytes[0] | std::uint32_t{bytes[1]} << 8U) << row % 16;
       word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
     }
   }
@@ -222,7 +222,8 @@ void cut_at_horizon(const Frame& frame, const Placed& at, Open& open, Seen& seen
       hn::StoreMaskBits(d, hn::Ge(value, constant(-at.above_error)), not_below);
       std::uint16_t& word = seen.mask[column * words + first / 16];
       const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
-      const std::uint32_t is_above = above[0] | above[1] << 8U, may_be = not_below[0] | not_below[1] << 8U;
+      const std::uint32_t is_above = above[0] | std::uint32_t{above[1]} << 8U,
+                          may_be = not_below[0] | std::uint32_t{not_below[1]} << 8U;
       word = static_cast<std::uint16_t>(word & ~((lanes & ~is_above) << place));
       for (std::uint32_t left = may_be & ~is_above & lanes; left != 0; left &= left - 1) {
         const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(left));

@@ -131,7 +131,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
     const bool counts = crossed && x >= -0.5;             // else it crosses left of the light
     const float first = max(ceil(column), 0.0);
     const bool lands = counts && first < float(kColumns);
-    const bool open_one = crossed && abs(column - nearest) < error_x && nearest >= 0.0 && nearest < float(kColumns);
+    const bool open_one = crossed && abs(column - clamp(nearest, 0.0, float(kColumns) - 1.0)) < error_x;
     bool open = (open_one && error_x >= 0.5) || (crossed && abs(x + 0.5) < error_x);
     const uint band_row = uint(row - first_row);
     if (lands) {
