@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace penumbra::tests {
 namespace {
@@ -155,7 +156,8 @@ double error_of(visibility::Method& method, const FlawedStage& stage, const std:
 TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   const auto methods = make_methods(devices());
   std::map<std::string, double> most;  // of those that are approximate, over every sixth defect
-  std::size_t exact = 0, defects = 0;
+  std::set<std::string> exact;
+  std::size_t defects = 0;
   for_each_defect([&](const std::string& defect, const FlawedStage& stage) {
     std::vector<float> areas;
     for (auto method = methods.rbegin(); method != methods.rend(); ++method) {  // `exact` comes first
@@ -163,12 +165,12 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
       const std::string what = description.name + " of " + defect;
       const Verdict verdict = description.verdict_on(stage.diagnosis).verdict;
       ASSERT_TRUE(verdict == Verdict::exact || verdict == Verdict::approximate) << what;
-      exact += verdict == Verdict::exact ? 1 : 0;
-      if (description.name == "exact") {
-        areas = visibility_of(**method, stage);
-        expect_exact_area(what, stage, areas);
+      if (verdict == Verdict::exact) exact.insert(description.name);
+      if (verdict == Verdict::exact && description.output != Output::mask) {
+        const std::vector<float> v = visibility_of(**method, stage);
+        expect_exact_area(what, stage, v);
+        if (description.name == "exact") areas = v;
       } else if (verdict == Verdict::exact) {
-        ASSERT_EQ(description.output, Output::mask) << what;
         expect_exact(what, stage, run(**method, stage.floats, stage.light, stage.samples));
       } else if (defects % 6 == 0) {
         most[description.name] = std::max(most[description.name], error_of(**method, stage, areas));
@@ -176,8 +178,9 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
     }
     ++defects;
   });
-  EXPECT_EQ(exact, 4 * defects) << "edge-scatter, view-sample, depth-complexity, exact";
-  EXPECT_EQ(most.size(), methods.size() - 4);
+  for (const char* name : {"edge-scatter", "view-sample", "depth-complexity", "exact"})
+    EXPECT_TRUE(exact.contains(name));
+  EXPECT_EQ(most.size() + exact.size(), methods.size()) << "one verdict a method, whatever the defect";
   for (const auto& [name, error] : most) {
     fmt::print("{}: off by {:.4f} {}\n", name, error, name == "accumulate" ? "pairs" : "of V");
     EXPECT_GT(error, 0.01) << name << " is called approximate, yet exact";
