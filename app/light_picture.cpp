@@ -21,6 +21,8 @@ using volumes::LightOutline;
 
 constexpr double kPanel = 440, kMargin = 24, kHead = 64, kFoot = 118;
 constexpr double kAround = 0.35;            // shown beyond the light, of its size
+constexpr std::uint32_t kMostCells = 32;    // of a texture, a side
+constexpr double kDarkest = 0.3;            // opacity over a black texel
 constexpr std::size_t kMostLabels = 24;     // more would hide what they label
 constexpr const char* kTakes = "#c0392b";   // edges that take from the light
 constexpr const char* kGives = "#2471a3";   // edges that give back
@@ -93,8 +95,7 @@ std::vector<glm::dvec2> region_beyond(const std::vector<glm::dvec2>& boundary, c
 class Drawing {
  public:
   explicit Drawing(const LightPicture& picture) : picture_(picture), boundary_(boundary_of(picture.soft.outline())) {
-    const glm::dvec3 o = picture.light.center, u = glm::dvec3(picture.light.center_u) - o,
-                     v = glm::dvec3(picture.light.center_v) - o;
+    const auto [u, v] = visibility::light_axes(picture.light, picture.sample.p);
     const glm::dvec3 along = u / glm::length(u);
     const bool from_behind = volumes::LightProjection(picture.light, picture.sample.p).turn() < 0;
     axis_u_ = {glm::length(u) * (from_behind ? -1 : 1), 0};
@@ -174,6 +175,7 @@ class Drawing {
         volumes::projected_layers(picture_.light, picture_.sample.p, picture_.soft.layers(picture_.sample));
     for (const auto& layer : layers) polygon(layer, "");
     put("</g>\n");
+    texels();
     for (const CoveredEdge& edge : sum.edges) {
       polygon(region_beyond(boundary_, sum, edge),
               fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", edge.area > 0 ? kTakes : kGives));
@@ -190,6 +192,31 @@ class Drawing {
     text(left, kHead + kPanel + 38,
          fmt::format("{} + ({:.6f}) = {:.6f} layers in the mean; V = {:.6f}", sum.constant, sum.sum, sum.blocked,
                      sum.visibility));
+  }
+
+  /// The texture, faintly: the darker a cell, the less it weighs. Blocks of texels where there are too many to see.
+  void texels() {
+    if (!picture_.light.texture) return;
+    const visibility::LightTexture& texture = *picture_.light.texture;
+    const glm::uvec2 cells = glm::min(glm::uvec2(texture.width, texture.height), kMostCells);
+    std::vector<double> sums(std::size_t{cells.x} * cells.y), counts(sums.size());
+    for (std::size_t i = 0; i < texture.luminance.size(); ++i) {
+      const std::size_t x = i % texture.width * cells.x / texture.width;
+      const std::size_t y = i / texture.width * cells.y / texture.height;
+      sums[y * cells.x + x] += texture.luminance[i];
+      ++counts[y * cells.x + x];
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= counts[i];
+    const double brightest = *std::ranges::max_element(sums);
+    const glm::dvec2 size = 2.0 / glm::dvec2(cells);
+    put("<g class=\"texels\" stroke=\"#b7950b\" stroke-width=\"0.2\">\n");
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const auto row = static_cast<double>(i / cells.x), column = static_cast<double>(i % cells.x);
+      const glm::dvec2 low(-1 + column * size.x, 1 - (row + 1) * size.y), high = low + size;  // rows run from the top
+      polygon({low, {high.x, low.y}, high, {low.x, high.y}},
+              fmt::format("fill-opacity=\"{:.3f}\"", kDarkest * (1 - sums[i] / brightest)));
+    }
+    put("</g>\n");
   }
 
   void silhouettes(volumes::Viewer viewer) {
@@ -222,6 +249,9 @@ class Drawing {
     entry(kMargin, y + 62, kGives, "edge that gives back, and the area beyond it");
     entry(2 * kMargin + kPanel, y + 44, kHidden, "hidden by some triangle");
     entry(2 * kMargin + kPanel, y + 62, "#909090", "silhouettes as projected; dashed: counted other than once");
+    if (picture_.light.texture) {
+      text(2 * kMargin + kPanel, y + 80, "cells: the light's texture, darker where it weighs less; areas are weights");
+    }
     text(kMargin, y + 80, "dot: the point that areas are seen from, and the number of layers there");
   }
 

@@ -106,8 +106,7 @@ class WedgesCommand : public Command {
     const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
-    light.texture = {};  // areas of the light, whatever its picture weighs
+    const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
     const volumes::LightHull hull = volumes::light_hull(light);
     const volumes::Casters casters = volumes::casters_of(floats, light);
     const bool tight = chosen.construction == volumes::Construction::tight;

@@ -63,8 +63,7 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
                                      const visibility::Light& light, const volumes::Casters& casters,
                                      volumes::ValidationReport& report) {
   CoverageOutcome outcome;
-  outcome.has_plane = light.kind != visibility::LightKind::sphere;
-  if (!outcome.has_plane) return outcome;
+  outcome.textured = light.texture.has_value();
   const volumes::SoftVisibility soft(floats, light, casters);
   const std::vector<LitPoint> samples = where_edges_appear(soft, judged_samples(scene, floats, light));
   outcome.points = volumes::check_coverage(soft, light, samples, report);
@@ -76,7 +75,8 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
     outcome.hidden[i] = 1 - area.visibility({samples[i].p, samples[i].carrier, samples[i].facing});
   });
   // A disk is a polygon of equal area there, whose part differs from the disk's by 7.6e-8 at most (docs/exact.md).
-  const double error = light.kind == visibility::LightKind::disk ? 1e-7 : 0;
+  using visibility::LightKind;
+  const double error = light.kind == LightKind::disk || light.kind == LightKind::sphere ? 1e-7 : 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     volumes::check_union(outcome.points[i], outcome.hidden[i], error, report);
   }

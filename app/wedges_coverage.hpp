@@ -12,7 +12,7 @@ namespace penumbra::app {
 struct CoverageOutcome {
   std::vector<volumes::CoveragePoint> points;
   std::vector<double> hidden;  ///< for each, the exact area of the union; empty where this build has no such oracle
-  bool has_plane = true;       ///< of the light: not a sphere, of which nothing is checked
+  bool textured = false;       ///< areas are weights
 };
 
 /// Invariant `coverage` at up to 64 judged pixels of the scene's first camera and size where an edge appears on the

@@ -113,10 +113,6 @@ std::pair<std::uint32_t, std::uint32_t> parse_pixel(const std::string& text, con
 }
 
 Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y) {
-  if (input.light.kind == visibility::LightKind::sphere) {
-    throw InputError("--explain: light {} is a sphere; silhouettes are summed on a rectangle, a disk or a polygon",
-                     input.light.name);
-  }
   const visibility::PinholeCamera camera =
       visibility::make_camera(input.scene.cameras.front(), input.floats.origin, input.scene.width, input.scene.height);
   const std::uint32_t pixel = y * input.scene.width + x;
@@ -135,6 +131,7 @@ Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y) {
   result.receiver = soft.at(result.sample, volumes::Viewer::receiver);
   result.exact = exact_visibility(input, result.sample);
   result.touching = soft.something_touches_light();
+  if (input.light.texture) result.texels = {input.light.texture->width, input.light.texture->height};
   explain_wedges(input, soft, result);
   result.picture = svg_of({input.light, input.casters, soft, result.sample, *result.center, *result.receiver,
                            result.exact, title_of(input, result)});
@@ -152,6 +149,8 @@ ordered_json explain_json(const Explanation& explanation, const std::filesystem:
     entry["V"] = explanation.given;
     return entry;
   }
+  entry["texture"] =
+      explanation.texels.x > 0 ? ordered_json{explanation.texels.x, explanation.texels.y} : ordered_json();
   entry["wedges"] = ordered_json::array();
   for (const ExplainedWedge& wedge : explanation.wedges) {
     ordered_json one{{"wedge", wedge.wedge}, {"multiplicity", wedge.multiplicity}, {"area", wedge.area}};
@@ -191,6 +190,10 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
              text_of(glm::dvec3(explanation.sample.p)));
   if (explanation.kind == PixelClass::horizon) {
     fmt::print("{:.6f} of the light is above the tangent plane: no sum gives more\n", explanation.center->above);
+  }
+  if (explanation.texels.x > 0) {
+    fmt::print("areas and V are weighed by the light's texture of {}x{} texels\n", explanation.texels.x,
+               explanation.texels.y);
   }
   if (explanation.touching) fmt::print("something touches the light itself: no sum over edges is exact\n");
   fmt::print("in {} wedges:\n", explanation.wedges.size());

@@ -36,7 +36,8 @@ struct Explanation {
   std::optional<volumes::LayerSum> center, receiver;  ///< nothing where V is `given`
   std::optional<double> exact;                        ///< V
   bool touching = false;                              ///< something meets the light itself: no sum is exact
-  std::string picture;                                ///< SVG, where there is something to see
+  glm::uvec2 texels{0};  ///< of the light's texture, by which areas and V are weighed; 0: there is none
+  std::string picture;   ///< SVG, where there is something to see
 };
 
 struct ToExplain {
@@ -51,7 +52,7 @@ struct ToExplain {
 /// "X,Y" as a pixel of the scene's image; throws UsageError if it is not.
 std::pair<std::uint32_t, std::uint32_t> parse_pixel(const std::string& text, const scenes::Scene& scene);
 
-/// Of the scene's first camera. Throws InputError for a sphere light.
+/// Of the scene's first camera. A sphere light is the disk that faces p.
 Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y);
 
 nlohmann::ordered_json explain_json(const Explanation& explanation, const std::filesystem::path& svg);

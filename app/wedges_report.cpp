@@ -115,6 +115,7 @@ ordered_json coverage_json(const CoverageOutcome& coverage) {
   const CoverageFigures figures = figures_of(coverage);
   ordered_json entry{{"samples", figures.samples},
                      {"touchingLight", figures.touching},
+                     {"textured", coverage.textured},
                      {"singleLayer", figures.single},
                      {"maxAgainstTriangles", figures.worst_layers}};
   entry["maxAgainstExact"] = coverage.hidden.empty() ? ordered_json() : ordered_json(figures.worst_union);
@@ -123,15 +124,12 @@ ordered_json coverage_json(const CoverageOutcome& coverage) {
 }
 
 void print_coverage(const CoverageOutcome& coverage) {
-  if (!coverage.has_plane) {
-    fmt::print("coverage: not of a sphere\n");
-    return;
-  }
   const CoverageFigures figures = figures_of(coverage);
   if (figures.touching > 0) {
-    fmt::print("coverage: not checked, something touches the light\n");
+    fmt::print("coverage: not checked at {} view samples, something touches the light\n", figures.touching);
     return;
   }
+  if (coverage.textured) fmt::print("coverage is weighed by the light's texture\n");
   fmt::print("coverage at {} view samples: the receiver's silhouettes are {:.1e} from the triangles at most\n",
              figures.samples, figures.worst_layers);
   if (figures.single > 0 && !coverage.hidden.empty()) {

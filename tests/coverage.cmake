@@ -22,8 +22,9 @@ gtest_discover_tests(coverage_mesh_tests TEST_FILTER "*Full" TEST_LIST coverage_
 find_package(nlohmann_json REQUIRED)
 add_executable(explain_cli_test ${CMAKE_CURRENT_LIST_DIR}/cli/explain_test.cpp ${CMAKE_CURRENT_LIST_DIR}/cli/program.cpp)
 target_compile_definitions(explain_cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
-target_link_libraries(explain_cli_test PRIVATE penumbra_warnings nlohmann_json::nlohmann_json GTest::gmock
-                                               GTest::gtest_main)
+find_package(ZLIB REQUIRED)
+target_link_libraries(explain_cli_test PRIVATE penumbra_visibility penumbra_warnings nlohmann_json::nlohmann_json
+                                               GTest::gmock GTest::gtest_main ZLIB::ZLIB)
 target_include_directories(explain_cli_test PRIVATE ${PROJECT_SOURCE_DIR})
 add_dependencies(explain_cli_test penumbra)
 gtest_discover_tests(explain_cli_test TEST_PREFIX cli. PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)

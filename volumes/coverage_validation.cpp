@@ -30,16 +30,17 @@ std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visi
     point.sample = samples[i];
     const auto layers = projected_layers(light, samples[i].p, soft.layers(samples[i]));
     point.touches_light = touching;
+    if (soft.texture() != nullptr) point.tolerance *= soft.texture()->brightest();
     point.center = soft.at(samples[i], Viewer::center).blocked;
     point.receiver = soft.at(samples[i], Viewer::receiver).blocked;
-    point.layers = sum_of_layers(soft.outline(), layers);
-    point.overlap = overlap_of_layers(soft.outline(), layers, kMostOverlap);
+    point.layers = sum_of_layers(soft.outline(), layers, soft.texture());
+    point.overlap = overlap_of_layers(soft.outline(), layers, kMostOverlap, soft.texture());
   });
   for (const CoveragePoint& point : points) {
     if (point.touches_light) continue;
     count(report);
     const double off = std::abs(point.receiver - point.layers);
-    if (off <= kCoverageTolerance) continue;
+    if (off <= point.tolerance) continue;
     fail(point, off,
          fmt::format("the receiver's silhouettes hide {} of the light, its triangles {}", point.receiver, point.layers),
          report);
@@ -50,7 +51,7 @@ std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visi
 void check_union(const CoveragePoint& point, double hidden, double error, ValidationReport& report) {
   if (point.touches_light) return;
   count(report);
-  const double more = point.receiver - hidden, tolerance = kCoverageTolerance + error;
+  const double more = point.receiver - hidden, tolerance = point.tolerance + error;
   const bool bounded = point.overlap <= kMostOverlap;
   if (more >= -tolerance && (!bounded || more <= point.overlap + tolerance)) return;
   fail(point, more < 0 ? -more : more - point.overlap,

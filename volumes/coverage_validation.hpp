@@ -19,7 +19,8 @@ struct CoveragePoint {
   double center = 0, receiver = 0;  ///< `blocked` by the centre's silhouettes, by the receiver's own
   double layers = 0;                ///< the same of the receiver, each triangle by itself (layer_areas.hpp)
   double overlap = 0;               ///< of layers; beyond `kMostOverlap` it was not summed further
-  bool touches_light = false;       ///< something meets the light itself: nothing is held against anything
+  double tolerance = kCoverageTolerance;
+  bool touches_light = false;  ///< something meets the light itself: nothing is held against anything
 
   [[nodiscard]] bool is_single_layer() const { return !touches_light && overlap <= kSingleLayer; }
 };
@@ -27,7 +28,8 @@ inline constexpr double kMostOverlap = 4;
 
 /// Invariant `coverage` (f): the receiver's silhouettes add up to its layers, to kCoverageTolerance, at each sample,
 /// which must be in front of the light (asserted). The difference of the centre's is only told. Parallel; violations
-/// are added in the order of samples.
+/// are added in the order of samples. A sphere is at each sample the disk that faces it. Under a texture areas are
+/// weights, and the tolerance grows by how much brighter than the mean its brightest texel is.
 std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visibility::Light& light,
                                           std::span<const LitPoint> samples, ValidationReport& report);
 

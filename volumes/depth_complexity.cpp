@@ -34,12 +34,16 @@ constexpr std::size_t kMostEdges = 1U << 29;  // |k_e| of a record is at most 2:
 enum class Variant { soup, laine, forest };
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
-  return {visibility::Verdict::exact,
-          visibility::reason_with(
-              "signed multiplicities hold for any soup, and every pair is decided exactly", mesh,
-              {{mesh.boundary_loops, "open boundaries, where variant=laine is only approximate"},
-               {mesh.non_manifold_edges.count, "non-manifold edges, where variant=laine is only approximate"},
-               {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+  return {
+      visibility::Verdict::exact,
+      visibility::reason_with(
+          "signed multiplicities hold for any soup, and every pair is decided exactly (variant=forest: only where no "
+          "triangle's plane passes through the light)",
+          mesh,
+          {{mesh.boundary_loops, "open boundaries, where variant=laine is only approximate"},
+           {mesh.non_manifold_edges.count, "non-manifold edges, where variant=laine is only approximate"},
+           {mesh.zero_area_triangles.count,
+            "triangles without area, which cast nothing, and where variant=laine is only approximate"}})};
 }
 
 /// The value of an option that is one of these, the first if it is not given.
@@ -296,7 +300,8 @@ visibility::MethodDescription depth_complexity_description() {
       .output = visibility::Output::mask,
       .exact_for =
           "variant=soup: every pair of view sample and light sample, for any triangle soup; variant=laine: "
-          "the same for closed meshes, approximate for others; variant=forest: the same where no occluding triangle's "
+          "the same for closed meshes whose triangles all have an area, approximate for others; variant=forest: the "
+          "same where no occluding triangle's "
           "plane passes through the light, too bright elsewhere",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
       .options = {{"variant", "soup|laine|forest", "soup",

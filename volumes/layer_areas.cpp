@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace penumbra::volumes {
@@ -78,14 +79,31 @@ const auto kMix = [](const auto& a, const auto& b, double t) { return a + t * (b
 /// little as the side is long.
 constexpr double kShortestSide = 0x1p-24;
 
-double common_area(Polygon one, const Polygon& other) {
+/// Empty, or with an area.
+Polygon common_part(Polygon one, const Polygon& other) {
   for (std::size_t i = 0; i < other.size() && one.size() > 2; ++i) {
     const glm::dvec2 corner = other[i], side = other[(i + 1) % other.size()] - corner;
     if (glm::length(side) < kShortestSide) continue;
     one = cut(
         one, [&](const glm::dvec2& q) { return cross2(side, q - corner); }, kMix);
   }
-  return one.size() > 2 ? area_of(one) : 0;
+  if (one.size() < 3) one.clear();
+  return one;
+}
+
+/// From 0 to the nearest point of the triangle.
+double distance_to(const std::array<glm::dvec3, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  const glm::dvec3 n = glm::cross(b - a, c - a);
+  bool within = glm::dot(n, n) > 0;  // is the nearest point of the plane
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 &from = triangle[i], way = triangle[(i + 1) % 3] - from;
+    within = within && glm::dot(glm::cross(way, -from), n) >= 0;
+    const double size = glm::dot(way, way), share = size > 0 ? std::clamp(-glm::dot(from, way) / size, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, glm::length(from + share * way));
+  }
+  return within ? std::min(nearest, std::abs(glm::dot(n, a)) / glm::length(n)) : nearest;
 }
 
 constexpr double kHair = 0x1p-20;  ///< of the light: far more than rounding, and nothing to the eye
@@ -130,6 +148,11 @@ std::vector<Polygon> projected_layers(const visibility::Light& light, const glm:
 }
 
 bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3>& triangle) {
+  if (light.kind == visibility::LightKind::sphere) {
+    const glm::dvec3 c = light.center;
+    const auto& [p, q, r] = triangle;
+    return distance_to({glm::dvec3(p) - c, glm::dvec3(q) - c, glm::dvec3(r) - c}) <= light.radius * (1 + kHair);
+  }
   std::array<mesh::Side, 3> sides{};
   for (std::size_t i = 0; i < 3; ++i) {
     sides[i] = mesh::side_of_plane(light.center, light.center_u, light.center_v, triangle[i]);
@@ -158,13 +181,16 @@ bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3
   return !met.empty();
 }
 
-double sum_of_layers(const LightOutline& outline, std::span<const Polygon> layers) {
+double sum_of_layers(const LightOutline& outline, std::span<const Polygon> layers, const TextureWeights* texture) {
   double sum = 0;
-  for (const Polygon& layer : layers) sum += area_within(outline, layer);
-  return sum / outline.area;
+  for (const Polygon& layer : layers) {
+    sum += texture != nullptr ? texture->weight_of(layer) : area_within(outline, layer) / outline.area;
+  }
+  return sum;
 }
 
-double overlap_of_layers(const LightOutline& outline, std::span<const Polygon> layers, double stop) {
+double overlap_of_layers(const LightOutline& outline, std::span<const Polygon> layers, double stop,
+                         const TextureWeights* texture) {
   std::vector<Bounds> bounds;
   for (const Polygon& layer : layers) bounds.push_back(bounds_of(layer));
   std::vector<std::size_t> order(layers.size());
@@ -176,7 +202,8 @@ double overlap_of_layers(const LightOutline& outline, std::span<const Polygon> l
     for (std::size_t j = i + 1; j < order.size() && bounds[order[j]].lower.x < one.upper.x; ++j) {
       const Bounds& other = bounds[order[j]];
       if (other.lower.y >= one.upper.y || other.upper.y <= one.lower.y) continue;
-      sum += common_area(layers[order[i]], layers[order[j]]) / outline.area;
+      const Polygon common = common_part(layers[order[i]], layers[order[j]]);
+      sum += texture != nullptr ? texture->weight_of(common) : area_of(common) / outline.area;
     }
     if (sum > stop) return sum;
   }

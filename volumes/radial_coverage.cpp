@@ -88,8 +88,8 @@ Projected mix(const Projected& a, const Projected& b, double t) {
 }  // namespace
 
 LightOutline light_outline(const visibility::Light& light) {
-  PENUMBRA_ASSERT(light.kind != visibility::LightKind::sphere, "light {} has no plane", light.name);
-  if (light.kind == visibility::LightKind::disk) return {{}, std::numbers::pi};
+  using visibility::LightKind;
+  if (light.kind == LightKind::disk || light.kind == LightKind::sphere) return {{}, std::numbers::pi};
   if (light.kind == visibility::LightKind::rectangle) return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
   const glm::dvec3 o = light.center, u = glm::dvec3(light.center_u) - o, v = glm::dvec3(light.center_v) - o;
   const glm::dvec3 n = glm::cross(u, v);
@@ -135,11 +135,14 @@ double Projected::error() const {
 // r = p − o, d = x − p: S = −det(r, v, d), T = −det(u, r, d), W = −det(u, v, d), over K = det(u, v, r), as in
 // reference/back_projection.hpp. d is taken first: an edge that nearly touches p is seen as sharply as any other.
 LightProjection::LightProjection(const visibility::Light& light, const glm::vec3& p) : p_(p) {
-  const auto side = mesh::side_of_plane(light.center, light.center_u, light.center_v, p);
-  turn_ = static_cast<int>(side);
+  if (light.kind == visibility::LightKind::sphere) {
+    turn_ = p == light.center ? 0 : 1;
+  } else {
+    turn_ = static_cast<int>(mesh::side_of_plane(light.center, light.center_u, light.center_v, p));
+  }
   PENUMBRA_ASSERT(turn_ != 0, "({}, {}, {}) is on the plane of light {}", p.x, p.y, p.z, light.name);
-  const glm::dvec3 o = light.center, u = glm::dvec3(light.center_u) - o, v = glm::dvec3(light.center_v) - o, r = p_ - o;
-  const glm::dvec3 n = glm::cross(u, v);
+  const auto [u, v] = visibility::light_axes(light, p);
+  const glm::dvec3 r = p_ - glm::dvec3(light.center), n = glm::cross(u, v);
   double k = glm::dot(n, r);
   if (k * turn_ <= 0) k = turn_ * std::numeric_limits<double>::min();  // so near the plane that double cannot tell
   row_x_ = glm::cross(v, r) / k;

@@ -56,6 +56,7 @@ SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light
       caster_of_(scene.triangles.size(), kNone),
       light_sides_(light_sides(casters.view(), casters.graph, light, center_)),
       center_facings_(mesh::facings(casters.view(), casters.graph, center_)) {
+  if (light.texture) texture_.emplace(*light.texture);
   for (const glm::dvec2& corner : outline_.corners) {
     lower_ = glm::min(lower_, corner);
     upper_ = glm::max(upper_, corner);
@@ -140,8 +141,18 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoi
   return viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample);
 }
 
-/// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner.
-glm::vec3 SoftVisibility::choose_reference(const LightProjection& projection, std::span<const Candidate> edges) const {
+/// What bounds the light as p sees it: of a sphere, the square around the disk that faces p, in floats.
+std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
+  if (light_.kind != visibility::LightKind::sphere) return light_.outline;
+  const auto [u, v] = visibility::light_axes(light_, p);
+  const glm::dvec3 c = light_.center;
+  return {glm::vec3(c - u - v), glm::vec3(c + u - v), glm::vec3(c + u + v), glm::vec3(c - u + v)};
+}
+
+/// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner. (Of a sphere that
+/// point is an ulp off the disk: it stands for where the line from p through it meets the disk.)
+glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjection& projection,
+                                           std::span<const Candidate> edges) const {
   const auto clear = [&](const glm::vec3& l) {
     const Projected at = projection(glm::dvec3(l));
     const RadialCoverage coverage(outline_, at.point());
@@ -152,7 +163,7 @@ glm::vec3 SoftVisibility::choose_reference(const LightProjection& projection, st
   };
   if (clear(center_)) return center_;
   for (const float share : {0.25F, 0.5F, 0.3125F, 0.4375F, 0.375F}) {
-    for (const glm::vec3& corner : light_.outline) {
+    for (const glm::vec3& corner : corners_from(p)) {
       const glm::vec3 l = center_ + share * (corner - center_);
       if (clear(l)) return l;
     }
@@ -183,7 +194,7 @@ std::int32_t SoftVisibility::layers_at(const LitPoint& sample, const glm::vec3& 
 
 std::vector<std::array<glm::vec3, 3>> SoftVisibility::layers(const LitPoint& sample) const {
   glm::vec3 lower = sample.p, upper = sample.p;
-  for (const glm::vec3& corner : light_.outline) {
+  for (const glm::vec3& corner : corners_from(sample.p)) {
     lower = glm::min(lower, corner);
     upper = glm::max(upper, corner);
   }
@@ -207,14 +218,22 @@ double SoftVisibility::share_above_carrier(const LitPoint& sample) const {
   const auto [a, b, c] = scene_.corners(sample.carrier);
   const glm::dvec3 n =
       static_cast<double>(sample.facing) * glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-  const glm::dvec3 o = light_.center;
-  return share_above(outline_, glm::dot(n, o - glm::dvec3(a)),
-                     {glm::dot(n, glm::dvec3(light_.center_u) - o), glm::dot(n, glm::dvec3(light_.center_v) - o)});
+  const auto [u, v] = visibility::light_axes(light_, sample.p);
+  return share_above(outline_, glm::dot(n, glm::dvec3(light_.center) - glm::dvec3(a)),
+                     {glm::dot(n, u), glm::dot(n, v)});
+}
+
+/// Of the light, or with a texture of its weight; with the sign of the turn around the reference point.
+double SoftVisibility::area_beyond(const Candidate& edge, int side, const RadialCoverage& coverage,
+                                   const glm::dvec2& reference) const {
+  if (!texture_) return coverage.beyond(edge.clipped, side) / outline_.area;
+  return texture_->weight_beyond({edge.clipped.from, edge.clipped.to, side}, reference);
 }
 
 LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   LayerSum result;
-  result.in_front = visibility::in_front_of_light(light_, sample.p);
+  const bool at_center = light_.kind == visibility::LightKind::sphere && sample.p == light_.center;
+  result.in_front = visibility::in_front_of_light(light_, sample.p) && !at_center;
   if (!result.in_front) return result;
   const LightProjection projection(light_, sample.p);
   std::vector<Candidate> candidates;
@@ -226,20 +245,19 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
     if (clipped) candidates.push_back({edge, k, *clipped});
   }
 
-  result.reference = choose_reference(projection, candidates);
+  result.reference = choose_reference(sample.p, projection, candidates);
   result.reference_at = projection(glm::dvec3(result.reference)).point();
   result.moved = result.reference != center_;
   result.constant = layers_at(sample, result.reference, viewer);
   const RadialCoverage coverage(outline_, result.reference_at);
   // k counts triangles counter-clockwise as the viewer sees them; between c and p, c sees them the other way around.
   const int sense = viewer == Viewer::center ? -projection.turn() : projection.turn();
-  result.sense = -sense;
   for (const Candidate& candidate : candidates) {
     const auto [a, b] = casters_.graph.edges[candidate.edge];
     const int side =
         -projection.turn() * visibility::edge_side(sample.p, result.reference, glm::vec3(casters_.positions[a]),
                                                    glm::vec3(casters_.positions[b]), light_);
-    const double area = -sense * candidate.multiplicity * coverage.beyond(candidate.clipped, side) / outline_.area;
+    const double area = -sense * candidate.multiplicity * area_beyond(candidate, side, coverage, result.reference_at);
     result.edges.push_back(
         {candidate.edge, candidate.multiplicity, static_cast<std::int8_t>(side), candidate.clipped, area});
     result.sum += area;

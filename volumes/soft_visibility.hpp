@@ -5,6 +5,7 @@
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "volumes/radial_coverage.hpp"
+#include "volumes/texture_weights.hpp"
 #include "volumes/wedge_casters.hpp"
 
 #include <glm/vec2.hpp>
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,7 +39,7 @@ struct CoveredEdge {
   std::int32_t multiplicity = 0;  ///< k_e of what counts, never 0 (closed_casters.hpp)
   std::int8_t side = 0;           ///< +1: the clipped edge turns counter-clockwise around the reference point. Exact
   ClippedEdge clipped;            ///< in frame coordinates
-  double area = 0;                ///< what it adds to `blocked`: ± k_e times the area beyond it, of |L|
+  double area = 0;                ///< what it adds to `blocked`: ± k_e times the area beyond it, of |L|, or its weight
 };
 
 struct LayerSum {
@@ -45,9 +47,7 @@ struct LayerSum {
   glm::vec3 reference{0};      ///< the point of the light that areas are seen from: its centre, unless edges end there
   glm::dvec2 reference_at{0};  ///< the same in frame coordinates
   bool moved = false;          ///< it is not the centre
-  int sense =
-      0;  ///< ±1: an edge's area has the sign of sense · k_e · (the turn of its ends around the reference point)
-  std::int32_t constant = 0;       ///< layers at the reference point. Exact
+  std::int32_t constant = 0;   ///< layers at the reference point. Exact
   std::vector<CoveredEdge> edges;  ///< by their numbers; those that appear on the light
   double sum = 0;                  ///< of their areas
   double blocked = 0;              ///< constant + sum: the mean number of layers over the light
@@ -56,7 +56,11 @@ struct LayerSum {
 };
 
 /// Soft shadow volumes (Assarsson and Akenine-Möller 2003) at one view sample: the plain C++ twin of the method
-/// `soft-volume`, for rectangle, convex polygon and disk lights. docs/coverage.md derives it.
+/// `soft-volume`, for rectangle, convex polygon and disk lights; and for spheres, each p with the disk that faces it.
+/// docs/coverage.md derives it.
+///
+/// A textured light weighs: in place of |L| and areas stand the integral of its luminance and the shares of that.
+/// `above` stays a share of |L|, as in the method.
 ///
 /// With D(l) the number of layers between p and the light point l, `blocked` is its mean over the light. From the
 /// receiver's own silhouettes D counts the triangles that p→l meets (of closed parts half of them: closed_casters.hpp),
@@ -67,7 +71,7 @@ struct LayerSum {
 /// the side of every edge are exact, ties read as the contract does, so that nothing jumps by a whole light.
 class SoftVisibility {
  public:
-  /// Borrows all three; `casters` are casters_of(scene, light). A sphere light is asserted away.
+  /// Borrows all three; `casters` are casters_of(scene, light). ResourceError: a texture too large (TextureWeights).
   SoftVisibility(const visibility::SceneFloats& scene, const visibility::Light& light, const Casters& casters);
 
   [[nodiscard]] LayerSum at(const LitPoint& sample, Viewer viewer) const;
@@ -80,6 +84,8 @@ class SoftVisibility {
   [[nodiscard]] bool something_touches_light() const;
 
   [[nodiscard]] const LightOutline& outline() const { return outline_; }
+  /// None: all of the light weighs the same.
+  [[nodiscard]] const TextureWeights* texture() const { return texture_ ? &*texture_ : nullptr; }
   /// Edges of what counts, with their k_e, by number.
   using Silhouette = std::pair<std::uint32_t, std::int32_t>;
   [[nodiscard]] std::vector<Silhouette> silhouettes(const LitPoint& sample, Viewer viewer) const;
@@ -95,14 +101,19 @@ class SoftVisibility {
   [[nodiscard]] bool counts_for_receiver(std::uint32_t caster, mesh::Side seen) const;
   [[nodiscard]] std::vector<Silhouette> center_silhouettes(const LitPoint& sample) const;
   [[nodiscard]] std::vector<Silhouette> receiver_silhouettes(const LitPoint& sample) const;
-  [[nodiscard]] glm::vec3 choose_reference(const LightProjection& projection, std::span<const Candidate> edges) const;
+  [[nodiscard]] std::vector<glm::vec3> corners_from(const glm::vec3& p) const;
+  [[nodiscard]] glm::vec3 choose_reference(const glm::vec3& p, const LightProjection& projection,
+                                           std::span<const Candidate> edges) const;
   [[nodiscard]] std::int32_t layers_at(const LitPoint& sample, const glm::vec3& l, Viewer viewer) const;
+  [[nodiscard]] double area_beyond(const Candidate& edge, int side, const RadialCoverage& coverage,
+                                   const glm::dvec2& reference) const;
   [[nodiscard]] double share_above_carrier(const LitPoint& sample) const;
 
   const visibility::SceneFloats& scene_;
   const visibility::Light& light_;
   const Casters& casters_;
   LightOutline outline_;
+  std::optional<TextureWeights> texture_;
   glm::dvec2 lower_{-1}, upper_{1};  // of the outline
   glm::vec3 center_{0};
   visibility::TriangleTree tree_;

@@ -298,8 +298,7 @@ void SoftVolume::add_doubtful(Part& part, const std::vector<std::size_t>& pixels
     const std::size_t pixel = first + pixels[i];
     const LitPoint point{samples_->p[pixel], static_cast<std::uint32_t>(samples_->triangle[pixel]),
                          samples_->facing[pixel]};
-    const LayerSum layers = part.host->visibility.at(point, Viewer::center);
-    sums_[pixels[i]] += part.weight * (part.texture ? textured_visibility(*part.texture, layers) : layers.visibility);
+    sums_[pixels[i]] += part.weight * part.host->visibility.at(point, Viewer::center).visibility;
   });
 }
 

@@ -35,6 +35,14 @@ double rim_position(const glm::dvec2& reference, const glm::dvec2& q) {
   return d.y > 0 ? 3 - other : 7 + other;
 }
 
+/// The point of the rim there.
+glm::dvec2 rim_point(double position) {
+  if (position < 2) return {1, position - 1};
+  if (position < 4) return {3 - position, 1};
+  if (position < 6) return {-1, 5 - position};
+  return {position - 7, -1};
+}
+
 }  // namespace
 
 TextureWeights::TextureWeights(const visibility::LightTexture& texture)
@@ -59,6 +67,7 @@ TextureWeights::TextureWeights(const visibility::LightTexture& texture)
     words_[row + 1] = words_[row] + p * row_height;
   }
   words_[height_] = 1;  // to the last bit: going round adds nothing
+  brightest_ = *std::ranges::max_element(texture.luminance) / texture.mean_luminance;
 }
 
 double TextureWeights::below(double y) const {
@@ -115,14 +124,15 @@ double TextureWeights::beyond(const Edge& edge, const glm::dvec2& reference) con
   return along_rim(last) - along_rim(first) + round_trips - left_of(edge.from, edge.to);
 }
 
-double textured_visibility(const TextureWeights& texture, const LayerSum& layers) {
-  if (!layers.in_front) return 0;
-  double blocked = layers.constant;
-  for (const CoveredEdge& edge : layers.edges) {
-    const double beyond = texture.beyond({edge.clipped.from, edge.clipped.to, edge.side}, layers.reference_at);
-    blocked += layers.sense * edge.multiplicity * beyond;
-  }
-  return std::clamp(1 - blocked, 0.0, layers.above);
+double TextureWeights::weight_beyond(const Edge& edge, const glm::dvec2& reference) const {
+  return beyond(edge, reference) + left_of(edge.from, rim_point(rim_position(reference, edge.from))) -
+         left_of(edge.to, rim_point(rim_position(reference, edge.to)));
+}
+
+double TextureWeights::weight_of(std::span<const glm::dvec2> polygon) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) sum += left_of(polygon[i], polygon[(i + 1) % polygon.size()]);
+  return sum;
 }
 
 visibility::LightTexture texture_part(const visibility::LightTexture& texture, std::uint32_t n,

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "visibility/light_texture.hpp"
-#include "volumes/soft_visibility.hpp"
 
 #include <glm/vec2.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace penumbra::volumes {
@@ -33,6 +33,16 @@ class TextureWeights {
   };
   [[nodiscard]] double beyond(const Edge& edge, const glm::dvec2& reference) const;
 
+  /// The same with those ways: what lies beyond the edge weighs just that, whatever other edges do.
+  [[nodiscard]] double weight_beyond(const Edge& edge, const glm::dvec2& reference) const;
+
+  /// Of a polygon within the light, counter-clockwise.
+  [[nodiscard]] double weight_of(std::span<const glm::dvec2> polygon) const;
+
+  /// The brightest texel's luminance over the mean: a region of area A weighs at most A · brightest() / 4, so an error
+  /// of an area grows by no more than that.
+  [[nodiscard]] double brightest() const { return brightest_; }
+
   /// What the shader reads: weight below each row's lower border, then P and PP = ∫ P of each row at each border.
   [[nodiscard]] const std::vector<double>& words() const { return words_; }
   /// WedgePush::texels.
@@ -44,12 +54,9 @@ class TextureWeights {
   [[nodiscard]] double along_rim(double position) const;
 
   std::uint32_t width_, height_;
+  double brightest_ = 1;
   std::vector<double> words_;
 };
-
-/// V by the texture: what soft-volume makes of a textured light at one view sample. `layers` from the centre's
-/// silhouettes.
-double textured_visibility(const TextureWeights& texture, const LayerSum& layers);
 
 /// The texture of part (column, row) of a rectangle cut in n × n: exactly, each texel cut in n × n itself.
 visibility::LightTexture texture_part(const visibility::LightTexture& texture, std::uint32_t n, const glm::uvec2& part);

@@ -1,5 +1,6 @@
 // wedges --explain and the coverage that --validate checks: what is printed, written as JSON, drawn, and refused.
 #include "tests/cli/program.hpp"
+#include "tests/unit/textured_lights_support.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -97,13 +98,52 @@ TEST_F(ExplainCommand, SaysWhyThereIsNothingToAdd) {
   EXPECT_THAT(run({"wedges", below, "--explain", "1,4"}).out, HasSubstr("behind the light; V = 0"));
 }
 
-TEST_F(ExplainCommand, RefusesASphereAndABadName) {
-  const std::string scene =
-      write("scene.json", scene_with(R"({"name": "bulb", "sphere": {"center": [0, 2, 0], "radius": 0.5}})")).string();
-  const Outcome sphere = run({"wedges", scene, "--explain", "4,4"});
-  EXPECT_EQ(sphere.code, 3);
-  EXPECT_THAT(sphere.err, AllOf(HasSubstr("bulb"), HasSubstr("rectangle, a disk or a polygon")));
-  EXPECT_THAT(run({"wedges", scene, "--validate"}).out, HasSubstr("coverage: not of a sphere"));
+/// The board's edge at z = 0.25 appears through the middle of the light, whose other edges are beside it: V is half.
+TEST_F(ExplainCommand, ASphereIsTheDiskThatFacesThePixel) {
+  for (const char* light :
+       {R"({"name": "bulb", "sphere": {"center": [0.5, 2, 0], "radius": 0.25}})",
+        R"({"name": "bulb", "disk": {"center": [0.5, 2, 0], "normal": [0, -4, 1], "radius": 0.25}})"}) {
+    const std::string scene = write("scene.json", scene_with(light)).string();
+    const Outcome outcome =
+        run({"wedges", scene, "--explain", "4,4", "--json", path("w.json"), "--svg", path("w.svg"), "--validate"});
+    ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(read("w.svg"), Not(HasSubstr("nan")));
+    const json wedges = json::parse(read("w.json"));
+    EXPECT_GT(wedges.at("checks").at("coverage").get<int>(), 0);
+    EXPECT_GT(wedges.at("coverage").at("singleLayer").get<int>(), 0);
+    EXPECT_NEAR(wedges.at("explain").at("centre").at("V").get<double>(), 0.5, 1e-12) << light;
+    EXPECT_NEAR(wedges.at("explain").at("receiver").at("V").get<double>(), 0.5, 1e-12) << light;
+    EXPECT_NEAR(wedges.at("explain").at("exactV").get<double>(), 0.5, 1e-7) << light;
+  }
+}
+
+TEST_F(ExplainCommand, WeighsATexture) {
+  // One row of two texels: black where s < 0, white where s > 0. Below the board's middle the light's half with s > 0
+  // has twice its weight: the board hides the quarter s in (0, 1), t in (−1, 0), so half of what shines.
+  write("half.png", tests::png_file(2, 1, 8, 0, {std::string("\x00\xff", 2)}));
+  const std::string scene = write("scene.json", scene_with(R"({"name": "key", "texture": "half.png",
+        "rectangle": {"center": [0, 2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}})"))
+                                .string();
+  const Outcome outcome =
+      run({"wedges", scene, "--explain", "4,4", "--json", path("w.json"), "--svg", path("w.svg"), "--validate"});
+  ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("weighed by the light's texture of 2x1 texels"),
+                                 HasSubstr("coverage is weighed by the light's texture")));
+  const json wedges = json::parse(read("w.json"));
+  EXPECT_EQ(wedges.at("explain").at("texture"), json({2, 1}));
+  EXPECT_TRUE(wedges.at("coverage").at("textured").get<bool>());
+  EXPECT_NEAR(wedges.at("explain").at("centre").at("V").get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(wedges.at("explain").at("receiver").at("V").get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(wedges.at("explain").at("exactV").get<double>(), 0.5, 1e-12);
+  double sum = wedges.at("explain").at("centre").at("constant").get<int>();
+  for (const json& wedge : wedges.at("explain").at("wedges")) sum += wedge.at("area").get<double>();
+  EXPECT_NEAR(sum, 0.5, 1e-12);
+  EXPECT_THAT(read("w.svg"), AllOf(HasSubstr("class=\"texels\""), HasSubstr("fill-opacity=\"0.300\""),
+                                   HasSubstr("fill-opacity=\"0.000\"")));
+}
+
+TEST_F(ExplainCommand, RefusesABadName) {
+  const std::string scene = write("scene.json", scene_with(kSquare)).string();
   EXPECT_EQ(run({"wedges", scene, "--explain", "4,4", "--svg", path("w.png")}).code, 2);
 }
 
