@@ -29,26 +29,50 @@ struct HalfPlane {
   double at = 0, per_row = 0, per_column = 0, error = 0;
 };
 
-struct Columns {
-  double from, to;
+/// Along a row: positive beyond zero (rising) or before it (falling), certainly so outside of ±slack. (bound row)
+struct Crossing {
+  double at = 0, per_row = 0, per_shift = -1, slack = 0;  // zero, in columns: at + row · per_row + shift · per_shift
+  bool rising = true;
 };
-/// Where at + column · per_column > bound, of the columns `in`; rounded neither way, but for what kSlack covers.
-void cut(Columns& in, double at, double per_column, double bound) {
-  const double x = (bound - at) / per_column;
-  if (per_column > 0) in.from = std::max(in.from, x);
-  if (per_column < 0) in.to = std::min(in.to, x);
-  if (per_column == 0 && !(at > bound)) in.to = -2;
+Crossing crossing_of(const HalfPlane& f, double columns) {
+  // A slope so small that the value hardly changes along the row may be taken larger.
+  const double slope = std::max({std::abs(f.per_column), f.error / (16 * columns), 1e-300});
+  const bool rising = f.per_column >= 0;
+  const double inverse = (rising ? -1 : 1) / slope;
+  return {f.at * inverse, f.per_row * inverse, f.per_column * inverse, 1.25 * f.error / slope + columns * kSlack,
+          rising};
+}
+
+using Corners = std::array<glm::vec3, 3>;
+Corners corners_of(const CarefulInput& input) {
+  const WideTriangles& leaf = input.in.tree.leaves[input.slot / kWide];
+  Corners corners;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const WidePoints& x = leaf.corner[corner];
+    corners[corner] = {x[0][input.slot % kWide], x[1][input.slot % kWide], x[2][input.slot % kWide]};
+  }
+  return corners;
+}
+
+struct OneTriangle {
+  const PairInput& in;
+  const glm::vec3& p;
+  const Corners& corners;
+};
+/// With the light sample as it is stored.
+void decide(const OneTriangle& one, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
+  if (blocked.test(row, column)) return;
+  const std::uint32_t light_sample = row * one.in.frame.columns + column;
+  const glm::dvec3 l = glm::dvec3(one.in.light.points[light_sample]) * static_cast<double>(one.in.scale);
+  const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(one.p), l, one.corners);
+  if (!meets) open.samples.push_back(light_sample);
+  if (meets.value_or(false)) blocked.add(row, column, column);
 }
 
 class CarefulTest {
  public:
   CarefulTest(const CarefulInput& input, Blocked& blocked, Open& open)
-      : in_(input.in), at_(input.at), p_(input.at.p), blocked_(blocked), open_(open) {
-    const WideTriangles& leaf = in_.tree.leaves[input.slot / kWide];
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const WidePoints& x = leaf.corner[corner];
-      corners_[corner] = {x[0][input.slot % kWide], x[1][input.slot % kWide], x[2][input.slot % kWide]};
-    }
+      : in_(input.in), at_(input.at), p_(input.at.p), corners_(corners_of(input)), blocked_(blocked), open_(open) {
     const visibility::LightFrame& light = in_.light_frame;
     const glm::dvec3 u(light.u), v(light.v);
     per_column_ = 2.0 / in_.frame.columns * u;
@@ -91,13 +115,24 @@ class CarefulTest {
           std::max(f.per_row, 0.0) * last_row + std::abs(f.per_column) + std::max(f.per_column, 0.0) * last_column;
       if (f.at + most < -f.error) return;
     }
+    std::array<Crossing, 4> crossings;
+    std::transform(planes.begin(), planes.end(), crossings.begin(),
+                   [&](const HalfPlane& f) { return crossing_of(f, in_.frame.columns); });
+    struct Columns {
+      double from, to;
+    };
     for (std::uint32_t row = 0; row < in_.frame.rows; ++row) {
       const auto shift = static_cast<double>(in_.frame.shift[row]);
       Columns sure{-1, last_column + 1}, possible{-1, last_column + 1};
-      for (const HalfPlane& f : planes) {
-        const double at = f.at + row * f.per_row + shift * f.per_column;
-        cut(sure, at, f.per_column, f.error);
-        cut(possible, at, f.per_column, -f.error);
+      for (const Crossing& c : crossings) {
+        const double x = c.at + row * c.per_row + shift * c.per_shift;
+        if (c.rising) {
+          sure.from = std::max(sure.from, x + c.slack);
+          possible.from = std::max(possible.from, x - c.slack);
+        } else {
+          sure.to = std::min(sure.to, x - c.slack);
+          possible.to = std::min(possible.to, x + c.slack);
+        }
       }
       if (!(possible.from <= possible.to)) continue;
       const auto first = [](double x) { return std::max(static_cast<std::int64_t>(std::ceil(x)), std::int64_t{0}); };
@@ -111,25 +146,15 @@ class CarefulTest {
       }
       for (std::int64_t k = first(possible.from); k <= last(possible.to); ++k) {
         if (k == sure_from && sure_from <= sure_to) k = sure_to + 1;
-        if (k <= last(possible.to)) decide(row, static_cast<std::uint32_t>(k));
+        if (k <= last(possible.to)) decide({in_, at_.p, corners_}, row, static_cast<std::uint32_t>(k), blocked_, open_);
       }
     }
-  }
-
-  /// With the light sample as it is stored.
-  void decide(std::uint32_t row, std::uint32_t column) {
-    if (blocked_.test(row, column)) return;
-    const std::uint32_t light_sample = row * in_.frame.columns + column;
-    const glm::dvec3 l = glm::dvec3(in_.light.points[light_sample]) * static_cast<double>(in_.scale);
-    const std::optional<bool> meets = visibility::certainly_meets(p_, l, corners_);
-    if (!meets) open_.samples.push_back(light_sample);
-    if (meets.value_or(false)) blocked_.add(row, column, column);
   }
 
   const PairInput& in_;
   const Sample& at_;
   const glm::dvec3 p_;
-  std::array<glm::vec3, 3> corners_;
+  const Corners corners_;
   glm::dvec3 first_{0}, per_row_{0}, per_column_{0};  // light samples, without deviation
   double reach_ = 0;                                  // bounds |l − p|₁
   Blocked& blocked_;
@@ -151,6 +176,11 @@ std::uint32_t Blocked::count() const {
 
 void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open) {
   CarefulTest(input, blocked, open)();
+}
+
+void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
+  const Corners corners = corners_of(input);
+  decide({input.in, input.at.p, corners}, row, column, blocked, open);
 }
 
 }  // namespace penumbra::vsm

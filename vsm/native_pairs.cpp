@@ -116,6 +116,7 @@ class SampleTest {
     for (std::size_t begin = 0; begin < s_.near.count; begin += kChunk) {
       const std::size_t end = std::min(begin + kChunk, s_.near.count);
       s_.again.clear();
+      s_.asked.clear();
       s_.survivors.count = 0;
       for (std::size_t i = begin; i < end; i += hn::Lanes(D())) project(i, end);
       std::size_t landed = 0;
@@ -127,9 +128,12 @@ class SampleTest {
       for (const std::uint32_t i : s_.again) {
         test_carefully({in_, at_, std::bit_cast<std::uint32_t>(s_.near[kTriangleSlot][i])}, s_.blocked, s_.open);
       }
+      for (const auto& [i, row, column] : s_.asked) {
+        test_one({in_, at_, std::bit_cast<std::uint32_t>(s_.near[kTriangleSlot][i])}, row, column, s_.blocked, s_.open);
+      }
       s_.pairs += end - begin;
       s_.careful += s_.again.size();
-      any |= landed > 0 || !s_.again.empty();
+      any |= landed + s_.again.size() + s_.asked.size() > 0;
       if (landed + s_.again.size() > 0 && s_.blocked.count() == all) break;
     }
     return any;
@@ -213,6 +217,19 @@ class SampleTest {
     b = upper;
   }
 
+  /// Light samples within the error of an edge.
+  void ask(M which, std::size_t i, V row, V column) {
+    which = hn::And(which, hn::And(hn::Ge(column, set(0)), hn::Lt(column, set(static_cast<float>(in_.frame.columns)))));
+    HWY_ALIGN float rows[hn::MaxLanes(D())];
+    HWY_ALIGN float columns[hn::MaxLanes(D())];
+    hn::Store(row, D(), rows);
+    hn::Store(column, D(), columns);
+    for_each_lane(which, [&](std::size_t lane) {
+      s_.asked.push_back({std::bit_cast<std::uint32_t>(s_.survivors[kTriangle][i + lane]),
+                          static_cast<std::uint32_t>(rows[lane]), static_cast<std::uint32_t>(columns[lane])});
+    });
+  }
+
   /// Spans of columns that triangles cover, row by row between the two edges that cross it. (bound span)
   std::size_t convert(std::size_t i, std::size_t landed) {
     const D d;
@@ -250,13 +267,20 @@ class SampleTest {
       const V shift = hn::GatherIndex(d, frame.shift.data(), hn::ConvertTo(di, hn::IfThenElseZero(active, row)));
       const V x = hn::Sub(hn::MulAdd(hn::Sub(row, a.y), to_c, a.x), shift),
               y = hn::Sub(hn::MulAdd(hn::Sub(row, from_y), slope, from_x), shift);
-      const V slack = hn::MulAdd(per_slope, hn::Abs(slope), rounding);
-      const M near = hn::And(active, hn::Or(hn::Le(hn::Abs(hn::Sub(x, hn::Round(x))), slack_long),
-                                            hn::Le(hn::Abs(hn::Sub(y, hn::Round(y))), slack)));
-      open = hn::Or(open, near);
-      const V from = hn::Max(hn::Ceil(hn::Min(x, y)), zero),
-              to = hn::Min(hn::Floor(hn::Max(x, y)), hn::Sub(columns, set(1)));
-      const M lands = hn::AndNot(near, hn::And(active, hn::Le(from, to)));
+      const V slack = hn::Max(slack_long, hn::MulAdd(per_slope, hn::Abs(slope), rounding));
+      const V low_x = hn::Min(x, y), high_x = hn::Max(x, y), low_k = hn::Round(low_x), high_k = hn::Round(high_x);
+      const M wide = hn::And(active, hn::Gt(slack, set(0.25F))), narrow = hn::AndNot(wide, active);
+      open = hn::Or(open, wide);
+      const M low_near = hn::Le(hn::Abs(hn::Sub(low_x, low_k)), slack),
+              high_near = hn::Le(hn::Abs(hn::Sub(high_x, high_k)), slack);
+      const M near = hn::And(narrow, hn::Or(low_near, high_near));
+      if (!hn::AllFalse(d, near)) {
+        ask(hn::And(near, low_near), i, row, low_k);
+        ask(hn::And(near, high_near), i, row, high_k);
+      }
+      const V one = set(1), from = hn::Max(hn::IfThenElse(low_near, hn::Add(low_k, one), hn::Ceil(low_x)), zero);
+      const V to = hn::Min(hn::IfThenElse(high_near, hn::Sub(high_k, one), hn::Floor(high_x)), hn::Sub(columns, one));
+      const M lands = hn::And(narrow, hn::Le(from, to));
       const auto lands_i = hn::RebindMask(di, lands);
       hn::CompressStore(hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::MulAdd(row, set(kRowUnit), from))), lands_i, di,
                         s_.row_and_from.data() + landed);

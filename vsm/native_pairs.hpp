@@ -66,7 +66,11 @@ struct PairScratch {
   TriangleTable triangles, near;  // of the cluster, of a group
   SurvivorTable survivors;
   std::vector<std::uint32_t> roots, stack;
-  std::vector<std::uint32_t> again;            // triangles (rows of `near`) that vectors of floats cannot settle
+  std::vector<std::uint32_t> again;  // triangles (rows of `near`) that vectors of floats cannot settle
+  struct Asked {
+    std::uint32_t triangle, row, column;
+  };
+  std::vector<Asked> asked;                    // light samples within the error of an edge of a triangle
   std::vector<std::int32_t> row_and_from, to;  // spans of columns
   Blocked blocked;
   Open open;
@@ -81,6 +85,8 @@ struct CarefulInput {
   std::uint32_t slot;  ///< of the tree's leaves
 };
 void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open);
+/// One light sample of it.
+void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open);
 
 /// `seen`: one a view sample; of its mask all or nothing is written.
 void test_pairs(const PairInput& input, PairScratch& scratch, Judge& judge, std::span<Seen> seen);

@@ -46,7 +46,9 @@ class ViewSample final : public visibility::Method {
   void evaluate(const visibility::Tile& tile) override { now().evaluate(tile); }
   void read_masks(std::span<std::uint32_t> masks) override { now().read_masks(masks); }
   void read_visibility(std::span<float> visibility) override { now().read_visibility(visibility); }
-  std::vector<visibility::PassTime> take_pass_times() override { return now().take_pass_times(); }
+  std::vector<visibility::PassTime> take_pass_times() override {
+    return current_ == nullptr ? std::vector<visibility::PassTime>{} : now().take_pass_times();
+  }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
     return current_ == nullptr ? std::map<std::string, std::uint64_t>{} : now().counters();
   }
