@@ -31,7 +31,8 @@ void cut_at_horizon_here(const Frame& frame, const Placed& at, Open& open, Seen&
       hn::StoreMaskBits(d, hn::Ge(value, constant(-at.above_error)), not_below);
       std::uint16_t& word = seen.mask[column * words + first / 16];
       const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
-      const std::uint32_t is_above = above[0] | above[1] << 8U, may_be = not_below[0] | not_below[1] << 8U;
+      const std::uint32_t is_above = above[0] | std::uint32_t{above[1]} << 8U,
+                          may_be = not_below[0] | std::uint32_t{not_below[1]} << 8U;
       word = static_cast<std::uint16_t>(word & ~((lanes & ~is_above) << place));
       for (std::uint32_t left = may_be & ~is_above & lanes; left != 0; left &= left - 1) {
         const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(left));

@@ -170,7 +170,8 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>* changes, 
   // Where p is within rounding of a triangle's plane, samples that the triangle may hide are as near to its edges as if
   // those were off their places by this. (bound sliver)
   const float sliver = is_open ? 40 * kRound * (edges[kAnchorFar][edge] + at.far) : 0;
-  const auto off = [&](float foot, float w) { return (at.height * frame.per_length + foot) / w * sliver; };
+  const float straight = at.height * frame.per_length;
+  const auto off = [&](float foot, float w) { return (straight + foot) / w * sliver; };
   const Seen2 seen = as_seen(frame, seen_a, seen_b, error_of(at, far, part.start.z, foot_a) + off(foot_a, part.start.z),
                              error_of(at, far, part.end.z, foot_b) + off(foot_b, part.end.z));
   for (const auto& [end, error] : {std::pair(seen.near, seen.error_near), std::pair(seen.far, seen.error_far)}) {

@@ -320,7 +320,7 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(d, hn::Eq(depths, hn::Zero(d)), bytes);
       std::uint16_t& word = seen.mask[column * words + row / 16];
-      const std::uint32_t found = (bytes[0] | bytes[1] << 8U) << row % 16;
+      const std::uint32_t found = (bytes[0] | std::uint32_t{bytes[1]} << 8U) << row % 16;
       word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
     }
   }

@@ -322,7 +322,7 @@ void write_mask(const Frame& frame, Blocked& blocked, Seen& seen) {
         for (std::size_t i = 0; i < 16; i += hn::Lanes(d)) {
           std::uint8_t bytes[8] = {};
           hn::StoreMaskBits(d, hn::TestBit(hn::Load(d, rows + i), which), bytes);
-          hidden |= (bytes[0] | bytes[1] << 8U) << i;
+          hidden |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << i;
         }
         std::uint16_t& word = seen.mask[((column + bit) * frame.padded_rows + row) / 16];
         word = static_cast<std::uint16_t>(word & ~hidden);
