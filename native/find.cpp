@@ -1,5 +1,4 @@
-// First stage of edge scatter on a processor: the walk of find_edges.comp, eight children, edges or triangles at a
-// time.
+// First stage of methods on a processor: the walk of find_edges.comp, eight children, edges or triangles at a time.
 
 #include "native/find.hpp"
 
@@ -25,6 +24,11 @@ constexpr std::uint32_t kLeafBit = visibility::TriangleTree::kLeafBit;
 
 struct Point {
   V x, y, z;
+};
+/// What the walks look from.
+struct From {
+  const Frame& frame;
+  const Cluster& cluster;
 };
 
 Point load(const WidePoints& points, std::size_t lane) {
@@ -80,15 +84,14 @@ struct ShaftTest {
   }
 };
 
-hn::Mask<D> box_meets(const FindInput& in, const Shaft& shaft, const Point& middle, const Point& half) {
+hn::Mask<D> box_meets(const From& in, const Shaft& shaft, const Point& middle, const Point& half) {
   const V at = dot(middle, in.frame.axis), spread = dot(half, glm::abs(in.frame.axis));
   return ShaftTest{shaft}(hn::Sub(at, spread), hn::Add(at, spread),
                           [&](const glm::vec3& n) { return hn::Sub(dot(middle, n), dot(half, glm::abs(n))); });
 }
 
 /// (bound cone)
-hn::Mask<D> same_side(const FindInput& in, const WideNode& node, std::size_t lane, const Point& middle,
-                      const Point& half) {
+hn::Mask<D> same_side(const From& in, const WideNode& node, std::size_t lane, const Point& middle, const Point& half) {
   const D d;
   const glm::vec3& box = in.cluster.half_size;
   const Point axis{hn::Load(d, &node.cone[0][lane]), hn::Load(d, &node.cone[1][lane]),
@@ -108,7 +111,7 @@ hn::Mask<D> same_side(const FindInput& in, const WideNode& node, std::size_t lan
 
 /// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
 template <bool kCones>
-std::uint32_t children_met(const FindInput& in, const Shaft& shaft, const WideNode& node) {
+std::uint32_t children_met(const From& in, const Shaft& shaft, const WideNode& node) {
   const D d;
   std::uint32_t hits = 0;
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
@@ -122,7 +125,7 @@ std::uint32_t children_met(const FindInput& in, const Shaft& shaft, const WideNo
 
 /// Calls `leaf` for each leaf whose box meets the shaft.
 template <bool kCones, typename Leaf>
-void walk(const FindInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
           const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
   stack = roots;
   while (!stack.empty()) {
@@ -141,7 +144,7 @@ void walk(const FindInput& in, const Shaft& shaft, const std::vector<WideNode>& 
 
 /// Goes down level by level until there are enough.
 template <bool kCones>
-void descend(const FindInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+void descend(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
              std::vector<std::uint32_t>& roots) {
   constexpr std::size_t kEnough = 24;
   roots.clear();
@@ -166,7 +169,7 @@ struct EdgeSideWide {
   hn::Mask<D> none, positive, negative;  // positive: all of the cluster's p are in front
 };
 
-EdgeSideWide side_of(const FindInput& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
+EdgeSideWide side_of(const From& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
   const D d;
   const glm::vec3& box = in.cluster.half_size;
   EdgeSideWide s;
@@ -192,9 +195,9 @@ hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
   return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)), hn::And(s.none, t.none));
 }
 
-void add_edges(const FindInput& in, const Shaft& shaft, std::uint32_t number, EdgeTable& out) {
+void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std::uint32_t number, EdgeTable& out) {
   const D d;
-  const WideEdges& leaf = in.edges.leaves[number];
+  const WideEdges& leaf = tree.leaves[number];
   out.reserve(out.count + kWide);
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
@@ -234,20 +237,38 @@ void add_edges(const FindInput& in, const Shaft& shaft, std::uint32_t number, Ed
   }
 }
 
-void add_triangles(const FindInput& in, const Shaft& shaft, std::uint32_t number, TriangleTable& out) {
+/// All of the cluster's p are outside of the closed part that a triangle is of, and behind it (wound inward): another
+/// of the part then hides what it hides. (docs/view-sample.md, Closed casters)
+hn::Mask<D> seen_from_outside(const TriangleInput& in, const WideTriangles& leaf, std::size_t lane) {
   const D d;
-  const WideTriangles& leaf = in.triangles.leaves[number];
+  const hn::RebindToUnsigned<D> words;
+  const Point a = load(leaf.corner[0], lane), b = load(leaf.corner[1], lane), c = load(leaf.corner[2], lane);
+  const Point e1{hn::Sub(b.x, a.x), hn::Sub(b.y, a.y), hn::Sub(b.z, a.z)};
+  const Point e2{hn::Sub(c.x, a.x), hn::Sub(c.y, a.y), hn::Sub(c.z, a.z)};
+  const auto minor = [](V p, V q, V r, V s) { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+  const Point n{minor(e1.y, e2.z, e1.z, e2.y), minor(e1.z, e2.x, e1.x, e2.z), minor(e1.x, e2.y, e1.y, e2.x)};
+  const V sizes = hn::Mul(dot(absolute(e1), glm::vec3(1)), dot(absolute(e2), glm::vec3(1)));
+  const V least = hn::Sub(dot(n, minus(a, in.cluster.middle)), dot(absolute(n), in.cluster.half_size));
+  const auto bits = hn::And(hn::LoadU(words, &leaf.closed[lane]), hn::Set(words, in.outside_of));
+  const auto other = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, hn::Eq(bits, hn::Zero(words)))));
+  return hn::AndNot(other, hn::Gt(least, scaled(sizes, 64 * kRound * in.frame.reach)));
+}
+
+void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable& out) {
+  const D d;
+  const WideTriangles& leaf = in.tree.leaves[number];
   out.reserve(out.count + kWide);
   const hn::RebindToUnsigned<D> words;
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.corner[0], lane), b = load(leaf.corner[1], lane), c = load(leaf.corner[2], lane);
     const V la = dot(a, in.frame.axis), lb = dot(b, in.frame.axis), lc = dot(c, in.frame.axis);
     const hn::Mask<D> met =
-        ShaftTest{shaft}(hn::Min(la, hn::Min(lb, lc)), hn::Max(la, hn::Max(lb, lc)),
-                         [&](const glm::vec3& n) { return hn::Min(dot(a, n), hn::Min(dot(b, n), dot(c, n))); });
+        ShaftTest{in.shaft}(hn::Min(la, hn::Min(lb, lc)), hn::Max(la, hn::Max(lb, lc)),
+                            [&](const glm::vec3& n) { return hn::Min(dot(a, n), hn::Min(dot(b, n), dot(c, n))); });
     const auto body = hn::Eq(hn::LoadU(words, &leaf.emits[lane]), hn::Set(words, in.frame.light));
-    const hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane),
-                                     hn::AndNot(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, body))), met));
+    hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane),
+                               hn::AndNot(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, body))), met));
+    if (in.outside_of != 0 && !hn::AllFalse(d, kept)) kept = hn::AndNot(seen_from_outside(in, leaf, lane), kept);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
@@ -271,18 +292,30 @@ void add_triangles(const FindInput& in, const Shaft& shaft, std::uint32_t number
 }
 
 void find_roots_here(const FindInput& in, Roots& roots) {
-  descend<true>(in, in.cluster.whole, in.edges.nodes, roots.edges);
-  descend<false>(in, in.cluster.corner, in.triangles.nodes, roots.triangles);
+  const From from{in.frame, in.cluster};
+  descend<true>(from, in.cluster.whole, in.edges.nodes, roots.edges);
+  descend<false>(from, in.cluster.corner, in.triangles.nodes, roots.triangles);
 }
 
-void find_here(const FindInput& in, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
+void find_triangle_roots_here(const TriangleInput& in, std::vector<std::uint32_t>& roots) {
+  descend<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots);
+}
+
+void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
+                         std::vector<std::uint32_t>& stack, TriangleTable& triangles) {
+  triangles.count = 0;
+  walk<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots, stack,
+              [&](std::uint32_t leaf) { add_triangles(in, leaf, triangles); });
+}
+
+void find_here(const FindInput& in, const Roots& roots, std::vector<std::uint32_t>& stack, EdgeTable& edges,
                TriangleTable& triangles) {
-  edges.count = triangles.count = 0;
-  const Shaft &whole = in.cluster.whole, &corner = in.cluster.corner;
-  walk<true>(in, whole, in.edges.nodes, from.edges, stack,
-             [&](std::uint32_t leaf) { add_edges(in, whole, leaf, edges); });
-  walk<false>(in, corner, in.triangles.nodes, from.triangles, stack,
-              [&](std::uint32_t leaf) { add_triangles(in, corner, leaf, triangles); });
+  edges.count = 0;
+  const From from{in.frame, in.cluster};
+  const Shaft& whole = in.cluster.whole;
+  walk<true>(from, whole, in.edges.nodes, roots.edges, stack,
+             [&](std::uint32_t leaf) { add_edges(from, in.edges, whole, leaf, edges); });
+  find_triangles_here({in.frame, in.triangles, in.cluster, in.cluster.corner}, roots.triangles, stack, triangles);
 }
 
 }  // namespace
@@ -294,6 +327,8 @@ namespace penumbra::native {
 
 HWY_EXPORT(find_roots_here);
 HWY_EXPORT(find_here);
+HWY_EXPORT(find_triangle_roots_here);
+HWY_EXPORT(find_triangles_here);
 
 void find_roots(const FindInput& input, Roots& roots) {
   HWY_DYNAMIC_DISPATCH(find_roots_here)(input, roots);
@@ -302,6 +337,15 @@ void find_roots(const FindInput& input, Roots& roots) {
 void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
           TriangleTable& triangles) {
   HWY_DYNAMIC_DISPATCH(find_here)(input, from, stack, edges, triangles);
+}
+
+void find_triangle_roots(const TriangleInput& input, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(find_triangle_roots_here)(input, roots);
+}
+
+void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
+                    std::vector<std::uint32_t>& stack, TriangleTable& triangles) {
+  HWY_DYNAMIC_DISPATCH(find_triangles_here)(input, roots, stack, triangles);
 }
 
 }  // namespace penumbra::native

@@ -50,8 +50,10 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] const visibility::SceneFloats& scene() const { return *scene_; }
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
   [[nodiscard]] const visibility::LightFrame& light_frame() const { return light_frame_; }
-  [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
+  [[nodiscard]] const visibility::TriangleTree& tree() const { return tree_; }
+  [[nodiscard]] WideTriangleTree& triangles() { return triangles_; }
   [[nodiscard]] const WideTriangleTree& triangles() const { return triangles_; }
+  [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   [[nodiscard]] float scale() const { return scale_; }
   [[nodiscard]] std::size_t tile_pixel(const Placed& at) const {
     return at.pixel - std::size_t{tile_.first_row} * samples_->width;

@@ -37,6 +37,8 @@ struct alignas(64) WideEdges {
 struct alignas(64) WideTriangles {
   std::array<WidePoints, 3> corner;
   WideWords plane, emits;  ///< the light that it is the body of
+  WideWords closed{};      ///< a bit for the closed part that it is of, its corners then wound so that normals point
+                           ///< inward; or 0 (vsm/closed_parts.hpp)
   std::uint32_t used = 0;
 };
 

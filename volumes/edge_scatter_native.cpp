@@ -3,6 +3,7 @@
 #include "volumes/edge_scatter_native.hpp"
 
 #include "base/assert.hpp"
+#include "native/horizon.hpp"
 #include "native/mask_method.hpp"
 #include "volumes/edge_sides.hpp"
 #include "volumes/native_rows.hpp"

@@ -71,8 +71,6 @@ struct Scratch {
   std::uint64_t listed = 0;   // edges, counted
 };
 
-/// Where nothing is before the light but the horizon.
-void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen);
 /// `seen`: one a view sample; of its mask all or nothing is written.
 void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen);
 

@@ -14,6 +14,7 @@
 #include "vsm/test_pairs.comp.spv.hpp"
 #include "vsm/uploads.hpp"
 #include "vsm/view_sample.shared.h"
+#include "vsm/view_sample_vulkan.hpp"
 
 #include <glm/common.hpp>
 
@@ -46,7 +47,9 @@ const visibility::MethodDescription& describe() {
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
       .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon},
-      .options = {},
+      .options = {{"engine", "auto|vulkan|native", "auto",
+                   "vulkan: on the device; native: light samples in rows of a rectangle on the processor's own vector "
+                   "units; auto: native where the Vulkan device is the processor anyway. The same bits"}},
       .verdict_on = verdict_on,
   };
   return description;
@@ -54,13 +57,11 @@ const visibility::MethodDescription& describe() {
 
 class ViewSampleMapping final : public visibility::Method {
  public:
-  ViewSampleMapping(const render::Device& device, const visibility::MethodOptions& options)
+  explicit ViewSampleMapping(const render::Device& device)
       : device_(&device),
         settle_(device, {.name = "settle", .spirv = shaders::kSettleComp, .push_bytes = sizeof(std::uint32_t)}),
         resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
-        commands_(device) {
-    visibility::check_options(describe(), options);
-  }
+        commands_(device) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return describe(); }
 
@@ -414,9 +415,8 @@ const visibility::MethodDescription& view_sample_description() {
   return describe();
 }
 
-std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
-                                                     const visibility::MethodOptions& options) {
-  return std::make_unique<ViewSampleMapping>(device, options);
+std::unique_ptr<visibility::Method> make_vulkan_view_sample(const render::Device& device) {
+  return std::make_unique<ViewSampleMapping>(device);
 }
 
 }  // namespace penumbra::vsm

@@ -20,7 +20,15 @@ struct MaskMethod {
   friend std::ostream& operator<<(std::ostream& out, const MaskMethod& method) { return out << method.name; }
 };
 
-inline constexpr MaskMethod kViewSample{"view_sample", vsm::make_view_sample, true};
+template <bool kNative>
+std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
+                                                     const visibility::MethodOptions& given) {
+  visibility::MethodOptions options = given;
+  options["engine"] = kNative ? "native" : "vulkan";
+  return vsm::make_view_sample(device, options);
+}
+inline constexpr MaskMethod kViewSample{"view_sample", make_view_sample<false>, true};
+inline constexpr MaskMethod kNativeViewSample{"native_view_sample", make_view_sample<true>, false};
 template <bool kNative>
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
                                                       const visibility::MethodOptions& given) {
@@ -32,6 +40,6 @@ inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false
 inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, false};
 
 /// All of them.
-inline constexpr std::array kMaskMethods{kViewSample, kEdgeScatter, kNativeEdgeScatter};
+inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter};
 
 }  // namespace penumbra::tests

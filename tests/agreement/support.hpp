@@ -67,10 +67,11 @@ inline Masks run(visibility::Method& method, const visibility::SceneFloats& floa
   return masks;
 }
 
+/// On the device.
 inline Masks map_view_samples(const render::Device& device, const visibility::SceneFloats& floats,
                               const visibility::Light& light, const visibility::ViewSamples& samples,
                               std::uint32_t rows_at_once = 0) {
-  const auto method = vsm::make_view_sample(device, {});
+  const auto method = vsm::make_view_sample(device, {{"engine", "vulkan"}});
   return run(*method, floats, light, samples, rows_at_once);
 }
 

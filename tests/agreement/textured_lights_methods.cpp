@@ -21,7 +21,13 @@ class TexturedLightMethods : public DeviceTest {
   using Make = std::function<std::unique_ptr<visibility::Method>()>;
   /// The mask methods.
   static std::vector<Make> makers() {
-    return {[] { return reference::make_ray_traced({}); }, [] { return vsm::make_view_sample(device(), {}); },
+    return {[] { return reference::make_ray_traced({}); },
+            [] {
+              return vsm::make_view_sample(device(), {{"engine", "vulkan"}});
+            },
+            [] {
+              return vsm::make_view_sample(device(), {{"engine", "native"}});
+            },
             [] {
               return maps::make_accumulate(device(), {{"size", "64"}});
             }};
@@ -91,7 +97,8 @@ TEST_F(TexturedLightMethods, HalfBlackIsHalfALight) {
         2, 1, [&](std::uint32_t x, std::uint32_t) { return glm::vec3((x == 0) == (side < 0) ? 1.0f : 0.0f); });
     const Stage whole = stage_with(texture, kWhole),
                 half(half_light_scene(&scenes::Rectangle::half_u, side), 40, 30, kHalfU);
-    for (const Make& make : {makers()[0], makers()[1]}) {  // accumulate's maps are fitted to the whole light
+    for (const Make& make :
+         {makers()[0], makers()[1], makers()[2]}) {  // accumulate's maps are fitted to the whole light
       EXPECT_EQ(run_on(make, whole).visibility, run_on(make, half).visibility);
     }
   }

@@ -8,6 +8,7 @@
 #include "vsm/closed_parts.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace penumbra::vsm {
 namespace {
@@ -54,16 +55,18 @@ scenes::Scene tangled_scene(tests::LatticeSoup& soup, int range, visibility::Sam
   return scene;
 }
 
-class ClosedPartsOnDevice : public tests::DeviceTest, public testing::WithParamInterface<int> {};
+class ClosedPartsOnDevice : public tests::DeviceTest,
+                            public testing::WithParamInterface<std::tuple<int, const char*>> {};
 
 TEST_P(ClosedPartsOnDevice, EveryPairIsTheExactDecision) {
-  const auto method = make_view_sample(device(), {});
+  const auto& [range, engine] = GetParam();
+  const auto method = make_view_sample(device(), {{"engine", engine}});
   tests::PairCounts counts;
   int with_parts = 0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
-    tests::LatticeSoup soup(seed + 1000 * static_cast<std::uint32_t>(GetParam()), GetParam());
+    tests::LatticeSoup soup(seed + 1000 * static_cast<std::uint32_t>(range), range);
     visibility::SampleRequest request;
-    const scenes::Scene scene = tangled_scene(soup, GetParam(), request);
+    const scenes::Scene scene = tangled_scene(soup, range, request);
     const SceneFloats floats = visibility::make_scene_floats(scene);
     const Light light = visibility::make_light(scene, 0, floats.origin, request);
     const ClosedParts closed = find_closed_parts(floats);
@@ -72,14 +75,15 @@ TEST_P(ClosedPartsOnDevice, EveryPairIsTheExactDecision) {
     tests::append(samples, tests::samples_on_triangles(floats, 8, 2, soup.random(), 0));
     tests::append(samples, tests::samples_on_triangles(floats, 8, 4, soup.random(), 2));
     const tests::Masks masks = tests::run(*method, floats, light, samples);
-    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << GetParam();
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << range;
   }
   EXPECT_GT(with_parts, 5);
   EXPECT_GT(counts.visible, counts.pairs / 20);
   EXPECT_GT(counts.blocked, counts.pairs / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Range, ClosedPartsOnDevice, testing::Values(4, 8, 16));
+INSTANTIATE_TEST_SUITE_P(Range, ClosedPartsOnDevice,
+                         testing::Combine(testing::Values(4, 8, 16), testing::Values("vulkan", "native")));
 
 SceneFloats floats_of(const mesh::TriangleSoup& soup, const std::vector<tests::Corners>& more = {}) {
   scenes::Scene scene;

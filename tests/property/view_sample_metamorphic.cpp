@@ -75,7 +75,7 @@ void duplicate_faces(mesh::TriangleSoup& soup, std::mt19937& random) {
   }
 }
 
-class Metamorphic : public tests::DeviceTest {
+class Metamorphic : public tests::DeviceTest, public testing::WithParamInterface<const char*> {
  protected:
   struct Picture {
     ViewSamples samples;
@@ -94,10 +94,10 @@ class Metamorphic : public tests::DeviceTest {
   }
 
  private:
-  std::unique_ptr<visibility::Method> method_ = make_view_sample(device(), {});
+  std::unique_ptr<visibility::Method> method_ = make_view_sample(device(), {{"engine", GetParam()}});
 };
 
-TEST_F(Metamorphic, TheSameTrianglesInOtherWords) {
+TEST_P(Metamorphic, TheSameTrianglesInOtherWords) {
   static constexpr std::pair<const char*, Wording> kWordings[] = {{"permuted", permute},
                                                                   {"rotated", rotate},
                                                                   {"flipped", flip},
@@ -224,7 +224,7 @@ ViewSamples on_pieces(const ViewSamples& samples, const SceneFloats& before, con
   return result;
 }
 
-TEST_F(Metamorphic, CutAtPointsExactlyOnThem) {
+TEST_P(Metamorphic, CutAtPointsExactlyOnThem) {
   std::mt19937 random(7);
   std::size_t pairs = 0, differing = 0, pieces = 0;
   for (const auto& [name, soup] : cases()) {
@@ -257,6 +257,8 @@ TEST_F(Metamorphic, CutAtPointsExactlyOnThem) {
   fmt::print("{} pieces more; with p anew {} of {} pairs differ\n", pieces, differing, pairs);
   EXPECT_LE(static_cast<double>(differing), 2e-5 * static_cast<double>(pairs));
 }
+
+INSTANTIATE_TEST_SUITE_P(On, Metamorphic, testing::Values("vulkan", "native"));
 
 }  // namespace
 }  // namespace penumbra::vsm

@@ -36,11 +36,11 @@ scenes::Scene soup_under(Shape shape, std::uint32_t seed) {
   return scene;
 }
 
-class Patterns : public tests::DeviceTest {
+class Patterns : public tests::DeviceTest, public testing::WithParamInterface<const char*> {
  protected:
   void check(Shape shape, const SampleRequest& request) {
     const tests::Stage stage(soup_under(shape, ++seed_), 24, 18, request);
-    if (!method_) method_ = make_view_sample(device(), {});
+    if (!method_) method_ = make_view_sample(device(), {{"engine", GetParam()}});
     const tests::Masks masks = tests::run(*method_, stage.floats, stage.light, stage.samples);
     const std::size_t step = 1 + 2 * (stage.light.sample_count() / 64);
     PairCounts counts;
@@ -61,7 +61,7 @@ class Patterns : public tests::DeviceTest {
   std::unique_ptr<visibility::Method> method_;
 };
 
-TEST_F(Patterns, CountsOfEveryPattern) {
+TEST_P(Patterns, CountsOfEveryPattern) {
   for (const SamplePattern pattern :
        {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
     for (const std::uint32_t count : {1U, 2U, 5U, 31U, 32U, 33U, 256U, 1000U, 4096U}) {
@@ -70,7 +70,7 @@ TEST_F(Patterns, CountsOfEveryPattern) {
   }
 }
 
-TEST_F(Patterns, RowsByColumns) {
+TEST_P(Patterns, RowsByColumns) {
   using Layout = std::pair<std::uint32_t, std::uint32_t>;
   for (const auto& [rows, columns] : {Layout(1, 7), Layout(7, 1), Layout(3, 40), Layout(40, 3), Layout(64, 64),
                                       Layout(1, 4096), Layout(4096, 1), Layout(2, 33), Layout(5, 32), Layout(16, 31)}) {
@@ -80,7 +80,7 @@ TEST_F(Patterns, RowsByColumns) {
   }
 }
 
-TEST_F(Patterns, DisksAndPolygons) {
+TEST_P(Patterns, DisksAndPolygons) {
   for (const Shape shape : {Shape::disk, Shape::polygon}) {
     for (const SamplePattern pattern :
          {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
@@ -89,12 +89,14 @@ TEST_F(Patterns, DisksAndPolygons) {
   }
 }
 
-TEST_F(Patterns, SeedsOfRectangles) {
+TEST_P(Patterns, SeedsOfRectangles) {
   for (int i = 0; i < 30; ++i) {
     check(i % 2 == 0 ? Shape::rectangle : Shape::tilted,
           {64, 0, 0, i % 3 == 0 ? SamplePattern::rows : SamplePattern::sobol, 3});
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(On, Patterns, testing::Values("vulkan", "native"));
 
 }  // namespace
 }  // namespace penumbra::vsm

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+
+#include <memory>
+
+namespace penumbra::vsm {
+
+/// `view-sample` on the Vulkan device (view-sample with engine=vulkan): any light and pattern that it does.
+std::unique_ptr<visibility::Method> make_vulkan_view_sample(const render::Device& device);
+
+}  // namespace penumbra::vsm
