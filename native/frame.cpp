@@ -102,7 +102,7 @@ Cluster make_cluster(const Frame& frame, std::span<const Placed> samples) {
 Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed) {
   Sample at{placed, {}, {}, 0, 0, 0, 0, 0, {}, 0};
   at.local = at.p - cluster.middle;
-  // As dot() of native_find.cpp: one order, nothing fused.
+  // As dot() of find.cpp: one order, nothing fused.
   const auto dot = [&](const glm::vec3& n) { return (at.local.x * n.x + at.local.y * n.y) + at.local.z * n.z; };
   at.seen = {dot(frame.across), dot(frame.along), dot(frame.axis)};
   at.far = glm::length(at.local) * 1.0001F;

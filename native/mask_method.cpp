@@ -1,6 +1,7 @@
 #include "native/mask_method.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 #include "native/open_judge.hpp"
 #include "visibility/visible_share.hpp"
 
@@ -66,6 +67,7 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   counters_.clear();
   light_frame_ = visibility::make_light_frame(light, scale_);
   PENUMBRA_ASSERT(light_frame_.rows, "light {} has no rows that a step describes", light.name);
+  visibility::check_size(light, light_frame_, description_.name);
   const bool cut = prepare_casters();
   frames_.clear();
   for (const float side : {1.0F, -1.0F}) {
@@ -88,9 +90,9 @@ float MaskMethod::reach() const {
 
 std::uint32_t MaskMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-  const std::size_t rows = kMostMaskBytes / (mask_words(frames_[0]) * 2 * samples_->width) / kRegion * kRegion;
-  return static_cast<std::uint32_t>(
-      std::clamp<std::size_t>(rows, std::min(kRegion, samples_->height), samples_->height));
+  const std::size_t fit = kMostMaskBytes / (mask_words(frames_[0]) * 2 * samples_->width);
+  const std::size_t rows = fit >= kRegion ? fit / kRegion * kRegion : fit;
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(rows, 1, samples_->height));
 }
 
 void MaskMethod::evaluate(const visibility::Tile& tile) {
@@ -203,7 +205,16 @@ std::vector<visibility::PassTime> MaskMethod::take_pass_times() {
 }
 
 std::uint64_t MaskMethod::memory_bytes() const {
-  return bytes_of(triangles_) + masks_.size() * sizeof(masks_[0]) + visible_.size() * sizeof(visible_[0]);
+  return bytes_of(triangles_) + bytes_of(tree_) + normal_is_known_.size() + masks_.size() * sizeof(masks_[0]) +
+         visible_.size() * sizeof(visible_[0]);
+}
+
+bool runs_natively(const render::Device& device, const visibility::MethodOptions& options, const std::string& method) {
+  const auto found = options.find("engine");
+  const std::string engine = found == options.end() ? "auto" : found->second;
+  if (engine == "auto") return device.info().kind == "cpu";
+  if (engine == "vulkan" || engine == "native") return engine == "native";
+  throw UsageError("{}: engine is auto, vulkan or native, not \"{}\"", method, engine);
 }
 
 }  // namespace penumbra::native

@@ -4,6 +4,7 @@
 #include "native/frame.hpp"
 #include "native/masks.hpp"
 #include "native/trees.hpp"
+#include "render/device.hpp"
 #include "visibility/method.hpp"
 #include "visibility/triangle_tree.hpp"
 
@@ -84,5 +85,9 @@ class MaskMethod : public visibility::Method {
   double milliseconds_ = 0;
   std::map<std::string, std::uint64_t> counters_;
 };
+
+/// engine=auto|vulkan|native of a method that has both; auto: native where the device is a processor. Throws
+/// UsageError.
+bool runs_natively(const render::Device& device, const visibility::MethodOptions& options, const std::string& method);
 
 }  // namespace penumbra::native

@@ -1,6 +1,7 @@
 #include "visibility/light_frame.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -90,6 +91,17 @@ LightFrame make_light_frame(const Light& light, float scale) {
   deviation += 0x1p-20 * (glm::length(glm::dvec3(frame.u)) + glm::length(glm::dvec3(frame.v)));
   frame.deviation = static_cast<float>(deviation * 1.0001);
   return frame;
+}
+
+void check_size(const Light& light, const LightFrame& frame, const std::string& method) {
+  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
+  const float largest = size(frame.center) + size(frame.u) + size(frame.v);
+  const float smallest = std::min(size(frame.u), size(frame.v));
+  if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
+  throw InputError(
+      "light \"{}\": {} handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size {:.3g} and "
+      "reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in scale",
+      light.name, method, smallest, largest);
 }
 
 }  // namespace penumbra::visibility

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace penumbra::visibility {
@@ -22,5 +23,8 @@ struct LightFrame {
 
 /// `scale` is a power of two. Not for spheres.
 LightFrame make_light_frame(const Light& light, float scale);
+
+/// Throws InputError where float32 cannot span light and scene together; `method` names the error.
+void check_size(const Light& light, const LightFrame& frame, const std::string& method);
 
 }  // namespace penumbra::visibility

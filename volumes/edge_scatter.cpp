@@ -5,6 +5,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "native/mask_method.hpp"
 #include "render/compute_pass.hpp"
 #include "render/tree_texels.hpp"
 #include "visibility/light_frame.hpp"
@@ -253,14 +254,6 @@ class EdgeScatter final : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
 };
 
-bool runs_natively(const render::Device& device, const visibility::MethodOptions& options) {
-  const auto found = options.find("engine");
-  const std::string engine = found == options.end() ? "auto" : found->second;
-  if (engine == "auto") return device.info().kind == "cpu";
-  if (engine == "vulkan" || engine == "native") return engine == "native";
-  throw UsageError("edge-scatter: engine is auto, vulkan or native, not \"{}\"", engine);
-}
-
 bool rows_are_exact(const visibility::MethodOptions& options) {
   const auto found = options.find("rows");
   if (found == options.end() || found->second == "samples") return false;
@@ -290,16 +283,17 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
                                                       const visibility::MethodOptions& options) {
   visibility::MethodDescription description = edge_scatter_description();
   visibility::check_options(description, options);
-  const bool native = runs_natively(device, options);
+  const bool natively = native::runs_natively(device, options, description.name);
   if (rows_are_exact(options)) {
-    if (!native && options.contains("engine")) {
+    if (const auto engine = options.find("engine"); engine != options.end() && engine->second == "vulkan") {
       throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
     }
     description.output = visibility::Output::scalar;
+    description.exact_for = "the visible share of a rectangle light, to float32, for any triangle soup";
     description.textures = false;
     return make_native_edge_scatter(std::move(description), true);
   }
-  if (native) return make_native_edge_scatter(std::move(description), false);
+  if (natively) return make_native_edge_scatter(std::move(description), false);
   return std::make_unique<EdgeScatter>(device, options);
 }
 

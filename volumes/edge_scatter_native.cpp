@@ -67,13 +67,9 @@ class NativeEdges : public native::MaskMethod {
     return true;
   }
 
- private:
+ protected:
   void count(std::map<std::string, std::uint64_t>& counters) override {
-    for (Scratch& scratch : scratch_) {
-      counters["listedEdges"] += std::exchange(scratch.listed, 0);
-      const std::uint64_t sampled = std::exchange(scratch.sampled, 0);
-      if (sampled > 0) counters["sampledPixels"] += sampled;
-    }
+    for (Scratch& scratch : scratch_) counters["listedEdges"] += std::exchange(scratch.listed, 0);
   }
 
   EdgeSides sides_;
@@ -132,6 +128,12 @@ class NativeEdgeRows final : public NativeEdges {
                 scratch, judge, seen, shares);
     }
     for (std::size_t i = 0; i < placed.size(); ++i) shares_[tile_pixel(placed[i])] = shares[i];
+  }
+
+  /// Whatever is decided by exact predicates here is a view sample left to light samples.
+  void count(std::map<std::string, std::uint64_t>& counters) override {
+    NativeEdges::count(counters);
+    if (counters["openPixels"] > 0) counters["sampledPixels"] = counters["openPixels"];
   }
 
   std::vector<std::optional<float>> shares_;  // of the tile; none: light samples say it

@@ -1,11 +1,8 @@
 #include "volumes/edge_sides.hpp"
 
-#include "base/error.hpp"
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace penumbra::volumes {
 namespace {
@@ -32,20 +29,9 @@ std::vector<EdgeRecord> EdgeSides::prepare_mesh(const visibility::SceneFloats& s
   return edge_records(scene, casters_, std::nullopt);
 }
 
-void EdgeSides::check_size(const visibility::Light& light, const visibility::LightFrame& frame) const {
-  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
-  const float largest = size(frame.center) + size(frame.u) + size(frame.v);
-  const float smallest = std::min(size(frame.u), size(frame.v));
-  if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
-  throw InputError(
-      "light \"{}\": {} handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size {:.3g} and "
-      "reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in scale",
-      light.name, method_, smallest, largest);
-}
-
 SidedRecords EdgeSides::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame,
                                       float scale) {
-  check_size(light, frame);
+  visibility::check_size(light, frame, method_);
   const bool has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light.index) != scene_->emits.end();
   const std::int32_t without = has_body ? light.index : -1;
   if (casters_without_ != without) {

@@ -31,8 +31,6 @@ class EdgeSides {
   SidedRecords prepare_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale);
 
  private:
-  void check_size(const visibility::Light& light, const visibility::LightFrame& frame) const;
-
   std::string method_;
   const visibility::SceneFloats* scene_ = nullptr;
   EdgeCasters casters_;

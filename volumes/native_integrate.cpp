@@ -90,7 +90,6 @@ void integrate_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std:
       judge.decide(group[i], scratch.open, seen[first + i]);
       shares[first + i] =
           static_cast<float>(seen[first + i].visible) / static_cast<float>(in.frame.rows * in.frame.columns);
-      ++scratch.sampled;
     }
   }
 }

@@ -121,17 +121,18 @@ void RowSum::add(RowEdge edge) {
 
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
   const auto [x, y] = std::pair(place.x, place.y);
-  constexpr double kNear = 1e-5;  // far more than what rounding the light point to float moves it by
+  // More than what rounding the light point to float moves it by.
+  const double near = std::max(1e-5, 8.0 * static_cast<double>(kRound * frame_.reach * frame_.per_length));
   std::int32_t depth = 0;
   for (const Step& step : left_) {
-    if (std::abs(step.y - y) < kNear) return std::nullopt;
+    if (std::abs(step.y - y) < near) return std::nullopt;
     if (step.y < y) depth += step.change;
   }
   for (const RowEdge& edge : edges_) {
-    if (edge.y0 > y + kNear || edge.y1 < y - kNear) continue;
-    if (std::abs(edge.y0 - y) < kNear || std::abs(edge.y1 - y) < kNear) return std::nullopt;
+    if (edge.y0 > y + near || edge.y1 < y - near) continue;
+    if (std::abs(edge.y0 - y) < near || std::abs(edge.y1 - y) < near) return std::nullopt;
     const double crossing = at_height(edge, y);
-    if (std::abs(crossing - x) < kNear) return std::nullopt;
+    if (std::abs(crossing - x) < near) return std::nullopt;
     if (crossing < x) depth -= edge.k;
   }
   return depth;
@@ -185,10 +186,14 @@ double RowSum::visible_area(double from, double to, std::int32_t depth, int halv
     for (; j > 0 && active_[j - 1].twice_middle() > moved.twice_middle(); --j) active_[j] = active_[j - 1];
     active_[j] = moved;
   }
-  for (std::size_t i = 1; i < active_.size() && halvings > 0; ++i) {
+  for (std::size_t i = 1; i < active_.size(); ++i) {
     const double below = active_[i].low - active_[i - 1].low, above = active_[i].high - active_[i - 1].high;
-    // Crossings of less than a millionth of a cell change no digit that a float has.
-    if (std::min(below, above) > -1e-6) continue;
+    // Where they are no farther out of order, no digit changes that a float has.
+    if (std::min(below, above) > -6e-8 * frame_.columns) continue;
+    if (halvings == 0) {
+      impossible_ += (to - from) * frame_.columns;
+      break;
+    }
     // Two edges cross: up to there, and on.
     const double height = to - from;
     const double cut = std::clamp(from + height * below / (below - above), from + 1e-3 * height, to - 1e-3 * height);
@@ -256,8 +261,8 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
     go_on(from, to, next);
     area += visible_area(from, to, depth, kMostHalvings);
   }
-  if (impossible_ > 1e-4 * width * height) return std::nullopt;
-  return area / (width * height);
+  if (impossible_ > 1e-7 * width * height) return std::nullopt;
+  return std::clamp(area / (width * height), 0.0, 1.0);
 }
 
 float share_above_horizon(const Frame& frame, const glm::dvec3& above) {

@@ -243,7 +243,7 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
     if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
     if (changes_any) sum_up(frame, changes, depth, seen);
   } else if (scratch.open.corner) {
-    depth = judge.depth(at, {0, 0});
+    depth = judge.depth(at, place_of(frame, 0, 0));  // no edge crosses a row, so any light sample will do
   }
   if (!changes_any) {
     seen.visible = depth == 0 ? frame.rows * frame.columns : 0;

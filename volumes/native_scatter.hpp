@@ -67,7 +67,6 @@ struct Scratch {
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
   Open open;
-  std::uint64_t sampled = 0;  // view samples that `integrate` left to light samples
   std::uint64_t listed = 0;   // edges, counted
 };
 

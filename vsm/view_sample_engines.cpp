@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "visibility/light_frame.hpp"
+#include "native/mask_method.hpp"
 #include "vsm/view_sample.hpp"
 #include "vsm/view_sample_native.hpp"
 #include "vsm/view_sample_vulkan.hpp"
@@ -79,20 +80,12 @@ class ViewSample final : public visibility::Method {
   Engine* current_ = nullptr;
 };
 
-bool runs_natively(const render::Device& device, const visibility::MethodOptions& options) {
-  const auto found = options.find("engine");
-  const std::string engine = found == options.end() ? "auto" : found->second;
-  if (engine == "auto") return device.info().kind == "cpu";
-  if (engine == "vulkan" || engine == "native") return engine == "native";
-  throw UsageError("view-sample: engine is auto, vulkan or native, not \"{}\"", engine);
-}
-
 }  // namespace
 
 std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
   visibility::check_options(view_sample_description(), options);
-  if (runs_natively(device, options)) return std::make_unique<ViewSample>(device);
+  if (native::runs_natively(device, options, "view-sample")) return std::make_unique<ViewSample>(device);
   return make_vulkan_view_sample(device);
 }
 
