@@ -261,7 +261,7 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
     go_on(from, to, next);
     area += visible_area(from, to, depth, kMostHalvings);
   }
-  if (impossible_ > 1e-7 * width * height) return std::nullopt;
+  if (impossible_ > 1e-6 * width * height) return std::nullopt;
   return std::clamp(area / (width * height), 0.0, 1.0);
 }
 
