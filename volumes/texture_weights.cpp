@@ -114,9 +114,8 @@ double TextureWeights::along_rim(double position) const {
 double TextureWeights::beyond(const Edge& edge, const glm::dvec2& reference) const {
   const double first = rim_position(reference, edge.from), last = rim_position(reference, edge.to);
   double way = last - first;  // of 8 in all
-  if (glm::dot(edge.from - reference, edge.to - reference) > 0) {
-    // Less than a quarter turn: the shorter way, whatever rounding says of its sign.
-    way += way > 4 ? -8 : way < -4 ? 8 : 0;
+  if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(way, 8.0)) < 1e-6) {
+    way = std::remainder(way, 8.0);  // hardly a turn: whatever rounding says of its sign
   } else {
     way += edge.side > 0 && way < 0 ? 8 : edge.side < 0 && way > 0 ? -8 : 0;
   }
