@@ -67,7 +67,7 @@ struct Scratch {
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
   Open open;
-  std::uint64_t listed = 0;   // edges, counted
+  std::uint64_t listed = 0;  // edges, counted
 };
 
 /// `seen`: one a view sample; of its mask all or nothing is written.
