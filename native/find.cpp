@@ -77,17 +77,33 @@ struct ShaftTest {
     const D d;
     hn::Mask<D> met = hn::And(hn::Le(low, hn::Set(d, shaft.highest)), hn::Ge(high, hn::Set(d, shaft.lowest)));
     for (std::size_t i = 0; i < 4; ++i) {
-      const glm::vec3 n(shaft.nx[i], shaft.ny[i], shaft.nz[i]);
-      met = hn::And(met, hn::Le(least(n), hn::Set(d, shaft.beyond[i])));
+      met = hn::And(met, hn::Le(least(shaft.n[i]), hn::Set(d, shaft.beyond[i])));
     }
     return met;
   }
 };
 
-hn::Mask<D> box_meets(const From& in, const Shaft& shaft, const Point& middle, const Point& half) {
-  const V at = dot(middle, in.frame.axis), spread = dot(half, glm::abs(in.frame.axis));
-  return ShaftTest{shaft}(hn::Sub(at, spread), hn::Add(at, spread),
-                          [&](const glm::vec3& n) { return hn::Sub(dot(middle, n), dot(half, glm::abs(n))); });
+/// What of a box is least and most in a direction. Fused: the bounds of what meets a shaft do not mind.
+struct Extent {
+  V low, high;
+};
+HWY_INLINE Extent extent(const Point& middle, const Point& half, const glm::vec3& n, const glm::vec3& size) {
+  const D d;
+  const V at =
+      hn::MulAdd(middle.x, hn::Set(d, n.x), hn::MulAdd(middle.y, hn::Set(d, n.y), hn::Mul(middle.z, hn::Set(d, n.z))));
+  const V spread = hn::MulAdd(half.x, hn::Set(d, size.x),
+                              hn::MulAdd(half.y, hn::Set(d, size.y), hn::Mul(half.z, hn::Set(d, size.z))));
+  return {hn::Sub(at, spread), hn::Add(at, spread)};
+}
+
+HWY_INLINE hn::Mask<D> box_meets(const From& in, const Shaft& shaft, const Point& middle, const Point& half) {
+  const D d;
+  const Extent level = extent(middle, half, in.frame.axis, in.frame.axis_size);
+  hn::Mask<D> met = hn::And(hn::Le(level.low, hn::Set(d, shaft.highest)), hn::Ge(level.high, hn::Set(d, shaft.lowest)));
+  for (std::size_t i = 0; i < 4; ++i) {
+    met = hn::And(met, hn::Le(extent(middle, half, shaft.n[i], shaft.size[i]).low, hn::Set(d, shaft.beyond[i])));
+  }
+  return met;
 }
 
 /// (bound cone)
@@ -135,6 +151,7 @@ void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes
       leaf(next & ~kLeafBit);
       continue;
     }
+
     const WideNode& node = nodes[next];
     for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
       stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
@@ -154,6 +171,7 @@ void descend(const From& in, const Shaft& shaft, const std::vector<WideNode>& no
       ++i;
       continue;
     }
+
     const WideNode& node = nodes[roots[i]];
     roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(i));
     for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
@@ -167,7 +185,14 @@ struct EdgeSideWide {
   Point n;
   V at, error, anchor_far;
   hn::Mask<D> none, positive, negative;  // positive: all of the cluster's p are in front
+  hn::Mask<D> nothing;                   // none, or in the cluster's own plane
 };
+
+hn::Mask<D> equals(const WideWords& numbers, std::size_t lane, std::uint32_t number) {
+  const hn::RebindToUnsigned<D> words;
+  const auto equal = hn::Eq(hn::LoadU(words, &numbers[lane]), hn::Set(words, number));
+  return hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(words, equal)));
+}
 
 EdgeSideWide side_of(const From& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
   const D d;
@@ -180,10 +205,12 @@ EdgeSideWide side_of(const From& in, const WideEdges& leaf, std::size_t side, st
   const V lengths = dot(size, absolute(anchor)), over_box = dot(size, box);
   const V ones = dot(size, glm::vec3(1));
   s.none = hn::Eq(ones, hn::Zero(d));
+  const hn::Mask<D> own = equals(leaf.plane[side], lane, in.cluster.plane);
   s.error = hn::IfThenElse(s.none, hn::Set(d, -1.0F), scaled(hn::Add(lengths, over_box), 10 * kRound));
   const V spread = hn::Add(scaled(over_box, 1.001F), hn::Add(scaled(hn::Add(lengths, over_box), 32 * kRound),
                                                              scaled(ones, 4 * kRound * in.frame.reach)));
   const V f = hn::Neg(s.at);
+  s.nothing = hn::Or(s.none, own);
   s.positive = hn::AndNot(s.none, hn::Gt(f, spread));
   s.negative = hn::AndNot(s.none, hn::Lt(f, hn::Neg(spread)));
   s.anchor_far = length(anchor);
@@ -192,11 +219,13 @@ EdgeSideWide side_of(const From& in, const WideEdges& leaf, std::size_t side, st
 
 /// Are k_e's two parts opposite for all of the cluster, or both nothing? (bound side)
 hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
-  return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)), hn::And(s.none, t.none));
+  return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)),
+                hn::And(s.nothing, t.nothing));
 }
 
 void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std::uint32_t number, EdgeTable& out) {
   const D d;
+
   const WideEdges& leaf = tree.leaves[number];
   out.reserve(out.count + kWide);
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
@@ -207,10 +236,12 @@ void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std
                 ShaftTest{shaft}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
                                  [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
     if (hn::AllFalse(d, met)) continue;
+
     const EdgeSideWide s = side_of(in, leaf, 0, lane), t = side_of(in, leaf, 1, lane);
     const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
+
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
     const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
     put(kAx, dot(from_a, in.frame.across));
@@ -256,6 +287,7 @@ hn::Mask<D> seen_from_outside(const TriangleInput& in, const WideTriangles& leaf
 
 void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable& out) {
   const D d;
+
   const WideTriangles& leaf = in.tree.leaves[number];
   out.reserve(out.count + kWide);
   const hn::RebindToUnsigned<D> words;
@@ -265,12 +297,13 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
     const hn::Mask<D> met =
         ShaftTest{in.shaft}(hn::Min(la, hn::Min(lb, lc)), hn::Max(la, hn::Max(lb, lc)),
                             [&](const glm::vec3& n) { return hn::Min(dot(a, n), hn::Min(dot(b, n), dot(c, n))); });
-    const auto body = hn::Eq(hn::LoadU(words, &leaf.emits[lane]), hn::Set(words, in.frame.light));
-    hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane),
-                               hn::AndNot(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, body))), met));
+    const hn::Mask<D> never =
+        hn::Or(equals(leaf.emits, lane, in.frame.light), equals(leaf.plane, lane, in.cluster.plane));
+    hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane), hn::AndNot(never, met));
     if (in.outside_of != 0 && !hn::AllFalse(d, kept)) kept = hn::AndNot(seen_from_outside(in, leaf, lane), kept);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
+
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
     V far = hn::Zero(d);
     std::size_t field = kCornerA;
@@ -291,14 +324,29 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
   }
 }
 
-void find_roots_here(const FindInput& in, Roots& roots) {
-  const From from{in.frame, in.cluster};
-  descend<true>(from, in.cluster.whole, in.edges.nodes, roots.edges);
-  descend<false>(from, in.cluster.corner, in.triangles.nodes, roots.triangles);
+/// Leaves among the roots of which `add` puts nothing into the table.
+template <typename Out, typename Add>
+void drop_idle_leaves(std::vector<std::uint32_t>& roots, Out& table, Add add) {
+  std::erase_if(roots, [&](std::uint32_t root) {
+    if ((root & kLeafBit) == 0) return false;
+    table.count = 0;
+    add(root & ~kLeafBit, table);
+    return table.count == 0;
+  });
 }
 
-void find_triangle_roots_here(const TriangleInput& in, std::vector<std::uint32_t>& roots) {
+void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std::vector<std::uint32_t>& roots) {
   descend<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots);
+  drop_idle_leaves(roots, table, [&](std::uint32_t leaf, TriangleTable& out) { add_triangles(in, leaf, out); });
+}
+
+void find_roots_here(const FindInput& in, EdgeTable& edges, TriangleTable& triangles, Roots& roots) {
+  const From from{in.frame, in.cluster};
+  const Shaft& whole = in.cluster.whole;
+  descend<true>(from, whole, in.edges.nodes, roots.edges);
+  drop_idle_leaves(roots.edges, edges,
+                   [&](std::uint32_t leaf, EdgeTable& out) { add_edges(from, in.edges, whole, leaf, out); });
+  find_triangle_roots_here({in.frame, in.triangles, in.cluster, in.cluster.corner}, triangles, roots.triangles);
 }
 
 void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
@@ -330,8 +378,8 @@ HWY_EXPORT(find_here);
 HWY_EXPORT(find_triangle_roots_here);
 HWY_EXPORT(find_triangles_here);
 
-void find_roots(const FindInput& input, Roots& roots) {
-  HWY_DYNAMIC_DISPATCH(find_roots_here)(input, roots);
+void find_roots(const FindInput& input, EdgeTable& edges, TriangleTable& triangles, Roots& roots) {
+  HWY_DYNAMIC_DISPATCH(find_roots_here)(input, edges, triangles, roots);
 }
 
 void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
@@ -339,8 +387,8 @@ void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>&
   HWY_DYNAMIC_DISPATCH(find_here)(input, from, stack, edges, triangles);
 }
 
-void find_triangle_roots(const TriangleInput& input, std::vector<std::uint32_t>& roots) {
-  HWY_DYNAMIC_DISPATCH(find_triangle_roots_here)(input, roots);
+void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(find_triangle_roots_here)(input, triangles, roots);
 }
 
 void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,

@@ -69,14 +69,14 @@ struct TriangleInput {
   std::uint32_t outside_of =
       0;  ///< bits (WideTriangles::closed) of which no triangle matters that is seen from outside
 };
-/// Where the walks of clusters that are part of this one may begin.
-void find_roots(const FindInput& input, Roots& roots);
+/// Where the walks of clusters that are part of this one may begin. The tables are for trying leaves.
+void find_roots(const FindInput& input, EdgeTable& edges, TriangleTable& triangles, Roots& roots);
 /// Edges that the shaft to the light meets and that may be silhouettes as seen from the cluster; triangles that the
 /// shaft to the light's corner meets.
 void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
           TriangleTable& triangles);
 /// The same for triangles alone, and any shaft.
-void find_triangle_roots(const TriangleInput& input, std::vector<std::uint32_t>& roots);
+void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots);
 void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
                     std::vector<std::uint32_t>& stack, TriangleTable& triangles);
 

@@ -3,6 +3,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra::native {
@@ -33,6 +34,7 @@ Frame make_frame(const FrameInput& input) {
   frame.across = glm::vec3(frame.axes[0]);
   frame.along = glm::vec3(frame.axes[1]);
   frame.axis = glm::vec3(frame.axes[2]);
+  frame.axis_size = glm::abs(frame.axis);
   frame.per_length = std::max(glm::length(frame.across), glm::length(frame.along)) * 1.00001F;
   frame.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
   frame.deviation = input.light.deviation;
@@ -71,9 +73,8 @@ Shaft make_shaft(const Frame& frame, std::span<const Placed> samples, const glm:
     const glm::vec3 side = (i < 2 ? frame.across : frame.along) * (i % 2 == 0 ? 1.0F : -1.0F);
     const glm::vec3 n = side - slopes[i] * frame.axis;
     const float size = size1(n) + size1(side);
-    shaft.nx[i] = n.x;
-    shaft.ny[i] = n.y;
-    shaft.nz[i] = n.z;
+    shaft.n[i] = n;
+    shaft.size[i] = glm::abs(n);
     shaft.beyond[i] = glm::dot(n, frame.center) + beyond[i] +
                       64 * kRound * (2 * frame.reach * size + frame.skew * widest) + size * frame.deviation;
   }
@@ -92,6 +93,9 @@ Cluster make_cluster(const Frame& frame, std::span<const Placed> samples) {
     upper = glm::max(upper, at.p);
   }
   Cluster cluster;
+  const std::uint32_t plane = samples.front().plane;
+  const bool one = std::all_of(samples.begin(), samples.end(), [&](const Placed& at) { return at.plane == plane; });
+  if (one) cluster.plane = plane;
   cluster.middle = 0.5F * lower + 0.5F * upper;
   cluster.half_size = glm::max(upper - cluster.middle, cluster.middle - lower) * (1 + 8 * kRound);
   cluster.whole = make_shaft(frame, samples, -frame.half_cells, frame.half_cells);

@@ -19,7 +19,7 @@ constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 
 /// The light as a frame for (X, Y), in cells, as seen from one of its sides.
 struct Frame {
-  glm::vec3 center{0}, axis{0}, across{0}, along{0};
+  glm::vec3 center{0}, axis{0}, axis_size{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
   glm::dvec3 corner{0};              ///< of the light: where its rows and columns begin
   std::array<glm::dvec3, 3> axes{};  ///< across, along, axis before rounding
@@ -68,13 +68,17 @@ constexpr float kPerReach = 8 * kRound;
 /// The hull of view samples and a rectangle of the light's plane. (bound shaft)
 struct Shaft {
   float lowest = 0, highest = 0;
-  std::array<float, 4> nx{}, ny{}, nz{}, beyond{};
+  std::array<glm::vec3, 4> n{}, size{};  ///< |n|
+  std::array<float, 4> beyond{};
 };
 
 /// View samples whose lists are found together: their box, and the shafts to the light and to its lower left corner.
 struct Cluster {
+  static constexpr std::uint32_t kSeveral = 0xffffffffU;
+
   glm::vec3 middle{0}, half_size{0};
   Shaft whole, corner;
+  std::uint32_t plane = kSeveral;  ///< that all of their carriers are in: nothing in it hides a light sample
 };
 Cluster make_cluster(const Frame& frame, std::span<const Placed> samples);
 Sample complete(const Frame& frame, const Cluster& cluster, const Placed& at);

@@ -26,14 +26,16 @@ constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
 struct Spot {
   std::uint32_t x = 0, y = 0;
 };
-Spot spot(std::uint32_t i) {
-  Spot at;
-  for (std::uint32_t bit = 0; 1U << 2 * bit < kRegion * kRegion; ++bit) {
-    at.x |= (i >> 2 * bit & 1) << bit;
-    at.y |= (i >> (2 * bit + 1) & 1) << bit;
+constexpr auto kSpots = [] {
+  std::array<Spot, kRegion * kRegion> spots;
+  for (std::uint32_t i = 0; i < spots.size(); ++i) {
+    for (std::uint32_t bit = 0; 1U << 2 * bit < spots.size(); ++bit) {
+      spots[i].x |= (i >> 2 * bit & 1) << bit;
+      spots[i].y |= (i >> (2 * bit + 1) & 1) << bit;
+    }
   }
-  return at;
-}
+  return spots;
+}();
 
 /// Buffers of one thread.
 struct Buffers {
@@ -122,8 +124,7 @@ void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t
   placed.resize(kRegion * kRegion);
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
-    const Spot place = spot(i);
-    const std::uint32_t x = left + place.x, y = top + place.y;
+    const std::uint32_t x = left + kSpots[i].x, y = top + kSpots[i].y;
     if (x < samples_->width && y < tile_.row_count) {
       const std::size_t pixel = std::size_t{y} * samples_->width + x;
       Placed& at = placed[count];

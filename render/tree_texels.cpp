@@ -24,6 +24,10 @@ bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
   return cross.x + cross.y + cross.z > 0x1p-25 * (size1.x + size1.y + size1.z) * (size2.x + size2.y + size2.z);
 }
 
+/// Of a flat box: half an extent that no coordinate's last digit notices, but far from the subnormal numbers, each
+/// product with which costs a processor a hundred and more cycles.
+constexpr float kThinnest = 0x1p-40F;
+
 std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
   std::vector<Texel> texels;
   texels.reserve(tree.nodes.size() * 2 * TriangleTree::kWidth);
@@ -33,7 +37,7 @@ std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
       const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
       glm::vec3 half = glm::max(upper - middle, middle - lower);
       for (int axis = 0; axis < 3; ++axis)
-        half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
+        half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
       texels.push_back({middle, child.reference});
       texels.push_back({half, 0});
     }

@@ -46,7 +46,8 @@ class NativeEdges : public native::MaskMethod {
     return texels.depth == 0 ? WideEdgeTree{} : wide_edge_tree(texels.nodes, texels.slots);
   }
   void begin_region(const Frame& frame, const Cluster& all) override {
-    find_roots({frame, edges_of(frame), triangles(), all}, scratch_.local().roots);
+    Scratch& scratch = scratch_.local();
+    find_roots({frame, edges_of(frame), triangles(), all}, scratch.edges, scratch.triangles, scratch.roots);
   }
 
  protected:

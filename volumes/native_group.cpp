@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -29,11 +31,14 @@ struct GroupBounds {
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
+  /// The hull of the group's p and the light: at height h over its plane, between these + h · slope, in cells.
+  std::array<float, 4> beyond{}, slope{};  // right, left, up, down; left and down turned round
   float height_low = 0, height_high = 0, far = 0, per_way = 0, per_foot = 0, fixed = 0, per_lean = 0;
 };
 
-GroupBounds bounds_of(std::span<const Sample> samples) {
+GroupBounds bounds_of(const Frame& frame, std::span<const Sample> samples) {
   GroupBounds g;
+  g.slope.fill(-1e18F);
   const Sample& one = samples.front();
   g.seen = {one.seen, one.seen};
   Box3 local{one.local, one.local};
@@ -54,6 +59,20 @@ GroupBounds bounds_of(std::span<const Sample> samples) {
     g.lean_low = glm::min(g.lean_low, at.lean);
     g.lean_high = glm::max(g.lean_high, at.lean);
     g.per_lean = std::max(g.per_lean, at.per_lean);
+    const glm::vec2 from = at.foot - frame.first_cell;
+    const float inverse = 1 / at.height;
+    const std::array over{from.x - frame.half_cells.x, -frame.half_cells.x - from.x, from.y - frame.half_cells.y,
+                          -frame.half_cells.y - from.y};
+    for (std::size_t i = 0; i < 4; ++i) g.slope[i] = std::max(g.slope[i], over[i] * inverse);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto axis = static_cast<glm::length_t>(i / 2);
+    const glm::vec3 side = glm::abs(axis == 0 ? frame.across : frame.along);
+    const float size = 2 * (side.x + side.y + side.z) + 1.74F * std::abs(g.slope[i]);  // as of Shaft (bound shaft)
+    g.beyond[i] =
+        frame.half_cells[axis] + (i % 2 == 0 ? 1.0F : -1.0F) * frame.first_cell[axis] +
+        64 * kRound * (2 * frame.reach * size + frame.skew * std::max(frame.half_cells.x, frame.half_cells.y)) +
+        size * frame.deviation;
   }
   g.middle = 0.5F * (local.low + local.high);
   g.half_size = 0.5F * (local.high - local.low) * (1 + 8 * kRound);
@@ -62,9 +81,9 @@ GroupBounds bounds_of(std::span<const Sample> samples) {
 
 /// Where an end of an edge appears for any view sample of the group.
 struct Range {
+  V x, y, level;  // of the end: its foot, in cells, and its height over the light's plane
   V low_x, low_y, high_x, high_y, error;
   M bounded;
-  V level;  // over the light's plane
 };
 
 class GroupFilter {
@@ -84,7 +103,9 @@ class GroupFilter {
     const float columns = static_cast<float>(frame.columns) - 0.5F, rows = static_cast<float>(frame.rows) - 0.5F;
     for (std::size_t i = 0; i < in_.edges.count; i += hn::Lanes(D())) {
       M kept = hn::And(first_lanes(in_.edges.count - i), may_be_silhouette(i));
+
       if (hn::AllFalse(D(), kept)) continue;
+
       const Range a = range_of(kAx, i), b = range_of(kBx, i);
       const M bounded = hn::And(a.bounded, b.bounded);
       const V low_x = hn::Min(a.low_x, b.low_x), high_x = hn::Max(a.high_x, b.high_x);
@@ -96,7 +117,8 @@ class GroupFilter {
       const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * frame.reach));
       kept = hn::AndNot(behind, kept);
       put(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));
-      put(unsettled, i, hn::AndNot(bounded, kept), set(0));
+      kept = hn::AndNot(bounded, kept);
+      if (!hn::AllFalse(D(), kept)) put(unsettled, i, hn::And(kept, in_hull(a, b)), set(0));
     }
   }
 
@@ -127,6 +149,20 @@ class GroupFilter {
   }
 
  private:
+  /// May an edge meet the hull of the group and the light?
+  [[nodiscard]] M in_hull(const Range& a, const Range& b) const {
+    M met = first_lanes(hn::Lanes(D()));
+    for (std::size_t side = 0; side < 4; ++side) {
+      const V slope = set(-g_.slope[side]);
+      const auto over = [&](const Range& end) {
+        const V x = side < 2 ? end.x : end.y;
+        return hn::MulAdd(end.level, slope, side % 2 == 0 ? x : hn::Neg(x));
+      };
+      met = hn::And(met, hn::Le(hn::Min(over(a), over(b)), set(g_.beyond[side])));
+    }
+    return met;
+  }
+
   [[nodiscard]] V column(std::size_t field, std::size_t i) const { return hn::Load(D(), in_.edges[field] + i); }
 
   struct Interval {
@@ -170,6 +206,8 @@ class GroupFilter {
   [[nodiscard]] Range range_of(std::size_t first, std::size_t i) const {
     const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
     Range r;
+    r.x = x;
+    r.y = y;
     r.level = hn::Add(column(first + 2, i), set(height_));
     const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.frame.reach)));
@@ -219,8 +257,9 @@ class GroupFilter {
 };
 
 void sort_out_here(const ScatterInput& in, std::span<const Sample> group, GroupLists& lists) {
-  const GroupBounds bounds = bounds_of(group);
+  const GroupBounds bounds = bounds_of(in.frame, group);
   const GroupFilter filter(in, bounds);
+
   filter.edges(lists.settled, lists.unsettled);
   filter.triangles(lists.triangles);
 }

@@ -60,7 +60,8 @@ class NativeViewSample final : public native::MaskMethod {
   }
 
   void begin_region(const Frame& frame, const Cluster& all) override {
-    find_triangle_roots({frame, triangles(), all, all.whole}, scratch_.local().roots);
+    PairScratch& scratch = scratch_.local();
+    find_triangle_roots({frame, triangles(), all, all.whole}, scratch.triangles, scratch.roots);
   }
 
   void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
