@@ -18,6 +18,7 @@ void cut_at_horizon_here(const Frame& frame, const Placed& at, Open& open, Seen&
   const hn::CappedTag<float, 16> d;
   const std::size_t words = frame.padded_rows / 16;
   const auto constant = [&](float x) { return hn::Set(d, x); };
+  std::uint32_t visible = 0;
   const float per_column = at.above.x / frame.half_cells.x, per_row = at.above.y / frame.half_cells.y;
   for (std::uint32_t first = 0; first < frame.padded_rows; first += static_cast<std::uint32_t>(hn::Lanes(d))) {
     const auto rows = hn::Sub(hn::Iota(d, static_cast<float>(first)), constant(frame.first_cell.y));
@@ -34,13 +35,14 @@ void cut_at_horizon_here(const Frame& frame, const Placed& at, Open& open, Seen&
       const std::uint32_t is_above = above[0] | std::uint32_t{above[1]} << 8U,
                           may_be = not_below[0] | std::uint32_t{not_below[1]} << 8U;
       word = static_cast<std::uint16_t>(word & ~((lanes & ~is_above) << place));
+      visible += static_cast<std::uint32_t>(std::popcount(word & lanes << place));
       for (std::uint32_t left = may_be & ~is_above & lanes; left != 0; left &= left - 1) {
         const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(left));
         if (row < frame.rows) open.samples.push_back(row * frame.columns + column);
       }
     }
   }
-  seen.visible = count_bits(frame, seen.mask);
+  seen.visible = visible;
 }
 
 }  // namespace
@@ -54,12 +56,6 @@ HWY_EXPORT(cut_at_horizon_here);
 
 void cut_at_horizon(const Frame& frame, const Placed& at, Open& open, Seen& seen) {
   HWY_DYNAMIC_DISPATCH(cut_at_horizon_here)(frame, at, open, seen);
-}
-
-std::uint32_t count_bits(const Frame& frame, const std::uint16_t* mask) {
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < mask_words(frame); ++i) count += static_cast<std::uint32_t>(std::popcount(mask[i]));
-  return count;
 }
 
 void fill(const Frame& frame, bool visible, Seen& seen) {

@@ -9,7 +9,6 @@
 /// own stages.
 namespace penumbra::native {
 
-std::uint32_t count_bits(const Frame& frame, const std::uint16_t* mask);
 /// All light samples, or none.
 void fill(const Frame& frame, bool visible, Seen& seen);
 /// Light samples that are not strictly above the carrier's plane are not visible. (bound horizon)

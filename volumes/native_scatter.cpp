@@ -185,18 +185,21 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
     changes.left[row] = row < frame.rows ? static_cast<Counter>(depth) : Counter{1};
   }
   const std::size_t words = frame.padded_rows / 16;
+  std::size_t visible = 0;
   for (std::size_t row = 0; row < frame.padded_rows; row += hn::Lanes(d)) {
     auto depths = hn::LoadU(d, changes.left + row);
     for (std::size_t column = 0; column < frame.columns; ++column) {
       depths = hn::Add(depths, hn::LoadU(d, changes.cells + column * frame.padded_rows + row));
+      const auto none = hn::Eq(depths, hn::Zero(d));
+      visible += hn::CountTrue(d, none);
       std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, hn::Eq(depths, hn::Zero(d)), bytes);
+      hn::StoreMaskBits(d, none, bytes);
       std::uint16_t& word = seen.mask[column * words + row / 16];
       const std::uint32_t found = (bytes[0] | std::uint32_t{bytes[1]} << 8U) << row % 16;
       word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
     }
   }
-  seen.visible = count_bits(frame, seen.mask);
+  seen.visible = static_cast<std::uint32_t>(visible);
 }
 
 /// (s, t) of a light sample.
