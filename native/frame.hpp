@@ -74,7 +74,7 @@ struct Shaft {
 
 /// View samples whose lists are found together: their box, and the shafts to the light and to its lower left corner.
 struct Cluster {
-  static constexpr std::uint32_t kSeveral = 0xffffffffU;
+  static constexpr std::uint32_t kSeveral = 0xfffffffeU;  ///< the number of no triangle
 
   glm::vec3 middle{0}, half_size{0};
   Shaft whole, corner;

@@ -103,22 +103,33 @@ void MaskMethod::evaluate(const visibility::Tile& tile) {
   masks_.resize(std::max(masks_.size(), pixels * mask_words(frames_[0])));
   visible_.assign(pixels, 0);
   const auto start = std::chrono::steady_clock::now();
-  const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
-                      down = (tile.row_count + kRegion - 1) / kRegion;
-  tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
-    for (const Frame& frame : frames_) do_region(frame, region % across * kRegion, region / across * kRegion);
-  });
+  do_tile();
   milliseconds_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   counters_["openPixels"] += open_pixels_.exchange(0);
   counters_["openPairs"] += open_pairs_.exchange(0);
   count(counters_);
 }
 
+void MaskMethod::repeat() {
+  do_tile();
+  open_pixels_ = 0;
+  open_pairs_ = 0;
+  std::map<std::string, std::uint64_t> nobody;
+  count(nobody);
+}
+
+void MaskMethod::do_tile() {
+  const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
+                      down = (tile_.row_count + kRegion - 1) / kRegion;
+  tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
+    for (const Frame& frame : frames_) do_region(frame, region % across * kRegion, region / across * kRegion);
+  });
+}
+
 void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t top) {
   const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
   OpenJudge judge(pairs, frame);
   const ViewInput view{*scene_, *samples_, light_frame_, frame, normal_is_known_, scale_};
-  const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
   std::vector<Placed>& placed = buffers().placed;
   std::array<std::size_t, kRegion * kRegion / (kBlock * kBlock)> ends{};  // of its blocks
   placed.resize(kRegion * kRegion);
@@ -128,7 +139,7 @@ void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t
     if (x < samples_->width && y < tile_.row_count) {
       const std::size_t pixel = std::size_t{y} * samples_->width + x;
       Placed& at = placed[count];
-      const Outlook outlook = look(view, static_cast<std::uint32_t>(first_pixel + pixel), at);
+      const Outlook outlook = look(view, static_cast<std::uint32_t>(first_pixel() + pixel), at);
       if (outlook == Outlook::scattered) ++count;
       if (outlook == Outlook::all) visible_[pixel] = light_->sample_count();
       if (outlook == Outlook::open && frame.side > 0) decide_all(at, judge);  // one of two sides asks

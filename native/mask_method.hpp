@@ -45,6 +45,8 @@ class MaskMethod : public visibility::Method {
   virtual void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
   /// Something cuts what casts shadow at the light's plane: errors grow by that.
   virtual bool prepare_casters() = 0;
+  /// Does the clusters of the tile last evaluated again, for what was not asked for then; counts nothing.
+  void repeat();
   /// Adds to the counters after a tile.
   virtual void count(std::map<std::string, std::uint64_t>& counters) = 0;
 
@@ -56,12 +58,13 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] const WideTriangleTree& triangles() const { return triangles_; }
   [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   [[nodiscard]] float scale() const { return scale_; }
-  [[nodiscard]] std::size_t tile_pixel(const Placed& at) const {
-    return at.pixel - std::size_t{tile_.first_row} * samples_->width;
-  }
+  /// Of the tile.
+  [[nodiscard]] std::size_t first_pixel() const { return std::size_t{tile_.first_row} * samples_->width; }
+  [[nodiscard]] std::size_t tile_pixel(const Placed& at) const { return at.pixel - first_pixel(); }
 
  private:
   [[nodiscard]] float reach() const;
+  void do_tile();
   void do_region(const Frame& frame, std::uint32_t left, std::uint32_t top);
   void do_block(const Frame& frame, std::span<Placed> block, Judge& judge);
   void decide_all(const Placed& sample, Judge& judge);

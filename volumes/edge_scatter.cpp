@@ -288,8 +288,9 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
     if (const auto engine = options.find("engine"); engine != options.end() && engine->second == "vulkan") {
       throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
     }
-    description.output = visibility::Output::scalar;
-    description.exact_for = "the visible share of a rectangle light, to float32, for any triangle soup";
+    description.output = visibility::Output::radiance;
+    description.exact_for =
+        "the visible share of a rectangle light, to float32, for any triangle soup; the beauty under constant radiance";
     description.textures = false;
     return make_native_edge_scatter(std::move(description), true);
   }

@@ -5,6 +5,7 @@
 #include "base/assert.hpp"
 #include "native/horizon.hpp"
 #include "native/mask_method.hpp"
+#include "visibility/seen_light.hpp"
 #include "volumes/edge_sides.hpp"
 #include "volumes/native_rows.hpp"
 #include "volumes/native_scatter.hpp"
@@ -99,7 +100,7 @@ class NativeEdgeScatter final : public NativeEdges {
   }
 };
 
-/// rows=exact: shares of the light.
+/// rows=exact: shares of the light, and their form factors for who asks for them.
 class NativeEdgeRows final : public NativeEdges {
  public:
   using NativeEdges::NativeEdges;
@@ -115,20 +116,41 @@ class NativeEdgeRows final : public NativeEdges {
     NativeEdges::read_visibility(visibility);
     for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = shares_[i].value_or(visibility[i]);
   }
+  /// Looks at the tile once more: whoever wants V alone does not wait for this.
+  void read_form_factors(std::span<glm::dvec3> form_factors) override {
+    std::vector<float> visibility(form_factors.size());
+    read_visibility(visibility);
+    radiance_.assign(form_factors.size(), std::nullopt);
+    repeat();
+    for (std::size_t i = 0; i < form_factors.size(); ++i) {
+      const std::size_t pixel = first_pixel() + i;
+      const bool dark = visibility[i] == 0 || samples().triangle[pixel] == visibility::ViewSamples::kBackground;
+      form_factors[i] = glm::dvec3(dark ? 0 : radiance_[i] ? *radiance_[i] : visibility[i] * unshadowed(pixel));
+    }
+    radiance_.clear();
+  }
 
  private:
+  [[nodiscard]] double unshadowed(std::size_t pixel) const {
+    return visibility::SeenLight(light(), samples().p[pixel], samples().n[pixel]).whole();
+  }
+
   void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
     Scratch& scratch = scratch_.local();
     Cluster cluster;
     std::vector<float> shares(placed.size(), 1.0F);
+    std::vector<double> radiance(radiance_.empty() ? 0 : placed.size());
     if (!find_all(frame, placed, cluster, scratch)) {
       for (std::size_t i = 0; i < placed.size(); ++i)
         if (placed[i].straddles) shares[i] = share_above_horizon(frame, judge.horizon(placed[i]));
+      for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = unshadowed(placed[i].pixel);
     } else {
-      integrate({frame, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles, true},
-                scratch, judge, seen, shares);
+      const ScatterInput input{frame,           edges_of(frame), triangles(),       cluster,
+                               scratch.samples, scratch.edges,   scratch.triangles, true};
+      integrate({input, light(), samples()}, scratch, judge, seen, {shares, radiance});
     }
     for (std::size_t i = 0; i < placed.size(); ++i) shares_[tile_pixel(placed[i])] = shares[i];
+    for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(placed[i])] = radiance[i];
   }
 
   /// Whatever is decided by exact predicates here is a view sample left to light samples.
@@ -137,7 +159,8 @@ class NativeEdgeRows final : public NativeEdges {
     if (counters["openPixels"] > 0) counters["sampledPixels"] = counters["openPixels"];
   }
 
-  std::vector<std::optional<float>> shares_;  // of the tile; none: light samples say it
+  std::vector<std::optional<float>> shares_;     // of the tile; none: light samples say it
+  std::vector<std::optional<double>> radiance_;  // likewise; empty: not wanted
 };
 
 }  // namespace

@@ -1,11 +1,14 @@
 // Edge scatter on a processor, rows=exact: from edges as they appear to the visible share of the light, without light
 // samples.
 
+#include "visibility/seen_light.hpp"
 #include "volumes/native_rows.hpp"
 #include "volumes/native_scatter.hpp"
 
 #include <glm/common.hpp>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
 
@@ -35,8 +38,17 @@ std::optional<std::int32_t> depth_by_other_place(const Frame& frame, const RowSu
   return std::nullopt;
 }
 
+/// `parts`: what is visible, if it is asked for and neither all nor nothing.
+struct Rows {
+  RowSum sum;
+  std::vector<Trapezoid> parts;
+  bool parts_asked = false;
+};
+
 /// Nothing: left to light samples.
-std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const Sample& at, RowSum& rows, Judge& judge) {
+std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const Sample& at, Rows& all, Judge& judge) {
+  RowSum& rows = all.sum;
+  all.parts.clear();
   Open& open = scratch.open;
   open.clear();
   std::int32_t depth = 0;
@@ -69,27 +81,42 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
   } else if (scratch.crossing.count == 0) {
     return depth == 0 ? 1 : 0;
   }
-  return rows.visible_share(depth);
+  return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
 }
 
-void integrate_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::span<Seen> seen,
-                    std::span<float> shares) {
-  RowSum rows(in.frame);
+double form_factor_of(const IntegralInput& in, const Placed& at, const std::vector<Trapezoid>& parts, double share) {
+  if (share == 0) return 0;
+  const visibility::SeenLight seen(in.light, in.samples.p[at.pixel], in.samples.n[at.pixel]);
+  if (parts.empty() || share == 1) return share * seen.whole();
+  const glm::dvec2 half(in.scatter.frame.half_cells);
+  double sum = 0;
+  for (const auto& [low, high] : parts) {
+    const auto corner = [&](double x, double y) { return glm::dvec2(x, y) / half - 1.0; };
+    sum += seen.part(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
+                                corner(high.left, high.y)});
+  }
+  return std::max(sum, 0.0);
+}
+
+void integrate_here(const IntegralInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen,
+                    const Integral& out) {
+  const ScatterInput& in = input.scatter;
+  Rows rows{RowSum(in.frame), {}, !out.radiance.empty()};
   for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
     const auto group = in.samples.subspan(first, std::min(kGroup, in.samples.size() - first));
     sort_out(in, group, scratch.lists);
     for (std::size_t i = 0; i < group.size(); ++i) {
-      const std::optional<double> share = share_of(in, scratch, group[i], rows, judge);
-      if (share) {
-        shares[first + i] = static_cast<float>(*share);
-        continue;
+      std::optional<double> share = share_of(in, scratch, group[i], rows, judge);
+      if (!share) {
+        scratch.open.clear();
+        scratch.open.pixel = true;
+        std::fill_n(seen[first + i].mask, mask_words(in.frame), std::uint16_t{0});
+        judge.decide(group[i], scratch.open, seen[first + i]);
+        share = static_cast<double>(seen[first + i].visible) / (in.frame.rows * in.frame.columns);
+        rows.parts.clear();
       }
-      scratch.open.clear();
-      scratch.open.pixel = true;
-      std::fill_n(seen[first + i].mask, mask_words(in.frame), std::uint16_t{0});
-      judge.decide(group[i], scratch.open, seen[first + i]);
-      shares[first + i] =
-          static_cast<float>(seen[first + i].visible) / static_cast<float>(in.frame.rows * in.frame.columns);
+      out.shares[first + i] = static_cast<float>(*share);
+      if (!out.radiance.empty()) out.radiance[first + i] = form_factor_of(input, group[i], rows.parts, *share);
     }
   }
 }
@@ -103,9 +130,8 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(integrate_here);
 
-void integrate(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen,
-               std::span<float> shares) {
-  HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, seen, shares);
+void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen, const Integral& out) {
+  HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, seen, out);
 }
 
 }  // namespace penumbra::volumes

@@ -160,24 +160,31 @@ void RowSum::add_horizon(const glm::dvec3& above) {
   at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
-/// The visible length of the row in the middle, its crossings in order.
-double RowSum::visible_length(std::int32_t depth, double height) {
-  const double width = frame_.columns;
-  double length = 0, from = 0;
+/// Nothing crosses in the band: the visible length of the row in the middle is the mean one.
+double RowSum::visible_area_in_order(const Band& band) {
+  const double height = band.to - band.from;
+  double length = 0, low = 0, high = 0;  // of the row; where the part began, at the band's two rows
+  std::int32_t depth = band.depth;
+  const auto end_part = [&](double end_low, double end_high) {
+    const double part = 0.5 * (end_low + end_high) - 0.5 * (low + high);
+    if (depth == 0) {
+      length += part;
+      if (parts_ != nullptr && part > 0) parts_->push_back({{band.from, low, end_low}, {band.to, high, end_high}});
+    }
+    if (depth < 0) impossible_ += part * height;
+    low = end_low;
+    high = end_high;
+  };
   for (const Spanning& spanning : active_) {
-    const double x = 0.5 * (spanning.low + spanning.high);
-    if (depth == 0) length += x - from;
-    if (depth < 0) impossible_ += (x - from) * height;
-    from = x;
+    end_part(spanning.low, spanning.high);
     depth -= spanning.k;
   }
-  if (depth == 0) length += width - from;
-  if (depth < 0) impossible_ += (width - from) * height;
-  return length;
+  end_part(frame_.columns, frame_.columns);
+  return length * height;
 }
 
 /// Between two rows that no edge begins or ends between, `low` and `high` of all edges being there.
-double RowSum::visible_area(double from, double to, std::int32_t depth, int halvings) {
+double RowSum::visible_area(const Band& band, int halvings) {
   // Few, and nearly in order from the rows before.
   for (std::size_t i = 1; i < active_.size(); ++i) {
     if (active_[i - 1].twice_middle() <= active_[i].twice_middle()) continue;
@@ -191,21 +198,21 @@ double RowSum::visible_area(double from, double to, std::int32_t depth, int halv
     // Where they are no farther out of order, no digit changes that a float has.
     if (std::min(below, above) > -6e-8 * frame_.columns) continue;
     if (halvings == 0) {
-      impossible_ += (to - from) * frame_.columns;
+      impossible_ += (band.to - band.from) * frame_.columns;
       break;
     }
     // Two edges cross: up to there, and on.
-    const double height = to - from;
-    const double cut = std::clamp(from + height * below / (below - above), from + 1e-3 * height, to - 1e-3 * height);
+    const double height = band.to - band.from, margin = 1e-3 * height;
+    const double cut = std::clamp(band.from + height * below / (below - above), band.from + margin, band.to - margin);
     for (Spanning& spanning : active_) spanning.high = spanning.at(cut);
-    const double area = visible_area(from, cut, depth, halvings - 1);
+    const double area = visible_area({band.from, cut, band.depth}, halvings - 1);
     for (Spanning& spanning : active_) {
       spanning.low = spanning.high;
-      spanning.high = spanning.at(to);
+      spanning.high = spanning.at(band.to);
     }
-    return area + visible_area(cut, to, depth, halvings - 1);
+    return area + visible_area({cut, band.to, band.depth}, halvings - 1);
   }
-  return visible_length(depth, to - from) * (to - from);
+  return visible_area_in_order(band);
 }
 
 /// Edges that go on, and those that begin, between two rows. One that begins where another ends takes its place, so
@@ -241,7 +248,9 @@ void RowSum::go_on(double from, double to, std::size_t& next) {
   }
 }
 
-std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
+std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts) {
+  parts_ = parts;
+  if (parts != nullptr) parts->clear();
   const double width = frame_.columns, height = frame_.rows;
   constexpr int kMostHalvings = 64;
   std::int32_t depth = depth_at_corner + at_corner_;
@@ -259,7 +268,7 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner) {
     for (; step < left_.size() && left_[step].y <= from; ++step) depth += left_[step].change;
     if (!(to > from)) continue;
     go_on(from, to, next);
-    area += visible_area(from, to, depth, kMostHalvings);
+    area += visible_area({from, to, depth}, kMostHalvings);
   }
   if (impossible_ > 1e-6 * width * height) return std::nullopt;
   return std::clamp(area / (width * height), 0.0, 1.0);
@@ -269,7 +278,7 @@ float share_above_horizon(const Frame& frame, const glm::dvec3& above) {
   RowSum rows(frame);
   rows.clear();
   rows.add_horizon(above);
-  return static_cast<float>(rows.visible_share(0).value_or(0));
+  return static_cast<float>(rows.visible_share(0, nullptr).value_or(0));
 }
 
 }  // namespace penumbra::volumes

@@ -18,6 +18,14 @@ struct RowEdge {
   std::int32_t k = 0;
 };
 
+/// A part of the light between two of its rows: in cells from its lower left corner, x of its two sides at both.
+struct Trapezoid {
+  struct Row {
+    double y = 0, left = 0, right = 0;
+  };
+  Row low, high;
+};
+
 /// Rows of the light put where the outline bends: at ends of edges, at crossings of two, at the light's sides. Between
 /// two such rows the visible length of a row is linear in its height, and the row in the middle says it exactly.
 /// docs/edge-scatter.md, "Without light samples".
@@ -36,7 +44,8 @@ class RowSum {
   /// What lies below the carrier's plane (Judge::horizon) counts as one layer more.
   void add_horizon(const glm::dvec3& above);
   /// The share that is visible. Less than no layer somewhere that is not within rounding of an edge: nothing.
-  [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner);
+  /// `parts`: gets what is visible, if given.
+  [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts);
 
  private:
   struct Step {
@@ -51,16 +60,21 @@ class RowSum {
     [[nodiscard]] double at(double y) const { return offset + slope * y; }
     [[nodiscard]] double twice_middle() const { return low + high; }
   };
+  struct Band {
+    double from = 0, to = 0;
+    std::int32_t depth = 0;  // at the light's left side
+  };
   void add(RowEdge edge);
   void go_on(double from, double to, std::size_t& next);
-  [[nodiscard]] double visible_area(double from, double to, std::int32_t depth, int halvings);
-  [[nodiscard]] double visible_length(std::int32_t depth, double height);
+  [[nodiscard]] double visible_area(const Band& band, int halvings);
+  [[nodiscard]] double visible_area_in_order(const Band& band);
 
   const Frame& frame_;
   std::vector<RowEdge> edges_;
   std::vector<Step> left_;  // of the depth at the light's left side, going up
   std::vector<double> bends_;
   std::vector<Spanning> active_;
+  std::vector<Trapezoid>* parts_ = nullptr;
   bool corner_is_open_ = false;
   std::int32_t at_corner_ = 0;  // what add_horizon adds
   double impossible_ = 0;       // area of less than no layer

@@ -5,6 +5,8 @@
 #include "native/masks.hpp"
 #include "native/table.hpp"
 #include "native/trees.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/view_samples.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -75,7 +77,17 @@ void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::spa
 
 /// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample that an edge passes
 /// through, or that rounding leaves in contradiction, gets the share of visible light samples, decided exactly.
-void integrate(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen,
-               std::span<float> shares);
+/// `radiance`, if there: form factors of what is visible (of a view sample left to light samples: the light's, times
+/// that share).
+struct Integral {
+  std::span<float> shares;
+  std::span<double> radiance;
+};
+struct IntegralInput {
+  const ScatterInput& scatter;
+  const visibility::Light& light;
+  const visibility::ViewSamples& samples;
+};
+void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen, const Integral& out);
 
 }  // namespace penumbra::volumes

@@ -3,9 +3,13 @@
 #include "base/error.hpp"
 #include "reference/exact_method.hpp"
 #include "tests/agreement/lattice.hpp"
+#include "tests/agreement/panel.hpp"
 #include "tests/agreement/soft_stage.hpp"
 #include "volumes/edge_scatter.hpp"
 
+#include <glm/geometric.hpp>
+
+#include <numbers>
 #include <numeric>
 
 namespace penumbra::volumes {
@@ -20,33 +24,51 @@ class ExactRows : public tests::DeviceTest {
  protected:
   static std::unique_ptr<visibility::Method> make() { return make_edge_scatter(device(), {{"rows", "exact"}}); }
 
-  static std::vector<float> run(visibility::Method& method, const SceneFloats& floats, const Light& light,
-                                const ViewSamples& samples) {
+  struct Answer {
+    std::vector<float> shares;
+    std::vector<double> form_factors;
+  };
+  static Answer run(visibility::Method& method, const SceneFloats& floats, const Light& light,
+                    const ViewSamples& samples) {
     method.prepare_mesh(floats);
     method.prepare_light(light);
     method.prepare_view(samples);
-    std::vector<float> result(samples.size());
+    Answer result{std::vector<float>(samples.size()), {}};
     const std::uint32_t rows = method.max_tile_rows();
     for (std::uint32_t first = 0; first < samples.height; first += rows) {
       const visibility::Tile tile{first, std::min(rows, samples.height - first)};
       method.evaluate(tile);
-      method.read_visibility(
-          std::span(result).subspan(std::size_t{first} * samples.width, std::size_t{tile.row_count} * samples.width));
+      const std::size_t pixels = std::size_t{tile.row_count} * samples.width;
+      method.read_visibility(std::span(result.shares).subspan(std::size_t{first} * samples.width, pixels));
+      std::vector<glm::dvec3> form_factors(pixels);
+      method.read_form_factors(form_factors);
+      for (const glm::dvec3& one : form_factors) result.form_factors.push_back(one.x);
     }
     return result;
   }
 
   struct Found {
-    std::size_t pixels = 0, partly = 0, sampled = 0, wrong = 0;
-    double largest = 0;
+    std::size_t pixels = 0, partly = 0, sampled = 0, wrong = 0, wrong_form_factors = 0;
+    double largest = 0, largest_form_factor = 0;
   };
+  /// Edges out of order by 6e-8 of the light's width pass as in order: two outlines' worth of such strips, from no
+  /// nearer than the light is, and the rounding of some hundred doubles.
+  static double form_factor_tolerance(const Light& light, const glm::vec3& p) {
+    const glm::dvec3 center(light.center), d = glm::dvec3(p) - center;
+    const glm::dvec3 u = glm::dvec3(light.center_u) - center, v = glm::dvec3(light.center_v) - center;
+    const double s = std::clamp(glm::dot(d, u) / glm::dot(u, u), -1.0, 1.0),
+                 t = std::clamp(glm::dot(d, v) / glm::dot(v, v), -1.0, 1.0);
+    const glm::dvec3 nearest = d - s * u - t * v;
+    return 2 * 6e-8 * light.area / (std::numbers::pi * glm::dot(nearest, nearest)) + 1e-13;
+  }
   /// Adds what differs from the exact areas, view samples that are left to light samples among it: on lattices those
   /// lie in the light's own plane, where either is 0.
   static void compare(const SceneFloats& floats, const Light& light, const ViewSamples& samples, double tolerance,
                       Found& found) {
     const auto rows = make();
     const auto exact = reference::make_exact({});
-    const std::vector<float> shares = run(*rows, floats, light, samples), truth = run(*exact, floats, light, samples);
+    const auto [shares, form_factors] = run(*rows, floats, light, samples);
+    const auto [truth, true_form_factors] = run(*exact, floats, light, samples);
     const auto counters = rows->counters();
     const auto sampled = counters.find("sampledPixels");
     found.sampled += sampled == counters.end() ? 0 : sampled->second;
@@ -57,6 +79,9 @@ class ExactRows : public tests::DeviceTest {
       const double error = std::abs(static_cast<double>(shares[i]) - static_cast<double>(truth[i]));
       ++found.pixels;
       found.partly += truth[i] > 0 && truth[i] < 1 ? 1 : 0;
+      const double form_factor_error = std::abs(form_factors[i] - true_form_factors[i]);
+      found.largest_form_factor = std::max(found.largest_form_factor, form_factor_error);
+      found.wrong_form_factors += form_factor_error > form_factor_tolerance(light, samples.p[i]) ? 1 : 0;
       if (!(error <= tolerance)) {
         ++wrong;
       } else {
@@ -77,11 +102,12 @@ TEST_P(ExactRowsOnScenes, AreTheExactAreas) {
   const SoftStage stage(tests::shipped_scene(GetParam()), device(), 64, 64);
   Found found;
   compare(stage.floats, stage.light, stage.samples, kTolerance, found);
-  fmt::print("{}: {} pixels, {} partly lit, {} sampled, off by {:.1e} at most\n", GetParam(), found.pixels,
-             found.partly, found.sampled, found.largest);
+  fmt::print("{}: {} pixels, {} partly lit, {} sampled, off by {:.1e} at most, form factors by {:.1e}\n", GetParam(),
+             found.pixels, found.partly, found.sampled, found.largest, found.largest_form_factor);
   EXPECT_EQ(found.wrong, 0U);
   EXPECT_GT(found.partly, 60U);
   EXPECT_LE(found.sampled, found.pixels / 500);
+  EXPECT_EQ(found.wrong_form_factors, 0U);
 }
 INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOnScenes,
                          testing::Values("broken", "bunny", "contact", "fusion", "parallel-square", "room",
@@ -109,9 +135,20 @@ TEST_F(ExactRows, LatticeSoups) {
       EXPECT_EQ(found.wrong, before);
     }
   }
-  fmt::print("{} view samples, {} partly lit, {} sampled, off by {:.1e} at most\n", found.pixels, found.partly,
-             found.sampled, found.largest);
+  fmt::print("{} view samples, {} partly lit, {} sampled, off by {:.1e} at most, form factors by {:.1e}\n",
+             found.pixels, found.partly, found.sampled, found.largest, found.largest_form_factor);
   EXPECT_GT(found.partly, found.pixels / 20);
+}
+
+/// Where V times the unshadowed integral is wrong: a light that stands on the floor.
+TEST_F(ExactRows, FormFactorsBesideALight) {
+  const SoftStage stage(tests::things_before_a_panel(), device(), 96, 72);
+  Found found;
+  compare(stage.floats, stage.light, stage.samples, kTolerance, found);
+  EXPECT_EQ(found.wrong, 0U);
+  EXPECT_GT(found.partly, 400U);
+  EXPECT_EQ(found.wrong_form_factors, 0U);
+  EXPECT_LT(found.largest_form_factor, 1e-8);
 }
 
 /// Parallelograms, and lights that emit to both sides.
@@ -161,8 +198,8 @@ TEST_F(ExactRows, OrderOfTriangles) {
     if (triangle >= 0) triangle = static_cast<std::int32_t>(place[static_cast<std::size_t>(triangle)]);
   }
   const auto method = make();
-  const std::vector<float> one = run(*method, stage.floats, stage.light, stage.samples);
-  const std::vector<float> other = run(*method, turned, stage.light, samples);
+  const std::vector<float> one = run(*method, stage.floats, stage.light, stage.samples).shares;
+  const std::vector<float> other = run(*method, turned, stage.light, samples).shares;
   double largest = 0;
   for (std::size_t i = 0; i < one.size(); ++i)
     largest = std::max(largest, std::abs(static_cast<double>(one[i]) - static_cast<double>(other[i])));

@@ -3,8 +3,8 @@
 
 #include "compare/beauty.hpp"
 #include "reference/exact_method.hpp"
+#include "tests/agreement/panel.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility_scenes.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -22,21 +22,9 @@ namespace {
 using tests::Stage;
 using visibility::SamplePattern;
 
-/// A panel, 2.4 wide and 1.2 high, stands a hair over the floor; before it a board, a post and a shelf.
-scenes::Scene things_before_a_panel() {
-  scenes::Scene scene;
-  tests::add_object(scene, "floor", tests::quad({0, 0, 0.5}, {2.5, 0, 0}, {0, 0, -1.5}));
-  tests::add_object(scene, "board", tests::quad({-0.6, 0.25, -0.7}, {0.25, 0, 0.1}, {0, 0.25, 0}));
-  tests::add_object(scene, "post", tests::quad({0.15, 0.6, -0.75}, {0.06, 0, 0}, {0, 0.6, 0}));
-  tests::add_object(scene, "shelf", tests::quad({0.8, 0.12, -0.65}, {0.3, 0, 0}, {0, 0.03, 0.2}));
-  scene.lights.push_back(tests::rectangle_light({0, 0.61, -1.01}, {1.2, 0, 0}, {0, 0.6, 0}));
-  scene.lights[0].radiance = glm::dvec3(1);
-  scene.cameras.push_back(tests::camera({0.4, 2.2, 1.9}, {0, 0, -0.3}));
-  return scene;
-}
-
 struct Pictures {
-  explicit Pictures(const visibility::SampleRequest& request) : stage(things_before_a_panel(), 96, 72, request) {}
+  explicit Pictures(const visibility::SampleRequest& request)
+      : stage(tests::things_before_a_panel(), 96, 72, request) {}
 
   [[nodiscard]] std::vector<glm::vec3> shade(const LightVisibility& seen) const {
     return integrate_beauty({stage.floats, stage.samples, colors, std::span(&stage.light, 1)}, {&seen, 1});
