@@ -15,7 +15,6 @@
 #include "maps/map_fit.hpp"
 #include "maps/mesh_verdict.hpp"
 #include "maps/options.hpp"
-#include "maps/pass_ledger.hpp"
 #include "maps/receivers.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/visible_share.hpp"
@@ -75,7 +74,7 @@ class Accumulate final : public visibility::Method {
   void read_masks(std::span<std::uint32_t> masks) override;
   void read_visibility(std::span<float> visibility) override;
 
-  std::vector<visibility::PassTime> take_pass_times() override { return ledger_.take(); }
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
@@ -89,7 +88,7 @@ class Accumulate final : public visibility::Method {
   CasterMaps casters_;
   render::ComputePass pass_;
   Receivers receivers_;
-  PassLedger ledger_;
+  visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
@@ -132,7 +131,7 @@ void Accumulate::render_batch(render::Commands& commands, std::uint32_t first, s
   std::uint32_t recorded = 0;
   for (std::uint32_t k = 0; k < count; ++k) {
     if (recorded + fitted_.faces > kFacesPerSubmission && recorded > 0) {
-      ledger_.add(commands.submit());
+      times_.add(commands.submit());
       recorded = 0;
     }
     casters_.record(commands, fitted_.views[first + k], frame_, light_->index, *depths_,
@@ -173,7 +172,7 @@ void Accumulate::evaluate(const visibility::Tile& tile) {
       push.lookup.first_result = part.first_result;
       pass_.record(commands, push, {*part.receivers, *views_, *depths_, *masks_}, part.groups());
     }
-    ledger_.add(commands.submit());
+    times_.add(commands.submit());
   }
 }
 

@@ -38,7 +38,7 @@ void CenterMapMethod::prepare_light(const visibility::Light& light) {
   render::Commands commands(*device_);
   casters_.record(commands, fitted.views.front(), frame, light.index, *depths_, 0);
   map_rendered(commands, {*views_, *depths_}, fitted.faces, light, frame);
-  ledger_.add(commands.submit());
+  times_.add(commands.submit());
 
   push_ = {.frame = frame.rounded(),
            .bias = static_cast<float>(options_.bias),
@@ -72,7 +72,7 @@ void CenterMapMethod::evaluate(const visibility::Tile& tile) {
     push.first_result = part.first_result;
     record_lookup(commands, push, part, {*views_, *depths_}, *visibility_);
   }
-  ledger_.add(commands.submit());
+  times_.add(commands.submit());
 }
 
 void CenterMapMethod::read_visibility(std::span<float> visibility) {

@@ -4,7 +4,6 @@
 #include "maps/light_frame.hpp"
 #include "maps/map_fit.hpp"
 #include "maps/options.hpp"
-#include "maps/pass_ledger.hpp"
 #include "maps/receivers.hpp"
 #include "render/buffer.hpp"
 #include "render/commands.hpp"
@@ -34,7 +33,7 @@ class CenterMapMethod : public visibility::Method {
   [[nodiscard]] std::uint32_t max_tile_rows() const override;
   void evaluate(const visibility::Tile& tile) override;
   void read_visibility(std::span<float> visibility) override;
-  std::vector<visibility::PassTime> take_pass_times() override { return ledger_.take(); }
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
@@ -61,7 +60,7 @@ class CenterMapMethod : public visibility::Method {
   MapOptions options_;
   CasterMaps casters_;
   Receivers receivers_;
-  PassLedger ledger_;
+  visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
   gpu::LookupPush push_{};

@@ -101,10 +101,10 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes) {
   full_barrier(state_->commands);
 }
 
-std::vector<PassMilliseconds> Commands::submit() try {
+std::vector<visibility::PassTime> Commands::submit() try {
   State& s = *state_;
   if (s.recording) s.run();
-  std::vector<PassMilliseconds> times;
+  std::vector<visibility::PassTime> times;
   const auto timed = std::min<std::size_t>(s.pass_names.size(), kMaxPasses);
   if (*s.queries && timed > 0) {
     const auto count = static_cast<std::uint32_t>(2 * timed);

@@ -2,6 +2,7 @@
 
 #include "render/buffer.hpp"
 #include "render/device.hpp"
+#include "visibility/pass_times.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -9,11 +10,6 @@
 #include <vector>
 
 namespace penumbra::render {
-
-struct PassMilliseconds {
-  std::string name;
-  double milliseconds = 0;
-};
 
 /// One command buffer: passes record into it, submit() runs it to its end. Between any two recorded passes stands a
 /// full memory barrier: simple, and right; what matters for speed happens inside passes.
@@ -31,7 +27,7 @@ class Commands {
   /// Submits, waits, and returns the time of each pass in order (empty where the queue has no timestamps; on
   /// processors each pass is run and timed by itself).
   /// Throws ResourceError when the device is lost. The object can be recorded into again.
-  std::vector<PassMilliseconds> submit();
+  std::vector<visibility::PassTime> submit();
 
   struct State;
   [[nodiscard]] State& state() const { return *state_; }  ///< for render/*.cpp only

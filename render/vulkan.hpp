@@ -83,7 +83,7 @@ struct Commands::State {
   std::vector<vk::raii::DescriptorPool> pools;
   bool recording = false;
   bool host_timed = false;
-  std::vector<PassMilliseconds> host_times;
+  std::vector<visibility::PassTime> host_times;
   std::chrono::steady_clock::time_point opened;
 
   void begin_if_needed();

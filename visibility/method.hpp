@@ -2,6 +2,7 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/mesh_verdict.hpp"
+#include "visibility/pass_times.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
@@ -50,11 +51,6 @@ using MethodOptions = std::map<std::string, std::string>;
 /// A band of whole pixel rows.
 struct Tile {
   std::uint32_t first_row = 0, row_count = 0;
-};
-
-struct PassTime {
-  std::string name;
-  double milliseconds = 0;
 };
 
 /// One way to turn view samples into visibility. The host calls, in this order and each as often as it likes:

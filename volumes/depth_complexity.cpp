@@ -20,9 +20,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <optional>
-#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -158,7 +156,7 @@ class DepthComplexity final : public DepthCounters {
     }
   }
 
-  std::vector<visibility::PassTime> take_pass_times() override { return std::exchange(pass_times_, {}); }
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
 
@@ -205,14 +203,14 @@ class DepthComplexity final : public DepthCounters {
     for (const float side : {1.0F, -1.0F}) {
       if (side < 0 && !light_->two_sided) continue;
       counters_["listWords"] += edges_.find(commands_, push, side, questions);
-      add_times(edges_.times());
+      times_.add(edges_.times());
       count_->record(commands_, push,
                      {edges_.view(), edges_.heads(), edges_.lists(), edges_.slots(side, 0), edges_.slots(side, 1),
                       edges_.slots(side, 2), edges_.slots(side, 3), edges_.slots(side, 4), edges_.slots(side, 5),
                       edges_.triangle_corners(0), edges_.triangle_corners(1), edges_.triangle_corners(2), *places_,
                       *masks_, *visible_, *questions_, *depths_},
                      pixels());
-      add_times(commands_.submit());
+      times_.add(commands_.submit());
       questions = edges_.question_count();
       if (questions > question_capacity_) {
         question_capacity_ = questions + questions / 8;
@@ -227,11 +225,10 @@ class DepthComplexity final : public DepthCounters {
     asked_.resize(count);
     if (count == 0) return;
     questions_->read(std::span(asked_));
-    const auto start = std::chrono::steady_clock::now();
     const std::size_t first_pixel = std::size_t{tile_.first_row} * samples_->width;
-    const DepthAnswers answers = judge_depths({*scene_, edges_.tree(), *samples_, *light_, first_pixel}, asked_);
-    add_times({{"exact predicates",
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()}});
+    const DepthAnswers answers = times_.add("exact predicates", [&] {
+      return judge_depths({*scene_, edges_.tree(), *samples_, *light_, first_pixel}, asked_);
+    });
     for (const gpu::DepthQuestion& question : asked_) {
       const bool reference = (question.word & gpu::kReference) != 0;
       ++counters_[reference ? "referenceRays" : "openWords"];
@@ -249,19 +246,7 @@ class DepthComplexity final : public DepthCounters {
       decided_->write(part);
       settle_.record(commands_, static_cast<std::uint32_t>(part.size()), {*masks_, *visible_, *decided_},
                      (part.size() + 63) / 64);
-      add_times(commands_.submit());
-    }
-  }
-
-  void add_times(const std::vector<render::PassMilliseconds>& times) {
-    for (const render::PassMilliseconds& time : times) {
-      const auto same = std::find_if(pass_times_.begin(), pass_times_.end(),
-                                     [&](const auto& other) { return other.name == time.name; });
-      if (same == pass_times_.end()) {
-        pass_times_.push_back({time.name, time.milliseconds});
-      } else {
-        same->milliseconds += time.milliseconds;
-      }
+      times_.add(commands_.submit());
     }
   }
 
@@ -285,7 +270,7 @@ class DepthComplexity final : public DepthCounters {
   std::uint64_t question_retries_ = 0;
   std::vector<gpu::DepthQuestion> asked_;  // of the tile
 
-  std::vector<visibility::PassTime> pass_times_;
+  visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
 };
 

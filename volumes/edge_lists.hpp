@@ -43,7 +43,7 @@ class EdgeLists {
   [[nodiscard]] const visibility::TriangleTree& tree() const { return tree_; }
   [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< records, none cut
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
-  [[nodiscard]] const std::vector<render::PassMilliseconds>& times() const { return times_; }  ///< of the last find
+  [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }  ///< of the last find
 
   [[nodiscard]] const render::Buffer& view() const { return *view_; }
   [[nodiscard]] const render::Buffer& heads() const { return *heads_; }
@@ -94,7 +94,7 @@ class EdgeLists {
   std::unique_ptr<render::Buffer> view_, heads_, lists_;
   std::uint32_t capacity_ = 1U << 20;  // words; grows
   std::uint64_t retries_ = 0;
-  std::vector<render::PassMilliseconds> times_;
+  std::vector<visibility::PassTime> times_;
 };
 
 }  // namespace penumbra::volumes

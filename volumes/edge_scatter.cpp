@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -131,7 +130,7 @@ class EdgeScatter final : public visibility::Method {
                    [&](std::uint32_t count) { return static_cast<float>(count / all); });
   }
 
-  std::vector<visibility::PassTime> take_pass_times() override { return std::exchange(pass_times_, {}); }
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
 
@@ -177,7 +176,7 @@ class EdgeScatter final : public visibility::Method {
     for (const float side : {1.0F, -1.0F}) {
       if (side < 0 && !light_->two_sided) continue;
       counters_["listWords"] += edges_.find(commands_, push, side, questions);
-      add_times(edges_.times());
+      times_.add(edges_.times());
       const std::uint32_t lanes = device_->limits().subgroup_size,
                           bands = (light_->rows + 4 * band_words_ - 1) / (4 * band_words_);
       scatter_->record(commands_, push,
@@ -186,7 +185,7 @@ class EdgeScatter final : public visibility::Method {
                         edges_.triangle_corners(0), edges_.triangle_corners(1), edges_.triangle_corners(2), *masks_,
                         *visible_, *questions_},
                        blocks() * (kBlock * kBlock / lanes) * bands);
-      add_times(commands_.submit());
+      times_.add(commands_.submit());
       questions = edges_.question_count();
       if (questions > question_capacity_) {
         question_capacity_ = questions + questions / 8;
@@ -201,11 +200,10 @@ class EdgeScatter final : public visibility::Method {
     if (count == 0) return;
     std::vector<gpu::RowQuestion> questions(count);
     questions_->read(std::span(questions));
-    const auto start = std::chrono::steady_clock::now();
-    const std::vector<gpu::MaskWord> words = judge_rows(
-        {*scene_, edges_.tree(), *samples_, *light_, std::size_t{tile_.first_row} * samples_->width}, questions);
-    add_times({{"exact predicates",
-                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()}});
+    const std::vector<gpu::MaskWord> words = times_.add("exact predicates", [&] {
+      return judge_rows({*scene_, edges_.tree(), *samples_, *light_, std::size_t{tile_.first_row} * samples_->width},
+                        questions);
+    });
     counters_["openPixels"] += count;
     for (const gpu::RowQuestion& question : questions) {
       counters_["openRows"] += static_cast<std::uint64_t>(std::popcount(question.low) + std::popcount(question.high));
@@ -217,19 +215,7 @@ class EdgeScatter final : public visibility::Method {
       decided_->write(part);
       settle_.record(commands_, static_cast<std::uint32_t>(part.size()), {*masks_, *visible_, *decided_},
                      (part.size() + 63) / 64);
-      add_times(commands_.submit());
-    }
-  }
-
-  void add_times(const std::vector<render::PassMilliseconds>& times) {
-    for (const render::PassMilliseconds& time : times) {
-      const auto same = std::find_if(pass_times_.begin(), pass_times_.end(),
-                                     [&](const auto& other) { return other.name == time.name; });
-      if (same == pass_times_.end()) {
-        pass_times_.push_back({time.name, time.milliseconds});
-      } else {
-        same->milliseconds += time.milliseconds;
-      }
+      times_.add(commands_.submit());
     }
   }
 
@@ -250,7 +236,7 @@ class EdgeScatter final : public visibility::Method {
   std::uint32_t question_capacity_ = 1U << 14;  // grows
   std::uint64_t question_retries_ = 0;
 
-  std::vector<visibility::PassTime> pass_times_;
+  visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
 };
 

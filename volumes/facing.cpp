@@ -103,7 +103,7 @@ struct FacingPass::State {
   }
 
   void submit() {
-    for (const render::PassMilliseconds& pass : commands.submit()) counts.device_milliseconds += pass.milliseconds;
+    for (const visibility::PassTime& pass : commands.submit()) counts.device_milliseconds += pass.milliseconds;
   }
 
   const render::Device* device;

@@ -18,7 +18,6 @@
 #include "volumes/light_hull.hpp"
 #include "volumes/packed_counters.frag.spv.hpp"
 #include "volumes/packed_counters.shared.h"
-#include "volumes/pass_times.hpp"
 #include "volumes/volume_count.hpp"
 #include "volumes/wedge_raster.hpp"
 
@@ -27,10 +26,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -134,10 +131,11 @@ class PackedCounters final : public DepthCounters {
   void read_counters(std::span<std::int32_t> counters) override;
 
   std::vector<visibility::PassTime> take_pass_times() override {
-    std::vector<visibility::PassTime> times = count_.take_pass_times();
-    if (raster_) add_times(times, raster_->take_pass_times());
-    add_times(times, std::exchange(host_times_, {}));
-    return times;
+    visibility::PassTimes all;
+    all.add(count_.take_pass_times());
+    if (raster_) all.add(raster_->take_pass_times());
+    all.add(host_times_.take());
+    return all.take();
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override {
@@ -174,7 +172,7 @@ class PackedCounters final : public DepthCounters {
   std::vector<std::uint32_t> open_;   // those left to exact predicates
   std::vector<std::uint32_t> masks_;
   std::map<std::string, std::uint64_t> totals_;
-  std::vector<visibility::PassTime> host_times_;
+  visibility::PassTimes host_times_;
 };
 
 void PackedCounters::prepare_light(const Light& light) {
@@ -302,14 +300,13 @@ void PackedCounters::answer() {
     if (open_[i] != 0) questions.push_back({static_cast<std::uint32_t>(i), 0, open_[i]});
   }
   if (questions.empty()) return;
-  const auto start = std::chrono::steady_clock::now();
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
-  for (const gpu::MaskWord& word : judge_depths({*scene_, tree_, *samples_, *light_, first}, questions).decided) {
+  const DepthAnswers depths = host_times_.add("exact predicates", [&] {
+    return judge_depths({*scene_, tree_, *samples_, *light_, first}, questions);
+  });
+  for (const gpu::MaskWord& word : depths.decided) {
     masks_[word.word] = (masks_[word.word] & ~word.decided) | word.bits;
   }
-  add_times(host_times_,
-            {{"exact predicates",
-              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()}});
 }
 
 void PackedCounters::read_counters(std::span<std::int32_t> counters) {

@@ -5,7 +5,6 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "volumes/facing_upload.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/silhouette_count.comp.spv.hpp"
 #include "volumes/silhouette_facing.comp.spv.hpp"
 #include "volumes/silhouette_fill.comp.spv.hpp"
@@ -15,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -73,9 +71,7 @@ struct SilhouettePass::State {
   void find_facings(const glm::vec3& l);
   void settle(const glm::vec3& l);
   void count_blocks();
-  void submit() {
-    for (const render::PassMilliseconds& time : commands.submit()) times.push_back({time.name, time.milliseconds});
-  }
+  void submit() { times.add(commands.submit()); }
   [[nodiscard]] std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(mesh.triangles.size()); }
   [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(mesh.graph->edges.size()); }
   [[nodiscard]] std::uint32_t block_count() const {
@@ -95,7 +91,7 @@ struct SilhouettePass::State {
   std::vector<std::uint32_t> counted;                                              // what its buffer holds
   std::uint32_t found = 0;
   std::uint32_t open_facings = 0;
-  std::vector<visibility::PassTime> times;
+  visibility::PassTimes times;
 };
 
 SilhouettePass::SilhouettePass(const render::Device& device, std::uint64_t most_bytes)
@@ -228,9 +224,7 @@ std::uint64_t SilhouettePass::open_facings() const {
 }
 
 std::vector<visibility::PassTime> SilhouettePass::take_pass_times() {
-  std::vector<visibility::PassTime> sums;
-  add_times(sums, std::exchange(state_->times, {}));
-  return sums;
+  return state_->times.take();
 }
 
 std::uint64_t SilhouettePass::memory_bytes() const {

@@ -11,7 +11,6 @@
 #include "mesh/parallel.hpp"
 #include "volumes/coverage_table.hpp"
 #include "volumes/light_parts.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/soft_visibility.hpp"
 #include "volumes/soft_volume.frag.spv.hpp"
 #include "volumes/texture_weights.hpp"
@@ -314,10 +313,11 @@ double SoftVolume::share_above(const Part& part, std::size_t pixel) const {
 }
 
 std::vector<visibility::PassTime> SoftVolume::take_pass_times() {
-  std::vector<visibility::PassTime> sums = builder_.take_pass_times();
-  for (const auto& part : parts_) add_times(sums, part->count.take_pass_times());
-  if (raster_) add_times(sums, raster_->take_pass_times());
-  return sums;
+  visibility::PassTimes all;
+  all.add(builder_.take_pass_times());
+  for (const auto& part : parts_) all.add(part->count.take_pass_times());
+  if (raster_) all.add(raster_->take_pass_times());
+  return all.take();
 }
 
 std::map<std::string, std::uint64_t> SoftVolume::counters() const {

@@ -8,7 +8,6 @@
 
 #include "base/assert.hpp"
 #include "mesh/parallel.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/soft_visibility.hpp"
 #include "volumes/soft_volume_blend.frag.spv.hpp"
 #include "volumes/soft_volume_blend.shared.h"
@@ -133,13 +132,13 @@ class SoftVolumeBlend final : public visibility::Method {
     std::ranges::copy(visibility_, visibility.begin());
   }
   std::vector<visibility::PassTime> take_pass_times() override {
-    std::vector<visibility::PassTime> times;
+    visibility::PassTimes all;
     for (const auto& occluder : occluders_) {
-      add_times(times, occluder->builder.take_pass_times());
-      add_times(times, occluder->count.take_pass_times());
+      all.add(occluder->builder.take_pass_times());
+      all.add(occluder->count.take_pass_times());
     }
-    add_times(times, raster_.take_pass_times());
-    return times;
+    all.add(raster_.take_pass_times());
+    return all.take();
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override {

@@ -15,7 +15,6 @@
 #include "visibility/pair_truth.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "volumes/light_volumes.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/screen_box.hpp"
 #include "volumes/volume_count.frag.spv.hpp"
 #include "volumes/volume_count.shared.h"
@@ -112,7 +111,7 @@ struct VolumeCount::State {
   std::vector<std::int32_t> counts;
   std::vector<Kind> kinds;
   Totals totals;
-  std::vector<visibility::PassTime> times;
+  visibility::PassTimes times;
 
   void find_boxes();
   template <typename Item, typename Make>
@@ -300,9 +299,7 @@ void VolumeCount::State::rasterise(const Tile& tile) {
                    .height = tile.row_count,
                    .vertices = 4,
                    .instances = static_cast<std::uint32_t>(batch)});
-      for (const render::PassMilliseconds& time : commands.submit()) {
-        times.push_back({time.name, time.milliseconds});
-      }
+      times.add(commands.submit());
     }
   }
   commands.submit();  // the fill, where there was no face
@@ -373,9 +370,7 @@ const VolumeCount::Totals& VolumeCount::totals() const {
   return state_->totals;
 }
 std::vector<visibility::PassTime> VolumeCount::take_pass_times() {
-  std::vector<visibility::PassTime> sums;
-  add_times(sums, std::exchange(state_->times, {}));
-  return sums;
+  return state_->times.take();
 }
 std::uint64_t VolumeCount::memory_bytes() const {
   const State& s = *state_;

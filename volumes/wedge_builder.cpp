@@ -9,7 +9,6 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "volumes/light_hull.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/silhouette_pass.hpp"
 #include "volumes/wedge_build.comp.spv.hpp"
 #include "volumes/wedge_build.shared.h"
@@ -73,7 +72,7 @@ struct WedgeBuilder::State {
     render::ComputePass build;
     render::Commands commands;
     std::unique_ptr<render::Buffer> corners, wedges;
-    std::vector<visibility::PassTime> times;
+    visibility::PassTimes times;
     bool holds_mesh = false;
   };
 
@@ -168,18 +167,19 @@ std::vector<gpu::BuiltWedge> WedgeBuilder::State::build_on_device(const LightHul
         d.commands, push,
         {d.silhouettes.silhouettes(), d.silhouettes.ends(), d.silhouettes.positions(), *d.corners, *d.wedges},
         (batch.size() + 63) / 64);
-    for (const render::PassMilliseconds& time : d.commands.submit()) d.times.push_back({time.name, time.milliseconds});
+    d.times.add(d.commands.submit());
     d.wedges->read(batch);
   }
   return built;
 }
 
 std::vector<visibility::PassTime> WedgeBuilder::take_pass_times() {
-  std::vector<visibility::PassTime> sums;
-  if (!state_->gpu) return sums;
-  add_times(sums, state_->gpu->silhouettes.take_pass_times());
-  add_times(sums, std::exchange(state_->gpu->times, {}));
-  return sums;
+  visibility::PassTimes all;
+  if (state_->gpu) {
+    all.add(state_->gpu->silhouettes.take_pass_times());
+    all.add(state_->gpu->times.take());
+  }
+  return all.take();
 }
 
 std::uint64_t WedgeBuilder::memory_bytes() const {

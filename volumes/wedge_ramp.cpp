@@ -6,7 +6,6 @@
 
 #include "base/assert.hpp"
 #include "mesh/parallel.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/ramp_wedges.hpp"
 #include "volumes/volume_count.hpp"
 #include "volumes/wedge_raster.hpp"
@@ -85,9 +84,10 @@ class WedgeRamp final : public visibility::Method {
     std::ranges::copy(visibility_, visibility.begin());
   }
   std::vector<visibility::PassTime> take_pass_times() override {
-    std::vector<visibility::PassTime> times = count_.take_pass_times();
-    add_times(times, raster_.take_pass_times());
-    return times;
+    visibility::PassTimes all;
+    all.add(count_.take_pass_times());
+    all.add(raster_.take_pass_times());
+    return all.take();
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
     const auto hard = std::ranges::count(wedges_.wedges, WedgeOutcome::empty, &Wedge::outcome);

@@ -6,7 +6,6 @@
 #include "render/commands.hpp"
 #include "render/raster_pass.hpp"
 #include "volumes/light_hull.hpp"
-#include "volumes/pass_times.hpp"
 #include "volumes/screen_box.hpp"
 #include "volumes/wedge_footprint.vert.spv.hpp"
 
@@ -16,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -119,7 +117,7 @@ struct WedgeRaster::State {
   std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, sum_buffer, doubt_buffer;
   std::vector<std::int64_t> sums;
   std::vector<std::uint32_t> doubts;
-  std::vector<visibility::PassTime> times;
+  visibility::PassTimes times;
 };
 
 WedgeRaster::WedgeRaster(const render::Device& device, const WedgeShader& shader)
@@ -165,7 +163,7 @@ void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu
     } else {
       s.pass.record(commands, push, {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer}, draw);
     }
-    for (const render::PassMilliseconds& time : commands.submit()) s.times.push_back({time.name, time.milliseconds});
+    s.times.add(commands.submit());
   }
   commands.submit();  // the fills, where there was no face
   s.sum_buffer->read<std::int64_t>(s.sums);
@@ -187,9 +185,7 @@ std::uint32_t WedgeRaster::max_tile_rows(const ViewSamples& samples) const {
 }
 
 std::vector<visibility::PassTime> WedgeRaster::take_pass_times() {
-  std::vector<visibility::PassTime> sums;
-  add_times(sums, std::exchange(state_->times, {}));
-  return sums;
+  return state_->times.take();
 }
 
 std::uint64_t WedgeRaster::memory_bytes() const {

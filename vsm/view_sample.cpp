@@ -19,7 +19,6 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -188,7 +187,7 @@ class ViewSampleMapping final : public visibility::Method {
     visibility::visible_shares(*light_, masks, visibility);
   }
 
-  std::vector<visibility::PassTime> take_pass_times() override { return std::exchange(pass_times_, {}); }
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
 
@@ -345,12 +344,10 @@ class ViewSampleMapping final : public visibility::Method {
     if (count == 0) return;
     std::vector<gpu::OpenQuestion> questions(count);
     questions_->read(std::span(questions), sizeof(Counts));
-    const auto start = std::chrono::steady_clock::now();
-    const std::vector<Answer> answers = settle(
-        {*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_}, questions);
-    add_time({"exact predicates",
-              std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count()});
-    apply(answers);
+    apply(times_.add("exact predicates", [&] {
+      return settle({*scene_, tree_, *samples_, *light_, std::size_t{tile_.first_row} * samples_->width, bit_of_},
+                    questions);
+    }));
   }
 
   void apply(const std::vector<Answer>& answers) {
@@ -363,19 +360,7 @@ class ViewSampleMapping final : public visibility::Method {
     submit();
   }
 
-  void submit() {
-    for (const render::PassMilliseconds& pass : commands_.submit()) add_time({pass.name, pass.milliseconds});
-  }
-
-  void add_time(const visibility::PassTime& time) {
-    const auto same = std::find_if(pass_times_.begin(), pass_times_.end(),
-                                   [&](const auto& other) { return other.name == time.name; });
-    if (same == pass_times_.end()) {
-      pass_times_.push_back(time);
-    } else {
-      same->milliseconds += time.milliseconds;
-    }
-  }
+  void submit() { times_.add(commands_.submit()); }
 
   const render::Device* device_;
   render::ComputePass settle_, resolve_;
@@ -405,7 +390,7 @@ class ViewSampleMapping final : public visibility::Method {
   std::uint32_t chunk_capacity_ = kFirstChunks, question_capacity_ = kFirstQuestions;
   visibility::Tile tile_;
 
-  std::vector<visibility::PassTime> pass_times_;
+  visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
 };
 

@@ -1,8 +1,7 @@
 // Depth complexity where nothing is in general position: every pair of variant=soup equals the exact decision, without
 // tolerance, for light samples in rows and for heaps of points.
 
-#include "tests/agreement/lattice.hpp"
-#include "tests/agreement/support.hpp"
+#include "tests/property/lattice_truth.hpp"
 #include "volumes/depth_complexity.hpp"
 
 #include <cmath>
@@ -10,62 +9,20 @@
 namespace penumbra::volumes {
 namespace {
 
-using tests::LatticeSoup;
 using tests::PairCounts;
 using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// What all cameras see, and points on triangles that no camera's rounding has moved off them.
-ViewSamples all_samples(const scenes::Scene& scene, const SceneFloats& floats, std::mt19937& random) {
-  ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
-  for (const scenes::Camera& camera : scene.cameras) {
-    tests::append(samples,
-                  visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
-  }
-  return samples;
-}
-
-/// The same points as a heap of points without rows.
-Light scattered(Light light, bool as_polygon) {
-  light.pattern = visibility::SamplePattern::sobol;
-  light.rows = light.columns = 0;
-  light.row_shift.clear();
-  if (as_polygon) light.kind = visibility::LightKind::polygon;
-  return light;
-}
-
-/// Every pair of `count` soups with corners in −range … range.
-void expect_truth(const render::Device& device, int range, std::uint32_t count) {
-  const auto method = make_depth_complexity(device, {});
-  PairCounts counts;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t seed = i + 1000 * static_cast<std::uint32_t>(range);
-    LatticeSoup soup(seed, range);
-    visibility::SampleRequest request;
-    const scenes::Scene scene = lattice_scene(soup, request);
-    const SceneFloats floats = visibility::make_scene_floats(scene);
-    const Light rows = visibility::make_light(scene, 0, floats.origin, request);
-    const ViewSamples samples = all_samples(scene, floats, soup.random());
-    const Light light = i % 3 == 0 ? rows : scattered(rows, i % 3 == 2);
-    const tests::Masks masks = tests::run(*method, floats, light, samples);
-    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << range;
-  }
-  EXPECT_GT(counts.visible, counts.pairs / 20);
-  EXPECT_GT(counts.blocked, counts.pairs / 20);
-  EXPECT_GT(counts.horizon, counts.pairs / 20);
-  EXPECT_GT(counts.zero, counts.pairs / 100);
-}
-
 class DepthLattice : public tests::DeviceTest, public testing::WithParamInterface<int> {};
 TEST_P(DepthLattice, EveryPairIsTheExactDecision) {
-  expect_truth(device(), GetParam(), 12);
+  tests::expect_lattice_truth(*make_depth_complexity(device(), {}), {GetParam(), 12});
 }
 INSTANTIATE_TEST_SUITE_P(Range, DepthLattice, testing::Values(1, 2, 4));
 
 class DepthLatticeFull : public tests::DeviceTest, public testing::WithParamInterface<int> {};
 TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
-  expect_truth(device(), GetParam(), 600);
+  tests::expect_lattice_truth(*make_depth_complexity(device(), {}), {GetParam(), 600});
 }
 INSTANTIATE_TEST_SUITE_P(Range, DepthLatticeFull, testing::Values(1, 2, 4, 16));
 

@@ -1,8 +1,7 @@
 // The mask methods where nothing is in general position: every pair equals the exact decision, without tolerance.
 
-#include "tests/agreement/lattice.hpp"
 #include "tests/agreement/mask_methods.hpp"
-#include "tests/agreement/support.hpp"
+#include "tests/property/lattice_truth.hpp"
 
 #include <cmath>
 #include <optional>
@@ -10,30 +9,10 @@
 namespace penumbra {
 namespace {
 
-using tests::LatticeSoup;
 using tests::PairCounts;
 using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
-
-/// What all cameras see, and points on triangles that no camera's rounding has moved off them.
-ViewSamples all_samples(const scenes::Scene& scene, const SceneFloats& floats, std::mt19937& random) {
-  ViewSamples samples = tests::samples_on_triangles(floats, 8, 8, random);
-  for (const scenes::Camera& camera : scene.cameras) {
-    tests::append(samples,
-                  visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
-  }
-  return samples;
-}
-
-/// The same points as a heap of points without rows: the other way through the shaders.
-Light scattered(Light light, bool as_polygon) {
-  light.pattern = visibility::SamplePattern::sobol;
-  light.rows = light.columns = 0;
-  light.row_shift.clear();
-  if (as_polygon) light.kind = visibility::LightKind::polygon;
-  return light;
-}
 
 /// Puts the origin of the scene floats at zero, so that numbers next to zero stay as small as they are.
 void anchor(scenes::Scene& scene) {
@@ -46,23 +25,8 @@ class LatticeSoups : public tests::DeviceTest,
 TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
   const auto [range, under_test] = GetParam();
   const auto method = under_test.make(device(), {});
-  PairCounts counts;
-  for (std::uint32_t seed = 0; seed < 60; ++seed) {
-    LatticeSoup soup(seed + 1000 * static_cast<std::uint32_t>(range), range);
-    visibility::SampleRequest request;
-    const scenes::Scene scene = lattice_scene(soup, request);
-    const SceneFloats floats = visibility::make_scene_floats(scene);
-    const Light rows = visibility::make_light(scene, 0, floats.origin, request);
-    const ViewSamples samples = all_samples(scene, floats, soup.random());
-    const Light light = seed % 3 == 0 || !under_test.any_light ? rows : scattered(rows, seed % 3 == 2);
-    const tests::Masks masks = tests::run(*method, floats, light, samples);
-    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << range;
-  }
-  EXPECT_GT(counts.visible, counts.pairs / 20);
-  EXPECT_GT(counts.blocked, counts.pairs / 20);
-  EXPECT_GT(counts.horizon, counts.pairs / 20);
+  const PairCounts counts = tests::expect_lattice_truth(*method, {range, 60, under_test.any_light});
   EXPECT_GT(counts.behind, counts.pairs / 100);
-  EXPECT_GT(counts.zero, counts.pairs / 100);
 }
 
 std::string name_of_soups(const testing::TestParamInfo<std::tuple<int, tests::MaskMethod>>& info) {

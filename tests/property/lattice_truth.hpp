@@ -1,0 +1,61 @@
+#pragma once
+
+// Every pair of lattice soups against the exact decision, without tolerance.
+
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/support.hpp"
+#include "visibility/method.hpp"
+
+#include <gtest/gtest.h>
+
+namespace penumbra::tests {
+
+/// What all cameras see, and points on triangles that no camera's rounding has moved off them.
+inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const visibility::SceneFloats& floats,
+                                           std::mt19937& random) {
+  visibility::ViewSamples samples = samples_on_triangles(floats, 8, 8, random);
+  for (const scenes::Camera& camera : scene.cameras) {
+    append(samples, visibility::brute_force_view_samples(floats, visibility::make_camera(camera, floats.origin, 8, 6)));
+  }
+  return samples;
+}
+
+/// The same points as a heap of points without rows: the other way through the shaders.
+inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
+  light.pattern = visibility::SamplePattern::sobol;
+  light.rows = light.columns = 0;
+  light.row_shift.clear();
+  if (as_polygon) light.kind = visibility::LightKind::polygon;
+  return light;
+}
+
+/// `count` soups with corners in −range … range. Without `any_light`, light samples in rows alone.
+struct LatticeRun {
+  int range = 1;
+  std::uint32_t count = 1;
+  bool any_light = true;
+};
+
+/// Returns what the pairs were, all kinds of them often enough.
+inline PairCounts expect_lattice_truth(visibility::Method& method, const LatticeRun& run_of) {
+  PairCounts counts;
+  for (std::uint32_t i = 0; i < run_of.count; ++i) {
+    const std::uint32_t seed = i + 1000 * static_cast<std::uint32_t>(run_of.range);
+    LatticeSoup soup(seed, run_of.range);
+    visibility::SampleRequest request;
+    const scenes::Scene scene = lattice_scene(soup, request);
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    const visibility::Light rows = visibility::make_light(scene, 0, floats.origin, request);
+    const visibility::ViewSamples samples = all_samples(scene, floats, soup.random());
+    const visibility::Light light = i % 3 == 0 || !run_of.any_light ? rows : scattered(rows, i % 3 == 2);
+    const Masks masks = run(method, floats, light, samples);
+    EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << run_of.range;
+  }
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 20);
+  EXPECT_GT(counts.horizon, counts.pairs / 20);
+  EXPECT_GT(counts.zero, counts.pairs / 100);
+  return counts;
+}
+
+}  // namespace penumbra::tests
