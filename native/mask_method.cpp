@@ -71,23 +71,13 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(light_frame_.rows, "light {} has no rows that a step describes", light.name);
   visibility::check_size(light, light_frame_, description_.name);
   const bool cut = prepare_casters();
+  const float reach = visibility::reach_of(*scene_, light_frame_, scale_);
   frames_.clear();
   for (const float side : {1.0F, -1.0F}) {
     if (side < 0 && !light.two_sided) continue;
     frames_.push_back(make_frame({light_frame_, light.rows, light.columns, static_cast<std::uint32_t>(light.index),
-                                  side, reach(), cut ? 4 * reach() : 0, scale_, light.points}));
+                                  side, reach, cut ? 4 * reach : 0, scale_, light.points}));
   }
-}
-
-/// At least the largest coordinate, in size, of anything in the scene, scaled.
-float MaskMethod::reach() const {
-  float reach = 0;
-  for (int i = 0; i < 3; ++i) {
-    reach =
-        std::max({reach, std::abs(light_frame_.center[i]) + std::abs(light_frame_.u[i]) + std::abs(light_frame_.v[i]),
-                  std::abs(scene_->lower[i]) * scale_, std::abs(scene_->upper[i]) * scale_});
-  }
-  return reach;
 }
 
 std::uint32_t MaskMethod::max_tile_rows() const {

@@ -63,7 +63,6 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] std::size_t tile_pixel(const Placed& at) const { return at.pixel - first_pixel(); }
 
  private:
-  [[nodiscard]] float reach() const;
   void do_tile();
   void do_region(const Frame& frame, std::uint32_t left, std::uint32_t top);
   void do_block(const Frame& frame, std::span<Placed> block, Judge& judge);

@@ -93,6 +93,15 @@ LightFrame make_light_frame(const Light& light, float scale) {
   return frame;
 }
 
+float reach_of(const SceneFloats& scene, const LightFrame& frame, float scale) {
+  float reach = 0;
+  for (int i = 0; i < 3; ++i) {
+    reach = std::max({reach, std::abs(frame.center[i]) + std::abs(frame.u[i]) + std::abs(frame.v[i]),
+                      std::abs(scene.lower[i]) * scale, std::abs(scene.upper[i]) * scale});
+  }
+  return reach;
+}
+
 void check_size(const Light& light, const LightFrame& frame, const std::string& method) {
   const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
   const float largest = size(frame.center) + size(frame.u) + size(frame.v);

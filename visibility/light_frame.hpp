@@ -1,6 +1,7 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -23,6 +24,10 @@ struct LightFrame {
 
 /// `scale` is a power of two. Not for spheres.
 LightFrame make_light_frame(const Light& light, float scale);
+
+/// At least the largest coordinate, in size, of anything in scene and light, times `scale`: what rounding errors of
+/// positions grow with.
+float reach_of(const SceneFloats& scene, const LightFrame& frame, float scale);
 
 /// Throws InputError where float32 cannot span light and scene together; `method` names the error.
 void check_size(const Light& light, const LightFrame& frame, const std::string& method);

@@ -142,17 +142,14 @@ const EdgeLists::SideBuffers& EdgeLists::of_side(float side) const {
 }
 
 void EdgeLists::describe(gpu::ScatterPush& push) const {
-  float reach = 0;
   for (int i = 0; i < 3; ++i) {
     push.center[i] = frame_.center[i];
     push.u[i] = frame_.u[i];
     push.v[i] = frame_.v[i];
-    reach = std::max({reach, std::abs(frame_.center[i]) + std::abs(frame_.u[i]) + std::abs(frame_.v[i]),
-                      std::abs(scene_->lower[i]) * scale_, std::abs(scene_->upper[i]) * scale_});
   }
   push.deviation = frame_.deviation;
-  push.reach = reach;
-  push.cut_reach = cut_ ? 4 * reach : 0;
+  push.reach = visibility::reach_of(*scene_, frame_, scale_);
+  push.cut_reach = cut_ ? 4 * push.reach : 0;
   push.keeps_rest = light_->two_sided ? 1 : 0;
   push.light = static_cast<std::uint32_t>(light_->index);
   push.width = samples_->width;

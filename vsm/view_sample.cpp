@@ -250,16 +250,13 @@ class ViewSampleMapping final : public visibility::Method {
 
   [[nodiscard]] gpu::ViewSamplePush push_constants() const {
     gpu::ViewSamplePush push{};
-    float reach = 0;
     for (int i = 0; i < 3; ++i) {
       push.center[i] = frame_.center[i];
       push.u[i] = frame_.u[i];
       push.v[i] = frame_.v[i];
-      reach = std::max({reach, std::abs(frame_.center[i]) + std::abs(frame_.u[i]) + std::abs(frame_.v[i]),
-                        std::abs(scene_->lower[i]) * scale_, std::abs(scene_->upper[i]) * scale_});
     }
     push.deviation = frame_.deviation;
-    push.reach = reach;
+    push.reach = visibility::reach_of(*scene_, frame_, scale_);
     push.two_sided = light_->two_sided ? 1 : 0;
     push.light = light_->index;
     push.width = samples_->width;
