@@ -54,18 +54,26 @@ Frame make_frame(const FrameInput& input) {
 
 namespace {
 
-/// `low`, `high`: the rectangle, in cells from the light's middle.
-Shaft make_shaft(const Frame& frame, std::span<const Placed> samples, const glm::vec2& low, const glm::vec2& high) {
+/// How fast the hull of view samples and a rectangle in the light's plane (`low`, `high`: in cells from its middle)
+/// opens to the right, left, along and back, in cells for a unit of height.
+template <typename At>
+std::array<float, 4> slopes_of(const Frame& frame, std::span<const At> samples, const glm::vec2& low,
+                               const glm::vec2& high) {
   std::array<float, 4> slopes;
   slopes.fill(-1e18F);
-  float height = 0;
   for (const Placed& at : samples) {
     const glm::vec2 from = at.foot - frame.first_cell;
     const float inverse = 1 / at.height;
     const std::array over{from.x - high.x, low.x - from.x, from.y - high.y, low.y - from.y};
     for (std::size_t i = 0; i < 4; ++i) slopes[i] = std::max(slopes[i], over[i] * inverse);
-    height = std::max(height, at.height);
   }
+  return slopes;
+}
+
+Shaft make_shaft(const Frame& frame, std::span<const Placed> samples, const glm::vec2& low, const glm::vec2& high) {
+  const std::array<float, 4> slopes = slopes_of(frame, samples, low, high);
+  float height = 0;
+  for (const Placed& at : samples) height = std::max(height, at.height);
   const float widest = std::max(frame.half_cells.x, frame.half_cells.y);
   const std::array beyond{high.x, -low.x, high.y, -low.y};
   Shaft shaft;
@@ -121,6 +129,26 @@ Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed
   at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
   at.per_lean = kRound * (8 * frame.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
   return at;
+}
+
+Hull hull_of(const Frame& frame, const Cluster& cluster, std::span<const Sample> samples) {
+  Hull hull;
+  hull.slope = slopes_of(frame, samples, -frame.half_cells, frame.half_cells);
+  hull.highest = -3e38F;
+  for (const Sample& at : samples) hull.highest = std::max(hull.highest, at.seen.z);
+  const glm::vec3 to_middle = cluster.middle - frame.center;
+  const float height = glm::dot(frame.axis, to_middle), widest = std::max(frame.half_cells.x, frame.half_cells.y);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::vec3& side = i < 2 ? frame.across : frame.along;
+    const float sign = i % 2 == 0 ? 1.0F : -1.0F, half = i < 2 ? frame.half_cells.x : frame.half_cells.y;
+    const float size = 2 * size1(side) + std::abs(hull.slope[i]) * size1(frame.axis);
+    hull.beyond[i] = half - sign * glm::dot(side, to_middle) + hull.slope[i] * height +
+                     96 * kRound * (2 * frame.reach * size + frame.skew * widest) + size * frame.deviation;
+  }
+  const float slack = 128 * kRound * frame.reach + frame.deviation;
+  hull.highest += slack;
+  hull.lowest = -height - slack;
+  return hull;
 }
 
 }  // namespace penumbra::native

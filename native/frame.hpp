@@ -83,4 +83,12 @@ struct Cluster {
 Cluster make_cluster(const Frame& frame, std::span<const Placed> samples);
 Sample complete(const Frame& frame, const Cluster& cluster, const Placed& at);
 
+/// The hull of some of a cluster's view samples and the light, in the frame's axes relative to the cluster's middle:
+/// between two heights and within four planes ±across (or ±along) − slope · height ≤ beyond. (bound shaft)
+struct Hull {
+  std::array<float, 4> slope{}, beyond{};
+  float lowest = 0, highest = 0;
+};
+Hull hull_of(const Frame& frame, const Cluster& cluster, std::span<const Sample> samples);
+
 }  // namespace penumbra::native

@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "volumes/native_group.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "native/hull-inl.hpp"
 #include "native/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,14 +32,11 @@ struct GroupBounds {
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
-  /// The hull of the group's p and the light: at height h over its plane, between these + h · slope, in cells.
-  std::array<float, 4> beyond{}, slope{};  // right, left, up, down; left and down turned round
   float height_low = 0, height_high = 0, far = 0, per_way = 0, per_foot = 0, fixed = 0, per_lean = 0;
 };
 
-GroupBounds bounds_of(const Frame& frame, std::span<const Sample> samples) {
+GroupBounds bounds_of(std::span<const Sample> samples) {
   GroupBounds g;
-  g.slope.fill(-1e18F);
   const Sample& one = samples.front();
   g.seen = {one.seen, one.seen};
   Box3 local{one.local, one.local};
@@ -59,20 +57,6 @@ GroupBounds bounds_of(const Frame& frame, std::span<const Sample> samples) {
     g.lean_low = glm::min(g.lean_low, at.lean);
     g.lean_high = glm::max(g.lean_high, at.lean);
     g.per_lean = std::max(g.per_lean, at.per_lean);
-    const glm::vec2 from = at.foot - frame.first_cell;
-    const float inverse = 1 / at.height;
-    const std::array over{from.x - frame.half_cells.x, -frame.half_cells.x - from.x, from.y - frame.half_cells.y,
-                          -frame.half_cells.y - from.y};
-    for (std::size_t i = 0; i < 4; ++i) g.slope[i] = std::max(g.slope[i], over[i] * inverse);
-  }
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto axis = static_cast<glm::length_t>(i / 2);
-    const glm::vec3 side = glm::abs(axis == 0 ? frame.across : frame.along);
-    const float size = 2 * (side.x + side.y + side.z) + 1.74F * std::abs(g.slope[i]);  // as of Shaft (bound shaft)
-    g.beyond[i] =
-        frame.half_cells[axis] + (i % 2 == 0 ? 1.0F : -1.0F) * frame.first_cell[axis] +
-        64 * kRound * (2 * frame.reach * size + frame.skew * std::max(frame.half_cells.x, frame.half_cells.y)) +
-        size * frame.deviation;
   }
   g.middle = 0.5F * (local.low + local.high);
   g.half_size = 0.5F * (local.high - local.low) * (1 + 8 * kRound);
@@ -81,14 +65,14 @@ GroupBounds bounds_of(const Frame& frame, std::span<const Sample> samples) {
 
 /// Where an end of an edge appears for any view sample of the group.
 struct Range {
-  V x, y, level;  // of the end: its foot, in cells, and its height over the light's plane
   V low_x, low_y, high_x, high_y, error;
   M bounded;
+  V level;  // over the light's plane
 };
 
 class GroupFilter {
  public:
-  GroupFilter(const ScatterInput& in, const GroupBounds& g) : in_(in), g_(g) {
+  GroupFilter(const ScatterInput& in, const GroupBounds& g, const Hull& hull) : in_(in), g_(g), hull_(hull) {
     const glm::vec3 from_light = in.cluster.middle - in.frame.center;
     foot_ =
         glm::vec2(glm::dot(in.frame.across, from_light), glm::dot(in.frame.along, from_light)) + in.frame.first_cell;
@@ -118,7 +102,7 @@ class GroupFilter {
       kept = hn::AndNot(behind, kept);
       put(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));
       kept = hn::AndNot(bounded, kept);
-      if (!hn::AllFalse(D(), kept)) put(unsettled, i, hn::And(kept, in_hull(a, b)), set(0));
+      if (!hn::AllFalse(D(), kept)) put(unsettled, i, hn::And(kept, in_hull(i)), set(0));
     }
   }
 
@@ -150,17 +134,9 @@ class GroupFilter {
 
  private:
   /// May an edge meet the hull of the group and the light?
-  [[nodiscard]] M in_hull(const Range& a, const Range& b) const {
-    M met = first_lanes(hn::Lanes(D()));
-    for (std::size_t side = 0; side < 4; ++side) {
-      const V slope = set(-g_.slope[side]);
-      const auto over = [&](const Range& end) {
-        const V x = side < 2 ? end.x : end.y;
-        return hn::MulAdd(end.level, slope, side % 2 == 0 ? x : hn::Neg(x));
-      };
-      met = hn::And(met, hn::Le(hn::Min(over(a), over(b)), set(g_.beyond[side])));
-    }
-    return met;
+  [[nodiscard]] M in_hull(std::size_t i) const {
+    return meets(hull_, std::array{Corners{column(kAx, i), column(kAy, i), column(kAh, i)},
+                                   Corners{column(kBx, i), column(kBy, i), column(kBh, i)}});
   }
 
   [[nodiscard]] V column(std::size_t field, std::size_t i) const { return hn::Load(D(), in_.edges[field] + i); }
@@ -206,8 +182,6 @@ class GroupFilter {
   [[nodiscard]] Range range_of(std::size_t first, std::size_t i) const {
     const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
     Range r;
-    r.x = x;
-    r.y = y;
     r.level = hn::Add(column(first + 2, i), set(height_));
     const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.frame.reach)));
@@ -252,13 +226,15 @@ class GroupFilter {
 
   const ScatterInput& in_;
   const GroupBounds& g_;
+  const Hull& hull_;
   glm::vec2 foot_{0};  // of the cluster's middle
   float height_ = 0;
 };
 
 void sort_out_here(const ScatterInput& in, std::span<const Sample> group, GroupLists& lists) {
-  const GroupBounds bounds = bounds_of(in.frame, group);
-  const GroupFilter filter(in, bounds);
+  const GroupBounds bounds = bounds_of(group);
+  const Hull hull = hull_of(in.frame, in.cluster, group);
+  const GroupFilter filter(in, bounds, hull);
 
   filter.edges(lists.settled, lists.unsettled);
   filter.triangles(lists.triangles);

@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "vsm/native_pairs.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "native/hull-inl.hpp"
 #include "native/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,76 +26,27 @@ using namespace native::HWY_NAMESPACE;
 constexpr std::size_t kGroup = 16;   // view samples that sort out triangles together
 constexpr std::size_t kChunk = 256;  // triangles between two looks whether anything is left to hide
 
-/// The hull of some view samples and the light, in the frame's axes relative to the cluster's middle: between two
-/// heights and within four planes ±across (or ±along) − slope · height ≤ beyond. (bound shaft)
-struct Hull {
-  std::array<float, 4> slope{}, beyond{};
-  float lowest = 0, highest = 0;
-};
-
-float size1(const glm::vec3& x) {
-  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
-}
-
-Hull hull_of(const PairInput& in, std::span<const Sample> samples) {
-  const Frame& frame = in.frame;
-  Hull hull;
-  hull.slope.fill(-1e18F);
-  hull.highest = -3e38F;
-  for (const Sample& at : samples) {
-    const glm::vec2 from = at.foot - frame.first_cell;
-    const float inverse = 1 / at.height;
-    const std::array over{from.x - frame.half_cells.x, -from.x - frame.half_cells.x, from.y - frame.half_cells.y,
-                          -from.y - frame.half_cells.y};
-    for (std::size_t i = 0; i < 4; ++i) hull.slope[i] = std::max(hull.slope[i], over[i] * inverse);
-    hull.highest = std::max(hull.highest, at.seen.z);
-  }
-  const glm::vec3 to_middle = in.cluster.middle - frame.center;
-  const auto dot = [&](const glm::vec3& n) { return n.x * to_middle.x + n.y * to_middle.y + n.z * to_middle.z; };
-  const float height = dot(frame.axis), widest = std::max(frame.half_cells.x, frame.half_cells.y);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const glm::vec3& side = i < 2 ? frame.across : frame.along;
-    const float sign = i % 2 == 0 ? 1.0F : -1.0F, half = i < 2 ? frame.half_cells.x : frame.half_cells.y;
-    const float size = 2 * size1(side) + std::abs(hull.slope[i]) * size1(frame.axis);
-    hull.beyond[i] = half - sign * dot(side) + hull.slope[i] * height +
-                     96 * kRound * (2 * frame.reach * size + frame.skew * widest) + size * frame.deviation;
-  }
-  const float slack = 128 * kRound * frame.reach + frame.deviation;
-  hull.highest += slack;
-  hull.lowest = -height - slack;
-  return hull;
-}
-
 V column(const TriangleTable& table, std::size_t field, std::size_t i) {
   return hn::Load(D(), table[field] + i);
 }
 
 /// Triangles that the hull may meet.
-M meets(const Hull& hull, const TriangleTable& table, std::size_t i) {
-  const V ha = column(table, kCornerA + 2, i), hb = column(table, kCornerB + 2, i), hc = column(table, kCornerC + 2, i);
-  M met = hn::And(hn::Le(hn::Min(ha, hn::Min(hb, hc)), set(hull.highest)),
-                  hn::Ge(hn::Max(ha, hn::Max(hb, hc)), set(hull.lowest)));
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const V a = column(table, kCornerA + axis, i), b = column(table, kCornerB + axis, i),
-            c = column(table, kCornerC + axis, i);
-    const auto least = [&](float slope, V x, V y, V z) {
-      return hn::Min(hn::NegMulAdd(set(slope), ha, x),
-                     hn::Min(hn::NegMulAdd(set(slope), hb, y), hn::NegMulAdd(set(slope), hc, z)));
-    };
-    met = hn::And(met, hn::Le(least(hull.slope[2 * axis], a, b, c), set(hull.beyond[2 * axis])));
-    met = hn::And(met, hn::Le(least(hull.slope[2 * axis + 1], hn::Neg(a), hn::Neg(b), hn::Neg(c)),
-                              set(hull.beyond[2 * axis + 1])));
+M hull_meets(const Hull& hull, const TriangleTable& table, std::size_t i) {
+  std::array<Corners, 3> corners;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    corners[corner] = {column(table, kCornerA + 3 * corner, i), column(table, kCornerA + 3 * corner + 1, i),
+                       column(table, kCornerA + 3 * corner + 2, i)};
   }
-  return met;
+  return meets(hull, corners);
 }
 
 /// Triangles of the cluster that the group's hull may meet.
 void sort_out(const PairInput& in, std::span<const Sample> group, TriangleTable& near) {
-  const Hull hull = hull_of(in, group);
+  const Hull hull = hull_of(in.frame, in.cluster, group);
   near.count = 0;
   near.reserve(in.triangles.count);
   for (std::size_t i = 0; i < in.triangles.count; i += hn::Lanes(D())) {
-    const M kept = hn::And(first_lanes(in.triangles.count - i), meets(hull, in.triangles, i));
+    const M kept = hn::And(first_lanes(in.triangles.count - i), hull_meets(hull, in.triangles, i));
     const std::size_t more = hn::CountTrue(D(), kept);
     if (more == 0) continue;
     for (std::size_t field = 0; field < kTriangleFields; ++field) {
@@ -165,9 +117,9 @@ class SampleTest {
                             hn::Lt(most, set(at_.height - 128 * kRound * frame.reach - frame.deviation)));
     const M unclear = hn::AndNot(clear, live);
     if (!hn::AllFalse(d, unclear)) {
-      if (!has_hull_) hull_ = hull_of(in_, std::span(&at_, 1));
+      if (!has_hull_) hull_ = hull_of(in_.frame, in_.cluster, std::span(&at_, 1));
       has_hull_ = true;
-      look_again(hn::And(unclear, meets(hull_, near, i)), triangle);
+      look_again(hn::And(unclear, hull_meets(hull_, near, i)), triangle);
     }
     const V height = set(at_.height), foot_x = set(at_.foot.x), foot_y = set(at_.foot.y);
     const V qa = hn::Div(height, wa), qb = hn::Div(height, wb), qc = hn::Div(height, wc);
