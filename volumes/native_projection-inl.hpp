@@ -23,7 +23,7 @@ struct Multiplicity {
   V k;
   M open;
 };
-Multiplicity multiplicity(const GroupTable& table, const Sample& at, std::size_t i) {
+[[maybe_unused]] Multiplicity multiplicity(const GroupTable& table, const Sample& at, std::size_t i) {
   const D d;
   Multiplicity m{hn::Zero(d), hn::FirstN(d, 0)};
   for (const std::size_t first : {std::size_t{kN1x}, std::size_t{kN2x}}) {

@@ -55,9 +55,7 @@ std::optional<std::pair<glm::dvec3, glm::dvec3>> cut_to_window(const Frame& fram
 void RowSum::clear() {
   edges_.clear();
   left_.clear();
-  bends_.clear();
   at_corner_ = 0;
-  impossible_ = 0;
   corner_is_open_ = false;
 }
 
@@ -114,9 +112,8 @@ void RowSum::add(RowEdge edge) {
     edge.x1 = at_height(whole, height);
     edge.y1 = height;
   }
-  bends_.push_back(edge.y0);
-  bends_.push_back(edge.y1);
-  if (edge.y0 < edge.y1) edges_.push_back(edge);
+  constexpr double kLevel = 1e-200;  // lower ones have no slope that a double holds, and no area
+  if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
 }
 
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
@@ -124,7 +121,7 @@ std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) cons
   // More than what rounding the light point to float moves it by.
   const double near = std::max(1e-5, 8.0 * static_cast<double>(kRound * frame_.reach * frame_.per_length));
   std::int32_t depth = 0;
-  for (const Step& step : left_) {
+  for (const RowStep& step : left_) {
     if (std::abs(step.y - y) < near) return std::nullopt;
     if (step.y < y) depth += step.change;
   }
@@ -160,118 +157,12 @@ void RowSum::add_horizon(const glm::dvec3& above) {
   at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
-/// Nothing crosses in the band: the visible length of the row in the middle is the mean one.
-double RowSum::visible_area_in_order(const Band& band) {
-  const double height = band.to - band.from;
-  double length = 0, low = 0, high = 0;  // of the row; where the part began, at the band's two rows
-  std::int32_t depth = band.depth;
-  const auto end_part = [&](double end_low, double end_high) {
-    const double part = 0.5 * (end_low + end_high) - 0.5 * (low + high);
-    if (depth == 0) {
-      length += part;
-      if (parts_ != nullptr && part > 0) parts_->push_back({{band.from, low, end_low}, {band.to, high, end_high}});
-    }
-    if (depth < 0) impossible_ += part * height;
-    low = end_low;
-    high = end_high;
-  };
-  for (const Spanning& spanning : active_) {
-    end_part(spanning.low, spanning.high);
-    depth -= spanning.k;
-  }
-  end_part(frame_.columns, frame_.columns);
-  return length * height;
-}
-
-/// Between two rows that no edge begins or ends between, `low` and `high` of all edges being there.
-double RowSum::visible_area(const Band& band, int halvings) {
-  // Few, and nearly in order from the rows before.
-  for (std::size_t i = 1; i < active_.size(); ++i) {
-    if (active_[i - 1].twice_middle() <= active_[i].twice_middle()) continue;
-    const Spanning moved = active_[i];
-    std::size_t j = i;
-    for (; j > 0 && active_[j - 1].twice_middle() > moved.twice_middle(); --j) active_[j] = active_[j - 1];
-    active_[j] = moved;
-  }
-  for (std::size_t i = 1; i < active_.size(); ++i) {
-    const double below = active_[i].low - active_[i - 1].low, above = active_[i].high - active_[i - 1].high;
-    // Where they are no farther out of order, no digit changes that a float has.
-    if (std::min(below, above) > -6e-8 * frame_.columns) continue;
-    if (halvings == 0) {
-      impossible_ += (band.to - band.from) * frame_.columns;
-      break;
-    }
-    // Two edges cross: up to there, and on.
-    const double height = band.to - band.from, margin = 1e-3 * height;
-    const double cut = std::clamp(band.from + height * below / (below - above), band.from + margin, band.to - margin);
-    for (Spanning& spanning : active_) spanning.high = spanning.at(cut);
-    const double area = visible_area({band.from, cut, band.depth}, halvings - 1);
-    for (Spanning& spanning : active_) {
-      spanning.low = spanning.high;
-      spanning.high = spanning.at(band.to);
-    }
-    return area + visible_area({cut, band.to, band.depth}, halvings - 1);
-  }
-  return visible_area_in_order(band);
-}
-
-/// Edges that go on, and those that begin, between two rows. One that begins where another ends takes its place, so
-/// that outlines stay in order.
-void RowSum::go_on(double from, double to, std::size_t& next) {
-  std::size_t kept = 0, first = next;
-  while (next < edges_.size() && edges_[next].y0 <= from) ++next;
-  const auto begins = [&](const RowEdge& edge) {
-    const double slope = (edge.x1 - edge.x0) / (edge.y1 - edge.y0);
-    return Spanning{edge.x0 - slope * edge.y0, slope, edge.y1, edge.x0, edge.x1, 0, edge.k};
-  };
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    Spanning& spanning = active_[i];
-    if (spanning.end <= from) {
-      const auto heir = std::find_if(edges_.begin() + static_cast<std::ptrdiff_t>(first),
-                                     edges_.begin() + static_cast<std::ptrdiff_t>(next),
-                                     [&](const RowEdge& edge) { return edge.x0 == spanning.last_x; });
-      if (heir == edges_.begin() + static_cast<std::ptrdiff_t>(next)) continue;
-      spanning = begins(*heir);
-      std::swap(*heir, edges_[first++]);
-      spanning.high = spanning.at(from);
-    }
-    spanning.low = spanning.high;
-    spanning.high = spanning.at(to);
-    if (kept != i) active_[kept] = spanning;
-    ++kept;
-  }
-  active_.resize(kept);
-  for (; first < next; ++first) {
-    active_.push_back(begins(edges_[first]));
-    active_.back().low = active_.back().at(from);
-    active_.back().high = active_.back().at(to);
-  }
-}
-
 std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts) {
-  parts_ = parts;
-  if (parts != nullptr) parts->clear();
   const double width = frame_.columns, height = frame_.rows;
-  constexpr int kMostHalvings = 64;
-  std::int32_t depth = depth_at_corner + at_corner_;
-  for (const Step& step : left_) bends_.push_back(step.y);
-  bends_.push_back(0);
-  bends_.push_back(height);
-  std::sort(bends_.begin(), bends_.end());
-  std::sort(left_.begin(), left_.end(), [](const Step& a, const Step& b) { return a.y < b.y; });
-  std::sort(edges_.begin(), edges_.end(), [](const RowEdge& a, const RowEdge& b) { return a.y0 < b.y0; });
-  active_.clear();
-  std::size_t next = 0, step = 0;
-  double area = 0;
-  for (std::size_t i = 0; i + 1 < bends_.size(); ++i) {
-    const double from = bends_[i], to = bends_[i + 1];
-    for (; step < left_.size() && left_[step].y <= from; ++step) depth += left_[step].change;
-    if (!(to > from)) continue;
-    go_on(from, to, next);
-    area += visible_area({from, to, depth}, kMostHalvings);
-  }
-  if (impossible_ > 1e-6 * width * height) return std::nullopt;
-  return std::clamp(area / (width * height), 0.0, 1.0);
+  if (parts != nullptr) parts->clear();
+  const auto [visible, impossible] = sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts});
+  if (impossible > 1e-6 * width * height) return std::nullopt;
+  return std::clamp(visible / (width * height), 0.0, 1.0);
 }
 
 float share_above_horizon(const Frame& frame, const glm::dvec3& above) {

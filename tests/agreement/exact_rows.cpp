@@ -20,6 +20,10 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
+/// Both add up in double, or better, and round to float once: two units in the last place of numbers below 1, and one
+/// more for sums of some hundred doubles.
+constexpr double kTolerance = 3 * 0x1p-24;
+
 class ExactRows : public tests::DeviceTest {
  protected:
   static std::unique_ptr<visibility::Method> make() { return make_edge_scatter(device(), {{"rows", "exact"}}); }
@@ -51,15 +55,15 @@ class ExactRows : public tests::DeviceTest {
     std::size_t pixels = 0, partly = 0, sampled = 0, wrong = 0, wrong_form_factors = 0;
     double largest = 0, largest_form_factor = 0;
   };
-  /// Edges out of order by 6e-8 of the light's width pass as in order: two outlines' worth of such strips, from no
-  /// nearer than the light is, and the rounding of some hundred doubles.
+  /// As much of the light as V may be off by, seen from no nearer than the light is, and the rounding of some hundred
+  /// doubles.
   static double form_factor_tolerance(const Light& light, const glm::vec3& p) {
     const glm::dvec3 center(light.center), d = glm::dvec3(p) - center;
     const glm::dvec3 u = glm::dvec3(light.center_u) - center, v = glm::dvec3(light.center_v) - center;
     const double s = std::clamp(glm::dot(d, u) / glm::dot(u, u), -1.0, 1.0),
                  t = std::clamp(glm::dot(d, v) / glm::dot(v, v), -1.0, 1.0);
     const glm::dvec3 nearest = d - s * u - t * v;
-    return 2 * 6e-8 * light.area / (std::numbers::pi * glm::dot(nearest, nearest)) + 1e-13;
+    return kTolerance * light.area / (std::numbers::pi * glm::dot(nearest, nearest)) + 1e-13;
   }
   /// Adds what differs from the exact areas, view samples that are left to light samples among it: on lattices those
   /// lie in the light's own plane, where either is 0.
@@ -91,10 +95,6 @@ class ExactRows : public tests::DeviceTest {
     found.wrong += wrong;
   }
 };
-
-/// Both add up in double, or better, and round to float once: two units in the last place of numbers below 1, and one
-/// more for sums of some hundred doubles.
-constexpr double kTolerance = 3 * 0x1p-24;
 
 class ExactRowsOnScenes : public ExactRows, public testing::WithParamInterface<const char*> {};
 

@@ -1,0 +1,107 @@
+// The sweep of rows=exact by itself: what no triangle covers has the same area whichever way the rows run.
+
+#include "volumes/row_sweep.hpp"
+
+#include <glm/vec2.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+namespace penumbra::volumes {
+namespace {
+
+constexpr double kSide = 8;
+
+using Triangle = std::array<glm::dvec2, 3>;
+
+double twice_area(const Triangle& t) {
+  return (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
+}
+
+/// Triangles as layers: whichever way they are wound, inside is one more.
+std::vector<RowEdge> outlines(std::span<const Triangle> triangles) {
+  std::vector<RowEdge> edges;
+  for (const Triangle& triangle : triangles) {
+    const int wound = twice_area(triangle) > 0 ? 1 : -1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec2 a = triangle[i], b = triangle[(i + 1) % 3];
+      if (a.y < b.y) edges.push_back({a.x, a.y, b.x, b.y, wound});
+      if (a.y > b.y) edges.push_back({b.x, b.y, a.x, a.y, -wound});
+    }
+  }
+  return edges;
+}
+
+struct Measured {
+  RowSweep::Area area;
+  double of_parts = 0;
+};
+Measured measure(std::span<const Triangle> triangles) {
+  std::vector<RowEdge> edges = outlines(triangles);
+  std::vector<Trapezoid> parts;
+  RowSweep sweep;
+  Measured m{sweep({kSide, kSide, edges, {}, 0, &parts})};
+  for (const auto& [low, high] : parts)
+    m.of_parts += 0.5 * (low.right - low.left + high.right - high.left) * (high.y - low.y);
+  return m;
+}
+
+std::vector<Triangle> quarter_turned(std::vector<Triangle> triangles) {
+  for (Triangle& triangle : triangles)
+    for (glm::dvec2& corner : triangle) corner = {kSide - corner.y, corner.x};
+  return triangles;
+}
+
+/// On a lattice nearly everything coincides with something: corners with edges, edges with edges, three lines in one
+/// point. Off it, needles of every width.
+TEST(RowSweep, TheWayThatRowsRunDoesNotMatter) {
+  std::mt19937 random(1);
+  double least = 1, most = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const int steps = std::array{4, 8, 64, 1 << 20}[static_cast<std::size_t>(round % 4)];
+    std::uniform_int_distribution<int> place(0, steps);
+    const auto corner = [&] { return kSide / steps * glm::dvec2(place(random), place(random)); };
+    std::vector<Triangle> triangles(1 + static_cast<std::size_t>(round) / 4 % 24);
+    for (Triangle& triangle : triangles) {
+      triangle = {corner(), corner(), corner()};
+      if (round % 3 == 0) triangle[2] = 0.999999 * triangle[1] + 1e-6 * triangle[2];
+    }
+    const Measured first = measure(triangles);
+    // Each end of a trapezoid is off by a few ulps of the side; a triangle has few, but all pairs may cross.
+    const double tolerance = 1e-15 * kSide * kSide * static_cast<double>(triangles.size() * triangles.size() + 16);
+    for (int turn = 0; turn < 4; ++turn) {
+      const Measured turned = measure(triangles);
+      EXPECT_NEAR(turned.area.visible, first.area.visible, tolerance) << round << " turned " << turn;
+      EXPECT_NEAR(turned.of_parts, turned.area.visible, tolerance) << round << " turned " << turn;
+      EXPECT_LT(std::abs(turned.area.impossible), tolerance) << round << " turned " << turn;
+      triangles = quarter_turned(triangles);
+    }
+    least = std::min(least, first.area.visible / (kSide * kSide));
+    most = std::max(most, first.area.visible / (kSide * kSide));
+  }
+  EXPECT_LT(least, 0.1);
+  EXPECT_GT(most, 0.99);
+}
+
+TEST(RowSweep, OneTriangleLeavesTheRest) {
+  const Triangle triangle{glm::dvec2(1, 1), glm::dvec2(7, 2), glm::dvec2(3, 6)};
+  const std::vector<Triangle> one{triangle};
+  EXPECT_NEAR(measure(one).area.visible, kSide * kSide - 0.5 * twice_area(triangle), 1e-13);
+  const std::array doubled{triangle, triangle};
+  EXPECT_NEAR(measure(doubled).area.visible, kSide * kSide - 0.5 * twice_area(triangle), 1e-13);
+}
+
+/// The depth at the left side goes up and down again: a strip is dark.
+TEST(RowSweep, StepsAtTheLeftSide) {
+  std::vector<RowEdge> edges{{0, 2, 8, 2.5, 1}, {0, 4, 8, 5.5, -1}};
+  std::vector<RowStep> steps{{4, -1}, {2, 1}};
+  RowSweep sweep;
+  const auto [visible, impossible] = sweep({kSide, kSide, edges, steps, 0, nullptr});
+  EXPECT_NEAR(visible, kSide * kSide - 0.5 * (2 + 3) * 8, 1e-13);
+  EXPECT_NEAR(impossible, 0, 1e-13);
+}
+
+}  // namespace
+}  // namespace penumbra::volumes

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Depth zero, measured without light samples: the second half of rows=exact of edge scatter. Inside volumes/ only.
+/// docs/edge-scatter.md, "Without light samples".
+namespace penumbra::volumes {
+
+/// A projected edge in the light, in cells from its lower left corner, upward: crossing it to the right, the depth
+/// changes by −k.
+struct RowEdge {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  std::int32_t k = 0;
+};
+/// The depth at the light's left side changes at y, going up.
+struct RowStep {
+  double y = 0;
+  std::int32_t change = 0;
+};
+
+/// A part of the light between two of its rows: x of its two sides at both.
+struct Trapezoid {
+  struct Row {
+    double y = 0, left = 0, right = 0;
+  };
+  Row low, high;
+};
+
+/// A row goes up the light (J. Bentley, T. Ottmann, "Algorithms for reporting and counting geometric intersections",
+/// 1979) and keeps the edges that it meets in order. Gaps between neighbours have one depth each; a gap's trapezoid
+/// ends where one of its sides does, crosses its neighbour, or another edge comes in between.
+///
+/// Rounding. Two neighbours are in the right order when they are where the first of them ends; if not, they change
+/// places where they cross, or at once. So any two change places once at most, whatever rounding says elsewhere.
+class RowSweep {
+ public:
+  /// `edges` and `steps` get sorted; edges lie in the light.
+  struct Input {
+    double width = 0, height = 0;
+    std::span<RowEdge> edges;
+    std::span<RowStep> steps;
+    std::int32_t depth = 0;                   ///< at the light's corner
+    std::vector<Trapezoid>* parts = nullptr;  ///< gets what is visible, if given
+  };
+  struct Area {
+    double visible = 0;     ///< of depth 0
+    double impossible = 0;  ///< of less than that
+  };
+  Area operator()(const Input& input);
+
+ private:
+  struct Line {
+    double x = 0, y = 0, slope = 0, end = 0, last_x = 0;
+    std::int32_t k = 0;
+
+    [[nodiscard]] double at(double height) const { return x + (height - y) * slope; }
+  };
+  /// To the left of the line of the same number, since a row.
+  struct Gap {
+    double since = 0, crossing = 0;  // where its two sides do
+    std::int32_t depth = 0;
+  };
+  static Line line_of(const RowEdge& edge);
+  [[nodiscard]] double next_row() const;
+  void end_gap(std::size_t gap, double y);
+  void end_gaps(double y);
+  void look_ahead(std::size_t gap, double y);
+  void change_places(std::size_t gap, double y);
+  void change_lines(double y);
+  [[nodiscard]] bool hand_over(double y);
+  void insert(const RowEdge& edge);
+
+  Input in_;
+  Area area_;
+  std::vector<Line> lines_;  // in order, between the light's two sides
+  std::vector<Gap> gaps_;    // [0] is none
+  std::vector<RowEdge> begin_;
+  std::size_t next_edge_ = 0, next_step_ = 0;
+};
+
+}  // namespace penumbra::volumes
