@@ -42,6 +42,9 @@ class Judge {
   virtual std::uint32_t depth(const Placed& sample, const glm::dvec2& st) = 0;
   /// (A, B, C): the light point centre + s u + t v is above the carrier's plane where A s + B t + C > 0. In double.
   virtual glm::dvec3 horizon(const Placed& sample) = 0;
+  /// The triangle's normal, of any length, turned to the side that p is on; 0: p is in its plane, or the triangle is so
+  /// thin that double does not know its normal.
+  virtual glm::dvec3 normal_towards(const Placed& sample, std::uint32_t triangle) = 0;
   virtual void decide(const Placed& sample, const Open& open, Seen& seen) = 0;
 };
 

@@ -15,6 +15,7 @@ class OpenJudge final : public Judge {
 
   std::uint32_t depth(const Placed& sample, const glm::dvec2& st) override;
   glm::dvec3 horizon(const Placed& sample) override;
+  glm::dvec3 normal_towards(const Placed& sample, std::uint32_t triangle) override;
   void decide(const Placed& sample, const Open& open, Seen& seen) override;
 
   [[nodiscard]] std::uint64_t pixels() const { return pixels_; }

@@ -69,7 +69,7 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
   for (std::size_t i = 0; i < crossing.count; ++i) {
     const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
     const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
-    if (!rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, at)) return std::nullopt;
+    if (!rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, at, judge)) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {
     const std::optional<std::int32_t> found = depth_by_other_place(in.frame, rows, at, judge);

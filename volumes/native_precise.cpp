@@ -117,16 +117,30 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
   return first;
 }
 
+/// Of a crossing's x on any row of the light.
+float error_of_rows(const Frame& frame, const Seen2& s) {
+  const float weight =
+      std::min(1.0F, (std::abs(s.near.y - frame.first_cell.y) + 2 * frame.half_cells.y) / std::abs(s.far.y - s.near.y));
+  return 1.2F * (s.error_near + weight * s.error_far) * (1 + s.steep) +
+         8 * kRound * (frame.half_cells.x + std::abs(s.near.x));
+}
+
+/// May it pass the light's corner on either side? The depth there is counted in double, which may know better.
+bool passes_corner(const Frame& frame, const Seen2& s) {
+  const float around = s.error_near + s.error_far;
+  if (s.low.x - around > -0.5F || s.high.x + around < -0.5F) return false;
+  if (s.low.y - around > -0.5F || s.high.y + around < -0.5F) return false;
+  const float x = std::clamp(s.near.x + (-0.5F - s.near.y) * s.slope, s.low.x, s.high.x);
+  return !(std::abs(x + 0.5F) >= error_of_rows(frame, s));  // level ones too, whose x is not known
+}
+
 /// Returns the first row above where the edge crosses the light's left side, if it does: told by the same x as the
 /// changes of the rows, so that no row can count it twice, or not at all.
 template <typename Counter>
 float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Changes<Counter>& changes, Marks& marks) {
   const Frame& frame = in.scatter.frame;
   const auto columns = static_cast<float>(frame.columns);
-  const float weight =
-      std::min(1.0F, (std::abs(s.near.y - frame.first_cell.y) + 2 * frame.half_cells.y) / std::abs(s.far.y - s.near.y));
-  const float error = 1.2F * (s.error_near + weight * s.error_far) * (1 + s.steep) +
-                      8 * kRound * (frame.half_cells.x + std::abs(s.near.x));
+  const float error = error_of_rows(frame, s);
   const bool upper_right = (s.near.y < s.far.y ? s.far.x : s.near.x) >= -0.5F;
   const bool runs_up = (s.near.y < s.far.y) != s.turn;
   const float end = row_at_least(frame, s.high.y);
@@ -149,7 +163,7 @@ float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Cha
     if (lowest <= highest) {
       // Where an end may be on either side of the row, so may be what crosses it.
       const bool at_end = std::abs(s.near.y - row) < 2 * s.error_near || std::abs(s.far.y - row) < 2 * s.error_far;
-      if (in.open || at_end || s.may_be_cut) {
+      if (at_end || s.may_be_cut) {
         if (lowest < highest) marks.row(row);
         if (lowest == highest) marks.sample(row, lowest);
       } else {
@@ -189,13 +203,15 @@ struct Cut {
   bool cut = false, nothing = false;
 };
 
-Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way& b) {
+/// Widened by `lift`, so that an edge at p's own height, but for rounding, is not below it.
+Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way& b, float lift) {
   const glm::vec2 window = 2.0F * frame.half_cells + 2.0F, off = at.foot - frame.first_cell;
   float from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
     const float xa = a[axis] * at.height + off[axis] * a.z, xb = b[axis] * at.height + off[axis] * b.z;
     for (const float sign : {-1.0F, 1.0F}) {
-      const float inside_a = window[axis] * a.z + sign * xa, inside_b = window[axis] * b.z + sign * xb;
+      const float inside_a = window[axis] * (a.z + lift) + sign * xa;
+      const float inside_b = window[axis] * (b.z + lift) + sign * xb;
       const float t = inside_a / (inside_a - inside_b);
       if (inside_a < 0) from = std::max(from, inside_b < 0 ? 2.0F : t);
       if (inside_a >= 0 && inside_b < 0) to = std::min(to, t);
@@ -205,6 +221,20 @@ Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way&
 }
 
 }  // namespace
+
+std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge, const Sample& at, Judge& judge) {
+  float k = 0;
+  for (const std::size_t first : {std::size_t{kN1x}, std::size_t{kN2x}}) {
+    const auto plane = std::bit_cast<std::uint32_t>(edges[first + kPlane1 - kN1x][edge]);
+    if (edges[first + kE1 - kN1x][edge] < 0 || plane == at.plane) continue;
+    const glm::dvec3 n(edges[first][edge], edges[first + 1][edge], edges[first + 2][edge]);
+    const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane's number is that of a triangle in it
+    const double side = glm::dot(n, towards);
+    if (!(std::abs(side) > 0.5 * glm::length(n) * glm::length(towards))) return std::nullopt;
+    k += side > 0 ? 1.0F : -1.0F;
+  }
+  return k;
+}
 
 template <typename Counter>
 void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, Open& open) {
@@ -216,22 +246,18 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
   Marks marks(frame, open);
   const Way a(edges[kAx][edge] - at.seen.x, edges[kAy][edge] - at.seen.y, at.seen.z - edges[kAh][edge]);
   const Way b(edges[kBx][edge] - at.seen.x, edges[kBy][edge] - at.seen.y, at.seen.z - edges[kBh][edge]);
-  const Cut part = in.settled ? Cut{a, b} : cut_to_window(frame, at, a, b);
-  if (part.nothing || (k == 0 && !in.open)) return;
-  const float far = edges[kFar][edge], lowest = std::min(part.start.z, part.end.z);
-  if (!in.settled && lowest < 64 * kRound * (far + at.far)) {  // it passes through p, but for rounding
+  const float far = edges[kFar][edge], through_p = 64 * kRound * (far + at.far);
+  const Cut part = in.settled ? Cut{a, b} : cut_to_window(frame, at, a, b, through_p);
+  if (part.nothing || k == 0) return;
+  if (!in.settled && std::min(part.start.z, part.end.z) < through_p) {
     marks.pixel();
     return;
   }
   const glm::vec2 seen_a = in.placed ? (*in.placed)[0] : appears(at, part.start);
   const glm::vec2 seen_b = in.placed ? (*in.placed)[1] : appears(at, part.end);
   const float foot_a = glm::length(seen_a - at.foot), foot_b = glm::length(seen_b - at.foot);
-  // Where p is within rounding of a triangle's plane, samples that the triangle may hide are as near to its edges as if
-  // those were off their places by this. (bound sliver)
-  const float sliver = in.open ? 40 * kRound * (edges[kAnchorFar][edge] + at.far) : 0;
-  const auto off = [&](float foot, float w) { return (at.height * frame.per_length + foot) / w * sliver; };
-  Seen2 seen = as_seen(frame, seen_a, seen_b, error_of(at, far, part.start.z, foot_a) + off(foot_a, part.start.z),
-                       error_of(at, far, part.end.z, foot_b) + off(foot_b, part.end.z));
+  Seen2 seen =
+      as_seen(frame, seen_a, seen_b, error_of(at, far, part.start.z, foot_a), error_of(at, far, part.end.z, foot_b));
   const float lowest_over_light = at.height - std::max(a.z, b.z);
   seen.may_be_cut = frame.cut_reach > 0 && lowest_over_light < 256 * kRound * frame.reach;
   for (const auto& [end, error] : {std::pair(seen.near, seen.error_near), std::pair(seen.far, seen.error_far)}) {
@@ -240,6 +266,7 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
   }
   const auto jump = static_cast<Counter>((seen.near.y < seen.far.y) == seen.turn ? k : -k);
   const float from = cross_rows(in, seen, jump, changes, marks);
+  if (passes_corner(frame, seen)) marks.corner();
   if ((seen_a.x < -0.5F) == (seen_b.x < -0.5F)) return;
   cross_left_side(in, seen, from, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
 }

@@ -23,12 +23,15 @@ struct PreciseInput {
   const Sample& at;
   std::size_t edge;  ///< in the EdgeTable
   float k;           ///< as seen from the light's front
-  bool open;         ///< p is within rounding of one of its triangles' planes
   bool settled;      ///< well above p
   /// Where the vectors placed its ends, if they have added its changes: what lies on the wrong side of a light sample
   /// is moved.
   std::optional<std::array<glm::vec2, 2>> placed;
 };
+/// k_e where p is within rounding of a triangle's plane: exact, since p may lie in the triangle itself, where two
+/// surfaces cross, and then half of all ways from p depend on it. Nothing: p is in the plane.
+std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge, const Sample& at, Judge& judge);
+
 /// Adds what the edge changes, and marks what is open because of it.
 template <typename Counter>
 void scatter_precisely(const PreciseInput& input, const Changes<Counter>& changes, Open& open);

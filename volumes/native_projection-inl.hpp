@@ -109,11 +109,15 @@ class Projection {
     if (hn::AllFalse(d, live)) return;
     const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
     const glm::vec2 window = 2.0F * frame.half_cells + 2.0F, off = at_.foot - frame.first_cell;
+    // Beyond the table's end there is anything.
+    const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
+    const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(64 * kRound), far);
     V from = set(0), to = set(1);
     for (int axis = 0; axis < 2; ++axis) {
       const V xa = hn::Add(hn::Mul(axis == 0 ? a.x : a.y, set(at_.height)), hn::Mul(set(off[axis]), a.w));
       const V xb = hn::Add(hn::Mul(axis == 0 ? b.x : b.y, set(at_.height)), hn::Mul(set(off[axis]), b.w));
-      const V wide_a = hn::Mul(set(window[axis]), a.w), wide_b = hn::Mul(set(window[axis]), b.w);
+      const V wide_a = hn::Mul(set(window[axis]), hn::Add(a.w, through_p));
+      const V wide_b = hn::Mul(set(window[axis]), hn::Add(b.w, through_p));
       for (const bool upper : {false, true}) {
         const V inside_a = upper ? hn::Add(wide_a, xa) : hn::Sub(wide_a, xa);
         const V inside_b = upper ? hn::Add(wide_b, xb) : hn::Sub(wide_b, xb);
@@ -131,11 +135,8 @@ class Projection {
     const M cut_a = hn::Gt(from, set(0)), cut_b = hn::Lt(to, set(1));
     const Ways start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y), at(from, cut_a, a.w, b.w, a.w)};
     const Ways end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
-    // Beyond the table's end there is anything.
-    const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
-    const V far = hn::Add(far_of(edge), set(at_.far));
-    const M through_p = hn::Lt(hn::Min(start.w, end.w), hn::Mul(set(64 * kRound), far));
-    const M other = hn::And(live, hn::Or(open_ones(m), through_p));
+    const M near_p = hn::Lt(hn::Min(start.w, end.w), through_p);
+    const M other = hn::And(live, hn::Or(open_ones(m), near_p));
     if (!hn::AllFalse(d, other)) special({table, i, other, m, false});
     const Place seen_a = appears(start), seen_b = appears(end);
     const V error = hn::Mul(set(1.01F), hn::Max(error_of(seen_a, start.w, far), error_of(seen_b, end.w, far)));

@@ -59,13 +59,21 @@ void RowSum::clear() {
   corner_is_open_ = false;
 }
 
-bool RowSum::add(const WideEdges& leaf, std::size_t lane, const Sample& at) {
+/// Which side of one of the edge's triangles is p on? n is stored as a float: within what that rounds (16 · 2⁻²⁴ of
+/// each term, bound side) exact predicates say it.
+int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane, const Sample& at, Judge& judge) {
+  const glm::dvec3 n = point(leaf.n[side], lane), from = glm::dvec3(at.p) - point(leaf.anchor[side], lane);
+  const double f = glm::dot(n, from), error = 16 * static_cast<double>(kRound) * glm::dot(glm::abs(n), glm::abs(from));
+  const double sure = std::abs(f) > error ? f : glm::dot(n, judge.normal_towards(at, leaf.plane[side][lane]));
+  return sure > 0 ? 1 : sure < 0 ? -1 : 0;
+}
+
+bool RowSum::add(const WideEdges& leaf, std::size_t lane, const Sample& at, Judge& judge) {
   const glm::dvec3 p(at.p);
   int k = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     if (leaf.plane[side][lane] == at.plane) continue;  // its own plane hides nothing
-    const double f = glm::dot(point(leaf.n[side], lane), p - point(leaf.anchor[side], lane));
-    k += f > 0 ? 1 : f < 0 ? -1 : 0;
+    if (point(leaf.n[side], lane) != glm::dvec3(0)) k += side_of(leaf, side, lane, at, judge);
   }
   if (k == 0) return true;
   const auto way = [&](const WidePoints& end) {

@@ -21,7 +21,7 @@ class RowSum {
   void clear();
   /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
   /// off by what float rounds. False: it passes through p but for rounding.
-  [[nodiscard]] bool add(const WideEdges& leaf, std::size_t lane, const Sample& at);
+  [[nodiscard]] bool add(const WideEdges& leaf, std::size_t lane, const Sample& at, Judge& judge);
   /// Rounding hides whether an edge passes the light's corner above or below.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
   /// The depth at a place of the light, in cells from its corner, but for that at the corner; nothing: an edge is near.
@@ -34,6 +34,8 @@ class RowSum {
 
  private:
   void add(RowEdge edge);
+  [[nodiscard]] static int side_of(const WideEdges& leaf, std::size_t side, std::size_t lane, const Sample& at,
+                                   Judge& judge);
 
   const Frame& frame_;
   RowSweep sweep_;

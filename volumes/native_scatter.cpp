@@ -29,8 +29,8 @@ constexpr std::size_t kGroup = 16;  // view samples that sort out edges together
 template <typename Counter>
 class SampleScatter {
  public:
-  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes)
-      : in_(in), s_(scratch), changes_(changes) {}
+  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, Judge& judge)
+      : in_(in), s_(scratch), changes_(changes), judge_(judge) {}
 
   /// Whether the depth changes anywhere on the light, or something is open.
   bool operator()(const Sample& at) {
@@ -48,10 +48,9 @@ class SampleScatter {
   }
 
  private:
-  void precisely(std::size_t edge, float k, bool open, bool is_settled,
-                 const std::optional<std::array<glm::vec2, 2>>& placed) {
+  void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& placed) {
     const float turned = in_.frame.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
-    scatter_precisely<Counter>({in_, *at_, edge, turned, open, is_settled, placed}, changes_, s_.open);
+    scatter_precisely<Counter>({in_, *at_, edge, turned, is_settled, placed}, changes_, s_.open);
     any_precise_ = true;
   }
   /// Edges of the group that are not for vectors.
@@ -61,8 +60,15 @@ class SampleScatter {
     hn::Store(edges.multiplicity.k, D(), k);
     hn::StoreMaskBits(D(), edges.multiplicity.open, open);
     for_each_lane(edges.which, [&](std::size_t lane) {
-      precisely(std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]), k[lane],
-                (open[lane / 8] >> (lane % 8) & 1) != 0, edges.settled, std::nullopt);
+      const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
+      const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
+      const std::optional<float> sure =
+          is_open ? exact_multiplicity(in_.edges, edge, *at_, judge_) : std::optional(k[lane]);
+      if (sure) {
+        precisely(edge, *sure, edges.settled, std::nullopt);
+      } else {
+        s_.open.pixel = true;
+      }
     });
   }
 
@@ -95,6 +101,13 @@ class SampleScatter {
     open = hn::Or(open, hn::Lt(hn::Abs(hn::Sub(far_y, hn::Round(far_y))), error));
     const V error_x = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), steep),
                                  hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.x), hn::Abs(near_x))));
+    const auto holds_corner = [&](V low, V high) {
+      return hn::And(hn::Le(hn::Sub(low, error), set(-0.5F)), hn::Ge(hn::Add(high, error), set(-0.5F)));
+    };
+    const V at_corner = hn::MulAdd(hn::Sub(set(-0.5F), near_y), slope, near_x);
+    const M beside_corner =
+        hn::AndNot(flat, hn::Ge(hn::Abs(hn::Sub(hn::Min(hn::Max(at_corner, low_x), high_x), set(-0.5F))), error_x));
+    open = hn::Or(open, hn::AndNot(beside_corner, hn::And(holds_corner(low_x, high_x), holds_corner(low_y, high_y))));
     V row = hn::Min(hn::Max(hn::Ceil(low_y), set(0)), rows);
     const V end = hn::Min(hn::Max(hn::Ceil(high_y), set(0)), rows);
     const V stride = set(static_cast<float>(frame.padded_rows));
@@ -159,13 +172,14 @@ class SampleScatter {
       const std::size_t i = first + lane;
       const auto number = std::bit_cast<std::uint32_t>(table[kEdge][i]);
       const std::array placed{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
-      precisely(number & ~kUnsettled, table[kK][i], false, (number & kUnsettled) == 0, placed);
+      precisely(number & ~kUnsettled, table[kK][i], (number & kUnsettled) == 0, placed);
     });
   }
 
   const ScatterInput& in_;
   Scratch& s_;
   const Changes<Counter>& changes_;
+  Judge& judge_;
   const Sample* at_ = nullptr;
   bool any_precise_ = false;
 };
@@ -242,7 +256,7 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
     histogram.assign(std::size_t{frame.columns} * frame.padded_rows, 0);
     left.assign(frame.padded_rows, 0);
     const Changes<Counter> changes{histogram.data(), left.data()};
-    changes_any = SampleScatter<Counter>(in, scratch, changes)(at);
+    changes_any = SampleScatter<Counter>(in, scratch, changes, judge)(at);
     if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
     if (changes_any) sum_up(frame, changes, depth, seen);
   } else if (scratch.open.corner) {
