@@ -16,13 +16,13 @@ using visibility::ViewSamples;
 
 class DepthLattice : public tests::DeviceTest, public testing::WithParamInterface<int> {};
 TEST_P(DepthLattice, EveryPairIsTheExactDecision) {
-  tests::expect_lattice_truth(*make_depth_complexity(device(), {}), {GetParam(), 12});
+  tests::expect_all_kinds(tests::expect_lattice_truth(*make_depth_complexity(device(), {}), {GetParam(), 12}));
 }
 INSTANTIATE_TEST_SUITE_P(Range, DepthLattice, testing::Values(1, 2, 4));
 
 class DepthLatticeFull : public tests::DeviceTest, public testing::WithParamInterface<int> {};
 TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
-  tests::expect_lattice_truth(*make_depth_complexity(device(), {}), {GetParam(), 600});
+  tests::expect_all_kinds(tests::expect_lattice_truth(*make_depth_complexity(device(), {}), {GetParam(), 600}));
 }
 INSTANTIATE_TEST_SUITE_P(Range, DepthLatticeFull, testing::Values(1, 2, 4, 16));
 
