@@ -34,8 +34,8 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
   EXPECT_GT(counts.behind, counts.pairs / 100);
 }
 
-/// Found among tens of thousands: an outline along the light's left side, p inside another triangle but for rounding, an edge at
-/// p's own height.
+/// Found among tens of thousands: an outline along the light's left side, p inside another triangle but for rounding,
+/// an edge at p's own height.
 TEST_P(HardScenes, LatticeSoupsThatWereWrong) {
   const auto method = GetParam().make(device(), {});
   for (const auto& [range, first] :
