@@ -151,7 +151,6 @@ void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes
       leaf(next & ~kLeafBit);
       continue;
     }
-
     const WideNode& node = nodes[next];
     for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
       stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
@@ -171,7 +170,6 @@ void descend(const From& in, const Shaft& shaft, const std::vector<WideNode>& no
       ++i;
       continue;
     }
-
     const WideNode& node = nodes[roots[i]];
     roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(i));
     for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
@@ -183,7 +181,7 @@ void descend(const From& in, const Shaft& shaft, const std::vector<WideNode>& no
 /// One of an edge's triangles, relative to the cluster: n · p − at > error in front of it, < −error behind.
 struct EdgeSideWide {
   Point n;
-  V at, error, anchor_far;
+  V at, error;
   hn::Mask<D> none, positive, negative;  // positive: all of the cluster's p are in front
   hn::Mask<D> nothing;                   // none, or in the cluster's own plane
 };
@@ -213,7 +211,6 @@ EdgeSideWide side_of(const From& in, const WideEdges& leaf, std::size_t side, st
   s.nothing = hn::Or(s.none, own);
   s.positive = hn::AndNot(s.none, hn::Gt(f, spread));
   s.negative = hn::AndNot(s.none, hn::Lt(f, hn::Neg(spread)));
-  s.anchor_far = length(anchor);
   return s;
 }
 
@@ -225,7 +222,6 @@ hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
 
 void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std::uint32_t number, EdgeTable& out) {
   const D d;
-
   const WideEdges& leaf = tree.leaves[number];
   out.reserve(out.count + kWide);
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
@@ -236,12 +232,10 @@ void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std
                 ShaftTest{shaft}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
                                  [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
     if (hn::AllFalse(d, met)) continue;
-
     const EdgeSideWide s = side_of(in, leaf, 0, lane), t = side_of(in, leaf, 1, lane);
     const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
-
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
     const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
     put(kAx, dot(from_a, in.frame.across));
@@ -262,7 +256,6 @@ void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std
       put(first + kPlane1 - kN1x, hn::BitCast(d, hn::LoadU(words, &leaf.plane[side][lane])));
     }
     put(kFar, hn::Max(length(from_a), length(from_b)));
-    put(kAnchorFar, hn::Max(s.anchor_far, t.anchor_far));
     put(kEdgeSlot, hn::BitCast(d, hn::Iota(hn::RebindToSigned<D>(), static_cast<std::int32_t>(number * kWide + lane))));
     out.count += more;
   }
@@ -287,7 +280,6 @@ hn::Mask<D> seen_from_outside(const TriangleInput& in, const WideTriangles& leaf
 
 void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable& out) {
   const D d;
-
   const WideTriangles& leaf = in.tree.leaves[number];
   out.reserve(out.count + kWide);
   const hn::RebindToUnsigned<D> words;
@@ -303,7 +295,6 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
     if (in.outside_of != 0 && !hn::AllFalse(d, kept)) kept = hn::AndNot(seen_from_outside(in, leaf, lane), kept);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
-
     const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
     V far = hn::Zero(d);
     std::size_t field = kCornerA;

@@ -13,7 +13,7 @@ namespace penumbra::native {
 
 /// Of an edge, relative to its cluster: ends in the frame's axes; of its two triangles n, n · anchor, the error of
 /// n · p − n · anchor for all of the cluster's p (−1: no triangle), and the plane's number (bits). Then how far its
-/// ends and its anchors are from the cluster's middle.
+/// ends are from the cluster's middle.
 enum EdgeField : std::size_t {
   kAx,
   kAy,
@@ -34,7 +34,6 @@ enum EdgeField : std::size_t {
   kE2,
   kPlane2,
   kFar,
-  kAnchorFar,
   kEdgeSlot,  ///< of the hierarchy's leaves (bits)
   kEdgeFields
 };

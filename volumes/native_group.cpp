@@ -87,9 +87,7 @@ class GroupFilter {
     const float columns = static_cast<float>(frame.columns) - 0.5F, rows = static_cast<float>(frame.rows) - 0.5F;
     for (std::size_t i = 0; i < in_.edges.count; i += hn::Lanes(D())) {
       M kept = hn::And(first_lanes(in_.edges.count - i), may_be_silhouette(i));
-
       if (hn::AllFalse(D(), kept)) continue;
-
       const Range a = range_of(kAx, i), b = range_of(kBx, i);
       const M bounded = hn::And(a.bounded, b.bounded);
       const V low_x = hn::Min(a.low_x, b.low_x), high_x = hn::Max(a.high_x, b.high_x);

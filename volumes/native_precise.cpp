@@ -229,7 +229,7 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
     if (edges[first + kE1 - kN1x][edge] < 0 || plane == at.plane) continue;
     const glm::dvec3 n(edges[first][edge], edges[first + 1][edge], edges[first + 2][edge]);
     const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane's number is that of a triangle in it
-    const double side = glm::dot(n, towards);
+    const double side = glm::dot(n, towards);  // cosine ±1 but for a thousandth, unless one of them is not known
     if (!(std::abs(side) > 0.5 * glm::length(n) * glm::length(towards))) return std::nullopt;
     k += side > 0 ? 1.0F : -1.0F;
   }
