@@ -57,6 +57,12 @@ V scaled(V v, float factor) {
   return hn::Mul(v, hn::Set(D(), factor));
 }
 
+/// first, first + 1, … as the bits of floats (numbers_from of vectors-inl.hpp)
+V numbers_from(std::size_t first) {
+  const hn::RebindToSigned<D> d;
+  return hn::BitCast(D(), hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first))));
+}
+
 std::uint32_t bits_of(hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(D(), mask, bytes);
@@ -192,7 +198,7 @@ hn::Mask<D> equals(const WideWords& numbers, std::size_t lane, std::uint32_t num
   return hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(words, equal)));
 }
 
-EdgeSideWide side_of(const From& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
+EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
   const D d;
   const glm::vec3& box = in.cluster.half_size;
   EdgeSideWide s;
@@ -220,17 +226,17 @@ hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
                 hn::And(s.nothing, t.nothing));
 }
 
-void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std::uint32_t number, EdgeTable& out) {
+void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
   const D d;
-  const WideEdges& leaf = tree.leaves[number];
+  const WideEdges& leaf = in.tree.leaves[number];
   out.reserve(out.count + kWide);
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
     const V level_a = dot(a, in.frame.axis), level_b = dot(b, in.frame.axis);
     const hn::Mask<D> met =
         hn::And(used_lanes(leaf.used, lane),
-                ShaftTest{shaft}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
-                                 [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
+                ShaftTest{in.cluster.whole}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
+                                            [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
     if (hn::AllFalse(d, met)) continue;
     const EdgeSideWide s = side_of(in, leaf, 0, lane), t = side_of(in, leaf, 1, lane);
     const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
@@ -256,7 +262,7 @@ void add_edges(const From& in, const WideEdgeTree& tree, const Shaft& shaft, std
       put(first + kPlane1 - kN1x, hn::BitCast(d, hn::LoadU(words, &leaf.plane[side][lane])));
     }
     put(kFar, hn::Max(length(from_a), length(from_b)));
-    put(kEdgeSlot, hn::BitCast(d, hn::Iota(hn::RebindToSigned<D>(), static_cast<std::int32_t>(number * kWide + lane))));
+    put(kEdgeSlot, numbers_from(number * kWide + lane));
     out.count += more;
   }
 }
@@ -308,9 +314,7 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
     }
     put(kTrianglePlane, hn::BitCast(d, hn::LoadU(words, &leaf.plane[lane])));
     put(kTriangleFar, far);
-    const hn::RebindToSigned<D> numbers;
-    const auto first = static_cast<std::int32_t>(number * kWide + lane);
-    put(kTriangleSlot, hn::BitCast(d, hn::Iota(numbers, first)));
+    put(kTriangleSlot, numbers_from(number * kWide + lane));
     out.count += more;
   }
 }
@@ -326,18 +330,31 @@ void drop_idle_leaves(std::vector<std::uint32_t>& roots, Out& table, Add add) {
   });
 }
 
+void find_edge_roots_here(const EdgeInput& in, EdgeTable& table, std::vector<std::uint32_t>& roots) {
+  const From from{in.frame, in.cluster};
+  descend<true>(from, in.cluster.whole, in.tree.nodes, roots);
+  drop_idle_leaves(roots, table, [&](std::uint32_t leaf, EdgeTable& out) { add_edges(in, leaf, out); });
+}
+
+void find_edges_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
+                     EdgeTable& edges) {
+  edges.count = 0;
+  walk<true>({in.frame, in.cluster}, in.cluster.whole, in.tree.nodes, roots, stack,
+             [&](std::uint32_t leaf) { add_edges(in, leaf, edges); });
+}
+
 void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std::vector<std::uint32_t>& roots) {
   descend<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots);
   drop_idle_leaves(roots, table, [&](std::uint32_t leaf, TriangleTable& out) { add_triangles(in, leaf, out); });
 }
 
-void find_roots_here(const FindInput& in, EdgeTable& edges, TriangleTable& triangles, Roots& roots) {
-  const From from{in.frame, in.cluster};
-  const Shaft& whole = in.cluster.whole;
-  descend<true>(from, whole, in.edges.nodes, roots.edges);
-  drop_idle_leaves(roots.edges, edges,
-                   [&](std::uint32_t leaf, EdgeTable& out) { add_edges(from, in.edges, whole, leaf, out); });
-  find_triangle_roots_here({in.frame, in.triangles, in.cluster, in.cluster.corner}, triangles, roots.triangles);
+std::size_t count_leaves_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
+                              std::vector<std::uint32_t>& stack, std::size_t most) {
+  std::size_t leaves = 0;
+  walk<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots, stack, [&](std::uint32_t) {
+    if (++leaves == most) stack.clear();
+  });
+  return leaves;
 }
 
 void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
@@ -347,16 +364,6 @@ void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_
               [&](std::uint32_t leaf) { add_triangles(in, leaf, triangles); });
 }
 
-void find_here(const FindInput& in, const Roots& roots, std::vector<std::uint32_t>& stack, EdgeTable& edges,
-               TriangleTable& triangles) {
-  edges.count = 0;
-  const From from{in.frame, in.cluster};
-  const Shaft& whole = in.cluster.whole;
-  walk<true>(from, whole, in.edges.nodes, roots.edges, stack,
-             [&](std::uint32_t leaf) { add_edges(from, in.edges, whole, leaf, edges); });
-  find_triangles_here({in.frame, in.triangles, in.cluster, in.cluster.corner}, roots.triangles, stack, triangles);
-}
-
 }  // namespace
 }  // namespace penumbra::native::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -364,22 +371,28 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace penumbra::native {
 
-HWY_EXPORT(find_roots_here);
-HWY_EXPORT(find_here);
+HWY_EXPORT(find_edge_roots_here);
+HWY_EXPORT(find_edges_here);
 HWY_EXPORT(find_triangle_roots_here);
+HWY_EXPORT(count_leaves_here);
 HWY_EXPORT(find_triangles_here);
 
-void find_roots(const FindInput& input, EdgeTable& edges, TriangleTable& triangles, Roots& roots) {
-  HWY_DYNAMIC_DISPATCH(find_roots_here)(input, edges, triangles, roots);
+void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(find_edge_roots_here)(input, edges, roots);
 }
 
-void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
-          TriangleTable& triangles) {
-  HWY_DYNAMIC_DISPATCH(find_here)(input, from, stack, edges, triangles);
+void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
+                EdgeTable& edges) {
+  HWY_DYNAMIC_DISPATCH(find_edges_here)(input, roots, stack, edges);
 }
 
 void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots) {
   HWY_DYNAMIC_DISPATCH(find_triangle_roots_here)(input, triangles, roots);
+}
+
+std::size_t count_leaves(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
+                         std::vector<std::uint32_t>& stack, std::size_t most) {
+  return HWY_DYNAMIC_DISPATCH(count_leaves_here)(input, roots, stack, most);
 }
 
 void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,

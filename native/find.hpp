@@ -50,14 +50,9 @@ enum TriangleField : std::size_t {
 };
 using TriangleTable = Table<kTriangleFields>;
 
-/// Subtrees (TriangleTree::Child::reference) that hold all that a walk can find.
-struct Roots {
-  std::vector<std::uint32_t> edges, triangles;
-};
-struct FindInput {
+struct EdgeInput {
   const Frame& frame;
-  const WideEdgeTree& edges;
-  const WideTriangleTree& triangles;
+  const WideEdgeTree& tree;
   const Cluster& cluster;
 };
 struct TriangleInput {
@@ -68,14 +63,17 @@ struct TriangleInput {
   std::uint32_t outside_of =
       0;  ///< bits (WideTriangles::closed) of which no triangle matters that is seen from outside
 };
-/// Where the walks of clusters that are part of this one may begin. The tables are for trying leaves.
-void find_roots(const FindInput& input, EdgeTable& edges, TriangleTable& triangles, Roots& roots);
-/// Edges that the shaft to the light meets and that may be silhouettes as seen from the cluster; triangles that the
-/// shaft to the light's corner meets.
-void find(const FindInput& input, const Roots& from, std::vector<std::uint32_t>& stack, EdgeTable& edges,
-          TriangleTable& triangles);
-/// The same for triangles alone, and any shaft.
+/// Where the walks of clusters that are part of this one may begin: subtrees (TriangleTree::Child::reference) that hold
+/// all that they can find. The table is for trying leaves.
+void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::uint32_t>& roots);
+/// Edges that the shaft to the light meets and that may be silhouettes as seen from the cluster.
+void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
+                EdgeTable& edges);
+/// The same for triangles, and any shaft.
 void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots);
+/// Leaves that the shaft meets, at most `most`.
+std::size_t count_leaves(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
+                         std::vector<std::uint32_t>& stack, std::size_t most);
 void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
                     std::vector<std::uint32_t>& stack, TriangleTable& triangles);
 

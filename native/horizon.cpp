@@ -21,7 +21,8 @@ void cut_at_horizon_here(const Frame& frame, const Placed& at, Open& open, Seen&
   std::uint32_t visible = 0;
   const float per_column = at.above.x / frame.half_cells.x, per_row = at.above.y / frame.half_cells.y;
   for (std::uint32_t first = 0; first < frame.padded_rows; first += static_cast<std::uint32_t>(hn::Lanes(d))) {
-    const auto rows = hn::Sub(hn::Iota(d, static_cast<float>(first)), constant(frame.first_cell.y));
+    const auto rows =
+        hn::Sub(hn::Add(hn::Iota(d, 0.0F), hn::Set(d, static_cast<float>(first))), constant(frame.first_cell.y));
     const auto shifts = hn::Sub(hn::LoadU(d, &frame.shift[first]), constant(frame.first_cell.x));
     const auto value_of_row =
         hn::MulAdd(rows, constant(per_row), hn::MulAdd(shifts, constant(per_column), constant(at.above.z)));

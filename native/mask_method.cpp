@@ -18,8 +18,8 @@
 namespace penumbra::native {
 namespace {
 
-constexpr std::uint32_t kBlock = 8;    // pixels, whose clusters have lists
-constexpr std::uint32_t kRegion = 16;  // pixels, whose blocks begin their walks at the same roots
+constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels, whose clusters have lists
+constexpr std::uint32_t kRegion = 16;                 // pixels, whose blocks begin their walks at the same roots
 constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
 
 /// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
@@ -121,7 +121,7 @@ void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t
   OpenJudge judge(pairs, frame);
   const ViewInput view{*scene_, *samples_, light_frame_, frame, normal_is_known_, scale_};
   std::vector<Placed>& placed = buffers().placed;
-  std::array<std::size_t, kRegion * kRegion / (kBlock * kBlock)> ends{};  // of its blocks
+  std::array<std::size_t, kRegion * kRegion / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
   placed.resize(kRegion * kRegion);
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
@@ -134,15 +134,16 @@ void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t
       if (outlook == Outlook::all) visible_[pixel] = light_->sample_count();
       if (outlook == Outlook::open && frame.side > 0) decide_all(at, judge);  // one of two sides asks
     }
-    ends[i / (kBlock * kBlock)] = count;
+    ends[i / (kSmallBlock * kSmallBlock)] = count;
   }
   placed.resize(count);
   if (count > 0) {
-    begin_region(frame, make_cluster(frame, placed));
+    const Blocks blocks = begin_region(frame, make_cluster(frame, placed));
+    const std::size_t step = blocks == Blocks::small ? 1 : kBlock * kBlock / (kSmallBlock * kSmallBlock);
     std::size_t begin = 0;
-    for (const std::size_t end : ends) {
-      do_block(frame, std::span(placed).subspan(begin, end - begin), judge);
-      begin = end;
+    for (std::size_t i = step; i <= ends.size(); i += step) {
+      do_block(frame, std::span(placed).subspan(begin, ends[i - 1] - begin), judge);
+      begin = ends[i - 1];
     }
   }
   open_pixels_ += judge.pixels();

@@ -18,6 +18,12 @@
 
 namespace penumbra::native {
 
+/// How large the blocks of pixels are whose clusters have lists.
+enum class Blocks : std::uint8_t {
+  usual,
+  small,  ///< where casters are so dense that neighbours see other edges
+};
+
 /// A method on all of the processor's cores, one region of pixels after the other, each from its lists to its bits in
 /// one go: for rectangle lights with light samples in rows. What comes before and after the lists is the same for all.
 class MaskMethod : public visibility::Method {
@@ -39,8 +45,8 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  protected:
-  /// Of a region, before its clusters, on the same thread.
-  virtual void begin_region(const Frame& frame, const Cluster& all) = 0;
+  /// Of a region, before its clusters, on the same thread. Returns what blocks it is done in.
+  virtual Blocks begin_region(const Frame& frame, const Cluster& all) = 0;
   /// All view samples of a cluster. Sets how many light samples they see and, unless that is none or all, their masks.
   virtual void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
   /// Something cuts what casts shadow at the light's plane: errors grow by that.

@@ -39,6 +39,11 @@ using I = hn::RebindToSigned<D>;
   return hn::FirstN(D(), count);
 }
 
+/// first, first + 1, … Of Highway's Iota only the one from 0 is a constant; others go lane by lane through memory.
+[[maybe_unused]] hn::Vec<I> numbers_from(std::size_t first) {
+  return hn::Add(hn::Iota(I(), 0), hn::Set(I(), static_cast<std::int32_t>(first)));
+}
+
 /// Calls `visit(lane)` for each lane that is set.
 template <typename Visit>
 void for_each_lane(M which, Visit visit) {

@@ -18,11 +18,16 @@
 namespace penumbra::volumes {
 namespace {
 
+/// Leaves of triangles between a region and the light's corner from which on neighbouring pixels see other edges.
+constexpr std::size_t kDense = 1024;
+constexpr std::size_t kGroup = 16, kDenseGroup = 8;  // view samples
+
 /// Finds each cluster's edges and triangles.
 class NativeEdges : public native::MaskMethod {
  public:
-  explicit NativeEdges(visibility::MethodDescription given)
-      : MaskMethod(std::move(given), "scatter edges"), sides_(description().name) {}
+  /// `between_rows`: edges that cross no light row matter, too.
+  NativeEdges(visibility::MethodDescription given, bool between_rows)
+      : MaskMethod(std::move(given), "scatter edges"), between_rows_(between_rows), sides_(description().name) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     MaskMethod::prepare_mesh(scene);
@@ -46,34 +51,47 @@ class NativeEdges : public native::MaskMethod {
     const EdgeTexels texels = edge_texels(records, scale());
     return texels.depth == 0 ? WideEdgeTree{} : wide_edge_tree(texels.nodes, texels.slots);
   }
-  void begin_region(const Frame& frame, const Cluster& all) override {
+  Blocks begin_region(const Frame& frame, const Cluster& all) override {
     Scratch& scratch = scratch_.local();
-    find_roots({frame, edges_of(frame), triangles(), all}, scratch.edges, scratch.triangles, scratch.roots);
+    find_edge_roots({frame, edges_of(frame), all}, scratch.edges, scratch.edge_roots);
+    find_triangle_roots({frame, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
+    scratch.dense =
+        count_leaves({frame, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
+    scratch.dense_regions += scratch.dense ? 1 : 0;
+    return scratch.dense ? Blocks::small : Blocks::usual;
+  }
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) final {
+    Scratch& scratch = scratch_.local();
+    if (scratch.edge_roots.empty() && scratch.triangle_roots.empty()) return do_free(frame, placed, judge, seen);
+    const Cluster cluster = make_cluster(frame, placed);
+    find_triangles({frame, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
+                   scratch.triangles);
+    find_edges({frame, edges_of(frame), cluster}, scratch.edge_roots, scratch.stack, scratch.edges);
+    scratch.listed += scratch.edges.count;
+    if (scratch.edges.count + scratch.triangles.count == 0) return do_free(frame, placed, judge, seen);
+    scratch.samples.clear();
+    for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
+    do_lists({frame, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
+              scratch.dense ? kDenseGroup : kGroup, between_rows_},
+             judge, seen);
   }
 
- protected:
   [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const {
     return frame.side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
   }
-
-  /// Fills the buffers; false: nothing is before the light.
-  bool find_all(const Frame& frame, std::span<const Placed> placed, Cluster& cluster, Scratch& scratch) {
-    if (scratch.roots.edges.empty() && scratch.roots.triangles.empty()) return false;
-    cluster = make_cluster(frame, placed);
-    find({frame, edges_of(frame), triangles(), cluster}, scratch.roots, scratch.stack, scratch.edges,
-         scratch.triangles);
-    scratch.listed += scratch.edges.count;
-    if (scratch.edges.count + scratch.triangles.count == 0) return false;
-    scratch.samples.clear();
-    for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
-    return true;
-  }
+  /// View samples with nothing before the light.
+  virtual void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
+  virtual void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) = 0;
 
  protected:
   void count(std::map<std::string, std::uint64_t>& counters) override {
-    for (Scratch& scratch : scratch_) counters["listedEdges"] += std::exchange(scratch.listed, 0);
+    for (Scratch& scratch : scratch_) {
+      counters["listedEdges"] += std::exchange(scratch.listed, 0);
+      counters["denseRegions"] += std::exchange(scratch.dense_regions, 0);
+    }
   }
 
+  bool between_rows_;
   EdgeSides sides_;
   WideEdgeTree whole_;
   std::optional<WideEdgeTree> front_, back_;  // where `whole_` will not do
@@ -85,25 +103,22 @@ class NativeEdges : public native::MaskMethod {
 /// Light samples.
 class NativeEdgeScatter final : public NativeEdges {
  public:
-  using NativeEdges::NativeEdges;
+  explicit NativeEdgeScatter(visibility::MethodDescription given) : NativeEdges(std::move(given), false) {}
 
  private:
-  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
-    Scratch& scratch = scratch_.local();
-    Cluster cluster;
-    if (!find_all(frame, placed, cluster, scratch)) {
-      for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], scratch.open, judge, seen[i]);
-      return;
-    }
-    scatter({frame, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles}, scratch,
-            judge, seen);
+  void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+    Open& open = scratch_.local().open;
+    for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], open, judge, seen[i]);
+  }
+  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) override {
+    scatter(input, scratch_.local(), judge, seen);
   }
 };
 
 /// rows=exact: shares of the light, and their form factors for who asks for them.
 class NativeEdgeRows final : public NativeEdges {
  public:
-  using NativeEdges::NativeEdges;
+  explicit NativeEdgeRows(visibility::MethodDescription given) : NativeEdges(std::move(given), true) {}
 
   void evaluate(const visibility::Tile& tile) override {
     shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
@@ -135,22 +150,18 @@ class NativeEdgeRows final : public NativeEdges {
     return visibility::SeenLight(light(), samples().p[pixel], samples().n[pixel]).whole();
   }
 
-  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
-    Scratch& scratch = scratch_.local();
-    Cluster cluster;
-    std::vector<float> shares(placed.size(), 1.0F);
-    std::vector<double> radiance(radiance_.empty() ? 0 : placed.size());
-    if (!find_all(frame, placed, cluster, scratch)) {
-      for (std::size_t i = 0; i < placed.size(); ++i)
-        if (placed[i].straddles) shares[i] = share_above_horizon(frame, judge.horizon(placed[i]));
-      for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = unshadowed(placed[i].pixel);
-    } else {
-      const ScatterInput input{frame,           edges_of(frame), triangles(),       cluster,
-                               scratch.samples, scratch.edges,   scratch.triangles, true};
-      integrate({input, light(), samples()}, scratch, judge, seen, {shares, radiance});
+  void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen>) override {
+    for (const Placed& at : placed) {
+      shares_[tile_pixel(at)] = at.straddles ? share_above_horizon(frame, judge.horizon(at)) : 1.0F;
+      if (!radiance_.empty()) radiance_[tile_pixel(at)] = unshadowed(at.pixel);
     }
-    for (std::size_t i = 0; i < placed.size(); ++i) shares_[tile_pixel(placed[i])] = shares[i];
-    for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(placed[i])] = radiance[i];
+  }
+  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) override {
+    std::vector<float> shares(input.samples.size());
+    std::vector<double> radiance(radiance_.empty() ? 0 : input.samples.size());
+    integrate({input, light(), samples()}, scratch_.local(), judge, seen, {shares, radiance});
+    for (std::size_t i = 0; i < shares.size(); ++i) shares_[tile_pixel(input.samples[i])] = shares[i];
+    for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(input.samples[i])] = radiance[i];
   }
 
   /// Whatever is decided by exact predicates here is a view sample left to light samples.

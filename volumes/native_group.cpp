@@ -217,7 +217,7 @@ class GroupFilter {
       hn::CompressStore(column(field, i), kept, D(), table[field] + table.count);
     }
     hn::CompressStore(error, kept, D(), table[kGroupError] + table.count);
-    const V numbers = hn::BitCast(D(), hn::Iota(I(), static_cast<std::int32_t>(i)));
+    const V numbers = hn::BitCast(D(), numbers_from(i));
     hn::CompressStore(numbers, kept, D(), table[kGroupEdge] + table.count);
     table.count += more;
   }

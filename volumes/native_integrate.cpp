@@ -23,8 +23,6 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t kGroup = 16;  // view samples that sort out edges together
-
 /// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
 std::optional<std::int32_t> depth_by_other_place(const Frame& frame, const RowSum& rows, const Placed& at,
                                                  Judge& judge) {
@@ -102,8 +100,8 @@ void integrate_here(const IntegralInput& input, Scratch& scratch, Judge& judge, 
                     const Integral& out) {
   const ScatterInput& in = input.scatter;
   Rows rows{RowSum(in.frame), {}, !out.radiance.empty()};
-  for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
-    const auto group = in.samples.subspan(first, std::min(kGroup, in.samples.size() - first));
+  for (std::size_t first = 0; first < in.samples.size(); first += in.group) {
+    const auto group = in.samples.subspan(first, std::min(in.group, in.samples.size() - first));
     sort_out(in, group, scratch.lists);
     for (std::size_t i = 0; i < group.size(); ++i) {
       std::optional<double> share = share_of(in, scratch, group[i], rows, judge);

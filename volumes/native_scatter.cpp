@@ -24,8 +24,6 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace native::HWY_NAMESPACE;
 
-constexpr std::size_t kGroup = 16;  // view samples that sort out edges together
-
 template <typename Counter>
 class SampleScatter {
  public:
@@ -275,8 +273,8 @@ void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::s
     scratch.landing.resize(4096);
     scratch.jump.resize(4096);
   }
-  for (std::size_t first = 0; first < samples.size(); first += kGroup) {
-    const auto group = samples.subspan(first, std::min(kGroup, samples.size() - first));
+  for (std::size_t first = 0; first < samples.size(); first += in.group) {
+    const auto group = samples.subspan(first, std::min(in.group, samples.size() - first));
     sort_out(in, group, scratch.lists);
     // Changes of a cell and its depth stay within ±(2 edges + triangles).
     const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;

@@ -36,7 +36,8 @@ struct ScatterInput {
   std::span<const Sample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
-  bool between_rows = false;  ///< edges that cross no light row matter, too
+  std::size_t group;  ///< view samples that sort out edges together
+  bool between_rows;  ///< edges that cross no light row matter, too
 };
 /// What matters to a group of view samples. Settled edges stay well above all of its p.
 struct GroupLists {
@@ -63,13 +64,13 @@ struct Scratch {
   TriangleTable triangles;
   GroupLists lists;
   CrossingTable crossing;
-  Roots roots;
-  std::vector<std::uint32_t> stack;
+  std::vector<std::uint32_t> edge_roots, triangle_roots, stack;
+  bool dense = false;                       // the region (kDense)
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
   Open open;
-  std::uint64_t listed = 0;  // edges, counted
+  std::uint64_t listed = 0, dense_regions = 0;  // counted
 };
 
 /// `seen`: one a view sample; of its mask all or nothing is written.

@@ -112,7 +112,7 @@ class SampleTest {
             wc = hn::Sub(set(at_.seen.z), column(near, kCornerC + 2, i));
     const V least = hn::Min(wa, hn::Min(wb, wc)), most = hn::Max(wa, hn::Max(wb, wc));
     const V far = hn::Add(column(near, kTriangleFar, i), set(at_.far));
-    const V triangle = hn::BitCast(d, hn::Iota(I(), static_cast<std::int32_t>(i)));
+    const V triangle = hn::BitCast(d, numbers_from(i));
     const M clear = hn::And(hn::Gt(least, hn::Mul(set(256 * kRound), far)),
                             hn::Lt(most, set(at_.height - 128 * kRound * frame.reach - frame.deviation)));
     const M unclear = hn::AndNot(clear, live);

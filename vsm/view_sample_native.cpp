@@ -59,9 +59,10 @@ class NativeViewSample final : public native::MaskMethod {
     return false;
   }
 
-  void begin_region(const Frame& frame, const Cluster& all) override {
+  Blocks begin_region(const Frame& frame, const Cluster& all) override {
     PairScratch& scratch = scratch_.local();
     find_triangle_roots({frame, triangles(), all, all.whole}, scratch.triangles, scratch.roots);
+    return Blocks::usual;
   }
 
   void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {

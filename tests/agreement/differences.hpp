@@ -86,6 +86,7 @@ class BothMethods {
     const Masks mapped = run(*map_, floats, light, samples), traced = run(*trace_, floats, light, samples);
     return differences(floats, samples, light, mapped, traced, most_judged);
   }
+  [[nodiscard]] const visibility::Method& mapped() const { return *map_; }
 
  private:
   const render::Device& device_;

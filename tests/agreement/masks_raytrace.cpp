@@ -2,6 +2,7 @@
 
 #include "tests/agreement/differences.hpp"
 
+#include "mesh/shapes.hpp"
 #include "scenes/reader.hpp"
 
 #include <filesystem>
@@ -39,6 +40,18 @@ TEST_F(AgreementOn, ParallelogramLights) {
     light.half_v += skew * light.half_u;
     for (const tests::MaskMethod& method : tests::kMaskMethods) check(scene, 96, method);
   }
+}
+
+// Triangles smaller than pixels: smaller blocks of pixels have lists of their own.
+TEST_F(AgreementOn, MeshesFinerThanPixels) {
+  mesh::KnotShape knot;
+  knot.segments = 1000;
+  knot.sides = 100;
+  tests::BothMethods both(device(), tests::kNativeEdgeScatter);
+  const tests::Differences found = both.on(tests::with_a_floor(tests::fitted(mesh::make_knot(knot))), 64);
+  EXPECT_GT(found.pairs, 0U);
+  EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
+  EXPECT_GT(both.mapped().counters().at("denseRegions"), 0U);
 }
 
 std::vector<std::string> shipped_scenes(bool with_large_ones) {
