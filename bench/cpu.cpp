@@ -56,7 +56,7 @@ std::vector<CpuEntry> measure_edges(std::uint64_t triangles, std::uint32_t runs)
   add(graph_seconds, graph.edges.size());
   std::vector<volumes::EdgeRecord> records;
   add(time_runs(runs,
-                [&] { records = volumes::edge_records(floats, volumes::edge_casters(floats, -1), std::nullopt); }),
+                [&] { records = volumes::edge_records(floats, volumes::edge_casters(floats, -1)); }),
       0);
   entries.back().items = records.size();
   volumes::EdgeTexels texels;

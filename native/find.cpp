@@ -165,18 +165,16 @@ void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes
 }
 
 /// Goes down level by level until there are enough.
-template <bool kCones>
-void descend(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
-             std::vector<std::uint32_t>& roots) {
+template <bool kCones, typename Tree>
+void descend(const From& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
   constexpr std::size_t kEnough = 24;
-  roots.clear();
-  if (!nodes.empty()) roots.push_back(0);
+  roots = tree.roots;
   for (std::size_t i = 0; i < roots.size() && roots.size() < kEnough;) {
     if ((roots[i] & kLeafBit) != 0) {
       ++i;
       continue;
     }
-    const WideNode& node = nodes[roots[i]];
+    const WideNode& node = tree.nodes[roots[i]];
     roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(i));
     for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
       roots.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
@@ -332,7 +330,7 @@ void drop_idle_leaves(std::vector<std::uint32_t>& roots, Out& table, Add add) {
 
 void find_edge_roots_here(const EdgeInput& in, EdgeTable& table, std::vector<std::uint32_t>& roots) {
   const From from{in.frame, in.cluster};
-  descend<true>(from, in.cluster.whole, in.tree.nodes, roots);
+  descend<true>(from, in.cluster.whole, in.tree, roots);
   drop_idle_leaves(roots, table, [&](std::uint32_t leaf, EdgeTable& out) { add_edges(in, leaf, out); });
 }
 
@@ -344,7 +342,7 @@ void find_edges_here(const EdgeInput& in, const std::vector<std::uint32_t>& root
 }
 
 void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std::vector<std::uint32_t>& roots) {
-  descend<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots);
+  descend<false>({in.frame, in.cluster}, in.shaft, in.tree, roots);
   drop_idle_leaves(roots, table, [&](std::uint32_t leaf, TriangleTable& out) { add_triangles(in, leaf, out); });
 }
 

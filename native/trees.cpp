@@ -35,6 +35,7 @@ std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stri
 WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::vector<Texel>, 6>& slots) {
   WideEdgeTree tree;
   if (nodes.empty()) return tree;
+  tree.roots = {0};
   tree.nodes = wide_nodes(nodes, 3);
   tree.leaves.resize(slots[0].size() / kWide);
   for (std::size_t slot = 0; slot < tree.leaves.size() * kWide; ++slot) {
@@ -52,10 +53,25 @@ WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::
   return tree;
 }
 
+void append(WideEdgeTree& tree, const WideEdgeTree& more) {
+  const auto first_node = static_cast<std::uint32_t>(tree.nodes.size());
+  const auto first_leaf = static_cast<std::uint32_t>(tree.leaves.size());
+  for (const std::uint32_t root : more.roots) tree.roots.push_back(first_node + root);
+  for (WideNode node : more.nodes) {
+    for (std::uint32_t& reference : node.reference) {
+      if (reference != TriangleTree::kNoChild)
+        reference += (reference & TriangleTree::kLeafBit) != 0 ? first_leaf : first_node;
+    }
+    tree.nodes.push_back(node);
+  }
+  tree.leaves.insert(tree.leaves.end(), more.leaves.begin(), more.leaves.end());
+}
+
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
   WideTriangleTree wide;
   const std::vector<Texel> texels = render::node_texels(tree, scale);
   wide.nodes = wide_nodes(texels, 2);
+  if (!wide.nodes.empty()) wide.roots = {0};
   wide.leaves.resize(tree.leaves.size());
   for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
     WideTriangles& leaf = wide.leaves[i];

@@ -43,10 +43,12 @@ struct alignas(64) WideTriangles {
 };
 
 struct WideEdgeTree {
+  std::vector<std::uint32_t> roots;  ///< none, or 0 and those of trees that were appended
   std::vector<WideNode> nodes;
   std::vector<WideEdges> leaves;
 };
 struct WideTriangleTree {
+  std::vector<std::uint32_t> roots;  ///< none or 0
   std::vector<WideNode> nodes;
   std::vector<WideTriangles> leaves;
 };
@@ -54,6 +56,8 @@ struct WideTriangleTree {
 /// `nodes`: three texels a child; `slots`: an edge's six (volumes/edge_set.hpp, EdgeTexels). Without nodes: empty.
 WideEdgeTree wide_edge_tree(std::span<const render::Texel> nodes,
                             const std::array<std::vector<render::Texel>, 6>& slots);
+/// One more root.
+void append(WideEdgeTree& tree, const WideEdgeTree& more);
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale);
 

@@ -2,6 +2,7 @@
 find_package(TBB REQUIRED)
 add_executable(vsm_tests
   ${CMAKE_CURRENT_LIST_DIR}/analytic/view_sample_closed_forms.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/property/edge_cut.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_closed_parts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_invariance.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/mask_lattice.cpp

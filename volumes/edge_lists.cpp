@@ -45,7 +45,8 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     triangle_corners_[i].emplace(make_texels(*device_, "triangle corners", corners[i]));
   }
-  const std::vector<EdgeRecord> records = sides_.prepare_mesh(scene);
+  sides_.prepare_mesh(scene);
+  const std::vector<EdgeRecord> records = sides_.records(std::nullopt);
   edge_count_ = records.size();
   whole_ = upload(records);
 }
@@ -81,12 +82,12 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
   light_ = &light;
   frame_ = frame;
   retries_ = 0;
-  const SidedRecords records = sides_.prepare_light(light, frame, scale_);
-  cut_ = records.cut;
+  const LightEdges edges = sides_.prepare_light(light, frame, scale_);
+  cut_ = edges.front.has_value();
   front_.reset();
   back_.reset();
-  if (records.front) front_ = upload(*records.front);
-  if (records.back) back_ = upload(*records.back);
+  if (edges.front || edges.has_body) front_ = upload(sides_.records(edges.front));
+  if (edges.back) back_ = upload(sides_.records(edges.back));
   build_pass();
 }
 

@@ -7,6 +7,7 @@
 #include "native/mask_method.hpp"
 #include "visibility/seen_light.hpp"
 #include "volumes/edge_sides.hpp"
+#include "volumes/native_cut.hpp"
 #include "volumes/native_rows.hpp"
 #include "volumes/native_scatter.hpp"
 
@@ -31,25 +32,29 @@ class NativeEdges : public native::MaskMethod {
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     MaskMethod::prepare_mesh(scene);
-    whole_ = wide_edges(sides_.prepare_mesh(scene));
+    sides_.prepare_mesh(scene);
+    whole_ = CutEdges(wide_edges(sides_.records(std::nullopt), scale()));
+    without_body_.reset();
+    front_ = &whole_;
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override {
-    return MaskMethod::memory_bytes() + bytes_of(whole_) + (front_ ? bytes_of(*front_) : 0) +
-           (back_ ? bytes_of(*back_) : 0);
+    return MaskMethod::memory_bytes() + bytes_of(whole_.tree()) + bytes_of(back_.tree()) +
+           (without_body_ ? bytes_of(without_body_->edges.tree()) : 0);
   }
 
  private:
   bool prepare_casters() override {
-    const SidedRecords records = sides_.prepare_light(light(), light_frame(), scale());
-    front_.reset();
-    back_.reset();
-    if (records.front) front_ = wide_edges(*records.front);
-    if (records.back) back_ = wide_edges(*records.back);
-    return records.cut;
-  }
-  [[nodiscard]] WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records) const {
-    const EdgeTexels texels = edge_texels(records, scale());
-    return texels.depth == 0 ? WideEdgeTree{} : wide_edge_tree(texels.nodes, texels.slots);
+    const LightEdges edges = sides_.prepare_light(light(), light_frame(), scale());
+    front_->mend();
+    if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
+      without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
+    }
+    front_ = edges.has_body ? &without_body_->edges : &whole_;
+    back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
+    const std::int32_t without = edges.has_body ? light().index : -1;
+    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back});
+    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front});
+    return edges.front.has_value();
   }
   Blocks begin_region(const Frame& frame, const Cluster& all) override {
     Scratch& scratch = scratch_.local();
@@ -77,7 +82,7 @@ class NativeEdges : public native::MaskMethod {
   }
 
   [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const {
-    return frame.side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
+    return frame.side < 0 && !back_.tree().nodes.empty() ? back_.tree() : front_->tree();
   }
   /// View samples with nothing before the light.
   virtual void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
@@ -93,8 +98,14 @@ class NativeEdges : public native::MaskMethod {
 
   bool between_rows_;
   EdgeSides sides_;
-  WideEdgeTree whole_;
-  std::optional<WideEdgeTree> front_, back_;  // where `whole_` will not do
+  CutEdges whole_;
+  struct WithoutBody {
+    std::int32_t light;
+    CutEdges edges;
+  };
+  std::optional<WithoutBody> without_body_;  // what casts shadow of the last light with a body
+  CutEdges* front_ = &whole_;                // one of these
+  CutEdges back_;                            // a copy, where the light's plane cuts and it emits to both sides
 
  protected:
   tbb::enumerable_thread_specific<Scratch> scratch_;

@@ -27,59 +27,42 @@ glm::vec3 rounded(const glm::dvec3& n) {
   return largest == 0 ? glm::vec3(0) : glm::vec3(n * std::ldexp(1.0, -std::ilogb(largest)));
 }
 
-/// Exactly coplanar triangles take their normal and anchor from one of them, the largest: the edges between them are
-/// not among the records, so p must be on one side of all of them, however the device rounds.
-class Planes {
- public:
-  Planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles)
-      : scene_(&scene), largest_(scene.triangles.size(), kNone) {
-    std::vector<double> size(scene.triangles.size(), -1);
-    for (const std::uint32_t triangle : triangles) {
-      const glm::dvec3 n = normal_of(scene.corners(triangle));
-      const std::uint32_t plane = scene.plane[triangle];
-      if (const double squared = glm::dot(n, n); squared > size[plane]) {
-        size[plane] = squared;
-        largest_[plane] = triangle;
-      }
+/// Of exactly coplanar triangles the largest: for each plane number.
+std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
+  std::vector<double> size(scene.triangles.size(), -1);
+  std::vector<std::uint32_t> largest(scene.triangles.size());
+  for (const std::uint32_t triangle : triangles) {
+    const glm::dvec3 n = normal_of(scene.corners(triangle));
+    const std::uint32_t plane = scene.plane[triangle];
+    if (const double squared = glm::dot(n, n); squared > size[plane]) {
+      size[plane] = squared;
+      largest[plane] = triangle;
     }
   }
+  return largest;
+}
 
-  /// In front where the triangle's sorted corners run counter-clockwise.
-  [[nodiscard]] EdgeSide of(std::uint32_t triangle) const {
-    const std::uint32_t plane = scene_->plane[triangle], chosen = largest_[plane];
-    const std::array<glm::vec3, 3> corners = scene_->corners(chosen);
-    const glm::vec3 n = rounded(normal_of(corners));
-    return {turned_alike(triangle, chosen) ? n : -n, corners[0], plane};
+/// Of two coplanar triangles: do they run the same way around? Asked at points off their plane.
+bool turned_alike(const SceneFloats& scene, std::uint32_t x, std::uint32_t y) {
+  if (x == y) return true;
+  const std::array<glm::vec3, 3> a = scene.corners(x), b = scene.corners(y);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::vec3 q = a[0];
+    q[axis] += 1 + std::abs(q[axis]);
+    const mesh::Side side = mesh::side_of_plane(a[0], a[1], a[2], q);
+    if (side != mesh::Side::on) return side == mesh::side_of_plane(b[0], b[1], b[2], q);
   }
-
- private:
-  static constexpr std::uint32_t kNone = 0xffffffffU;
-
-  /// Of two coplanar triangles: do they run the same way around? Asked at points off their plane.
-  [[nodiscard]] bool turned_alike(std::uint32_t x, std::uint32_t y) const {
-    if (x == y) return true;
-    const std::array<glm::vec3, 3> a = scene_->corners(x), b = scene_->corners(y);
-    for (int axis = 0; axis < 3; ++axis) {
-      glm::vec3 q = a[0];
-      q[axis] += 1 + std::abs(q[axis]);
-      const mesh::Side side = mesh::side_of_plane(a[0], a[1], a[2], q);
-      if (side != mesh::Side::on) return side == mesh::side_of_plane(b[0], b[1], b[2], q);
-    }
-    return true;
-  }
-
-  const SceneFloats* scene_;
-  std::vector<std::uint32_t> largest_;  // for each plane number
-};
+  return true;
+}
 
 /// The triangle's side for the edge a→b: in front where (a, b, apex) runs counter-clockwise.
-EdgeSide side_of(const SceneFloats& scene, const Planes& planes, std::uint32_t triangle, const glm::vec3& a,
+EdgeSide side_of(const SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle, const glm::vec3& a,
                  const glm::vec3& b) {
   const std::array<glm::vec3, 3> corners = scene.corners(triangle);
   const auto place = [&](const glm::vec3& x) {
     return static_cast<int>(std::find(corners.begin(), corners.end(), x) - corners.begin());
   };
-  EdgeSide side = planes.of(triangle);
+  EdgeSide side = plane_of(scene, casters, triangle);
   if ((place(a) + 1) % 3 != place(b)) side.n = -side.n;
   return side;
 }
@@ -88,66 +71,6 @@ EdgeSide side_of(const SceneFloats& scene, const Planes& planes, std::uint32_t t
 bool is_flat(const EdgeRecord& record) {
   const auto& [s, t] = record.sides;
   return s.plane != SceneFloats::kNoPlane && s.plane == t.plane && glm::dot(s.n, t.n) < 0;
-}
-
-/// Where the edge a b passes through the side's plane. The same for (b, a).
-glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
-  const glm::dvec3 n = glm::cross(side.u, side.v);
-  glm::dvec3 from(a), to(b);
-  double h0 = glm::dot(n, from - side.center), h1 = glm::dot(n, to - side.center);
-  if (std::abs(h1) < std::abs(h0)) {
-    std::swap(from, to);
-    std::swap(h0, h1);
-  }
-  return glm::vec3(h0 == h1 ? from : from + (to - from) * (h0 / (h0 - h1)));
-}
-
-double height_over(const LightSide& side, const glm::vec3& x) {
-  return side.sign * glm::dot(glm::cross(side.u, side.v), glm::dvec3(x) - side.center);
-}
-
-/// May the segment a b in the light's plane touch the light? With an eighth of the light around it.
-bool may_touch_light(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
-  const auto at = [&](const glm::vec3& x) {
-    const glm::dvec3 d = glm::dvec3(x) - side.center;
-    const double uu = glm::dot(side.u, side.u), vv = glm::dot(side.v, side.v), uv = glm::dot(side.u, side.v);
-    const double du = glm::dot(d, side.u), dv = glm::dot(d, side.v), det = uu * vv - uv * uv;
-    return std::pair((du * vv - dv * uv) / det, (dv * uu - du * uv) / det);
-  };
-  const auto [s0, t0] = at(a);
-  const auto [s1, t1] = at(b);
-  constexpr double kAround = 1.125;
-  return std::min(s0, s1) <= kAround && std::max(s0, s1) >= -kAround && std::min(t0, t1) <= kAround &&
-         std::max(t0, t1) >= -kAround;
-}
-
-/// Cuts the record at the side's plane; false: nothing of it is in front.
-bool keep_in_front(EdgeRecord& record, const LightSide& side) {
-  const double ha = height_over(side, record.a), hb = height_over(side, record.b);
-  if (ha <= 0 && hb <= 0) return false;
-  const glm::vec3 x = ha < 0 || hb < 0 ? cut(side, record.a, record.b) : record.a;
-  if (ha < 0) record.a = x;
-  if (hb < 0) record.b = x;
-  return true;
-}
-
-/// The cut edges, in the light's plane, of triangles that may pass through the light.
-void add_cut_edges(const SceneFloats& scene, const EdgeCasters& casters, const Planes& planes, const LightSide& side,
-                   std::vector<EdgeRecord>& records) {
-  for (const std::uint32_t triangle : casters.triangle) {
-    const std::array<glm::vec3, 3> corners = scene.corners(triangle);
-    // Around the triangle: where it leaves the front, and where it comes back.
-    std::optional<glm::vec3> leaves, returns;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const glm::vec3 &a = corners[i], &b = corners[(i + 1) % 3];
-      const bool from = height_over(side, a) > 0, to = height_over(side, b) > 0;
-      if (from && !to) leaves = height_over(side, b) == 0 ? b : cut(side, a, b);
-      if (!from && to) returns = height_over(side, a) == 0 ? a : cut(side, a, b);
-    }
-    if (!leaves || !returns || *leaves == *returns || !may_touch_light(side, *leaves, *returns)) continue;
-    // Run around as the corners do: in front where those are counter-clockwise.
-    records.push_back({*leaves, *returns, {planes.of(triangle), EdgeSide{}}});
-  }
 }
 
 }  // namespace
@@ -161,22 +84,18 @@ EdgeCasters edge_casters(const SceneFloats& scene, std::int32_t light_index) {
   }
   casters.positions = mesh::widened(scene.positions);
   casters.graph = mesh::build_edge_graph({casters.positions, casters.triangles});
+  casters.largest_in_plane = largest_in_planes(scene, casters.triangle);
   return casters;
 }
 
-bool reaches_behind(const SceneFloats& scene, const LightSide& side) {
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 x((corner & 1) != 0 ? scene.upper.x : scene.lower.x,
-                      (corner & 2) != 0 ? scene.upper.y : scene.lower.y,
-                      (corner & 4) != 0 ? scene.upper.z : scene.lower.z);
-    if (height_over(side, x) <= 0) return true;
-  }
-  return false;
+EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle) {
+  const std::uint32_t plane = scene.plane[triangle], chosen = casters.largest_in_plane[plane];
+  const std::array<glm::vec3, 3> corners = scene.corners(chosen);
+  const glm::vec3 n = rounded(normal_of(corners));
+  return {turned_alike(scene, triangle, chosen) ? n : -n, corners[0], plane};
 }
 
-std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters,
-                                     const std::optional<LightSide>& side) {
-  const Planes planes(scene, casters.triangle);
+std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters) {
   std::vector<EdgeRecord> records;
   records.reserve(casters.graph.edges.size());
   for (std::uint32_t e = 0; e < casters.graph.edges.size(); ++e) {
@@ -186,13 +105,11 @@ std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters
     for (std::size_t i = 0; i < around.size(); i += 2) {
       EdgeRecord record{a, b, {}};
       for (std::size_t j = i; j < std::min(i + 2, around.size()); ++j) {
-        record.sides[j - i] = side_of(scene, planes, casters.triangle[around[j].triangle], a, b);
+        record.sides[j - i] = side_of(scene, casters, casters.triangle[around[j].triangle], a, b);
       }
-      if (is_flat(record) || (side && !keep_in_front(record, *side))) continue;
-      records.push_back(record);
+      if (!is_flat(record)) records.push_back(record);
     }
   }
-  if (side) add_cut_edges(scene, casters, planes, *side, records);
   return records;
 }
 

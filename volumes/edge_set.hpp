@@ -2,7 +2,6 @@
 
 #include "mesh/edge_graph.hpp"
 #include "render/tree_texels.hpp"
-#include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
 
@@ -10,7 +9,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,24 +37,18 @@ struct EdgeCasters {
   std::vector<std::uint32_t> triangle;    ///< into the scene's
   std::vector<mesh::Triangle> triangles;  ///< their corners
   mesh::EdgeGraph graph;
+  std::vector<std::uint32_t> largest_in_plane;  ///< for each SceneFloats::plane: of the scene's triangles, the largest
 };
 /// `light_index`: what is this light's own body is left out; −1: nothing is.
 EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t light_index);
 
-/// A half-space on one side of a light's plane, in double. The rectangle tells which triangles reach through the light.
-struct LightSide {
-  glm::dvec3 center{0}, u{0}, v{0};
-  double sign = 1;  ///< +1: where u × v points; −1: behind
-};
+/// The plane of one of the casters, in front where its sorted corners run counter-clockwise. Exactly coplanar triangles
+/// take n and anchor from one of them, the largest: the edges between them are not among the records, so p must be on
+/// one side of all of them, however the device rounds.
+EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle);
 
-/// All records with k_e not 0 everywhere. Where triangles reach through the plane of `side`, edges are cut at it, and
-/// triangles that may pass through the light itself get a third edge in the plane (docs/signed-crossings.md, cut
-/// edges): beside the light, no light sample is between those and any p.
-std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const EdgeCasters& casters,
-                                     const std::optional<LightSide>& side);
-
-/// Does anything lie behind that plane, so that records must be cut?
-bool reaches_behind(const visibility::SceneFloats& scene, const LightSide& side);
+/// All records with k_e not 0 everywhere.
+std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const EdgeCasters& casters);
 
 /// As texels: the hierarchy, three a child (render::node_texels' two, and the cone of normals: axis, cosine of its
 /// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),

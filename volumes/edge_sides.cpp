@@ -11,45 +11,40 @@ namespace {
 LightSide front_of_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale) {
   const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center;
   if (light.kind == visibility::LightKind::rectangle) {
-    return {center, to_u, glm::dvec3(light.center_v) - center, 1};
+    return {center, to_u, glm::dvec3(light.center_v) - center, 1, scale};
   }
   const glm::dvec3 normal = glm::normalize(glm::cross(to_u, glm::dvec3(light.center_v) - center));
   const auto in_plane = [&](const glm::dvec3& d) { return d - normal * glm::dot(normal, d); };
   const double unscaled = 1 / static_cast<double>(scale);
   return {center + in_plane(glm::dvec3(frame.center) * unscaled - center), in_plane(glm::dvec3(frame.u) * unscaled),
-          in_plane(glm::dvec3(frame.v) * unscaled), 1};
+          in_plane(glm::dvec3(frame.v) * unscaled), 1, scale};
 }
 
 }  // namespace
 
-std::vector<EdgeRecord> EdgeSides::prepare_mesh(const visibility::SceneFloats& scene) {
+void EdgeSides::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
   casters_ = edge_casters(scene, -1);
   casters_without_ = -1;
-  return edge_records(scene, casters_, std::nullopt);
 }
 
-SidedRecords EdgeSides::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame,
-                                      float scale) {
+LightEdges EdgeSides::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale) {
   visibility::check_size(light, frame, method_);
-  const bool has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light.index) != scene_->emits.end();
-  const std::int32_t without = has_body ? light.index : -1;
+  LightEdges edges;
+  edges.has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light.index) != scene_->emits.end();
+  const std::int32_t without = edges.has_body ? light.index : -1;
   if (casters_without_ != without) {
     casters_ = edge_casters(*scene_, without);
     casters_without_ = without;
   }
   const LightSide front = front_of_light(light, frame, scale);
-  SidedRecords records;
-  records.cut = reaches_behind(*scene_, front);
-  if (records.cut || has_body) {
-    records.front = edge_records(*scene_, casters_, records.cut ? std::optional(front) : std::nullopt);
+  if (!reaches_behind(*scene_, front)) return edges;
+  edges.front = front;
+  if (light.two_sided) {
+    edges.back = front;
+    edges.back->sign = -1;
   }
-  if (records.cut && light.two_sided) {
-    LightSide back = front;
-    back.sign = -1;
-    records.back = edge_records(*scene_, casters_, back);
-  }
-  return records;
+  return edges;
 }
 
 }  // namespace penumbra::volumes

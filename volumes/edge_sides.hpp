@@ -3,19 +3,20 @@
 #include "visibility/light_frame.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
-#include "volumes/edge_set.hpp"
+#include "volumes/edge_cut.hpp"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::volumes {
 
-/// The records of one light where those of the whole mesh will not do.
-struct SidedRecords {
-  bool cut = false;  ///< at the light's plane
-  std::optional<std::vector<EdgeRecord>> front, back;
+/// What one light asks of the edge records.
+struct LightEdges {
+  bool has_body = false;                 ///< which casts no shadow of it: the casters are without
+  std::optional<LightSide> front, back;  ///< sides it emits to at whose plane records must be cut
 };
 
 /// Which edge records a light needs: those of all casters, or, where it has a body or something lies behind its plane,
@@ -25,10 +26,16 @@ class EdgeSides {
   /// `method` names errors.
   explicit EdgeSides(std::string method) : method_(std::move(method)) {}
 
-  /// Records of all that casts shadow, cut nowhere.
-  std::vector<EdgeRecord> prepare_mesh(const visibility::SceneFloats& scene);
+  void prepare_mesh(const visibility::SceneFloats& scene);
   /// `frame`: make_light_frame(light, scale). Throws InputError where float32 cannot span light and scene together.
-  SidedRecords prepare_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale);
+  LightEdges prepare_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale);
+
+  /// Of all that casts shadow of the light last prepared; of everything before there is one.
+  [[nodiscard]] const EdgeCasters& casters() const { return casters_; }
+  /// Cut at `side`, if there.
+  [[nodiscard]] std::vector<EdgeRecord> records(const std::optional<LightSide>& side) const {
+    return side ? cut_records(*scene_, casters_, *side) : edge_records(*scene_, casters_);
+  }
 
  private:
   std::string method_;

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "volumes/edge_set.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Edges at a light's plane: what is not before it shades nothing, and would appear anywhere.
+namespace penumbra::volumes {
+
+/// A half-space on one side of a light's plane, in double. The rectangle tells which triangles reach through the light.
+struct LightSide {
+  glm::dvec3 center{0}, u{0}, v{0};
+  double sign = 1;  ///< +1: where u × v points; −1: behind
+  float scale = 1;  ///< render::device_scale: positions are taken as devices store them
+
+  /// Over the plane, times |u × v|.
+  [[nodiscard]] double height_of(const glm::vec3& x) const;
+};
+
+/// Does anything lie behind that plane, so that records must be cut?
+bool reaches_behind(const visibility::SceneFloats& scene, const LightSide& side);
+
+/// Cuts the record at the plane; false: nothing of it is in front.
+bool keep_in_front(EdgeRecord& record, const LightSide& side);
+
+/// Third edges, in the plane, of those triangles that it cuts and that may pass through the light itself
+/// (docs/signed-crossings.md, cut edges): beside the light, no light sample is between those and any p.
+std::vector<EdgeRecord> edges_in_plane(const visibility::SceneFloats& scene, const EdgeCasters& casters,
+                                       std::span<const std::uint32_t> triangles, const LightSide& side);
+
+/// All records before the plane, cut, and the third edges.
+std::vector<EdgeRecord> cut_records(const visibility::SceneFloats& scene, const EdgeCasters& casters,
+                                    const LightSide& side);
+
+}  // namespace penumbra::volumes
