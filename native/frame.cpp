@@ -123,7 +123,7 @@ Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed
   const float cells = 16 * kRound * frame.skew * (frame.half_cells.x + frame.half_cells.y);
   const float lengths = at.away / at.height;
   at.per_way = kMore * (8 * kRound * frame.per_length * at.height + cells);
-  at.per_foot = kMore * kRound * (4 * lengths + 8);
+  at.per_foot = kMore * (kRound * (4 * lengths + 8) + frame.deviation / at.height);
   at.fixed = kMore *
              (kRound * frame.per_length * (4 * at.away + frame.cut_reach) + cells + frame.per_length * frame.deviation);
   at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;

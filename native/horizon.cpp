@@ -71,10 +71,9 @@ void fill(const Frame& frame, bool visible, Seen& seen) {
 
 void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen) {
   seen.visible = frame.rows * frame.columns;
-  if (!at.straddles) return;
-  open.clear();
+  if (!at.straddles && !open.any()) return;
   fill(frame, true, seen);
-  cut_at_horizon(frame, at, open, seen);
+  if (at.straddles) cut_at_horizon(frame, at, open, seen);
   if (open.any()) judge.decide(at, open, seen);
 }
 

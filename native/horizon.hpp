@@ -13,7 +13,7 @@ namespace penumbra::native {
 void fill(const Frame& frame, bool visible, Seen& seen);
 /// Light samples that are not strictly above the carrier's plane are not visible. (bound horizon)
 void cut_at_horizon(const Frame& frame, const Placed& at, Open& open, Seen& seen);
-/// Where nothing is before the light but the horizon.
+/// Where nothing is before the light but the horizon, and what is open already.
 void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen);
 
 }  // namespace penumbra::native

@@ -1,4 +1,5 @@
 add_executable(visibility_tests
+  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_light_touch.cpp
   ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_lights.cpp
   ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_method.cpp
   ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_sample_patterns.cpp

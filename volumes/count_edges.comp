@@ -58,7 +58,7 @@ float error_of(float far, float w, float from_foot, float away) {
   const float q = at.height / w, along_normal = (4.0 + 4.0 * skew) * (far / w + away / at.height);
   return kRound * (8.0 * per_length * far * q + from_foot * (along_normal + 8.0) + per_length * (4.0 * away + push.cut_reach) +
                    16.0 * (half_cells.x + half_cells.y)) +
-         per_length * push.deviation;
+         (per_length + from_foot / at.height) * push.deviation;
 }
 
 // sgn(n · (p − anchor)); `open` if that is within its error.
@@ -355,7 +355,8 @@ void main() {
   if (kKeepsDepths != 0 && !below) {
     for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
   }
-  if (subgroupAny(open_pixel || cut_off) || below) {
+  const bool touched = (push.touched_low | push.touched_high) != 0 || (push.near_plane != 0 && at.height < length(from_center) / 256.0);
+  if (subgroupAny(open_pixel || cut_off) || touched || below) {
     settle_whole(pixel, false, !below);
     return;
   }

@@ -84,6 +84,7 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
   retries_ = 0;
   const LightEdges edges = sides_.prepare_light(light, frame, scale_);
   cut_ = edges.front.has_value();
+  touch_ = visibility::find_touch(*scene_, tree_, light);
   front_.reset();
   back_.reset();
   if (edges.front || edges.has_body) front_ = upload(sides_.records(edges.front));
@@ -158,6 +159,14 @@ void EdgeLists::describe(gpu::ScatterPush& push) const {
   push.row_count = tile_.row_count;
   push.block_count = static_cast<std::uint32_t>(blocks());
   push.triangle_depth = tree_.depth;
+  push.near_plane = touch_.any_near ? 1 : 0;
+  std::uint64_t rows = 0;
+  for (const std::uint32_t sample : touch_.samples) {
+    rows |=
+        light_->rows >= 1 && light_->rows <= 64 ? std::uint64_t{1} << (sample / light_->columns) : ~std::uint64_t{0};
+  }
+  push.touched_low = static_cast<std::uint32_t>(rows);
+  push.touched_high = static_cast<std::uint32_t>(rows >> 32U);
 }
 
 std::uint64_t EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push, float side, std::uint32_t keep) {

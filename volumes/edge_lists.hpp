@@ -4,6 +4,7 @@
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
 #include "visibility/light_frame.hpp"
+#include "visibility/light_touch.hpp"
 #include "visibility/method.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "volumes/edge_scatter.shared.h"
@@ -70,6 +71,7 @@ class EdgeLists {
   const render::Device* device_;
   std::string method_;
   EdgeSides sides_;
+  visibility::LightTouch touch_;
   bool crops_;
   std::optional<render::ComputePass> pass_;
   std::vector<std::uint32_t> constants_;

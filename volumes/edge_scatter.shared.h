@@ -28,6 +28,8 @@ struct ScatterPush {
   uint list_capacity;        // words
   uint question_capacity;
   uint edge_depth, triangle_depth;  // levels of the hierarchies; 0: empty
+  uint near_plane;           // something is near the light's plane: view samples close to that are for the host
+  uint touched_low, touched_high;   // light rows with samples that something touches; of more than 64 rows: all or none
 };
 
 // What float arithmetic left open of a pixel (of the tile): light rows, bit i of (low, high) is row first_row + i; and up

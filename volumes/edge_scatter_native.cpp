@@ -54,6 +54,7 @@ class NativeEdges : public native::MaskMethod {
     const std::int32_t without = edges.has_body ? light().index : -1;
     if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back});
     if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front});
+    touch_ = between_rows_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
     return edges.front.has_value();
   }
   Blocks begin_region(const Frame& frame, const Cluster& all) override {
@@ -76,7 +77,7 @@ class NativeEdges : public native::MaskMethod {
     if (scratch.edges.count + scratch.triangles.count == 0) return do_free(frame, placed, judge, seen);
     scratch.samples.clear();
     for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
-    do_lists({frame, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
+    do_lists({frame, touch_, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
               scratch.dense ? kDenseGroup : kGroup, between_rows_},
              judge, seen);
   }
@@ -90,6 +91,7 @@ class NativeEdges : public native::MaskMethod {
 
  protected:
   void count(std::map<std::string, std::uint64_t>& counters) override {
+    if (!touch_.samples.empty()) counters["touchedSamples"] = touch_.samples.size();
     for (Scratch& scratch : scratch_) {
       counters["listedEdges"] += std::exchange(scratch.listed, 0);
       counters["denseRegions"] += std::exchange(scratch.dense_regions, 0);
@@ -97,6 +99,7 @@ class NativeEdges : public native::MaskMethod {
   }
 
   bool between_rows_;
+  visibility::LightTouch touch_;
   EdgeSides sides_;
   CutEdges whole_;
   struct WithoutBody {
@@ -119,7 +122,10 @@ class NativeEdgeScatter final : public NativeEdges {
  private:
   void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
     Open& open = scratch_.local().open;
-    for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], open, judge, seen[i]);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      begin(frame, touch_, placed[i], open);
+      see_all(frame, placed[i], open, judge, seen[i]);
+    }
   }
   void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) override {
     scatter(input, scratch_.local(), judge, seen);

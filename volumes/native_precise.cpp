@@ -192,7 +192,9 @@ void cross_left_side(const PreciseInput& in, const Seen2& s, float from, Counter
                       8 * kRound * (frame.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
   if (std::abs(y + 0.5F) < error) marks.corner();
-  if (in.placed || y <= -0.5F || from >= static_cast<float>(frame.rows)) return;
+  // Beside light rows they know better than the division: only below the first of them is y asked.
+  const bool over_corner = from > 0 || y > -0.5F;
+  if (in.placed || !over_corner || from >= static_cast<float>(frame.rows)) return;
   Counter& row = changes.left[static_cast<std::size_t>(from)];
   row = static_cast<Counter>(row + up);
 }

@@ -5,6 +5,8 @@
 #include "native/horizon.hpp"
 #include "volumes/native_precise.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -139,7 +141,9 @@ class SampleScatter {
       const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
                                    hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.y), hn::Abs(near_y))));
       open = hn::Or(open, hn::And(left, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y)));
-      const M above = hn::And(left, hn::And(hn::Gt(y, set(-0.5F)), hn::Lt(from, rows)));
+      // Beside light rows they know better than the division: only below the first of them is y asked.
+      const M over_corner = hn::Or(hn::Gt(from, set(0)), hn::Gt(y, set(-0.5F)));
+      const M above = hn::And(left, hn::And(over_corner, hn::Lt(from, rows)));
       const V up = hn::IfThenElse(hn::Lt(x0, x1), k, hn::Neg(k));
       change_left(from, up, above);
     }
@@ -279,7 +283,7 @@ void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::s
     // Changes of a cell and its depth stay within ±(2 edges + triangles).
     const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      scratch.open.clear();
+      begin(in.frame, in.touch, group[i], scratch.open);
       Seen& result = seen[first + i];
       if (narrow) {
         scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], judge, result);
@@ -297,6 +301,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace penumbra::volumes {
+
+void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed& at, Open& open) {
+  open.clear();
+  if (touch.empty()) return;
+  open.samples = touch.samples;
+  const glm::vec3 way = at.p - frame.center;
+  open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * glm::length(way);
+}
 
 HWY_EXPORT(scatter_here);
 

@@ -6,6 +6,7 @@
 #include "native/table.hpp"
 #include "native/trees.hpp"
 #include "visibility/light_samples.hpp"
+#include "visibility/light_touch.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <cstddef>
@@ -30,6 +31,7 @@ using CrossingTable = Table<kCrossingFields>;
 
 struct ScatterInput {
   const Frame& frame;
+  const visibility::LightTouch& touch;
   const WideEdgeTree& edge_tree;
   const WideTriangleTree& tree;
   const Cluster& cluster;
@@ -39,6 +41,8 @@ struct ScatterInput {
   std::size_t group;  ///< view samples that sort out edges together
   bool between_rows;  ///< edges that cross no light row matter, too
 };
+/// What of a view sample is open before anything is looked at: light samples that something touches.
+void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed& at, Open& open);
 /// What matters to a group of view samples. Settled edges stay well above all of its p.
 struct GroupLists {
   GroupTable settled, unsettled;

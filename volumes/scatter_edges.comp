@@ -50,6 +50,20 @@ uint out_of_range;                                        // bytes of changes on
 #include "volumes/scatter_corner.glsl"
 #include "volumes/scatter_sum.glsl"
 
+// Of the first `count` of 64 rows.
+uvec2 first_rows(int count) {
+  return uvec2(count >= 32 ? 0xffffffffu : (1u << count) - 1, count >= 64 ? 0xffffffffu : count > 32 ? (1u << (count - 32)) - 1 : 0);
+}
+
+// Those of the band in which something touches light samples.
+uvec2 touched_rows() {
+  uvec2 rows = uvec2(push.touched_low, push.touched_high);
+  if (push.rows <= 64 && first_row >= 32) rows = uvec2(rows.y, 0);
+  const int shift = first_row % 32;
+  if (push.rows <= 64 && shift != 0) rows = uvec2(rows.x >> shift | rows.y << (32 - shift), rows.y >> shift);
+  return rows & first_rows(last_row + 1 - first_row);
+}
+
 void main() {
   make_frame();
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
@@ -92,12 +106,17 @@ void main() {
   const bool below = on && above.z + span < -error_above, straddles = on && !below && above.z - span <= error_above;
   if (below) on = false;
 
+  if (on) open_rows = touched_rows();
+  if (on && push.near_plane != 0 && at.height < away / 256.0) open_pixel = true;
+  const bool any_touched = subgroupAny((open_rows.x | open_rows.y) != 0);
+
   uint visible = receives ? 0 : all_samples;
   const uint cluster = on ? heads[2 * kClusters * push.block_count + pixel] : kNone;
   uint depth = 0;
   cut_off = false;
   const bool any_edges = subgroupAny(on && heads[2 * (block * kClusters + (on ? cluster : 0))] != kNone);
-  const uint cleared = any_edges || subgroupAny(straddles) ? kHistogramWords : 0;
+  const bool by_rows = any_edges || any_touched || subgroupAny(straddles);
+  const uint cleared = by_rows ? kHistogramWords : 0;
   for (uint word = 0; word < cleared; ++word) histogram[word * kLanes + gl_SubgroupInvocationID] = 0;
   for (uint i = 0; i < kClusters; ++i) {
     const bool here = on && cluster == i;
@@ -109,7 +128,7 @@ void main() {
     }
     if (edges != kNone) scatter_list(edges, here);
   }
-  if (any_edges || subgroupAny(straddles)) {
+  if (by_rows) {
     const uint counted = count_visible(pixel, depth, on);
     if (on) visible = counted;
     if (subgroupAny(straddles)) {
@@ -126,7 +145,7 @@ void main() {
   if (receives && (open_pixel || (open_rows.x | open_rows.y) != 0 || open_samples.x != kNone)) {
     const uint question = atomicAdd(question_count, 1);
     const int band = last_row + 1 - first_row;
-    if (open_pixel) open_rows = uvec2(band >= 32 ? 0xffffffffu : (1u << band) - 1, band >= 64 ? 0xffffffffu : band > 32 ? (1u << (band - 32)) - 1 : 0);
+    if (open_pixel) open_rows = first_rows(band);
     if (question < push.question_capacity) questions[question] = RowQuestion(pixel | (open_pixel ? kWholePixel : 0), uint(first_row), open_rows.x, open_rows.y, open_samples.x, open_samples.y);
   }
 }

@@ -53,7 +53,7 @@ float error_of(float far, float w, float height, float from_foot, float away) {
   const float q = height / w;
   return kRound * (4.0 * per_length * far * q + from_foot * (4.0 * far / w + 4.0 * away / height + 8.0) +
                    per_length * (4.0 * away + push.cut_reach) + 16.0 * skew * (half_cells.x + half_cells.y) * (1.0 + far / w)) +
-         per_length * push.deviation;
+         (per_length + from_foot / height) * push.deviation;
 }
 
 // Adds one projected edge to the histogram, k times. `error_a`, `error_b`: of its ends' coordinates.

@@ -289,6 +289,7 @@ void test_sample(const PairInput& in, PairScratch& scratch, const Sample& at, Ju
   scratch.open.clear();
   scratch.blocked.reset(frame.rows, frame.columns);
   if (!SampleTest(in, scratch, at)()) {
+    scratch.open.clear();
     see_all(frame, at, scratch.open, judge, seen);
     return;
   }

@@ -75,7 +75,10 @@ class NativeViewSample final : public native::MaskMethod {
                      scratch.triangles);
     }
     if (scratch.triangles.count == 0) {
-      for (std::size_t i = 0; i < placed.size(); ++i) see_all(frame, placed[i], scratch.open, judge, seen[i]);
+      for (std::size_t i = 0; i < placed.size(); ++i) {
+        scratch.open.clear();
+        see_all(frame, placed[i], scratch.open, judge, seen[i]);
+      }
       return;
     }
     scratch.samples.clear();

@@ -87,8 +87,7 @@ class EdgeCropBase : public tests::DeviceTest, public testing::WithParamInterfac
     const CropStage stage(device(), GetParam(), size);
     const auto all = lists_of(device(), stage, false), cropped = lists_of(device(), stage, true);
     const float scale = render::device_scale(stage.floats);
-    const EdgeTexels texels =
-        edge_texels(edge_records(stage.floats, edge_casters(stage.floats, -1)), scale);
+    const EdgeTexels texels = edge_texels(edge_records(stage.floats, edge_casters(stage.floats, -1)), scale);
     double pixels = 0, reached = 0, kept = 0, silhouettes = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
       EXPECT_TRUE(std::ranges::includes(all[i].slots, cropped[i].slots)) << i;

@@ -42,6 +42,26 @@ TEST_F(AgreementOn, ParallelogramLights) {
   }
 }
 
+// A lamp's panel in the plane of a tilted light, over all of it or a part: light samples are before it or behind by a
+// unit in the last place. Rays stop short of that; the exact decision is the judge.
+TEST_F(AgreementOn, PanelsInTheLightsPlane) {
+  const glm::dvec3 center(-2.6, 4.2, 2.4), u(0.5208, 0, 0.6076), v(-0.4416, -0.5498, 0.3784);
+  for (const auto& [shift, size] : {std::pair(0.0, 2.0), std::pair(-0.7, 0.6)}) {
+    mesh::SphereShape ball;
+    ball.center = {0.3, 0.8, 0.2};
+    ball.radius = 0.5;
+    scenes::Scene scene = tests::with_a_floor(mesh::make_sphere(ball));
+    tests::add_object(scene, "panel", tests::quad(center + shift * u, size * u, 1.5 * v));
+    scene.lights[0] = tests::rectangle_light(center, u, v);
+    for (const tests::MaskMethod& method : tests::kMaskMethods) {
+      const tests::Differences found = tests::BothMethods(device(), method).on(scene, 48);
+      tests::print(fmt::format("{} panel {}", method.name, size), found);
+      EXPECT_GT(found.judged, 100U);
+      EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
+    }
+  }
+}
+
 // Triangles smaller than pixels: smaller blocks of pixels have lists of their own.
 TEST_F(AgreementOn, MeshesFinerThanPixels) {
   mesh::KnotShape knot;

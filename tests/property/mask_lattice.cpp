@@ -35,11 +35,13 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
 }
 
 /// Found among tens of thousands: an outline along the light's left side, p inside another triangle but for rounding,
-/// an edge at p's own height.
+/// an edge at p's own height; light samples stored off the light's plane, which a triangle touches.
 TEST_P(HardScenes, LatticeSoupsThatWereWrong) {
   const auto method = GetParam().make(device(), {});
-  for (const auto& [range, first] :
-       std::array<std::pair<int, std::uint32_t>, 5>{{{1, 335}, {1, 788}, {1, 873}, {1, 10790}, {2, 271}}})
+  static constexpr std::pair<int, std::uint32_t> kSoups[] = {{1, 335},   {1, 788},   {1, 873},  {1, 10790},
+                                                             {2, 271},   {1, 4379},  {1, 9538}, {1, 11328},
+                                                             {1, 12726}, {1, 14607}, {2, 7626}};
+  for (const auto& [range, first] : kSoups)
     tests::expect_lattice_truth(*method, {range, 1, GetParam().any_light, first});
 }
 

@@ -1,0 +1,64 @@
+// Which light samples something in the light's plane touches.
+
+#include "tests/unit/visibility_scenes.hpp"
+#include "visibility/light_touch.hpp"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace penumbra {
+namespace {
+
+const glm::dvec3 kCenter(-2.6, 4.2, 2.4), kU(0.5208, 0, 0.6076), kV(-0.4416, -0.5498, 0.3784);  // tilted: off its plane
+
+visibility::LightTouch touch_of(const scenes::AreaLight& light, const std::vector<tests::Corners>& occluder) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  tests::add_object(scene, "occluder", occluder);
+  scene.lights.push_back(light);
+  const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+  const visibility::Light made = visibility::make_light(scene, 0, floats.origin, {});
+  return visibility::find_touch(floats, visibility::make_triangle_tree(floats), made);
+}
+
+TEST(LightTouch, NothingNearTouchesNothing) {
+  const scenes::AreaLight light = tests::rectangle_light(kCenter, kU, kV);
+  EXPECT_TRUE(touch_of(light, tests::quad({0, 1, 0}, {1, 0, 0}, {0, 0, -1})).empty());
+  // A quarter of the light behind it, and before it.
+  const glm::dvec3 n = glm::cross(kU, kV);
+  EXPECT_TRUE(touch_of(light, tests::quad(kCenter - 0.25 * n, kU, kV)).empty());
+  EXPECT_TRUE(touch_of(light, tests::quad(kCenter + 0.25 * n, kU, kV)).empty());
+}
+
+TEST(LightTouch, PanelOfATiltedLightTouchesWhatItCovers) {
+  const scenes::AreaLight light = tests::rectangle_light(kCenter, kU, kV);
+  EXPECT_EQ(touch_of(light, tests::quad(kCenter, 2.0 * kU, 2.0 * kV)).samples.size(), 256U);
+  // The half of it to the left: eight columns, and those that touch its border.
+  const visibility::LightTouch half = touch_of(light, tests::quad(kCenter - kU, kU, 2.0 * kV));
+  EXPECT_GE(half.samples.size(), 120U);
+  EXPECT_LE(half.samples.size(), 136U);
+  for (const std::uint32_t sample : half.samples) EXPECT_LE(sample % 16, 8U);
+  // Beside the light: no sample, but flat ways to any of them.
+  const visibility::LightTouch beside = touch_of(light, tests::quad(kCenter + 2.5 * kU, kU, kV));
+  EXPECT_TRUE(beside.samples.empty());
+  EXPECT_TRUE(beside.any_near);
+}
+
+TEST(LightTouch, CeilingAroundALightIsSafe) {
+  const std::vector<tests::Corners> ceiling = tests::quad({0, 5, 0}, {4, 0, 0}, {0, 0, -4});
+  EXPECT_TRUE(touch_of(tests::rectangle_light({0.1, 5, 0.3}, {0.7, 0, 0}, {0, 0, 0.4}), ceiling).empty());
+}
+
+TEST(LightTouch, WhatPassesThroughTouchesWhereItDoes) {
+  const glm::dvec3 n = glm::normalize(glm::cross(kU, kV));
+  // A wall across the middle of the light, along v.
+  const visibility::LightTouch touch =
+      touch_of(tests::rectangle_light(kCenter, kU, kV), tests::quad(kCenter + 0.01 * kU, 2.0 * kV, n));
+  EXPECT_LE(touch.samples.size(), 16U);
+  for (const std::uint32_t sample : touch.samples) EXPECT_TRUE(sample % 16 == 7 || sample % 16 == 8) << sample;
+}
+
+}  // namespace
+}  // namespace penumbra
