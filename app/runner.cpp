@@ -59,10 +59,9 @@ class Host {
   }
 
  private:
-  /// Masks of a tile are read back into memory of the host, and what becomes of them there is not broken off by an
-  /// interrupt: no more of them than take a few seconds.
+  /// Masks of a tile are read back into memory of the host: a quarter of a GiB is plenty, and never more than it.
   [[nodiscard]] std::uint32_t most_rows_to_read(const Light& light) const {
-    constexpr std::uint64_t kMostBytes = 1u << 26;
+    constexpr std::uint64_t kMostBytes = 1u << 28;
     const std::uint64_t row_bytes = std::uint64_t{4} * session_.width * light.words_per_mask();
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostBytes / row_bytes, 1, session_.height));
   }

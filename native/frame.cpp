@@ -25,7 +25,8 @@ Frame make_frame(const FrameInput& input) {
   const double squared = glm::dot(n, n);
   Frame frame;
   frame.center = input.light.center;
-  frame.corner = glm::dvec3(input.light.center) - u - v;
+  frame.corner = input.corner;
+  frame.radius = (glm::length(input.light.u) + glm::length(input.light.v)) * 1.0001F + input.light.deviation;
   frame.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
   frame.first_cell = frame.half_cells - 0.5F;
   frame.axes = {glm::cross(v, n) / squared * static_cast<double>(frame.half_cells.x),

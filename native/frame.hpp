@@ -21,7 +21,8 @@ constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 struct Frame {
   glm::vec3 center{0}, axis{0}, axis_size{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
-  glm::dvec3 corner{0};              ///< of the light: where its rows and columns begin
+  glm::dvec3 corner{0};              ///< of the light, in the plane of its stored points: where rows and columns begin
+  float radius = 0;                  ///< no light sample is farther from the centre
   std::array<glm::dvec3, 3> axes{};  ///< across, along, axis before rounding
   float per_length = 0, skew = 1, deviation = 0, reach = 0, cut_reach = 0;
   float side = 1;
@@ -32,6 +33,7 @@ struct Frame {
 };
 struct FrameInput {
   const visibility::LightFrame& light;
+  glm::dvec3 corner;
   std::uint32_t rows, columns, light_index;
   float side, reach, cut_reach, scale;
   std::span<const glm::vec3> points;  ///< light samples

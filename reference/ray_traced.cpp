@@ -37,8 +37,8 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{256} << 20;  // of one tile
-constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;         // plane number of the light's own body
+constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for its end
+constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane number of the light's own body
 
 /// What the filter function needs to know of the ray's pixel; Embree hands back the address of the first member.
 struct PixelContext {

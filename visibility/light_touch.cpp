@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -26,6 +27,7 @@ class Plane {
     const glm::dvec2 half_cells = 0.5 * (light.rows > 0 ? glm::dvec2(light.columns, light.rows) : glm::dvec2(some));
     across_ = half_cells.x * glm::cross(v, n) / glm::dot(n, n);
     along_ = half_cells.y * glm::cross(n, u) / glm::dot(n, n);
+    length_of_cell_ = glm::length(u) / half_cells.x + glm::length(v) / half_cells.y;
   }
 
   [[nodiscard]] double height(const glm::dvec3& x) const { return glm::dot(normal_, x - center_); }
@@ -33,9 +35,11 @@ class Plane {
     return {glm::dot(across_, x - center_), glm::dot(along_, x - center_)};
   }
   [[nodiscard]] double cells_a_length() const { return std::max(glm::length(across_), glm::length(along_)); }
+  [[nodiscard]] double length_of_cell() const { return length_of_cell_; }
 
  private:
   glm::dvec3 center_, normal_{0}, across_{0}, along_{0};
+  double length_of_cell_ = 0;
 };
 
 template <typename Point>
@@ -90,33 +94,56 @@ bool meets_box(std::span<const glm::dvec2> polygon, const glm::dvec2& low, const
   return true;
 }
 
+/// The light samples as the search sees them.
+struct Samples {
+  std::vector<glm::dvec2> places;   // in cells
+  std::vector<bool> on_plane;       // exactly
+  std::vector<std::uint32_t> by_y;  // their numbers
+  double off = 0;                   // how far one is off the plane, in double
+
+  Samples(const Plane& plane, const Light& light) : by_y(light.points.size()) {
+    for (const glm::vec3& point : light.points) {
+      places.push_back(plane.cell(point));
+      off = std::max(off, std::abs(plane.height(point)));
+      on_plane.push_back(side_of_plane(light.center, light.center_u, light.center_v, point) == Side::on);
+    }
+    std::iota(by_y.begin(), by_y.end(), 0U);
+    std::ranges::sort(by_y, {}, [&](std::uint32_t j) { return places[j].y; });
+  }
+
+  /// Calls `visit(j)` for those with y in low … high.
+  template <typename Visit>
+  void for_each_between(double low, double high, Visit visit) const {
+    const auto first = std::ranges::lower_bound(by_y, low, {}, [&](std::uint32_t j) { return places[j].y; });
+    for (auto at = first; at != by_y.end() && places[*at].y <= high; ++at) visit(*at);
+  }
+};
+
 }  // namespace
 
 LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const Light& light) {
   const Plane plane(light);
-  Box<glm::vec3> around_light;
-  Box<glm::dvec2> light_cells;
-  std::vector<glm::dvec2> places;
-  std::vector<bool> on_plane;
-  double off = 0;
-  for (const glm::vec3& point : light.points) {
-    around_light.add(point);
-    places.push_back(plane.cell(point));
-    light_cells.add(places.back());
-    off = std::max(off, std::abs(plane.height(point)));
-    on_plane.push_back(side_of_plane(light.center, light.center_u, light.center_v, point) == Side::on);
+  const Samples samples(plane, light);
+  Box<glm::vec3> box;
+  Box<glm::dvec2> cells;
+  for (const std::vector<glm::vec3>& points : {light.points, light.outline}) {
+    for (const glm::vec3& point : points) {
+      box.add(point);
+      cells.add(plane.cell(point));
+    }
   }
-  const glm::vec3 largest = glm::max(glm::max(glm::abs(scene.lower), glm::abs(scene.upper)),
-                                     glm::max(glm::abs(around_light.low), glm::abs(around_light.high)));
+  const glm::vec3 largest =
+      glm::max(glm::max(glm::abs(scene.lower), glm::abs(scene.upper)), glm::max(glm::abs(box.low), glm::abs(box.high)));
   const double rounding = 0x1p-44 * static_cast<double>(std::max({largest.x, largest.y, largest.z}));
-  const double delta = off + rounding, around = 1.0 / 64 + 1024 * delta * plane.cells_a_length();
-  const bool all_on_plane = std::ranges::find(on_plane, false) == on_plane.end();
+  const double delta = samples.off + rounding, around = 1.0 / 64 + 1024 * delta * plane.cells_a_length();
+  const bool all_on_plane = std::ranges::find(samples.on_plane, false) == samples.on_plane.end();
+  // As far as the flattest way gets between ±2 δ.
+  const double flat = 0x1p22 * delta, flat_cells = around + flat * plane.cells_a_length();
+  const auto reach = static_cast<float>(1.01 * (flat + around * plane.length_of_cell()));
 
   LightTouch touch;
-  std::vector<bool> touched(places.size());
-  const glm::vec3 reach = around_light.high - around_light.low + static_cast<float>(4 * delta);
-  const glm::dvec2 cells = light_cells.high - light_cells.low + around;
-  tree.for_each_near(around_light.low - reach, around_light.high + reach, [&](std::uint32_t triangle) {
+  std::vector<bool> touched(samples.places.size());
+  tree.for_each_near(box.low - reach, box.high + reach, [&](std::uint32_t triangle) {
     if (scene.emits[triangle] == light.index) return;
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
     // Where double knows exactly which corners are in the plane, light samples in the plane are safe.
@@ -126,16 +153,15 @@ LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const 
     });
     if (clear && all_on_plane) return;
     const std::vector<glm::dvec2> near = near_plane(plane, corners, 2 * delta);
-    if (!meets_box(near, light_cells.low - cells, light_cells.high + cells)) return;
+    if (!meets_box(near, cells.low - flat_cells, cells.high + flat_cells)) return;
     touch.any_near = true;
-    Box<glm::dvec2> box;
-    for (const glm::dvec2& x : near) box.add(x);
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      if (touched[j] || (clear && on_plane[j])) continue;
-      const glm::dvec2 low = places[j] - around, high = places[j] + around;
-      const bool apart = box.low.x > high.x || box.low.y > high.y || box.high.x < low.x || box.high.y < low.y;
-      touched[j] = !apart && meets_box(near, low, high);
-    }
+    Box<glm::dvec2> extent;
+    for (const glm::dvec2& x : near) extent.add(x);
+    samples.for_each_between(extent.low.y - around, extent.high.y + around, [&](std::uint32_t j) {
+      const glm::dvec2 low = samples.places[j] - around, high = samples.places[j] + around;
+      if (touched[j] || (clear && samples.on_plane[j]) || extent.low.x > high.x || extent.high.x < low.x) return;
+      touched[j] = meets_box(near, low, high);
+    });
   });
   for (std::uint32_t j = 0; j < touched.size(); ++j) {
     if (touched[j]) touch.samples.push_back(j);

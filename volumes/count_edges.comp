@@ -355,7 +355,7 @@ void main() {
   if (kKeepsDepths != 0 && !below) {
     for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
   }
-  const bool touched = (push.touched_low | push.touched_high) != 0 || (push.near_plane != 0 && at.height < length(from_center) / 256.0);
+  const bool touched = (push.touched_low | push.touched_high) != 0 || sees_flat(length(from_center), at.height);
   if (subgroupAny(open_pixel || cut_off) || touched || below) {
     settle_whole(pixel, false, !below);
     return;

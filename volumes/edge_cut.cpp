@@ -16,7 +16,7 @@ using visibility::SceneFloats;
 /// Where the edge a b passes through the side's plane. The same for (b, a).
 glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
   const glm::dvec3 n = glm::cross(side.u, side.v);
-  glm::dvec3 from(a), to(b);
+  glm::dvec3 from(side.stored(a)), to(side.stored(b));
   double h0 = glm::dot(n, from - side.center), h1 = glm::dot(n, to - side.center);
   if (std::abs(h1) < std::abs(h0)) {
     std::swap(from, to);
@@ -43,8 +43,7 @@ bool may_touch_light(const LightSide& side, const glm::vec3& a, const glm::vec3&
 }  // namespace
 
 double LightSide::height_of(const glm::vec3& x) const {
-  const glm::dvec3 stored = glm::dvec3(x * scale) / static_cast<double>(scale);  // a power of two: exact
-  return sign * glm::dot(glm::cross(u, v), stored - center);
+  return sign * glm::dot(glm::cross(u, v), glm::dvec3(stored(x)) - center);
 }
 
 bool reaches_behind(const SceneFloats& scene, const LightSide& side) {

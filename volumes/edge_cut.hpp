@@ -15,6 +15,8 @@ struct LightSide {
   double sign = 1;  ///< +1: where u × v points; −1: behind
   float scale = 1;  ///< render::device_scale: positions are taken as devices store them
 
+  /// As devices store it: rounded where its scaled value is subnormal.
+  [[nodiscard]] glm::vec3 stored(const glm::vec3& x) const { return x * scale / scale; }
   /// Over the plane, times |u × v|.
   [[nodiscard]] double height_of(const glm::vec3& x) const;
 };

@@ -244,6 +244,16 @@ std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& 
   return 0;
 }
 
+/// The same where no edge changes it: at any light sample that is not open.
+std::uint32_t depth_by_any_sample(const Frame& frame, Open& open, const Sample& at, Judge& judge) {
+  for (std::uint32_t sample = 0; sample < frame.rows * frame.columns; ++sample) {
+    if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
+    return judge.depth(at, place_of(frame, sample / frame.columns, sample % frame.columns));
+  }
+  open.pixel = true;
+  return 0;
+}
+
 /// One view sample, its group's edges sorted out.
 template <typename Counter>
 void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& histogram,
@@ -262,7 +272,7 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
     if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
     if (changes_any) sum_up(frame, changes, depth, seen);
   } else if (scratch.open.corner) {
-    depth = judge.depth(at, place_of(frame, 0, 0));  // no edge crosses a row, so any light sample will do
+    depth = depth_by_any_sample(frame, scratch.open, at, judge);
   }
   if (!changes_any) {
     seen.visible = depth == 0 ? frame.rows * frame.columns : 0;
@@ -306,8 +316,8 @@ void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed
   open.clear();
   if (touch.empty()) return;
   open.samples = touch.samples;
-  const glm::vec3 way = at.p - frame.center;
-  open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * glm::length(way);
+  const float farthest = glm::length(at.p - frame.center) + frame.radius;
+  open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * farthest;
 }
 
 HWY_EXPORT(scatter_here);

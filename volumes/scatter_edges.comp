@@ -107,7 +107,7 @@ void main() {
   if (below) on = false;
 
   if (on) open_rows = touched_rows();
-  if (on && push.near_plane != 0 && at.height < away / 256.0) open_pixel = true;
+  if (on && sees_flat(away, at.height)) open_pixel = true;
   const bool any_touched = subgroupAny((open_rows.x | open_rows.y) != 0);
 
   uint visible = receives ? 0 : all_samples;

@@ -5,7 +5,10 @@
 #include "mesh/shapes.hpp"
 #include "scenes/reader.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <filesystem>
+#include <random>
 
 namespace penumbra {
 namespace {
@@ -59,6 +62,61 @@ TEST_F(AgreementOn, PanelsInTheLightsPlane) {
       EXPECT_GT(found.judged, 100U);
       EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
     }
+  }
+}
+
+// Lights whose corners no float holds, small panels in their planes: over a corner, across a side, beside.
+TEST_F(AgreementOn, PanelsOfRandomLights) {
+  for (const tests::MaskMethod& method : tests::kMaskMethods) {
+    tests::BothMethods both(device(), method);
+    tests::Differences found;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&] { return glm::dvec3(real(random), real(random), real(random)); };
+    for (int i = 0; i < (method.any_light ? 4 : method.name == tests::kNativeEdgeScatter.name ? 200 : 24); ++i) {
+      const glm::dvec3 center = glm::dvec3(0, 2.5, 0) + 0.3 * point(), u = glm::normalize(point());
+      const glm::dvec3 v = 0.7 * glm::normalize(glm::cross(u, point()));
+      const glm::dvec2 at = glm::dvec2(real(random), real(random)) * 1.3;
+      scenes::Scene scene = tests::with_a_floor({});
+      scene.lights[0] = tests::rectangle_light(center, u, v);
+      scene.lights[0].two_sided = true;
+      tests::add_object(scene, "panel", tests::quad(center + at.x * u + at.y * v, 0.5 * u, 0.4 * v));
+      found += both.on(scene, 24, {.count = i % 3 == 0 ? 9U : 64U}, 400);
+    }
+    tests::print(fmt::format("{} panels", method.name), found);
+    EXPECT_GT(found.judged, 100U);
+    EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
+  }
+}
+
+// One method, lights one after the other: with a body and without, whose planes cut the scene or not. Nothing of one
+// may be left for the next.
+TEST_F(AgreementOn, LightsOneAfterTheOther) {
+  mesh::SphereShape ball;
+  ball.center = {0.3, 0.8, 0.2};
+  ball.radius = 0.5;
+  scenes::Scene scene = tests::with_a_floor(mesh::make_sphere(ball));
+  const glm::dvec3 u(0.5208, 0, 0.6076), v(-0.4416, -0.5498, 0.3784);
+  tests::add_object(scene, "lamp", tests::quad({-2.6, 4.2, 2.4}, u, v)).emits = 1;
+  scene.lights.push_back(tests::rectangle_light({-2.6, 4.2, 2.4}, u, v));
+  scene.lights.push_back(tests::rectangle_light({0.3, 0.9, 0.2}, u, v));  // in the midst of the ball
+  scene.lights.back().two_sided = true;
+  const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+  render::VisibilityBuffer view(device(), floats);
+  const visibility::ViewSamples samples = view.render(visibility::make_camera(scene.cameras[0], floats.origin, 40, 40));
+  const auto kept = tests::kNativeEdgeScatter.make(device(), {});
+  kept->prepare_mesh(floats);
+  for (const std::uint32_t index : {0U, 1U, 2U, 1U, 0U, 2U, 2U}) {
+    const visibility::Light light = visibility::make_light(scene, index, floats.origin, {.count = 64});
+    const auto fresh = tests::kNativeEdgeScatter.make(device(), {});
+    const tests::Masks expected = tests::run(*fresh, floats, light, samples);
+    kept->prepare_light(light);
+    kept->prepare_view(samples);
+    kept->evaluate({0, samples.height});
+    std::vector<std::uint32_t> words(expected.words.size());
+    kept->read_masks(words);
+    EXPECT_EQ(words, expected.words) << "light " << index;
+    EXPECT_TRUE(tests::equals_truth(floats, light, samples, expected)) << "light " << index;
   }
 }
 

@@ -1,4 +1,4 @@
-// Ctrl-C at any moment: exit code 130, not the end of the work, and nothing left behind.
+// Ctrl-C at any moment: exit code 130, and nothing left behind.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
