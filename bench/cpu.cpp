@@ -55,9 +55,7 @@ std::vector<CpuEntry> measure_edges(std::uint64_t triangles, std::uint32_t runs)
   entry.edges = graph.edges.size();
   add(graph_seconds, graph.edges.size());
   std::vector<volumes::EdgeRecord> records;
-  add(time_runs(runs,
-                [&] { records = volumes::edge_records(floats, volumes::edge_casters(floats, -1)); }),
-      0);
+  add(time_runs(runs, [&] { records = volumes::edge_records(floats, volumes::edge_casters(floats, -1)); }), 0);
   entries.back().items = records.size();
   volumes::EdgeTexels texels;
   const float scale = render::device_scale(floats);
