@@ -27,6 +27,7 @@ class Plane {
     const glm::dvec2 half_cells = 0.5 * (light.rows > 0 ? glm::dvec2(light.columns, light.rows) : glm::dvec2(some));
     across_ = half_cells.x * glm::cross(v, n) / glm::dot(n, n);
     along_ = half_cells.y * glm::cross(n, u) / glm::dot(n, n);
+    skew_ = glm::length(u) * glm::length(v) / glm::length(n);
     length_of_cell_ = glm::length(u) / half_cells.x + glm::length(v) / half_cells.y;
   }
 
@@ -36,10 +37,12 @@ class Plane {
   }
   [[nodiscard]] double cells_a_length() const { return std::max(glm::length(across_), glm::length(along_)); }
   [[nodiscard]] double length_of_cell() const { return length_of_cell_; }
+  /// 1 / sin of the angle between the light's sides.
+  [[nodiscard]] double skew() const { return skew_; }
 
  private:
   glm::dvec3 center_, normal_{0}, across_{0}, along_{0};
-  double length_of_cell_ = 0;
+  double length_of_cell_ = 0, skew_ = 1;
 };
 
 template <typename Point>
@@ -134,10 +137,13 @@ LightTouch find_touch(const SceneFloats& scene, const TriangleTree& tree, const 
   }
   const glm::vec3 largest =
       glm::max(glm::max(glm::abs(scene.lower), glm::abs(scene.upper)), glm::max(glm::abs(box.low), glm::abs(box.high)));
-  const double rounding = 0x1p-44 * static_cast<double>(std::max({largest.x, largest.y, largest.z}));
+  // A height's: the normal is off by some 2⁻⁵¹ / sin γ, times a way of up to four times the largest coordinate; a few
+  // roundings more. Taken 32 times.
+  const double rounding = 0x1p-44 * plane.skew() * static_cast<double>(std::max({largest.x, largest.y, largest.z}));
   const double delta = samples.off + rounding, around = 1.0 / 64 + 1024 * delta * plane.cells_a_length();
   const bool all_on_plane = std::ranges::find(samples.on_plane, false) == samples.on_plane.end();
-  // As far as the flattest way gets between ±2 δ.
+  // As far as the flattest way gets while it rises by 3 δ: where the level is certain (bound level), H is at least 2⁻²⁰
+  // of p's distance from the light's middle and 2⁻²⁰ of the light, so no light sample is farther than 2²⁰ H.
   const double flat = 0x1p22 * delta, flat_cells = around + flat * plane.cells_a_length();
   const auto reach = static_cast<float>(1.01 * (flat + around * plane.length_of_cell()));
 
