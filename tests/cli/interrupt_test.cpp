@@ -1,7 +1,9 @@
-// Ctrl-C at any moment: exit code 130, and nothing left behind.
+// Ctrl-C at any moment: exit code 130, soon, and nothing left behind.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
+
+#include <chrono>
 
 namespace penumbra::tests {
 namespace {
@@ -13,12 +15,15 @@ class Interrupt : public ProgramTest, public testing::WithParamInterface<double>
 TEST_P(Interrupt, EndsWith130AndLeavesNoFile) {
   const std::string scene = tiny_scene();
   // Enough work for minutes: the signal always comes in the midst of it.
+  const auto start = std::chrono::steady_clock::now();
   const Outcome outcome =
       run_program({.arguments = {"render", scene, "-o", path("out.exr"), "--bits", path("out.bits"), "--method",
                                  "raytrace", "--size", "2048x2048", "--light-samples", "4096"},
                    .environment = {},
                    .interrupt_after = GetParam()});
+  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_LT(elapsed, GetParam() + 20) << "an interrupt should not wait for the end of the work";
   EXPECT_THAT(outcome.err, testing::HasSubstr("interrupted"));
   EXPECT_THAT(files(), ElementsAre("scene.json"));
 }
