@@ -9,12 +9,16 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -32,6 +36,51 @@ std::uint64_t disk_quota() {
   return quota;
 }
 
+/// The folder that a file stands in, as a path that can be opened.
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// What the names of parts begin with on this machine until it starts again: same beginning, same kernel, so that a
+/// lock of whoever made it is seen here.
+const std::string& part_prefix() {
+  static const std::string prefix = [] {
+    std::ifstream stream("/proc/sys/kernel/random/boot_id");
+    std::string boot;
+    stream >> boot;
+    return fmt::format(".penumbra-{}-", boot.substr(0, boot.find('-')));
+  }();
+  return prefix;
+}
+
+/// Removes a part that nobody holds any more.
+void remove_if_orphaned(const std::filesystem::path& part) {
+  const int descriptor = ::open(part.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (descriptor < 0) return;
+  struct stat status {};
+  if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+    ::unlink(part.c_str());  // an owner who comes too late for the lock sees that its file is gone, and makes another
+  }
+  ::close(descriptor);
+}
+
+/// Clears a folder of what killed processes left there; once a folder and process.
+void remove_orphans(const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> done;
+  std::error_code error;
+  const std::filesystem::path name = std::filesystem::canonical(folder, error);
+  const std::lock_guard lock(mutex);
+  if (error || !done.insert(name).second) return;
+  const std::string& prefix = part_prefix();
+  if (prefix == ".penumbra--") return;  // no /proc: whose files these are cannot be told
+  std::filesystem::directory_iterator entries(name, error);
+  for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
+    const std::string file = entries->path().filename().string();
+    if (file.starts_with(prefix) && file.find(".part") != std::string::npos) remove_if_orphaned(entries->path());
+  }
+}
+
 /// Where the file shall stand in the end: links are followed, so that the link survives and its target is replaced.
 std::filesystem::path resolve_destination(const std::filesystem::path& path) {
   if (path.empty() || !path.has_filename()) {
@@ -42,6 +91,18 @@ std::filesystem::path resolve_destination(const std::filesystem::path& path) {
   std::filesystem::path target = std::filesystem::canonical(path, error);
   if (error) throw ResourceError("cannot write \"{}\": a symbolic link that leads nowhere", path.string());
   return target;
+}
+
+/// A name that nobody in this process has had yet: short (a long file name may leave no room for a suffix), and with
+/// the destination's extension for people who find one.
+std::filesystem::path next_part(const std::filesystem::path& destination) {
+  static std::atomic<unsigned> serial{0};
+  return destination.parent_path() /
+         fmt::format("{}{}-{}.part{}", part_prefix(), ::getpid(), serial++, destination.extension().string());
+}
+
+std::string path_of_descriptor(int descriptor) {
+  return fmt::format("/proc/self/fd/{}", descriptor);
 }
 
 void refuse_what_is_no_regular_file(const std::filesystem::path& path, const std::filesystem::path& destination) {
@@ -59,16 +120,32 @@ void refuse_what_is_no_regular_file(const std::filesystem::path& path, const std
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), destination_(resolve_destination(path_)) {
   refuse_what_is_no_regular_file(path_, destination_);
-  // The name is short and our own (a long file name may leave no room for a suffix), unique among processes and
-  // threads, and keeps the extension for libraries that choose the format by it.
-  static std::atomic<unsigned> serial{0};
+  remove_orphans(folder_of(destination_));
+  if (!open_nameless()) open_named();
+}
+
+/// False: this file system, or this machine, cannot.
+bool AtomicFile::open_nameless() {
+  if (std::getenv("PENUMBRA_TEST_NAMED_PARTS") != nullptr) return false;
+  descriptor_ = ::open(folder_of(destination_).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) return false;  // if it is for another reason, that will be found out and told presently
+  const bool can_be_named = ::access(path_of_descriptor(descriptor_).c_str(), F_OK) == 0;
+  if (!can_be_named) ::close(std::exchange(descriptor_, -1));
+  // Held already when the file gets a name, so that nobody takes it for an orphan.
+  if (can_be_named) ::flock(descriptor_, LOCK_EX);
+  return can_be_named;
+}
+
+void AtomicFile::open_named() {
   for (;;) {
-    const std::string name =
-        fmt::format(".penumbra-{}-{}.part{}", ::getpid(), serial++, destination_.extension().string());
-    temporary_ = destination_.parent_path() / name;
+    temporary_ = next_part(destination_);
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ >= 0) return;
-    if (errno != EEXIST) fail(errno);
+    if (descriptor_ < 0 && errno == EEXIST) continue;
+    if (descriptor_ < 0) fail(errno);
+    ::flock(descriptor_, LOCK_EX);  // where there are no locks, nobody else gets one either, and orphans stay
+    struct stat status {};
+    if (::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;
+    ::close(std::exchange(descriptor_, -1));  // taken for an orphan before it was locked
   }
 }
 
@@ -97,26 +174,38 @@ void AtomicFile::write(std::string_view text) {
 
 void AtomicFile::commit() {
   PENUMBRA_ASSERT(descriptor_ >= 0, "second commit of {}", path_.string());
-  // A library may have replaced the temporary instead of filling it, so the file behind the name is what counts.
-  struct stat status {};
-  if (::stat(temporary_.c_str(), &status) != 0) fail(errno);
-  if (static_cast<std::uint64_t>(status.st_size) > disk_quota()) fail(ENOSPC);
-  const int by_name = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (by_name < 0) fail(errno);
-  const int sync_error = ::fsync(by_name) == 0 ? 0 : errno;
-  ::close(by_name);
-  if (sync_error != 0 && sync_error != EINVAL) fail(sync_error);  // EINVAL: a file system without fsync
-  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);  // EINVAL: a file system without fsync
   // Again, in case somebody put something else there meanwhile (rename itself refuses only folders).
   refuse_what_is_no_regular_file(path_, destination_);
-  if (::rename(temporary_.c_str(), destination_.c_str()) != 0) fail(errno);
-  temporary_.clear();
+  give_name();
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
   // The rename itself reaches the disk with the folder. Best effort: the file is complete either way.
-  const std::filesystem::path folder = destination_.has_parent_path() ? destination_.parent_path() : ".";
-  if (const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); descriptor >= 0) {
+  if (const int descriptor = ::open(folder_of(destination_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      descriptor >= 0) {
     ::fsync(descriptor);
     ::close(descriptor);
   }
+}
+
+/// A link never replaces a file: where there is one already, a name of our own comes first, to be renamed.
+void AtomicFile::give_name() {
+  if (temporary_.empty()) {
+    const std::string nameless = path_of_descriptor(descriptor_);
+    const auto link = [&](const std::filesystem::path& name) {
+      return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    };
+    if (link(destination_)) return;
+    if (errno != EEXIST) fail(errno);
+    for (std::filesystem::path part = next_part(destination_);; part = next_part(destination_)) {
+      if (link(part)) {
+        temporary_ = part;
+        break;
+      }
+      if (errno != EEXIST) fail(errno);
+    }
+  }
+  if (::rename(temporary_.c_str(), destination_.c_str()) != 0) fail(errno);
+  temporary_.clear();
 }
 
 void AtomicFile::fail(int error_number) const {

@@ -8,16 +8,22 @@
 
 namespace penumbra {
 
-/// An output file that appears whole or not at all: what is written goes to a temporary file beside the destination;
-/// commit() flushes it to the disk and renames it into place. Without commit() the temporary is removed and the
-/// destination stays as it was.
+/// An output file that appears whole or not at all: what is written goes to a file without a name in the destination's
+/// folder, which commit() flushes to the disk and gives its name. Without commit() the destination stays as it was, and
+/// nothing is left, however the process ends.
+///
+/// Where the file system has no files without names, or where the new file has to replace an old one, the file is for a
+/// while, or for a moment, called ".penumbra-BOOT-PID-N.part". Its owner holds a lock (flock) on it: one without an
+/// owner was left by a process that was killed, and the first AtomicFile of a process in a folder removes those. BOOT
+/// stands for the running kernel, so that files of other machines in a shared folder, whose locks might not be seen
+/// here, are left alone.
 ///
 /// Refuses to replace what is not a regular file (a folder, a device, a pipe). A symbolic link to a regular file is
 /// followed. Whatever fails (no such folder, no permission, disk full) is a ResourceError with the path as the
 /// user gave it and the system's reason.
 ///
-/// For tests only: the environment variable PENUMBRA_TEST_DISK_QUOTA=<bytes> makes every file behave as if the disk
-/// had room for only so many bytes (ENOSPC).
+/// For tests only, environment variables: PENUMBRA_TEST_DISK_QUOTA=<bytes> makes every file behave as if the disk had
+/// room for only so many bytes (ENOSPC); PENUMBRA_TEST_NAMED_PARTS=1 as if no file could be without a name.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -27,10 +33,8 @@ class AtomicFile {
 
   /// The destination, as it was given.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// An existing empty file in the destination's folder, for libraries that want a path to write to.
-  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
 
-  /// Appends. For callers that need no library; do not mix with writing to temporary() by path.
+  /// Appends.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
@@ -38,11 +42,14 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(int error_number) const;
+  bool open_nameless();
+  void open_named();
+  void give_name();
   void remove_temporary() noexcept;
 
   std::filesystem::path path_;         ///< as the user gave it: for messages
   std::filesystem::path destination_;  ///< path_ with symbolic links resolved
-  std::filesystem::path temporary_;    ///< empty once committed
+  std::filesystem::path temporary_;    ///< empty while the file has no name, and once committed
   int descriptor_ = -1;
   std::uint64_t written_ = 0;
 };

@@ -1,0 +1,143 @@
+#include "base/memory.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace penumbra {
+namespace {
+
+constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+
+std::optional<std::uint64_t> parse_number(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end == text.data()) return std::nullopt;  // "max", or no such file
+  return value;
+}
+
+/// The number at the start of a file of one number.
+std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string text;
+  stream >> text;
+  return parse_number(text);
+}
+
+/// The number behind a key in a file of lines "KEY NUMBER" or "KEY: NUMBER kB".
+std::optional<std::uint64_t> number_of(const std::filesystem::path& file, std::string_view key) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    std::istringstream words(line);
+    std::string name, value;
+    words >> name >> value;
+    if (name.ends_with(':')) name.pop_back();
+    if (name == key) return parse_number(value);
+  }
+  return std::nullopt;
+}
+
+/// Names of one version's files.
+struct GroupFiles {
+  const char* limit;
+  const char* usage;
+  const char* prefix;  ///< of keys in memory.stat that count the whole subtree
+};
+constexpr GroupFiles kVersion1 = {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_"};
+constexpr GroupFiles kVersion2 = {"memory.max", "memory.current", ""};
+
+/// What one group leaves; pages of files count as free, since the kernel gives them back before it refuses.
+std::uint64_t room_of_group(const std::filesystem::path& folder, const GroupFiles& files) {
+  const auto limit = number_in(folder / files.limit), usage = number_in(folder / files.usage);
+  if (!limit || !usage) return kUnlimited;
+  std::uint64_t used = *usage;
+  for (const char* key : {"inactive_file", "active_file"}) {
+    used -= std::min(used, number_of(folder / "memory.stat", std::string(files.prefix) + key).value_or(0));
+  }
+  return *limit - std::min(*limit, used);
+}
+
+/// The least that a group and those above it leave. In a container the path may be the host's, which is not to be seen
+/// there: then only the mount's own root counts.
+std::uint64_t room_of_groups(const std::filesystem::path& mount, std::string path, const GroupFiles& files) {
+  std::uint64_t room = room_of_group(mount, files);
+  while (path.size() > 1) {
+    room = std::min(room, room_of_group(mount / path.substr(1), files));
+    path.erase(path.rfind('/'));
+  }
+  return room;
+}
+
+std::uint64_t room_of_control_groups(const std::filesystem::path& root) {
+  std::uint64_t room = kUnlimited;
+  std::ifstream groups(root / "proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {  // NUMBER:CONTROLLERS:PATH
+    const auto first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const std::string path = line.substr(second + 1);
+    if (controllers == ",,") {
+      room = std::min(room, room_of_groups(root / "sys/fs/cgroup", path, kVersion2));
+    } else if (controllers.find(",memory,") != std::string::npos) {
+      room = std::min(room, room_of_groups(root / "sys/fs/cgroup/memory", path, kVersion1));
+    }
+  }
+  return room;
+}
+
+/// What a resource limit leaves of addresses; `column` is that of /proc/self/statm, in pages.
+std::uint64_t room_of_limit(const std::filesystem::path& root, __rlimit_resource resource, int column) {
+  rlimit limit{};
+  if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
+  std::ifstream statm(root / "proc/self/statm");
+  std::uint64_t pages = 0;
+  for (int i = 0; i <= column; ++i) statm >> pages;
+  const std::uint64_t used = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
+}
+
+}  // namespace
+
+MemoryRoom memory_room(const std::filesystem::path& root) {
+  MemoryRoom room{kUnlimited, "this machine has left"};
+  const auto at_most = [&](std::uint64_t bytes, const char* limit) {
+    if (bytes < room.bytes) room = {bytes, limit};
+  };
+  if (const auto kibibytes = number_of(root / "proc/meminfo", "MemAvailable")) {
+    at_most(*kibibytes * 1024, "this machine has left");
+  } else {  // no /proc
+    at_most(static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
+            "this machine has");
+  }
+  at_most(room_of_control_groups(root), "the process's control group leaves");
+  at_most(room_of_limit(root, RLIMIT_AS, 0), "the limit on addresses (ulimit -v) leaves");
+  at_most(room_of_limit(root, RLIMIT_DATA, 5), "the limit on data (ulimit -d) leaves");
+  return room;
+}
+
+void require_memory(std::uint64_t bytes, std::string_view what, std::string_view remedy) {
+  constexpr std::uint64_t kAlwaysTried = 16u << 20;  // not worth the look-up, and an ordinary bad_alloc if it fails
+  if (bytes <= kAlwaysTried) return;
+  const MemoryRoom room = memory_room();
+  if (bytes <= room.bytes) return;
+  throw ResourceError("{} needs about {} of memory, more than the {} that {}; {}", what, in_bytes(bytes),
+                      in_bytes(room.bytes), room.limit, remedy);
+}
+
+std::string in_bytes(std::uint64_t bytes) {
+  constexpr double kMebi = 1u << 20, kGibi = 1u << 30;
+  const auto value = static_cast<double>(bytes);
+  if (value >= kGibi) return fmt::format("{:.3g} GiB", value / kGibi);
+  if (value >= kMebi) return fmt::format("{:.3g} MiB", value / kMebi);
+  return fmt::format("{} bytes", bytes);
+}
+
+}  // namespace penumbra
