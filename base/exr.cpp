@@ -129,8 +129,7 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
   file.commit();
 }
 
-ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side) {
-  start_worker_threads();
+ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection) {
   try {
     Imf::InputFile input(path.c_str());
     const Imf::Header& header = input.header();
@@ -138,8 +137,8 @@ ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side) 
     if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", path.string());
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    if (std::max(width, height) > largest_side) {
-      throw InputError("\"{}\": {}x{} pixels; at most {} a side", path.string(), width, height, largest_side);
+    if (std::max(width, height) > selection.largest_side) {
+      throw InputError("\"{}\": {}x{} pixels; at most {} a side", path.string(), width, height, selection.largest_side);
     }
     ExrFile file;
     file.width = static_cast<std::uint32_t>(width);
@@ -159,7 +158,10 @@ ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side) 
       // OpenEXR addresses pixels by their absolute place: shift so that the window's corner is element 0.
       pixels.insert(name, Imf::Slice::Make(type, values.data(), window));
     };
+    const std::vector<std::string>& wanted = selection.channels;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+      file.channel_names.emplace_back(channel.name());
+      if (!wanted.empty() && std::ranges::find(wanted, channel.name()) == wanted.end()) continue;
       if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
         throw InputError("\"{}\": channel {} is subsampled, which is not supported", path.string(), channel.name());
       }
@@ -173,6 +175,8 @@ ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side) 
     input.readPixels(window.min.y, window.max.y);
     return file;
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     throw InputError("\"{}\" is no readable OpenEXR image: {}", path.string(), error.what());

@@ -42,14 +42,20 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image);
 /// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers.
 struct ExrFile {
   std::uint32_t width = 0, height = 0;
+  std::vector<std::string> channel_names;  ///< all that are in the file, read or not
   std::map<std::string, std::vector<float>> floats;
   std::map<std::string, std::vector<std::uint32_t>> integers;
   std::map<std::string, std::string> attributes;
   std::map<std::string, glm::dvec3> vectors;
 };
 
+struct ExrSelection {
+  std::uint32_t largest_side = kLargestExrSide;
+  std::vector<std::string> channels;  ///< these alone, where the file has them; none: all
+};
+
 /// Reads a scan-line or tiled image: its data window. Throws InputError for what is none, or has a side of more than
-/// `largest_side` pixels, which is found out before anything is decoded.
-ExrFile read_exr(const std::filesystem::path& path, std::uint32_t largest_side = kLargestExrSide);
+/// `largest_side` pixels, which is found out before anything is decoded. Channels that are not selected take no memory.
+ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection = {});
 
 }  // namespace penumbra

@@ -154,7 +154,7 @@ BrokenMesh make_broken_mesh(const BrokenShape& shape) {
 }
 
 TriangleSoup make_lattice_soup(const LatticeSoup& soup) {
-  builder::check_count(soup.triangles);
+  builder::check_count(soup.triangles, 3);
   if (soup.cells == 0) throw InputError("a lattice soup needs at least 1 cell");
   const Placement placement(glm::dvec3(0), glm::dvec3(soup.cells), soup.center, soup.half_extent);
   std::mt19937 random(soup.seed);

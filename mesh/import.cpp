@@ -4,14 +4,17 @@
 #include "mesh/import_helper.hpp"
 #include "mesh/import_wire.hpp"
 
+#include <utility>
+
 namespace penumbra::mesh {
 
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits) {
   require_regular_file(file);
-  const std::vector<std::byte> answer = run_import_helper({"mesh", file, {}}, limits);
+  HelperAnswer answer = run_import_helper({"mesh", file, {}}, limits);
   try {
-    WireReader from(answer);
+    WireReader from(answer.payload);
     ImportedMesh mesh = get_mesh(from);
+    mesh.sources = std::move(answer.sources);
     from.expect_end();
     if (mesh.soup.triangles.empty()) throw WireError("it holds no triangles");
     return mesh;

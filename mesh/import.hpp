@@ -11,8 +11,9 @@
 namespace penumbra::mesh {
 
 struct ImportedMesh {
-  TriangleSoup soup;               ///< one object (number 0), node transforms applied; never empty
-  std::vector<std::string> notes;  ///< what was skipped or changed on the way, each with its count
+  TriangleSoup soup;                           ///< one object (number 0), node transforms applied; never empty
+  std::vector<std::string> notes;              ///< what was skipped or changed on the way, each with its count
+  std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, the mesh's own among them
 };
 
 /// What a foreign file may cost before it is refused.

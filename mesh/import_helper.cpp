@@ -1,6 +1,7 @@
 #include "mesh/import_helper.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "mesh/import_wire.hpp"
 
 #include <fcntl.h>
@@ -115,15 +116,21 @@ std::filesystem::path find_helper() {
   return self.parent_path() / "penumbra-import";
 }
 
+/// What the child gets as its standard streams.
+struct Streams {
+  Pipe life;  ///< its input: nothing comes, and its end is that of this process or of the job
+  Pipe output, errors;
+};
+
 /// posix_spawn's two argument objects, set so that the child sees the given streams and nothing else of ours.
 class SpawnSettings {
  public:
-  SpawnSettings(int output, int errors) {
+  explicit SpawnSettings(const Streams& streams) {
     ::posix_spawn_file_actions_init(&actions_);
     ::posix_spawnattr_init(&attributes_);
-    ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
-    ::posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions_, streams.life.read.get(), STDIN_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions_, streams.output.write.get(), STDOUT_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions_, streams.errors.write.get(), STDERR_FILENO);
     // Libraries of this program may have opened files without O_CLOEXEC (GPU drivers do).
     ::posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
     // The child starts with default signal handling whatever this program blocks or ignores.
@@ -148,14 +155,20 @@ class SpawnSettings {
   posix_spawnattr_t attributes_{};
 };
 
-pid_t spawn(std::vector<std::string> arguments, const Descriptor& output, const Descriptor& errors) {
+pid_t spawn(std::vector<std::string> arguments, const Streams& streams) {
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const SpawnSettings settings(output.get(), errors.get());
+  const SpawnSettings settings(streams);
   pid_t pid = -1;
   const int error = ::posix_spawn(&pid, argv[0], settings.actions(), settings.attributes(), argv.data(), ::environ);
+  if (error == EAGAIN || error == ENOMEM) {
+    throw ResourceError(
+        "cannot start the import helper: {}; raise the limit on processes (ulimit -u, the control group's pids.max), "
+        "or that on memory",
+        reason(error));
+  }
   if (error != 0) {
     throw ResourceError(
         "cannot start the import helper {}: {}; it is built beside the program, or is named by the "
@@ -186,9 +199,10 @@ void drain(Descriptor& from, std::span<std::byte> buffer, Take take) {
 }
 
 /// Collects the child's output until it ends, or until it has cost too much, and then ends it.
-Outcome supervise(Child& child, Pipe output, Pipe errors, const ImportLimits& limits) {
+Outcome supervise(Child& child, Streams streams, const ImportLimits& limits) {
   constexpr std::size_t kKeptErrors = 4096;
   const Clock::time_point deadline = Clock::now() + limits.time;
+  Pipe &output = streams.output, &errors = streams.errors;
   output.write.close();  // or the pipes would never end
   errors.write.close();
   Outcome outcome;
@@ -234,12 +248,6 @@ std::string in_seconds(std::chrono::milliseconds time) {
   return fmt::format("{:g} s", static_cast<double>(time.count()) / 1000.0);
 }
 
-std::string in_bytes(std::uint64_t bytes) {
-  const auto value = static_cast<double>(bytes);
-  if (bytes >= 1ull << 30) return fmt::format("{:.3g} GiB", value / static_cast<double>(1ull << 30));
-  return fmt::format("{:.3g} MiB", value / static_cast<double>(1ull << 20));
-}
-
 /// Throws what the outcome means for the user, unless the child ended as it should.
 void require_good_ending(const Outcome& outcome, const std::string& file, const ImportLimits& limits) {
   const bool cpu_limit = WIFSIGNALED(outcome.status) && WTERMSIG(outcome.status) == SIGXCPU;
@@ -263,6 +271,25 @@ void require_good_ending(const Outcome& outcome, const std::string& file, const 
   }
 }
 
+struct FittedLimits {
+  ImportLimits limits;
+  MemoryRoom room;
+};
+
+/// What the file may cost on this machine now: the helper's own memory; and its answer, which this process holds up to
+/// three times (as it grows, and as what is made of it).
+FittedLimits fit_to_machine(ImportLimits limits) {
+  const MemoryRoom room = memory_room();
+  limits.memory_bytes = std::min(limits.memory_bytes, room.bytes);
+  limits.output_bytes = std::min(limits.output_bytes, room.bytes / 4);
+  return {limits, room};
+}
+
+ResourceError out_of_room(const std::string& file, std::uint64_t bytes, const MemoryRoom& room) {
+  return ResourceError("{}: reading it needs more than {} of memory, and {} is all that {}", file, in_bytes(bytes),
+                       in_bytes(room.bytes), room.limit);
+}
+
 }  // namespace
 
 void require_regular_file(const std::filesystem::path& file) {
@@ -275,16 +302,24 @@ void require_regular_file(const std::filesystem::path& file) {
   if (!opened.is_open()) throw InputError("{}: {}", file.string(), reason(errno));
 }
 
-std::vector<std::byte> run_import_helper(const HelperJob& job, const ImportLimits& limits) {
+HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted) {
   const std::string file = job.file.string();
-  std::vector<std::string> arguments{find_helper().string(), job.kind, std::to_string(limits.time.count()),
-                                     std::to_string(limits.memory_bytes), file};
+  const auto [limits, room] = fit_to_machine(wanted);
+  std::vector<std::string> arguments{
+      find_helper().string(),     job.kind, std::to_string(limits.time.count()), std::to_string(limits.memory_bytes),
+      std::to_string(::getpid()), file};
   arguments.insert(arguments.end(), job.flags.begin(), job.flags.end());
-  Pipe output = make_pipe(), errors = make_pipe();
-  Child child(spawn(std::move(arguments), output.write, errors.write));
-  Outcome outcome = supervise(child, std::move(output), std::move(errors), limits);
+  Streams streams{make_pipe(), make_pipe(), make_pipe()};
+  Child child(spawn(std::move(arguments), streams));
+  streams.life.read.close();
+  Outcome outcome = supervise(child, std::move(streams), limits);
+  if (outcome.ending == Ending::too_much_output && limits.output_bytes < wanted.output_bytes) {
+    throw out_of_room(file, limits.output_bytes, room);
+  }
   require_good_ending(outcome, file, limits);
 
+  HelperAnswer answer;
+  std::size_t header = 0;
   try {
     WireReader from(outcome.output);
     for (const char expected : kHelperMagic) {
@@ -292,17 +327,20 @@ std::vector<std::byte> run_import_helper(const HelperJob& job, const ImportLimit
     }
     const auto status = static_cast<HelperStatus>(from.get<std::uint8_t>());
     if (status == HelperStatus::out_of_memory) {
+      if (limits.memory_bytes < wanted.memory_bytes) throw out_of_room(file, limits.memory_bytes, room);
       throw InputError("{}: reading it needs more than {} of memory; the file is damaged or too large", file,
                        in_bytes(limits.memory_bytes));
     }
     if (status == HelperStatus::bad_input) throw InputError("{}", from.get_string());
     if (status != HelperStatus::done) throw WireError("its status is unknown");
+    for (std::string& name : from.get_raw_strings()) answer.sources.emplace_back(std::move(name));
+    header = outcome.output.size() - from.remaining();
   } catch (const WireError& error) {
     throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file, error.what());
   }
-  constexpr auto kHeader = static_cast<std::ptrdiff_t>(sizeof(kHelperMagic) + 1);
-  outcome.output.erase(outcome.output.begin(), outcome.output.begin() + kHeader);
-  return std::move(outcome.output);
+  outcome.output.erase(outcome.output.begin(), outcome.output.begin() + static_cast<std::ptrdiff_t>(header));
+  answer.payload = std::move(outcome.output);
+  return answer;
 }
 
 }  // namespace penumbra::mesh

@@ -9,29 +9,37 @@
 
 namespace penumbra::mesh {
 
-/// What the helper is asked to do: `penumbra-import KIND MILLISECONDS BYTES FILE FLAGS…`.
+/// What the helper is asked to do: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. ASKER is this process's
+/// number; the helper's standard input is a pipe that this process never writes to and whose end is its own end.
 struct HelperJob {
-  std::string kind;  ///< "mesh" or "gltf"
+  std::string kind;  ///< "mesh", "gltf" or "texture"
   std::filesystem::path file;
   std::vector<std::string> flags;
 };
 
 /// First byte of a helper's answer, after its magic.
 enum class HelperStatus : std::uint8_t {
-  done = 0,           ///< the payload follows
+  done = 0,           ///< the files that were opened follow, then the payload
   bad_input = 1,      ///< a message follows: an InputError, thrown over there
   out_of_memory = 2,  ///< nothing follows
 };
 
 inline constexpr char kHelperMagic[8] = {'P', 'N', 'B', 'R', 'I', 'M', 'P', '1'};
 
-/// Runs `penumbra-import` on a foreign file, in a process of its own, and returns the payload of its answer.
+struct HelperAnswer {
+  std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, `job.file` among them
+  std::vector<std::byte> payload;
+};
+
+/// Runs `penumbra-import` on a foreign file, in a process of its own, and returns its answer.
+///
 ///
 /// The helper stands beside the running program, or where the environment's PENUMBRA_IMPORT_HELPER says. It is started
 /// with posix_spawn, not forked: this program has threads (TBB, Vulkan drivers), whose locks a forked copy would
-/// inherit locked. InputError: the file is bad, or reading it crashed, hung or exceeded `limits`. ResourceError: the
-/// helper is missing or cannot be started.
-std::vector<std::byte> run_import_helper(const HelperJob& job, const ImportLimits& limits);
+/// inherit locked. It ends with this process at the latest, and with the thread that called this one. InputError: the
+/// file is bad, or reading it crashed, hung or exceeded `limits`. ResourceError: the helper is missing or cannot be
+/// started, or this machine has less memory left than `limits` and the file needs more than that.
+HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& limits);
 
 /// Throws InputError unless `file` is a readable regular file that is not empty.
 void require_regular_file(const std::filesystem::path& file);

@@ -5,6 +5,7 @@
 #include "mesh/import_faces.hpp"
 #include "mesh/import_off.hpp"
 #include "mesh/import_text.hpp"
+#include "mesh/opened_files.hpp"
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/DefaultLogger.hpp>
@@ -37,6 +38,7 @@ class FolderOnly : public Assimp::DefaultIOSystem {
   bool Exists(const char* name) const override { return allowed(name) && DefaultIOSystem::Exists(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
     if (!std::string_view(mode).starts_with('r') || !allowed(name)) return nullptr;
+    note_opened_file(name);
     if (text_ && std::filesystem::weakly_canonical(name) == file_) {
       return std::make_unique<Assimp::MemoryIOStream>(reinterpret_cast<const std::uint8_t*>(text_->data()),
                                                       text_->size())
@@ -295,6 +297,7 @@ ImportedMesh read_with_assimp(const std::filesystem::path& file) {
 }  // namespace
 
 ImportedMesh read_mesh_file(const std::filesystem::path& file) {
+  note_opened_file(std::filesystem::absolute(file).string());
   const std::string extension = lower_extension(file);
   const auto looks_like = sniff(file);
   try {

@@ -65,6 +65,17 @@ std::vector<std::string> WireReader::get_strings() {
   return texts;
 }
 
+std::vector<std::string> WireReader::get_raw_strings() {
+  const auto count = get<std::uint64_t>();
+  if (count > rest_.size() / sizeof(std::uint64_t)) throw WireError("a list is longer than the answer");
+  std::vector<std::string> texts(count);
+  for (std::string& text : texts) {
+    const std::vector<char> raw = get_array<char>();
+    text.assign(raw.begin(), raw.end());
+  }
+  return texts;
+}
+
 void check_soup(const TriangleSoup& soup) {
   if (soup.object.size() != soup.triangles.size() || soup.source_face.size() != soup.triangles.size()) {
     throw WireError("the triangle arrays differ in length");

@@ -81,6 +81,8 @@ class WireReader {
   }
   std::string get_string();  ///< made printable: see printable()
   std::vector<std::string> get_strings();
+  std::vector<std::string> get_raw_strings();  ///< for paths, which may hold any bytes: not to be shown
+  [[nodiscard]] std::size_t remaining() const { return rest_.size(); }
   void expect_end() const {
     if (!rest_.empty()) throw WireError("there is more than expected");
   }

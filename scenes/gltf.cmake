@@ -1,4 +1,4 @@
-# The import helper, and the half of the glTF reader that runs inside it; the other half (gltf_reader.cpp,
+# The import helper, and the half of the readers of glTF and textures that runs inside it; the other half (gltf_reader.cpp,
 # scene_wire.cpp) is part of penumbra_scenes.
 find_package(nlohmann_json REQUIRED)
 
@@ -11,9 +11,9 @@ target_compile_definitions(penumbra_tinygltf PUBLIC tinygltf=penumbra_tinygltf
 target_link_libraries(penumbra_tinygltf PUBLIC nlohmann_json::nlohmann_json)
 
 add_library(penumbra_gltf_import STATIC
-  flat_light.cpp gltf_accessor.cpp gltf_import.cpp gltf_load.cpp gltf_nodes.cpp scene_wire.cpp)
+  flat_light.cpp gltf_accessor.cpp gltf_import.cpp gltf_load.cpp gltf_nodes.cpp scene_wire.cpp texture_file.cpp)
 target_include_directories(penumbra_gltf_import PUBLIC ${PROJECT_SOURCE_DIR})
-target_link_libraries(penumbra_gltf_import PUBLIC penumbra_import_wire PRIVATE penumbra_tinygltf penumbra_warnings)
+target_link_libraries(penumbra_gltf_import PUBLIC penumbra_import_wire penumbra_base PRIVATE penumbra_tinygltf penumbra_warnings)
 
 add_executable(penumbra-import import_main.cpp)
 target_link_libraries(penumbra-import PRIVATE penumbra_mesh_reader penumbra_gltf_import penumbra_import_wire penumbra_warnings)

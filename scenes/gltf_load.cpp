@@ -1,6 +1,7 @@
 #include "scenes/gltf_load.hpp"
 
 #include "base/error.hpp"
+#include "mesh/opened_files.hpp"
 
 #include <tiny_gltf.h>
 
@@ -32,6 +33,7 @@ struct Confinement {
 };
 
 bool read_bytes(const std::string& name, std::vector<unsigned char>& bytes) {
+  mesh::note_opened_file(name);
   std::error_code error;
   const auto size = std::filesystem::file_size(name, error);
   std::ifstream stream(name, std::ios::binary);

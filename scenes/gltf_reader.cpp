@@ -5,6 +5,8 @@
 #include "mesh/import_wire.hpp"
 #include "scenes/scene_wire.hpp"
 
+#include <utility>
+
 namespace penumbra::scenes {
 
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
@@ -12,10 +14,11 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   mesh::HelperJob job{"gltf", file, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
-  const std::vector<std::byte> answer = mesh::run_import_helper(job, {});
+  mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {
-    mesh::WireReader from(answer);
+    mesh::WireReader from(answer.payload);
     Scene scene = get_scene(from);
+    scene.sources = std::move(answer.sources);
     from.expect_end();
     return scene;
   } catch (const mesh::WireError& error) {

@@ -1,6 +1,7 @@
 #include "scenes/json_document.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -156,7 +157,11 @@ std::string read_text_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(status)) throw InputError("{}: not a regular file", file.string());
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError("{}: cannot be read: {}", file.string(), std::generic_category().message(errno));
-  std::string text(std::filesystem::file_size(file), '\0');
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  // The text, its values (a number of eight characters takes sixteen bytes), and what is made of them.
+  require_memory(3 * size, fmt::format("{}: a text of {}", file.string(), in_bytes(size)),
+                 "name mesh files in place of listing triangles");
+  std::string text(size, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) throw InputError("{}: reading failed after {} bytes", file.string(), stream.gcount());
   text.resize(static_cast<std::size_t>(stream.gcount()));

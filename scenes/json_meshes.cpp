@@ -10,7 +10,9 @@
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <system_error>
@@ -26,6 +28,8 @@ mesh::TriangleSoup import_file(const std::filesystem::path& path, const std::str
   return at_place(place, [&] {
     mesh::ImportedMesh imported = mesh::import_mesh(path);
     scene.sources.push_back(path);
+    std::ranges::copy_if(imported.sources, std::back_inserter(scene.sources),
+                         [&](const std::filesystem::path& source) { return source != path; });
     for (const std::string& note : imported.notes) scene.warnings.push_back(fmt::format("{}: {}", shown, note));
     return std::move(imported.soup);
   });

@@ -1,6 +1,8 @@
 #include "scenes/json_reader.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
+#include "mesh/soup_memory.hpp"
 #include "scenes/checks.hpp"
 #include "scenes/json_document.hpp"
 #include "scenes/json_meshes.hpp"
@@ -143,6 +145,10 @@ void append(mesh::TriangleSoup& soup, const mesh::TriangleSoup& mesh, std::uint3
   if (soup.positions.size() + mesh.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError("{}: the scene has more than 2^32 vertices", place.str());
   }
+  at_place(place, [&] {
+    require_memory(mesh::soup_bytes(mesh.triangles.size(), mesh.positions.size()),
+                   fmt::format("a scene with {} more triangles", mesh.triangles.size()), "make the meshes smaller");
+  });
   const auto first = static_cast<std::uint32_t>(soup.positions.size());
   soup.positions.insert(soup.positions.end(), mesh.positions.begin(), mesh.positions.end());
   for (const mesh::Triangle& t : mesh.triangles) soup.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});

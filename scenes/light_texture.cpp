@@ -2,90 +2,44 @@
 
 #include "base/error.hpp"
 #include "base/exr.hpp"
-#include "base/png.hpp"
-
-#include <fmt/ranges.h>
+#include "mesh/import_helper.hpp"
+#include "mesh/import_wire.hpp"
+#include "scenes/scene_wire.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <span>
+#include <string_view>
 #include <system_error>
-#include <vector>
 
 namespace penumbra::scenes {
 namespace {
 
-constexpr std::array kPngMark = {std::byte{0x89}, std::byte{'P'}, std::byte{'N'}, std::byte{'G'}};
-constexpr std::array kExrMark = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
-/// The largest picture that is read, uncompressed, with four 32-bit channels, and room for what else a file holds.
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{128} << 20;
-
-std::vector<std::byte> read_bytes(const std::filesystem::path& file, const std::string& shown) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw InputError("\"{}\" is not a regular file", shown);
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) throw InputError("\"{}\": {}", shown, error.message());
-  if (size > kMostBytes) {
-    throw InputError("\"{}\" has {} bytes; a texture's file has at most {}", shown, size, kMostBytes);
-  }
-  std::vector<std::byte> bytes(size);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) throw InputError("\"{}\" cannot be read", shown);
-  return bytes;
-}
-
-template <std::size_t kSize>
-bool begins_with(std::span<const std::byte> bytes, const std::array<std::byte, kSize>& mark) {
-  return bytes.size() >= kSize && std::ranges::equal(bytes.first(kSize), mark);
-}
-
-LinearImage read_exr_picture(const std::filesystem::path& file, const std::string& shown) {
-  const ExrFile exr = read_exr(file, kLargestTextureSide);
-  const std::array<const char*, 3> names =
-      exr.floats.contains("Y") && !exr.floats.contains("R") ? std::array{"Y", "Y", "Y"} : std::array{"R", "G", "B"};
-  std::array<const std::vector<float>*, 3> channels{};
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const auto found = exr.floats.find(names[c]);
-    if (found == exr.floats.end()) {
-      std::vector<std::string> present;
-      for (const auto& [name, values] : exr.floats) present.push_back(name);
-      throw InputError("\"{}\": no channel {} of floats; a texture has R, G and B, or Y alone; this file has: {}",
-                       shown, names[c], fmt::join(present, ", "));
-    }
-    channels[c] = &found->second;
-  }
-  LinearImage image{exr.width, exr.height, {}};
-  image.pixels.resize(std::size_t{exr.width} * exr.height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = {(*channels[0])[i], (*channels[1])[i], (*channels[2])[i]};
-  }
-  return image;
-}
-
-LinearImage read_png_picture(std::span<const std::byte> bytes, const std::string& shown) {
-  try {
-    return decode_linear_png(bytes, kLargestTextureSide);
-  } catch (const Error& error) {
-    throw Error(error.code(), fmt::format("\"{}\": {}", shown, error.what()));
-  }
-}
+/// A picture of the largest size takes 200 MB to read; OpenEXR adds lines of all of a file's channels.
+constexpr mesh::ImportLimits kTextureLimits{.memory_bytes = 1ull << 30, .output_bytes = 64ull << 20};
 
 }  // namespace
 
 Texture read_texture(const std::filesystem::path& file, const std::string& shown) {
-  const std::vector<std::byte> bytes = read_bytes(file, shown);
-  const bool is_png = begins_with(bytes, kPngMark);
-  if (!is_png && !begins_with(bytes, kExrMark)) {
-    throw InputError("\"{}\" is neither a PNG nor an OpenEXR picture; a texture is one of the two", shown);
+  std::error_code ignored;  // what is not there is no regular file either
+  if (!std::filesystem::is_regular_file(file, ignored)) throw InputError("\"{}\" is not a regular file", shown);
+  try {
+    const mesh::HelperAnswer answer = mesh::run_import_helper({"texture", file, {}}, kTextureLimits);
+    mesh::WireReader from(answer.payload);
+    Texture texture = get_texture(from);
+    from.expect_end();
+    texture.file = shown;
+    check_texture(texture, fmt::format("\"{}\"", shown));
+    return texture;
+  } catch (const InputError& error) {
+    const std::string name = fmt::format("\"{}\"", shown);
+    if (std::string_view(error.what()).starts_with(name)) throw;
+    throw InputError("{}: {}", name, error.what());
+  } catch (const mesh::WireError& error) {
+    throw InputError("\"{}\": the importer's answer is damaged ({}); the file is probably damaged", shown,
+                     error.what());
   }
-  LinearImage image = is_png ? read_png_picture(bytes, shown) : read_exr_picture(file, shown);
-  Texture texture{shown, image.width, image.height, std::move(image.pixels)};
-  check_texture(texture, fmt::format("\"{}\"", shown));
-  return texture;
 }
 
 void check_texture(const Texture& texture, const std::string& where) {

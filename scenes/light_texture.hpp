@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scenes/scene.hpp"
+#include "scenes/texture_file.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -9,13 +10,10 @@
 /// Pictures on lights. Internal to scenes/.
 namespace penumbra::scenes {
 
-/// More texels a side than the densest light samples (64 x 64) can tell apart, and few enough for every copy of a light
-/// to carry its own: 84 MB at most.
-inline constexpr std::uint32_t kLargestTextureSide = 2048;
-
 /// Reads a PNG (values are sRGB, made linear; transparent texels are put on black) or an OpenEXR picture (channels R, G
 /// and B, or Y alone, linear with the primaries of Rec. 709; a premultiplied alpha is left out); the file's first bytes
-/// say which. `shown` is its name in messages. InputError for anything else, and for texels as check_texture says.
+/// say which. It is read in a child process under limits. `shown` is its name in messages. InputError for anything
+/// else, and for texels as check_texture says.
 Texture read_texture(const std::filesystem::path& file, const std::string& shown);
 
 /// Sizes that fit, finite texels from 0 up, and one at least above 0: InputError otherwise, with the texel. `where`

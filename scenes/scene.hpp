@@ -69,7 +69,7 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<AreaLight> lights;               ///< at least one; names are unique
   std::vector<Camera> cameras;                 ///< at least one
-  std::vector<std::filesystem::path> sources;  ///< files that the scene names, as they were opened (JSON only)
+  std::vector<std::filesystem::path> sources;  ///< all files that were opened for the scene, its own included
   std::vector<std::string> warnings;  ///< what was skipped or changed on the way, each with its place and count
 };
 

@@ -163,4 +163,20 @@ Scene get_scene(WireReader& from) {
   return scene;
 }
 
+void put_texture(WireWriter& to, const Texture& texture) {
+  to.put(texture.width), to.put(texture.height);
+  to.put_array(std::span<const glm::vec3>(texture.texels));
+}
+
+Texture get_texture(WireReader& from) {
+  Texture texture;
+  texture.width = from.get<std::uint32_t>();
+  texture.height = from.get<std::uint32_t>();
+  texture.texels = from.get_array<glm::vec3>();
+  if (texture.texels.size() != std::uint64_t{texture.width} * texture.height) {
+    throw WireError("it has more or fewer texels than its size says");
+  }
+  return texture;
+}
+
 }  // namespace penumbra::scenes

@@ -12,4 +12,9 @@ void put_scene(mesh::WireWriter& to, const Scene& scene);
 /// mesh::WireError.
 Scene get_scene(mesh::WireReader& from);
 
+/// A picture, without the name that the scene calls it by.
+void put_texture(mesh::WireWriter& to, const Texture& texture);
+/// Checks that there are as many texels as the size says; throws mesh::WireError.
+Texture get_texture(mesh::WireReader& from);
+
 }  // namespace penumbra::scenes

@@ -12,6 +12,14 @@ std::filesystem::path texture_file(const std::filesystem::path& file, std::size_
   return file.parent_path() / fmt::format("{}-light{}.exr", file.stem().string(), light);
 }
 
+std::vector<std::filesystem::path> texture_files(const Scene& scene, const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files;
+  for (std::size_t i = 0; file.extension() == ".json" && i < scene.lights.size(); ++i) {
+    if (scene.lights[i].texture) files.push_back(texture_file(file, i));
+  }
+  return files;
+}
+
 std::vector<ObjectRange> object_ranges(const mesh::TriangleSoup& soup) {
   std::vector<ObjectRange> ranges;
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {

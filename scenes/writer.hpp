@@ -20,4 +20,7 @@ namespace penumbra::scenes {
 /// extension, ResourceError if it cannot be written.
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file);
 
+/// The files beside `file` that write_scene writes as well: textures.
+std::vector<std::filesystem::path> texture_files(const Scene& scene, const std::filesystem::path& file);
+
 }  // namespace penumbra::scenes

@@ -79,7 +79,10 @@ TEST_F(ImportHelper, LiesAreFoundOut) {
   EXPECT_THAT(refusal(), HasSubstr("status is unknown"));
   use_helper(R"(printf 'PNBRIMP1\002')");
   EXPECT_THAT(refusal(), HasSubstr("needs more than 4 GiB of memory"));
-  use_helper(R"(printf 'PNBRIMP1\000\377\377\377\377\377\377\377\177')");  // 2^63 positions
+  use_helper(R"(printf 'PNBRIMP1\000\377\377\377\377\377\377\377\177')");  // 2^63 files that were opened
+  EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
+  // No file, and 2^63 positions.
+  use_helper(R"(printf 'PNBRIMP1\000\000\000\000\000\000\000\000\000\377\377\377\377\377\377\377\177')");
   EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
   use_helper(R"(printf 'PNBRIMP1\001\004\000\000\000\000\000\000\000a\033[m')");  // steers the terminal
   EXPECT_EQ(refusal(), "a?[m");
