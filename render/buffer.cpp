@@ -34,9 +34,7 @@ void copy_and_wait(Device::State& device, vk::Buffer from, vk::Buffer to, const 
   commands.end();
   const vk::raii::Fence fence(device.device, vk::FenceCreateInfo());
   device.queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);
-  if (device.device.waitForFences(*fence, VK_TRUE, UINT64_MAX) != vk::Result::eSuccess) {
-    throw ResourceError("a copy to or from the device did not end");
-  }
+  wait_for(device, fence, "copying to or from the device");
 }
 
 }  // namespace

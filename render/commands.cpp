@@ -78,9 +78,7 @@ void Commands::State::close_pass() {
 void Commands::State::run() {
   commands.end();
   device->queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);
-  if (device->device.waitForFences(*fence, VK_TRUE, UINT64_MAX) != vk::Result::eSuccess) {
-    throw ResourceError("the device did not finish {}", fmt::join(pass_names, ", "));
-  }
+  wait_for(*device, fence, pass_names.empty() ? "copying" : fmt::format("running {}", fmt::join(pass_names, ", ")));
   device->device.resetFences(*fence);
   recording = false;
 }

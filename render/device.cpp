@@ -1,6 +1,7 @@
 #include "render/device.hpp"
 
 #include "base/error.hpp"
+#include "base/threads.hpp"
 #include "render/vulkan.hpp"
 
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 namespace penumbra::render {
 namespace {
@@ -56,6 +58,25 @@ vk::raii::Instance make_instance(const vk::raii::Context& context, bool validati
   const vk::ValidationFeaturesEXT features(enabled, {});
   const vk::InstanceCreateInfo info(flags, &application, layers, extensions, validation ? &features : nullptr);
   return vk::raii::Instance(context, info);
+}
+
+/// Why the loader makes no instance, in its own words: its error code alone is "out of host memory" for a driver's
+/// description that is no JSON.
+ResourceError no_instance(const vk::raii::Context& context, const vk::SystemError& error) {
+  ValidationLog log;
+  using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+  const vk::DebugUtilsMessengerCreateInfoEXT listener(
+      {}, Severity::eError | Severity::eWarning, vk::DebugUtilsMessageTypeFlagBitsEXT::eGeneral, &on_message, &log);
+  const vk::ApplicationInfo application("penumbra", 1, "penumbra", 1, VK_API_VERSION_1_3);
+  const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  try {
+    const vk::raii::Instance again(context, vk::InstanceCreateInfo({}, &application, {}, extensions, &listener));
+  } catch (const vk::SystemError&) {  // as before
+  }
+  return ResourceError(
+      "no Vulkan: the loader makes no instance ({}); it says: {}; check VK_DRIVER_FILES and VK_ICD_FILENAMES, or "
+      "whether memory is short",
+      error.what(), log.messages.empty() ? "nothing more" : fmt::format("{}", fmt::join(log.messages, "; ")));
 }
 
 const char* kind_of(vk::PhysicalDeviceType type) {
@@ -265,6 +286,13 @@ vk::raii::Device make_device(const vk::raii::PhysicalDevice& physical, std::uint
   return vk::raii::Device(physical, chain.get<vk::DeviceCreateInfo>());
 }
 
+/// What Mesa's driver for processors starts: a team that rasterises, a team that computes, one thread that takes work,
+/// one for its cache. It says nothing if it cannot, and then never does the work.
+unsigned driver_threads() {
+  constexpr unsigned kLargestTeam = 16;
+  return 2 * std::clamp(std::thread::hardware_concurrency(), 1U, kLargestTeam) + 2;
+}
+
 Limits read_limits(const vk::raii::PhysicalDevice& physical, std::uint32_t timestamp_bits) {
   const auto& limits = physical.getProperties().limits;
   Limits out;
@@ -306,7 +334,13 @@ std::vector<DeviceInfo> list_devices() try {
 Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.log = std::make_unique<ValidationLog>();
-  s.instance = make_instance(s.context, options.validation, s.debug_names);
+  try {
+    s.instance = make_instance(s.context, options.validation, s.debug_names);
+  } catch (const vk::IncompatibleDriverError&) {
+    throw no_driver();
+  } catch (const vk::SystemError& error) {
+    throw no_instance(s.context, error);
+  }
   if (options.validation) {
     using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
     using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
@@ -322,6 +356,7 @@ Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State
   s.timestamp_bits = s.physical.getQueueFamilyProperties()[s.queue_family].timestampValidBits;
   s.limits = read_limits(s.physical, s.timestamp_bits);
   s.memory = s.physical.getMemoryProperties();
+  if (s.info.kind == "cpu") require_threads(driver_threads(), "the device " + s.info.name);
   s.device = make_device(s.physical, s.queue_family);
   s.queue = vk::raii::Queue(s.device, s.queue_family, 0);
   s.pool = vk::raii::CommandPool(
@@ -340,7 +375,12 @@ Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State
 }
 
 Device::~Device() {
-  if (state_) save_cache(*state_);
+  if (!state_) return;
+  if (state_->abandoned) {
+    static_cast<void>(state_.release());  // destroying it would wait for ever
+    return;
+  }
+  save_cache(*state_);
 }
 Device::Device(Device&&) noexcept = default;
 Device& Device::operator=(Device&&) noexcept = default;

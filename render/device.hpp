@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/error.hpp"
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -7,6 +9,14 @@
 #include <vector>
 
 namespace penumbra::render {
+
+/// The device has work that it does not finish. Nobody can go on with it, or tell it to stop: after unwinding, the
+/// process has to end without what runs at a regular exit (std::_Exit). Hence no ResourceError, after which some work
+/// goes on.
+class DeviceDoesNotAnswer : public Error {
+ public:
+  explicit DeviceDoesNotAnswer(const std::string& message) : Error(ExitCode::resource, message) {}
+};
 
 /// What one Vulkan device is, and why it cannot be used if it cannot.
 struct DeviceInfo {

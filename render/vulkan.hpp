@@ -44,6 +44,7 @@ struct Device::State {
   Limits limits;
   std::uint64_t allocated = 0, peak = 0;
   bool debug_names = false;
+  bool abandoned = false;  // see abandon()
 
   void account(std::int64_t bytes) {
     allocated = static_cast<std::uint64_t>(static_cast<std::int64_t>(allocated) + bytes);
@@ -52,6 +53,14 @@ struct Device::State {
   template <typename Handle>
   void name(const Handle& handle, const std::string& text) const;
 };
+
+/// Waits until the device has done what the fence was submitted with; `what` says what that is. Throws
+/// DeviceDoesNotAnswer when it can be told that this will not be, or after too long (PENUMBRA_DEVICE_TIMEOUT).
+void wait_for(Device::State& device, const vk::raii::Fence& fence, const std::string& what);
+
+/// From now on nothing of the device is destroyed, by whichever destructor: it may still be in use, and destroying a
+/// device waits for its work.
+void abandon(Device::State& device);
 
 /// Memory of its own for one buffer or image: tens of resources, so dedicated allocations do.
 struct Allocation {
