@@ -4,14 +4,15 @@
 
 namespace penumbra::app {
 
-/// What ends a command after SIGINT or SIGTERM: unwinding removes the temporary files of outputs not yet whole.
+/// What ends a command after SIGINT, SIGTERM or SIGHUP: unwinding removes the temporary files of outputs not yet whole.
 class Interrupted : public Error {
  public:
   Interrupted() : Error(ExitCode::interrupted, "interrupted; no output file was left half-written") {}
 };
 
-/// Call once, first thing in main, before any other thread exists: from then on SIGINT and SIGTERM are taken by a
-/// thread of their own. (A signal that the caller chose to ignore stays ignored.)
+/// Call once, first thing in main, before any other thread exists: from then on these signals are taken by a thread
+/// of their own. (A signal that the caller chose to ignore stays ignored.) Throws std::system_error if there cannot be
+/// such a thread.
 void watch_for_interrupts();
 
 /// Throws Interrupted if a signal came. Call it between steps.

@@ -1,16 +1,16 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
+#include "app/process.hpp"
 #include "base/error.hpp"
+#include "render/device.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <exception>
+#include <cstdlib>
 #include <memory>
-#include <new>
 #include <vector>
 
 namespace {
@@ -23,7 +23,8 @@ constexpr const char* kDescription =
 
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or resource;\n"
-    "130 interrupted. An output file appears whole or not at all.\n"
+    "130 interrupted. An output file appears whole or not at all; results that stdout does not take (a full disk, a\n"
+    "closed pipe) are 4.\n"
     "`penumbra COMMAND --help` explains a command.";
 
 void start_log(const penumbra::app::GlobalOptions& global) {
@@ -58,36 +59,35 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version: on stdout
-    fmt::print(stderr, "penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n", error.what(),
-               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    if (error.get_exit_code() == 0) {  // --help, --version: on stdout
+      app.exit(error);
+      penumbra::app::check_stdout();
+      return 0;
+    }
+    penumbra::app::say(
+        fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n", error.what(),
+                    app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " "));
     return static_cast<int>(ExitCode::usage);
   }
   start_log(global);
   const auto chosen = std::ranges::find_if(commands, [](const auto& command) { return command->chosen(); });
   if (chosen == commands.end()) throw penumbra::UsageError("no command; `penumbra --help` lists what there is");
   const int code = (*chosen)->run(global);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw penumbra::ResourceError("cannot write to stdout");
+  penumbra::app::check_stdout();
   return code;
-}
-
-int fail(ExitCode code, const char* message) {
-  fmt::print(stderr, "penumbra: error: {}\n", message);
-  return static_cast<int>(code);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  penumbra::app::watch_for_interrupts();
   try {
+    penumbra::app::prepare_process();
+    penumbra::app::watch_for_interrupts();
     return run(argc, argv);
-  } catch (const penumbra::Error& error) {
-    return fail(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::resource, "out of memory; choose a smaller --size, fewer --light-samples or a smaller scene");
-  } catch (const std::exception& error) {
-    // No library's exception should come this far; if one does, it is ours to mend, and no crash for the user.
-    return fail(ExitCode::resource, fmt::format("internal: {}", error.what()).c_str());
+  } catch (const penumbra::render::DeviceDoesNotAnswer&) {
+    // The driver's threads may be at work still: what runs at a regular exit would run under their feet.
+    std::_Exit(penumbra::app::explain_current_exception());
+  } catch (...) {
+    return penumbra::app::explain_current_exception();
   }
 }

@@ -1,11 +1,11 @@
 #include "app/progress.hpp"
 
 #include "app/interrupt.hpp"
+#include "app/process.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include <unistd.h>
@@ -35,8 +35,7 @@ void Progress::advance(std::uint64_t steps) {
 
 void Progress::clear() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  say("\r\033[K");
   drawn_ = false;
 }
 
@@ -47,9 +46,8 @@ void Progress::draw() {
   last_draw_ = now;
   constexpr std::uint64_t kWidth = 30;
   const std::uint64_t filled = kWidth * done_ / steps_;
-  fmt::print(stderr, "\r\033[K[{}{}] {:3}% {}", std::string(filled, '='), std::string(kWidth - filled, ' '),
-             100 * done_ / steps_, stage_);
-  std::fflush(stderr);
+  say(fmt::format("\r\033[K[{}{}] {:3}% {}", std::string(filled, '='), std::string(kWidth - filled, ' '),
+                  100 * done_ / steps_, stage_));
   drawn_ = true;
 }
 

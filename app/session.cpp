@@ -4,6 +4,7 @@
 #include "app/stopwatch.hpp"
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "render/visibility_buffer.hpp"
 #include "scenes/reader.hpp"
 
@@ -11,8 +12,6 @@
 
 #include <algorithm>
 #include <utility>
-
-#include <unistd.h>
 
 namespace penumbra::app {
 namespace {
@@ -30,18 +29,11 @@ std::size_t find_named(const std::vector<Named>& elements, const std::string& wa
 }
 
 /// Refuses an image that this machine has no memory for, before minutes of work end in a killed process.
-void require_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights) {
+void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights) {
   // A pixel: view sample 48, scene colours and normals in the EXR 76, beauty 12 bytes; a light: V, class and its
   // channel 9.
-  const std::uint64_t needed = width * height * (136 + 9 * lights);
-  const std::uint64_t have =
-      static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  if (needed > have / 10 * 9) {
-    throw ResourceError(
-        "an image of {}x{} pixels needs about {:.1f} GiB of memory and this machine has {:.1f} GiB; choose a smaller "
-        "--size",
-        width, height, static_cast<double>(needed) / (1u << 30), static_cast<double>(have) / (1u << 30));
-  }
+  require_memory(width * height * (136 + 9 * lights), fmt::format("an image of {}x{} pixels", width, height),
+                 "choose a smaller --size");
 }
 
 }  // namespace
@@ -73,7 +65,7 @@ Session open_session(const RunOptions& options, DeviceSource& devices, std::uint
   const std::string scene_name = options.scene.string();
   const std::size_t first_light = find_named(session.scene.lights, options.light, "--light", scene_name);
   session.camera_index = find_named(session.scene.cameras, options.camera, "--camera", scene_name);
-  require_memory(session.width, session.height, session.scene.lights.size());
+  require_image_memory(session.width, session.height, session.scene.lights.size());
 
   session.floats = visibility::make_scene_floats(session.scene);
   session.camera = visibility::make_camera(session.scene.cameras[session.camera_index], session.floats.origin,
