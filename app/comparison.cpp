@@ -4,6 +4,7 @@
 #include "app/judge.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
+#include "app/output_files.hpp"
 #include "app/runner.hpp"
 #include "app/sample_pixels.hpp"
 #include "app/session.hpp"
@@ -46,6 +47,7 @@ class Comparison {
     reference_request_ = parse_reference_samples();
     prepare_folder();
     session_ = open_session(run, devices_, options.runs, progress);
+    outputs_.refuse_inputs(session_.scene.sources);
     progress.clear();
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
     choose_entries();
@@ -101,16 +103,28 @@ class Comparison {
     }
   }
 
-  void prepare_folder() const {
+  void prepare_folder() {
     std::error_code error;
     std::filesystem::create_directories(run_.out, error);
     if (error || !std::filesystem::is_directory(run_.out)) {
       throw ResourceError("cannot make the folder \"{}\": {}", run_.out.string(),
                           error ? error.message() : "not a folder");
     }
-    for (const std::filesystem::path& path : {run_.out / "metrics.json", run_.out / "report.html", options_.stats}) {
-      require_writable(path);
+    outputs_.add("-o", run_.out / "metrics.json");
+    outputs_.add("-o", run_.out / "report.html");
+    outputs_.add("--stats", options_.stats);
+    std::vector<std::string> names = {"reference"};
+    for (const MethodEntry& entry : options_.methods) {
+      names.push_back(entry.label);
+      outputs_.add("-o", file_of(entry.label, "-error.png"));
     }
+    for (const std::string& name : names) {
+      outputs_.add("-o", file_of(name, ".exr"));
+      if (options_.png) outputs_.add("-o", file_of(name, ".png"));
+      if (options_.bits) outputs_.add("-o", file_of(name, ".bits"));
+    }
+    outputs_.refuse_inputs({&run_.scene, 1});
+    outputs_.require_writable();
   }
 
   /// Refuses, before anything long, what would fail later; leaves out of a group what cannot do the lights.
@@ -287,6 +301,7 @@ class Comparison {
   const MethodDescription& reference_;
   bool same_samples_;
   visibility::SampleRequest reference_request_;
+  OutputFiles outputs_;
   DeviceSource devices_;
   Session session_;
   std::vector<Light> reference_lights_;

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
-#include "app/options.hpp"
+#include "app/output_files.hpp"
 #include "base/error.hpp"
 #include "scenes/reader.hpp"
 #include "scenes/writer.hpp"
@@ -32,12 +32,18 @@ class ConvertCommand : public Command {
     if (std::ranges::find(kExtensions, out_.extension()) == kExtensions.end()) {
       throw UsageError("-o {}: expected a name that ends in .json, .glb or .obj", out_.string());
     }
-    require_writable(out_);
+    OutputFiles outputs;
+    outputs.add("-o", out_);
+    outputs.refuse_inputs({&scene_, 1});
+    outputs.require_writable();
     scenes::Scene scene;
     {
       const MayExitAtOnce at_once;
       scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
     }
+    for (const std::filesystem::path& texture : scenes::texture_files(scene, out_)) outputs.add("-o", texture);
+    scene.sources.push_back(scene_);
+    outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     for (const std::string& loss : scenes::write_scene(scene, out_)) spdlog::warn("{}", loss);
     spdlog::info("{}: {} triangles, {} lights", out_.string(), scene.soup.triangles.size(), scene.lights.size());

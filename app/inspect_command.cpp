@@ -3,7 +3,7 @@
 #include "app/inspect_export.hpp"
 #include "app/inspect_report.hpp"
 #include "app/interrupt.hpp"
-#include "app/options.hpp"
+#include "app/output_files.hpp"
 #include "app/progress.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -25,12 +25,6 @@ namespace {
 
 constexpr std::uint32_t kListed = 16;  ///< places of each defect in JSON
 constexpr std::uint32_t kListedInTable = 3;
-
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code error;
-  if (std::filesystem::equivalent(a, b, error)) return true;  // hard and symbolic links, too
-  return std::filesystem::weakly_canonical(a, error) == std::filesystem::weakly_canonical(b, error);
-}
 
 class InspectCommand : public Command {
  public:
@@ -69,14 +63,14 @@ class InspectCommand : public Command {
   }
 
   int run(const GlobalOptions& global) override {
-    check_usage();
+    const OutputFiles outputs = checked_outputs();
     Progress progress(!global.quiet);
     std::vector<FileReport> reports;
     std::optional<RepairReport> repaired;
     for (const std::filesystem::path& file : files_) {
       try {
         const InspectedMesh mesh = read_inspected(file, allow_outside_);
-        refuse_to_overwrite(mesh.sources);
+        outputs.refuse_inputs(mesh.sources);
         reports.push_back(examine(file, mesh, diagnosis_options(), progress));
         if (!defects_.empty()) export_defects(defects_, mesh.soup, reports.back().total);
         if (!repaired_.empty()) repaired = repair(mesh.soup);
@@ -97,7 +91,7 @@ class InspectCommand : public Command {
 
  private:
   /// What is wrong with the command line is said before anything long begins.
-  void check_usage() const {
+  [[nodiscard]] OutputFiles checked_outputs() const {
     if (!(weld_ >= 0 && std::isfinite(weld_))) {
       throw UsageError("--weld {}: expected a distance, 0 or more, in the file's unit", weld_);
     }
@@ -112,26 +106,13 @@ class InspectCommand : public Command {
           "--repair: this build goes without CGAL's GPL packages, which do it; configure with "
           "-DPENUMBRA_WITH_CGAL_GPL=ON");
     }
-    refuse_to_overwrite(files_);
-    const std::array<std::filesystem::path, 3> outputs = {json_ == "-" ? "" : json_, defects_, repaired_};
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-      for (std::size_t j = i + 1; j < outputs.size(); ++j) {
-        if (!outputs[i].empty() && !outputs[j].empty() && same_file(outputs[i], outputs[j])) {
-          throw UsageError("{}: two outputs cannot be one file", outputs[j].string());
-        }
-      }
-      require_writable(outputs[i]);
-    }
-  }
-
-  void refuse_to_overwrite(const std::vector<std::filesystem::path>& inputs) const {
-    for (const std::filesystem::path& input : inputs) {
-      for (const std::filesystem::path& output : {json_, defects_, repaired_}) {
-        if (output.empty() || output == "-" || !same_file(input, output)) continue;
-        throw UsageError("{}: this is an input ({}), which is never overwritten; choose another name", output.string(),
-                         input.string());
-      }
-    }
+    OutputFiles outputs;
+    if (json_ != "-") outputs.add("--json", json_);
+    outputs.add("--export-defects", defects_);
+    outputs.add("--repair", repaired_);
+    outputs.refuse_inputs(files_);
+    outputs.require_writable();
+    return outputs;
   }
 
   [[nodiscard]] std::size_t table_limit() const { return list_.value_or(kListedInTable); }

@@ -2,6 +2,7 @@
 #include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/output.hpp"
+#include "app/output_files.hpp"
 #include "app/runner.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -47,11 +48,18 @@ class RenderCommand : public Command {
       throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                        options_.out.string());
     }
-    for (const std::filesystem::path& path : {pictures.front(), stats_, png_, bits_}) require_writable(path);
+    OutputFiles outputs;
+    for (const std::filesystem::path& path : pictures) outputs.add("-o", path);
+    outputs.add("--stats", stats_);
+    outputs.add("--png", png_);
+    outputs.add("--bits", bits_);
+    outputs.refuse_inputs({&options_.scene, 1});
+    outputs.require_writable();
 
     Progress progress(!global.quiet);
     DeviceSource devices(options_.device);
     const Session session = open_session(options_, devices, 0, progress);
+    outputs.refuse_inputs(session.scene.sources);
     report_warnings(session, progress);
     const auto& description = method_.empty() ? default_method(session.lights) : describe_method(method_);
     const MethodLabel label{description, method_options, device_of(description, devices.name())};

@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
+#include "app/output_files.hpp"
 #include "app/wedges_report.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -101,9 +102,12 @@ class WedgesCommand : public Command {
   int run(const GlobalOptions&) override {
     const ChosenConstruction chosen = parse_construction(construction_);
     const volumes::SilhouettesFrom from = parse_from(from_);
-    check_files();
+    OutputFiles outputs = named_outputs();
+    outputs.refuse_inputs({&scene_, 1});
+    outputs.require_writable();
     std::optional<MayExitAtOnce> at_once(std::in_place);  // until files are written
     const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
+    outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
@@ -133,6 +137,9 @@ class WedgesCommand : public Command {
       explanation = explain({scene, floats, light, casters, casting, wedges}, x, y);
       result.explanation = &*explanation;
       if (!explanation->picture.empty()) result.svg = picture_path(x, y);
+      if (svg_.empty()) outputs.add("--explain", result.svg);
+      outputs.refuse_inputs(scene.sources);
+      outputs.refuse_inputs({&scene_, 1});
     }
     at_once.reset();
     if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
@@ -147,17 +154,19 @@ class WedgesCommand : public Command {
   }
 
  private:
-  void check_files() const {
+  [[nodiscard]] OutputFiles named_outputs() const {
     constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
     if (!export_.empty() && std::ranges::find(kExtensions, export_.extension()) == kExtensions.end()) {
       throw UsageError("--export {}: expected a name that ends in .glb, .obj or .ply", export_.string());
     }
-    if (!export_.empty()) require_writable(export_);
-    if (!json_.empty()) require_writable(json_);
     if (!svg_.empty() && svg_.extension() != ".svg") {
       throw UsageError("--svg {}: expected a name that ends in .svg", svg_.string());
     }
-    if (!svg_.empty()) require_writable(svg_);
+    OutputFiles outputs;
+    outputs.add("--export", export_);
+    outputs.add("--json", json_);
+    outputs.add("--svg", svg_);
+    return outputs;
   }
 
   [[nodiscard]] std::filesystem::path picture_path(std::uint32_t x, std::uint32_t y) const {
