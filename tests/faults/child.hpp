@@ -1,0 +1,97 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/resource.h>
+#include <sys/types.h>
+
+namespace penumbra::tests {
+
+/// What a standard stream of the program is.
+enum class Stream {
+  captured,
+  closed,
+  full,         ///< /dev/full: every write fails
+  broken_pipe,  ///< a pipe that nobody reads
+};
+
+struct Limit {
+  __rlimit_resource resource;
+  rlim_t value;
+};
+
+/// A run of the program in an environment that does it no good.
+struct Conditions {
+  std::vector<std::string> arguments;
+  std::map<std::string, std::string> environment = {};  ///< beside the test's own
+  std::vector<Limit> limits = {};
+  Stream in = Stream::captured, out = Stream::captured, err = Stream::captured;
+  bool as_stranger = false;  ///< as a user who has no other process, where the test runs as root: for RLIMIT_NPROC
+  double timeout = 300;      ///< seconds until SIGKILL, which no test expects: code is then 137
+};
+
+struct Ending {
+  int code = -1;  ///< exit code; 128 + signal if it was ended by one
+  std::string out, err;
+  std::uint64_t peak_bytes = 0;  ///< resident, of the program or of a child that it waited for
+};
+
+/// The documented exit codes.
+bool is_documented(int code);
+
+/// A program that was started and not waited for; killed with this object.
+class Running {
+ public:
+  explicit Running(const Conditions& conditions);
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  ~Running();
+
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  void send(int signal) const { ::kill(pid_, signal); }
+  [[nodiscard]] bool has_ended();
+  /// Reads what it says until its end.
+  Ending wait();
+  /// The first child that it has, waited for busily; nothing if it ends without one.
+  std::optional<pid_t> first_child();
+
+ private:
+  void reap(int options);
+  pid_t pid_ = -1;
+  int out_ = -1, err_ = -1;
+  double timeout_ = 0;
+  std::optional<int> status_;
+  rusage usage_{};
+};
+
+Ending run_under(const Conditions& conditions);
+
+/// A test with an empty folder of its own, which anybody may write to, removed afterwards.
+class FaultTest : public testing::Test {
+ protected:
+  FaultTest();
+  ~FaultTest() override;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const;
+  [[nodiscard]] std::string read(const std::string& name) const;
+  /// All files in the folder, hidden ones too, relative and sorted.
+  [[nodiscard]] std::vector<std::string> files() const;
+  /// Two triangles over a floor under a square light, 48 × 32 pixels.
+  [[nodiscard]] std::string small_scene(const std::string& name = "scene.json") const;
+  /// The same, with a mesh file beside it that keeps its reader busy for a while.
+  [[nodiscard]] std::string slow_scene() const;
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace penumbra::tests

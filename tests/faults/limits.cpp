@@ -1,0 +1,99 @@
+// Resource limits that are too low for the work, for part of it, or for anything: exit code 0 or 4, a message that
+// names the matter, no hang, and nothing left behind.
+#include "tests/faults/child.hpp"
+
+#include <gmock/gmock.h>
+
+namespace penumbra::tests {
+namespace {
+
+using testing::AnyOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class LimitFaults : public FaultTest {
+ protected:
+  /// Everything that a limited run has to be, whatever the limit; returns its exit code.
+  int check(const Conditions& conditions, const std::string& what) const {
+    const Ending ending = run_under(conditions);
+    EXPECT_THAT(ending.code, AnyOf(0, 4)) << what << ": " << ending.err;
+    EXPECT_THAT(ending.err, Not(HasSubstr("internal"))) << what;
+    EXPECT_THAT(ending.err, Not(HasSubstr("terminate called"))) << what;
+    if (ending.code != 0) {
+      EXPECT_THAT(ending.err, HasSubstr("error: ")) << what;
+      EXPECT_THAT(files(), ElementsAre("scene.json")) << what;
+    }
+    for (const std::string& file : files()) {
+      EXPECT_THAT(file, Not(HasSubstr(".part"))) << what;
+      if (file != "scene.json") std::filesystem::remove(folder_ / file);
+    }
+    return ending.code;
+  }
+  [[nodiscard]] std::vector<std::string> render() const {
+    return {"render", path("scene.json"), "-o", path("out.exr"), "--png", path("out.png")};
+  }
+};
+
+TEST_F(LimitFaults, FilesThatMayNotGrow) {
+  (void)small_scene();
+  for (const rlim_t bytes : {0, 1, 512, 4096, 8192, 1 << 20}) {
+    const int code = check({.arguments = render(), .limits = {{RLIMIT_FSIZE, bytes}}}, std::to_string(bytes));
+    EXPECT_EQ(code, bytes < (1 << 20) ? 4 : 0) << bytes;
+  }
+  const Ending ending = run_under({.arguments = render(), .limits = {{RLIMIT_FSIZE, 4096}}});
+  EXPECT_THAT(ending.err, HasSubstr("File too large"));
+}
+
+TEST_F(LimitFaults, AComparisonWhoseFilesMayNotGrow) {
+  (void)small_scene();
+  const Ending ending = run_under(
+      {.arguments = {"compare", path("scene.json"), "-o", path("dir"), "--methods", "raytrace", "--runs", "1"},
+       .limits = {{RLIMIT_FSIZE, 8192}}});
+  EXPECT_EQ(ending.code, 4) << ending.err;
+  EXPECT_THAT(files(), ElementsAre("scene.json"));
+}
+
+TEST_F(LimitFaults, FewThreads) {
+  (void)small_scene();
+  const auto limited = [&](rlim_t threads) {
+    return check({.arguments = render(), .limits = {{RLIMIT_NPROC, threads}}, .as_stranger = true},
+                 std::to_string(threads) + " threads");
+  };
+  if (::geteuid() != 0)
+    GTEST_SKIP() << "the limit counts all processes of the user; run it as root, who can be a new one";
+  for (rlim_t threads = 1; threads <= 12; ++threads) limited(threads);
+  EXPECT_EQ(limited(1), 4);
+  EXPECT_EQ(limited(4), 4);  // the number at which the driver's threads are too few and ours are not
+  EXPECT_EQ(limited(500), 0);
+}
+
+TEST_F(LimitFaults, FewThreadsForTheImportHelper) {
+  if (::geteuid() != 0)
+    GTEST_SKIP() << "the limit counts all processes of the user; run it as root, who can be a new one";
+  const std::string scene = slow_scene();
+  for (rlim_t threads = 1; threads <= 4; ++threads) {
+    const Ending ending = run_under({.arguments = {"convert", scene, "-o", path("out.obj")},
+                                     .limits = {{RLIMIT_NPROC, threads}},
+                                     .as_stranger = true});
+    EXPECT_THAT(ending.code, AnyOf(0, 4)) << ending.err;
+    EXPECT_THAT(ending.err, Not(HasSubstr("PENUMBRA_IMPORT_HELPER"))) << "the helper is there";
+  }
+}
+
+TEST_F(LimitFaults, FewDescriptors) {  // with 3, the program cannot be loaded
+  (void)small_scene();
+  for (const rlim_t files : {4, 5, 6, 8, 10, 12, 16, 20, 64}) {
+    check({.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}}, std::to_string(files) + " descriptors");
+  }
+}
+
+TEST_F(LimitFaults, FewAddresses) {
+  (void)small_scene();
+  for (const rlim_t mebibytes : {200, 300, 400, 500, 600, 800, 1200}) {
+    check({.arguments = render(), .limits = {{RLIMIT_AS, mebibytes << 20}}}, std::to_string(mebibytes) + " MiB");
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests

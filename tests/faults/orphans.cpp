@@ -1,0 +1,68 @@
+// The program may be killed at any moment, above all when the helper that reads foreign files has just been started:
+// the helper ends with it.
+#include "tests/faults/child.hpp"
+
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+
+namespace penumbra::tests {
+namespace {
+
+class OrphanFaults : public FaultTest {
+ protected:
+  OrphanFaults() { ::prctl(PR_SET_CHILD_SUBREAPER, 1); }  // a helper without parent becomes a child of this test
+  ~OrphanFaults() override { ::prctl(PR_SET_CHILD_SUBREAPER, 0); }
+
+  struct Counts {
+    int runs = 0;
+    int orphans = 0;   ///< helpers that were alive when the program was killed
+    int finished = 0;  ///< of these, those that went on to the end of their work
+  };
+
+  Counts kill_while_reading(int runs, int signal) const {
+    const std::string scene = slow_scene();
+    std::mt19937 random(static_cast<unsigned>(signal));
+    Counts counts;
+    for (; counts.runs < runs; ++counts.runs) {
+      Running program({.arguments = {"convert", scene, "-o", path("out.obj")}});
+      const std::optional<pid_t> helper = program.first_child();
+      if (!helper) continue;
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
+      program.send(signal);
+      (void)program.wait();
+      int status = 0;
+      if (::waitpid(*helper, &status, 0) != *helper) continue;  // the program had reaped it
+      ++counts.orphans;
+      // One that finds its asker gone says 130; one that goes on writes its answer to nobody.
+      const bool ended_with_it = (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) ||
+                                 (WIFEXITED(status) && (WEXITSTATUS(status) == 130 || WEXITSTATUS(status) == 127));
+      if (!ended_with_it) ++counts.finished;
+    }
+    return counts;
+  }
+  void expect_none(int runs, int signal) const {
+    const Counts counts = kill_while_reading(runs, signal);
+    RecordProperty("orphans", counts.orphans);
+    EXPECT_EQ(counts.finished, 0) << "of " << counts.orphans << " in " << counts.runs << " runs";
+    EXPECT_GT(counts.orphans, 0) << "nothing was tried";
+  }
+};
+
+TEST_F(OrphanFaults, NoneOutlivesAKill) {
+  expect_none(40, SIGKILL);
+}
+
+TEST_F(OrphanFaults, LongNoneOutlivesAKill) {
+  expect_none(500, SIGKILL);
+}
+
+TEST_F(OrphanFaults, LongNoneOutlivesATermination) {
+  expect_none(200, SIGTERM);
+}
+
+}  // namespace
+}  // namespace penumbra::tests
