@@ -1,0 +1,56 @@
+// A device that takes work and does not finish it: an answer in the end, and an orderly one.
+#include "tests/faults/child.hpp"
+
+#include <gmock/gmock.h>
+
+namespace penumbra::tests {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class WaitFaults : public FaultTest {
+ protected:
+  /// Work of minutes in few submissions for Mesa's driver for processors, with one thread.
+  [[nodiscard]] Conditions long_work() const {
+    return {.arguments = {"render", small_scene(), "-o", path("out.exr"), "--bits", path("out.bits"), "--method",
+                          "depth-complexity", "--size", "2048x2048", "--light-samples", "4096", "--device", "cpu"},
+            .environment = {{"LP_NUM_THREADS", "1"}}};
+  }
+};
+
+TEST_F(WaitFaults, AWaitThatIsTooLongIs4) {
+  Conditions conditions = long_work();
+  conditions.environment["PENUMBRA_DEVICE_TIMEOUT"] = "1";
+  const Ending ending = run_under(conditions);
+  EXPECT_EQ(ending.code, 4) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("PENUMBRA_DEVICE_TIMEOUT"));
+  EXPECT_THAT(files(), ElementsAre("scene.json"));
+}
+
+TEST_F(WaitFaults, ALimitThatIsNoneIs2) {
+  for (const char* value : {"", "0", "-1", "soon", "1.5", "99999999999999999999"}) {
+    const Ending ending = run_under({.arguments = {"render", small_scene(), "-o", path("out.exr")},
+                                     .environment = {{"PENUMBRA_DEVICE_TIMEOUT", value}}});
+    EXPECT_EQ(ending.code, 2) << value << ": " << ending.err;
+    EXPECT_THAT(ending.err, HasSubstr("PENUMBRA_DEVICE_TIMEOUT"));
+  }
+}
+
+/// With Mesa's driver for processors, whose threads here do nothing.
+class LongWaitFaults : public WaitFaults {};
+
+TEST_F(LongWaitFaults, ADeviceThatDoesNothingIs4) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer has to come first, and so has the library that makes threads deaf";
+#endif
+  const Ending ending =
+      run_under({.arguments = {"render", small_scene(), "-o", path("out.exr"), "--device", "cpu"},
+                 .environment = {{"LD_PRELOAD", PENUMBRA_INTERPOSE}, {"PENUMBRA_FAULT_DEAF", "libvulkan_lvp"}}});
+  EXPECT_EQ(ending.code, 4) << ending.err;
+  EXPECT_THAT(ending.err, HasSubstr("has done nothing for"));
+  EXPECT_THAT(files(), ElementsAre("scene.json"));
+}
+
+}  // namespace
+}  // namespace penumbra::tests
