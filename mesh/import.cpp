@@ -9,8 +9,13 @@
 namespace penumbra::mesh {
 
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits) {
-  require_regular_file(file);
-  HelperAnswer answer = run_import_helper({"mesh", file, {}}, limits);
+  return import_mesh(open_input(file), limits);
+}
+
+ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits, bool allow_outside) {
+  HelperJob job{"mesh", input, {}};
+  if (allow_outside) job.flags.emplace_back("--allow-outside");
+  HelperAnswer answer = run_import_helper(job, limits);
   try {
     WireReader from(answer.payload);
     ImportedMesh mesh = get_mesh(from);
@@ -19,7 +24,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& 
     if (mesh.soup.triangles.empty()) throw WireError("it holds no triangles");
     return mesh;
   } catch (const WireError& error) {
-    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file.string(),
+    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", input.name.string(),
                      error.what());
   }
 }

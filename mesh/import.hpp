@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/input_file.hpp"
 #include "mesh/triangle_soup.hpp"
 
 #include <chrono>
@@ -23,7 +24,8 @@ struct ImportLimits {
   std::uint64_t output_bytes = 4ull << 30;
 };
 
-/// Reads OBJ, PLY, OFF, STL, 3DS, glTF/GLB and whatever else Assimp reads.
+/// Reads OBJ, OFF, STL, AMF and 3MF by readers of our own, glTF/GLB by the scenes', and PLY, 3DS and whatever else it
+/// reads by Assimp.
 ///
 /// The soup drops no face with an area or without: duplicates and degenerate triangles stay. Polygons become triangles
 /// (a fan if convex, ear clipping otherwise); lines, points and faces with fewer than three corners are skipped and
@@ -33,5 +35,9 @@ struct ImportLimits {
 /// costs an InputError that says so. InputError also for: no such file, no triangles, an index out of range, a vertex
 /// that is not finite, a file shorter than its header promises.
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits = {});
+
+/// The same for a file that has been opened. glTF finds its buffers in the file's folder and below, or anywhere if
+/// `allow_outside`.
+ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits = {}, bool allow_outside = false);
 
 }  // namespace penumbra::mesh

@@ -1,24 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
 namespace penumbra::mesh {
 
-/// What a file says of itself, read before Assimp reads the rest.
-struct FileAudit {
-  std::optional<std::uint64_t> surfaces;  ///< faces with three corners or more that the file holds or promises
-  std::vector<std::string> notes;
-  std::optional<std::string> text;  ///< the file's text as Assimp must see it, if that differs from the file
-};
-
-/// Looks through OBJ, PLY and STL files for what Assimp passes over in silence or says without a line number: vertex
-/// lines that it drops (and so renumbers all that follow), indices out of range, coordinates that are not finite,
-/// headers that promise more than the file holds (for which it would allocate first). Throws InputError with the line;
-/// other formats pass unseen.
-FileAudit audit_mesh_file(const std::filesystem::path& file);
+/// Compares what a PLY file's header promises, for which Assimp would allocate first, with the bytes that follow it.
+/// The number of faces that it promises, with whatever number of corners; nothing if it cannot be told. Throws
+/// InputError.
+std::optional<std::uint64_t> audit_ply(std::string_view content, const std::string& file);
 
 }  // namespace penumbra::mesh

@@ -17,9 +17,14 @@ class FaceCollector {
   /// Adds a face with the given corners: indices into the soup's positions, in range.
   void add(std::span<const std::uint32_t> corners);
 
+  /// Counts what the file lists apart from its faces; these get no number.
+  void skip_points(std::uint64_t count) { points_ += count; }
+  void skip_lines(std::uint64_t count) { lines_ += count; }
+
+  /// Faces added, whatever became of them.
   [[nodiscard]] std::uint64_t faces() const { return next_face_; }
   /// Faces that became triangles.
-  [[nodiscard]] std::uint64_t surfaces() const { return next_face_ - points_ - lines_ - empty_; }
+  [[nodiscard]] std::uint64_t surfaces() const { return surfaces_; }
   /// One note for each kind of thing that happened.
   [[nodiscard]] std::vector<std::string> notes() const;
   /// What was in the file in place of surfaces ("12 points, 3 lines"), for the message that there are none.
@@ -29,7 +34,7 @@ class FaceCollector {
   TriangleSoup& soup_;
   std::uint32_t next_face_ = 0;
   std::uint64_t convex_ = 0, concave_ = 0, tangled_ = 0, polygon_triangles_ = 0;
-  std::uint64_t empty_ = 0, points_ = 0, lines_ = 0, collapsed_ = 0;
+  std::uint64_t surfaces_ = 0, empty_ = 0, points_ = 0, lines_ = 0, collapsed_ = 0;
 };
 
 }  // namespace penumbra::mesh

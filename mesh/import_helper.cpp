@@ -1,5 +1,6 @@
 #include "mesh/import_helper.hpp"
 
+#include "base/descriptor.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "mesh/import_wire.hpp"
@@ -30,27 +31,6 @@ using Clock = std::chrono::steady_clock;
 std::string reason(int error) {
   return std::generic_category().message(error);
 }
-
-/// Owns an open file descriptor, or nothing (-1).
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~Descriptor() { close(); }
-  void close() {
-    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
-  }
-  [[nodiscard]] int get() const { return fd_; }
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-
- private:
-  int fd_ = -1;
-};
 
 struct Pipe {
   Descriptor read, write;
@@ -122,17 +102,28 @@ struct Streams {
   Pipe output, errors;
 };
 
-/// posix_spawn's two argument objects, set so that the child sees the given streams and nothing else of ours.
+/// A copy of `fd` above all numbers that the child's own files will have.
+Descriptor moved_up(const Descriptor& fd) {
+  Descriptor copy(::fcntl(fd.get(), F_DUPFD_CLOEXEC, kFolderDescriptor + 1));
+  if (!copy.is_open()) throw ResourceError("cannot duplicate a file descriptor: {}", reason(errno));
+  return copy;
+}
+
+/// posix_spawn's two argument objects, set so that the child sees the given streams, the file that it is to read, that
+/// file's folder, and nothing else of ours.
 class SpawnSettings {
  public:
-  explicit SpawnSettings(const Streams& streams) {
+  SpawnSettings(const Streams& streams, const InputFile& input)
+      : content_(moved_up(input.content)), folder_(moved_up(input.folder)) {
     ::posix_spawn_file_actions_init(&actions_);
     ::posix_spawnattr_init(&attributes_);
     ::posix_spawn_file_actions_adddup2(&actions_, streams.life.read.get(), STDIN_FILENO);
     ::posix_spawn_file_actions_adddup2(&actions_, streams.output.write.get(), STDOUT_FILENO);
     ::posix_spawn_file_actions_adddup2(&actions_, streams.errors.write.get(), STDERR_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions_, content_.get(), kInputDescriptor);
+    ::posix_spawn_file_actions_adddup2(&actions_, folder_.get(), kFolderDescriptor);
     // Libraries of this program may have opened files without O_CLOEXEC (GPU drivers do).
-    ::posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+    ::posix_spawn_file_actions_addclosefrom_np(&actions_, kFolderDescriptor + 1);
     // The child starts with default signal handling whatever this program blocks or ignores.
     sigset_t none, all;
     ::sigemptyset(&none);
@@ -151,16 +142,17 @@ class SpawnSettings {
   [[nodiscard]] const posix_spawnattr_t* attributes() const { return &attributes_; }
 
  private:
+  Descriptor content_, folder_;
   posix_spawn_file_actions_t actions_{};
   posix_spawnattr_t attributes_{};
 };
 
-pid_t spawn(std::vector<std::string> arguments, const Streams& streams) {
+pid_t spawn(std::vector<std::string> arguments, const Streams& streams, const InputFile& input) {
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const SpawnSettings settings(streams);
+  const SpawnSettings settings(streams, input);
   pid_t pid = -1;
   const int error = ::posix_spawn(&pid, argv[0], settings.actions(), settings.attributes(), argv.data(), ::environ);
   if (error == EAGAIN || error == ENOMEM) {
@@ -262,8 +254,11 @@ void require_good_ending(const Outcome& outcome, const std::string& file, const 
   std::string said = printable(std::string_view(outcome.errors).substr(0, outcome.errors.find('\n')));
   if (!said.empty()) said = fmt::format("; it said: {}", said);
   if (WIFSIGNALED(outcome.status)) {
-    throw InputError("{}: reading it crashed the importer (signal {}); the file is probably damaged{}", file,
-                     WTERMSIG(outcome.status), said);
+    throw InputError(
+        "{}: the importer crashed on it (signal {}), which is the importer's fault, whether or not the file is "
+        "damaged; "
+        "save it in another format{}",
+        file, WTERMSIG(outcome.status), said);
   }
   if (WEXITSTATUS(outcome.status) != 0) {
     throw InputError("{}: the importer gave up (exit code {}); the file is probably damaged{}", file,
@@ -292,25 +287,15 @@ ResourceError out_of_room(const std::string& file, std::uint64_t bytes, const Me
 
 }  // namespace
 
-void require_regular_file(const std::filesystem::path& file) {
-  struct stat info {};
-  if (::stat(file.c_str(), &info) != 0) throw InputError("{}: {}", file.string(), reason(errno));
-  if (S_ISDIR(info.st_mode)) throw InputError("{}: it is a folder, not a file", file.string());
-  if (!S_ISREG(info.st_mode)) throw InputError("{}: it is not a regular file", file.string());
-  if (info.st_size == 0) throw InputError("{}: the file is empty (0 bytes)", file.string());
-  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (!opened.is_open()) throw InputError("{}: {}", file.string(), reason(errno));
-}
-
 HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted) {
-  const std::string file = job.file.string();
+  const std::string file = job.input.name.string();
   const auto [limits, room] = fit_to_machine(wanted);
   std::vector<std::string> arguments{
       find_helper().string(),     job.kind, std::to_string(limits.time.count()), std::to_string(limits.memory_bytes),
       std::to_string(::getpid()), file};
   arguments.insert(arguments.end(), job.flags.begin(), job.flags.end());
   Streams streams{make_pipe(), make_pipe(), make_pipe()};
-  Child child(spawn(std::move(arguments), streams));
+  Child child(spawn(std::move(arguments), streams, job.input));
   streams.life.read.close();
   Outcome outcome = supervise(child, std::move(streams), limits);
   if (outcome.ending == Ending::too_much_output && limits.output_bytes < wanted.output_bytes) {
@@ -328,8 +313,12 @@ HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted)
     const auto status = static_cast<HelperStatus>(from.get<std::uint8_t>());
     if (status == HelperStatus::out_of_memory) {
       if (limits.memory_bytes < wanted.memory_bytes) throw out_of_room(file, limits.memory_bytes, room);
-      throw InputError("{}: reading it needs more than {} of memory; the file is damaged or too large", file,
-                       in_bytes(limits.memory_bytes));
+      struct stat info {};
+      const bool known = ::fstat(job.input.content.get(), &info) == 0;
+      throw InputError(
+          "{}: reading it needs more than {} of memory, though the file has {} only: it is damaged, or repeats what "
+          "it holds too often, or is too large",
+          file, in_bytes(limits.memory_bytes), known ? in_bytes(static_cast<std::uint64_t>(info.st_size)) : "little");
     }
     if (status == HelperStatus::bad_input) throw InputError("{}", from.get_string());
     if (status != HelperStatus::done) throw WireError("its status is unknown");

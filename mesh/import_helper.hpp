@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/import.hpp"
+#include "mesh/input_file.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -9,13 +10,16 @@
 
 namespace penumbra::mesh {
 
-/// What the helper is asked to do: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. ASKER is this process's
-/// number; the helper's standard input is a pipe that this process never writes to and whose end is its own end.
+/// What the helper is asked to do: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. FILE is only a name:
+/// the helper finds the file and its folder opened, as the descriptors below. ASKER is this process's number; the
+/// helper's standard input is a pipe that this process never writes to and whose end is its own end.
 struct HelperJob {
   std::string kind;  ///< "mesh", "gltf" or "texture"
-  std::filesystem::path file;
+  const InputFile& input;
   std::vector<std::string> flags;
 };
+inline constexpr int kInputDescriptor = 3;
+inline constexpr int kFolderDescriptor = 4;
 
 /// First byte of a helper's answer, after its magic.
 enum class HelperStatus : std::uint8_t {
@@ -27,7 +31,7 @@ enum class HelperStatus : std::uint8_t {
 inline constexpr char kHelperMagic[8] = {'P', 'N', 'B', 'R', 'I', 'M', 'P', '1'};
 
 struct HelperAnswer {
-  std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, `job.file` among them
+  std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, `job.input` among them
   std::vector<std::byte> payload;
 };
 
@@ -40,8 +44,5 @@ struct HelperAnswer {
 /// file is bad, or reading it crashed, hung or exceeded `limits`. ResourceError: the helper is missing or cannot be
 /// started, or this machine has less memory left than `limits` and the file needs more than that.
 HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& limits);
-
-/// Throws InputError unless `file` is a readable regular file that is not empty.
-void require_regular_file(const std::filesystem::path& file);
 
 }  // namespace penumbra::mesh

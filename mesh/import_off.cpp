@@ -112,10 +112,6 @@ glm::dvec3 read_vertex(OffWords& words, const OffHeader& header, std::uint32_t n
 
 }  // namespace
 
-ImportedMesh read_off_file(const std::filesystem::path& file) {
-  return read_off_text(read_whole_file(file), file.string());
-}
-
 ImportedMesh read_off_text(std::string_view text, const std::string& file) {
   OffWords words(text, file);
   const OffHeader header = read_header(words);

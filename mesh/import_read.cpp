@@ -1,19 +1,27 @@
 #include "mesh/import_read.hpp"
 
 #include "base/error.hpp"
+#include "mesh/import_3mf.hpp"
+#include "mesh/import_amf.hpp"
 #include "mesh/import_audit.hpp"
 #include "mesh/import_faces.hpp"
+#include "mesh/import_obj.hpp"
 #include "mesh/import_off.hpp"
+#include "mesh/import_stl.hpp"
 #include "mesh/import_text.hpp"
+#include "mesh/import_unicode.hpp"
 #include "mesh/opened_files.hpp"
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/DefaultLogger.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -22,29 +30,35 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 
 namespace penumbra::mesh {
 namespace {
 
-/// Lets an importer read the file's own folder and what is below it, and write nothing: an OBJ's material library or a
-/// glTF's buffer may name any path of the machine.
-class FolderOnly : public Assimp::DefaultIOSystem {
- public:
-  /// `text` stands in for the file's own content, if there is one; it must outlive this.
-  FolderOnly(const std::filesystem::path& file, const std::optional<std::string>& text)
-      : file_(std::filesystem::weakly_canonical(file)), folder_(file_.parent_path()), text_(text) {}
+/// Where Assimp believes the file to be: what it asks for below this is looked for in the file's folder and below.
+constexpr std::string_view kVirtualFolder = "/mesh/";
 
-  bool Exists(const char* name) const override { return allowed(name) && DefaultIOSystem::Exists(name); }
+/// Lets an importer read the file's own folder and what is below it, and write nothing: an OBJ's material library or
+/// a scene's parts may name any path of the machine.
+class FolderOnly : public Assimp::IOSystem {
+ public:
+  FolderOnly(const InputFile& input, const std::string& content)
+      : folder_(input.folder.get()),
+        folder_name_(std::filesystem::absolute(input.name).parent_path()),
+        name_(input.name.filename().string()),
+        content_(content) {}
+
+  bool Exists(const char* name) const override { return is_own(name) || open(name).is_open(); }
+  char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    if (!std::string_view(mode).starts_with('r') || !allowed(name)) return nullptr;
-    note_opened_file(name);
-    if (text_ && std::filesystem::weakly_canonical(name) == file_) {
-      return std::make_unique<Assimp::MemoryIOStream>(reinterpret_cast<const std::uint8_t*>(text_->data()),
-                                                      text_->size())
-          .release();  // whoever opens closes
-    }
-    return DefaultIOSystem::Open(name, mode);
+    if (!std::string_view(mode).starts_with('r')) return nullptr;
+    if (is_own(name)) return stream_of(content_);
+    const Descriptor file = open(name);
+    if (!file.is_open()) return nullptr;
+    note_opened_file(folder_name_ / inside(name));
+    others_.push_back(std::make_unique<std::string>(read_content(file.get(), name)));
+    return stream_of(*others_.back());
   }
   void Close(Assimp::IOStream* stream) override { std::unique_ptr<Assimp::IOStream>{stream}; }
   bool CreateDirectory(const std::string&) override { return false; }
@@ -52,14 +66,28 @@ class FolderOnly : public Assimp::DefaultIOSystem {
   bool DeleteFile(const std::string&) override { return false; }
 
  private:
-  [[nodiscard]] bool allowed(const char* name) const {
-    std::error_code error;
-    const auto path = std::filesystem::weakly_canonical(name, error);
-    if (error || !std::filesystem::is_regular_file(path, error)) return false;
-    return std::ranges::mismatch(folder_, path).in1 == folder_.end();
+  static std::string_view inside(std::string_view name) {
+    if (name.starts_with(kVirtualFolder)) name.remove_prefix(kVirtualFolder.size());
+    return name;
   }
-  std::filesystem::path file_, folder_;
-  const std::optional<std::string>& text_;
+  [[nodiscard]] bool is_own(std::string_view name) const { return inside(name) == name_; }
+  [[nodiscard]] Descriptor open(std::string_view name) const {
+    OpenedBeneath file = open_beneath(folder_, std::string(inside(name)), O_RDONLY | O_NONBLOCK | O_NOCTTY);
+    struct stat info {};
+    const bool regular = file.error == 0 && ::fstat(file.descriptor.get(), &info) == 0 && S_ISREG(info.st_mode);
+    return regular ? std::move(file.descriptor) : Descriptor();
+  }
+  static Assimp::IOStream* stream_of(const std::string& content) {
+    return std::make_unique<Assimp::MemoryIOStream>(reinterpret_cast<const std::uint8_t*>(content.data()),
+                                                    content.size())
+        .release();  // whoever opens closes
+  }
+
+  int folder_;
+  std::filesystem::path folder_name_;
+  std::string name_;
+  const std::string& content_;
+  std::vector<std::unique_ptr<std::string>> others_;  ///< contents of files that the first one names
 };
 
 /// The first few complaints that Assimp makes while it reads; most importers go on after one.
@@ -128,7 +156,6 @@ class SceneReader {
     note_lost_precision();
     return std::move(mesh_);
   }
-  [[nodiscard]] std::uint64_t surfaces() const { return faces_.surfaces(); }
   [[nodiscard]] std::uint64_t faces() const { return faces_.faces(); }
 
  private:
@@ -242,22 +269,23 @@ std::string supported_extensions(const Assimp::Importer& importer) {
 }
 
 /// What the file's first bytes say it is, for files whose name says something else.
-std::optional<std::string_view> sniff(const std::filesystem::path& file) {
-  std::FILE* stream = std::fopen(file.c_str(), "rb");
-  if (stream == nullptr) return std::nullopt;
-  char start[16] = {};
-  const std::size_t count = std::fread(start, 1, sizeof(start), stream);
-  std::fclose(stream);
-  const std::string_view text(start, count);
-  if (text.starts_with("glTF")) return ".glb";
-  if (text.starts_with("ply\n") || text.starts_with("ply\r")) return ".ply";
-  if (text.starts_with("solid ")) return ".stl";
-  if (text.starts_with("OFF\n") || text.starts_with("COFF\n") || text.starts_with("NOFF\n")) return ".off";
+std::optional<std::string_view> sniff(std::string_view content) {
+  if (content.starts_with("glTF")) return ".glb";
+  if (content.starts_with("ply\n") || content.starts_with("ply\r")) return ".ply";
+  if (content.starts_with("solid ")) return ".stl";
+  if (content.starts_with("OFF\n") || content.starts_with("COFF\n") || content.starts_with("NOFF\n")) return ".off";
   return std::nullopt;
 }
 
-ImportedMesh read_with_assimp(const std::filesystem::path& file) {
-  const FileAudit audit = audit_mesh_file(file);
+/// What Assimp says when it runs out of memory is what the standard library calls its exceptions.
+void rethrow_out_of_memory(std::string_view message) {
+  for (const std::string_view sign : {"std::bad_alloc", "bad_array_new_length", "vector::", "basic_string::"}) {
+    if (message.find(sign) != std::string_view::npos) throw std::bad_alloc();
+  }
+}
+
+ImportedMesh read_with_assimp(const InputFile& input, const std::string& content) {
+  const std::string file = input.name.string(), extension = input.name.extension().string();
   Complaints complaints;
   Assimp::Logger* logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
   logger->attachStream(&complaints, Assimp::Logger::Warn | Assimp::Logger::Err);
@@ -269,39 +297,58 @@ ImportedMesh read_with_assimp(const std::filesystem::path& file) {
     }
   } const kill_logger{&complaints};
 
+  const std::string base = input.name.filename().string();
+  const std::string shown_to_assimp = std::string(kVirtualFolder) + base;
   Assimp::Importer importer;
-  importer.SetIOHandler(std::make_unique<FolderOnly>(file, audit.text).release());  // the importer takes ownership
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);              // no made-up geometry for bones
-  if (file.has_extension() && !importer.IsExtensionSupported(file.extension().string())) {
-    throw InputError("{}: no importer for '{}' files; known are {}", file.string(), file.extension().string(),
-                     supported_extensions(importer));
+  importer.SetIOHandler(std::make_unique<FolderOnly>(input, content).release());  // it takes ownership
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);            // no made-up geometry for bones
+  if (!extension.empty() && !importer.IsExtensionSupported(extension)) {
+    throw InputError("{}: no importer for '{}' files; known are {}", file, extension, supported_extensions(importer));
   }
-  const auto absolute = std::filesystem::absolute(file).string();
-  const aiScene* scene = importer.ReadFile(absolute, 0);  // no post-processing: some of its steps drop faces
+  const std::uint64_t promised = lower_extension(input.name) == ".ply" ? audit_ply(content, file).value_or(0) : 0;
+  // No post-processing: some of its steps drop faces.
+  const aiScene* scene = importer.ReadFile(shown_to_assimp, 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
-    const std::string said = importer.GetErrorString();
-    throw InputError("{}: {}", file.string(), said.empty() ? "it could not be read" : said);
+    std::string said = importer.GetErrorString();
+    rethrow_out_of_memory(said);
+    for (std::size_t at; (at = said.find(shown_to_assimp)) != std::string::npos;) {
+      said.replace(at, shown_to_assimp.size(), base);
+    }
+    throw InputError("{}: {}", file, said.empty() ? "it could not be read" : said);
   }
-  SceneReader reader(*scene, file.string());
+  SceneReader reader(*scene, file);
   ImportedMesh mesh = reader.read();
-  if (audit.surfaces && reader.faces() < *audit.surfaces) {
+  if (reader.faces() < promised) {
     mesh.notes.push_back(
-        fmt::format("the file says it has {} faces, but the importer delivered {}", *audit.surfaces, reader.faces()));
+        fmt::format("the file says it has {} faces, but the importer delivered {}", promised, reader.faces()));
   }
-  mesh.notes.insert(mesh.notes.end(), audit.notes.begin(), audit.notes.end());
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());
   return mesh;
 }
 
+ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content) {
+  const std::string file = input.name.string();
+  if (extension == ".obj") return read_obj_text(content, file);
+  if (extension == ".off") return read_off_text(content, file);
+  if (extension == ".stl") return read_stl(content, file);
+  if (extension == ".amf") return read_amf(content, file);
+  if (extension == ".3mf") return read_3mf(content, file);
+  if (content.starts_with("FORM") && content.substr(8, 4) == "LWOB") {
+    throw InputError("{}: LWOB, the format of LightWave before version 6, is not supported; save it as LWO2 or OBJ",
+                     file);
+  }
+  return read_with_assimp(input, content);
+}
+
 }  // namespace
 
-ImportedMesh read_mesh_file(const std::filesystem::path& file) {
-  note_opened_file(std::filesystem::absolute(file).string());
-  const std::string extension = lower_extension(file);
-  const auto looks_like = sniff(file);
+ImportedMesh read_mesh(const InputFile& input) {
+  const std::string file = input.name.string(), extension = lower_extension(input.name);
+  const std::string content = utf8_content(read_content(input.content.get(), file), extension, file);
+  const auto looks_like = sniff(content);
   try {
-    return extension == ".off" ? read_off_file(file) : read_with_assimp(file);
+    return read_as(extension, input, content);
   } catch (const InputError& error) {
     if (!looks_like || *looks_like == extension) throw;
     throw InputError("{}; its first bytes look like a {} file: is its name wrong?", error.what(), *looks_like);

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "mesh/import.hpp"
-
-#include <filesystem>
+#include "mesh/input_file.hpp"
 
 namespace penumbra::mesh {
 
-/// Reads a mesh file in this very process: what the import helper does under its limits. Nobody else should call it,
-/// because hostile files crash, hang and exhaust the libraries behind it. Throws InputError; std::bad_alloc.
-ImportedMesh read_mesh_file(const std::filesystem::path& file);
+/// Reads a mesh file (all but glTF, which the scenes' reader does) in this very process: what the import helper does
+/// under its limits. Nobody else should call it, because hostile files crash, hang and exhaust the libraries behind it.
+/// Throws InputError; std::bad_alloc.
+ImportedMesh read_mesh(const InputFile& input);
 
 }  // namespace penumbra::mesh

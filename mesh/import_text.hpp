@@ -12,9 +12,6 @@
 
 namespace penumbra::mesh {
 
-/// A whole text or binary file in memory; throws InputError if it cannot be read.
-std::string read_whole_file(const std::filesystem::path& file);
-
 /// The file name's extension in lower case (".obj"); empty if it has none.
 std::string lower_extension(const std::filesystem::path& file);
 

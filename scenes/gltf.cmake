@@ -11,7 +11,7 @@ target_compile_definitions(penumbra_tinygltf PUBLIC tinygltf=penumbra_tinygltf
 target_link_libraries(penumbra_tinygltf PUBLIC nlohmann_json::nlohmann_json)
 
 add_library(penumbra_gltf_import STATIC
-  flat_light.cpp gltf_accessor.cpp gltf_import.cpp gltf_load.cpp gltf_nodes.cpp scene_wire.cpp texture_file.cpp)
+  flat_light.cpp gltf_accessor.cpp gltf_import.cpp gltf_load.cpp gltf_nodes.cpp gltf_numbers.cpp scene_wire.cpp texture_file.cpp)
 target_include_directories(penumbra_gltf_import PUBLIC ${PROJECT_SOURCE_DIR})
 target_link_libraries(penumbra_gltf_import PUBLIC penumbra_import_wire penumbra_base PRIVATE penumbra_tinygltf penumbra_warnings)
 

@@ -59,11 +59,13 @@ glm::dvec3 checked_factor(const std::vector<double>& numbers, glm::dvec3 otherwi
   return factor;
 }
 
+/// What the file is read for.
+enum class Purpose { lit_scene, any_scene, mesh };
+
 /// Builds the scene from a parsed model, node by node.
 class GltfImport {
  public:
-  GltfImport(const tinygltf::Model& model, std::string name, bool needs_light)
-      : model_(model), needs_light_(needs_light) {
+  GltfImport(const tinygltf::Model& model, std::string name, Purpose purpose) : model_(model), purpose_(purpose) {
     scene_.name = std::move(name);
   }
 
@@ -72,6 +74,7 @@ class GltfImport {
       const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
       const std::string name = node.name.empty() ? fmt::format("node {}", placed.number) : node.name;
       if (node.mesh >= 0) add_mesh(node, placed, name);
+      if (purpose_ == Purpose::mesh) continue;
       if (node.camera >= 0) add_camera(node, placed, name);
       if (node.extensions.contains("KHR_lights_punctual")) ++punctual_lights_;
     }
@@ -81,7 +84,7 @@ class GltfImport {
           "fewer than three vertices)",
           points_and_lines_, without_positions_, without_triangles_);
     }
-    if (scene_.lights.empty() && needs_light_) {
+    if (scene_.lights.empty() && purpose_ == Purpose::lit_scene) {
       throw InputError(
           "there is no area light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
           "material with emission (Emission Strength above 0); point, spot, sun and area lamps do not become area "
@@ -89,7 +92,7 @@ class GltfImport {
           "in glTF ({} lamps found){}",
           punctual_lights_, refused_lights_.empty() ? "" : "; emissive but no light: " + refused_lights_);
     }
-    if (scene_.cameras.empty()) add_camera_that_sees_all();
+    if (scene_.cameras.empty() && purpose_ != Purpose::mesh) add_camera_that_sees_all();
     add_warnings();
     return std::move(scene_);
   }
@@ -225,6 +228,10 @@ class GltfImport {
       radiance *= factor;
     }
     if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) return std::nullopt;
+    if (purpose_ == Purpose::mesh) {
+      ++emissive_;
+      return std::nullopt;
+    }
     if (material.emissiveTexture.index >= 0) ++emissive_textures_;
 
     // Files hold single precision: a position is rounded by half a float's step at its distance from the node's
@@ -316,7 +323,9 @@ class GltfImport {
     count(skinned_, "skinned meshes shown as modelled: skins are not supported");
     count(morphed_, "primitives shown without their morph targets");
     count(model_.animations.size(), "animations ignored");
-    count(textured_, "objects shown in their base colour factor: textures are not supported");
+    count(emissive_, "emissive objects are no lights here: those are the scene's");
+    if (purpose_ != Purpose::mesh)
+      count(textured_, "objects shown in their base colour factor: textures are not supported");
     count(emissive_textures_, "emissive textures ignored: these lights shine evenly");
     constexpr std::array<std::string_view, 3> kUnderstood{"KHR_materials_emissive_strength", "KHR_lights_punctual",
                                                           "KHR_mesh_quantization"};
@@ -328,25 +337,46 @@ class GltfImport {
   }
 
   const tinygltf::Model& model_;
-  bool needs_light_;
+  Purpose purpose_;
   Scene scene_;
   std::set<std::string> object_names_, camera_names_;
   std::string refused_lights_;
   std::uint64_t punctual_lights_ = 0, other_cameras_ = 0, points_and_lines_ = 0, without_positions_ = 0,
                 without_triangles_ = 0, leftover_indices_ = 0, skinned_ = 0, morphed_ = 0, textured_ = 0,
-                emissive_textures_ = 0;
+                emissive_textures_ = 0, emissive_ = 0;
 };
+
+Scene import_for(Purpose purpose, const mesh::InputFile& input, bool allow_outside) {
+  tinygltf::Model model;
+  load_gltf_model(input, allow_outside, model);
+  try {
+    return GltfImport(model, input.name.filename().string(), purpose).run();
+  } catch (const InputError& error) {
+    throw InputError("{}: {}", input.name.string(), error.what());  // places alone do not say in which file
+  }
+}
 
 }  // namespace
 
-Scene import_gltf(const std::filesystem::path& file, const ReadOptions& options) {
-  tinygltf::Model model;
-  load_gltf_model(file, options.allow_outside, model);
-  try {
-    return GltfImport(model, file.filename().string(), options.needs_light).run();
-  } catch (const InputError& error) {
-    throw InputError("{}: {}", file.string(), error.what());  // places alone do not say in which file
-  }
+Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options) {
+  return import_for(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options.allow_outside);
+}
+
+mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside) {
+  Scene scene = import_for(Purpose::mesh, input, allow_outside);
+  mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings)};
+  // One object, whose faces are numbered through.
+  std::uint32_t number = 0;
+  for (std::uint32_t& face : mesh.soup.source_face) face = number++;
+  std::ranges::fill(mesh.soup.object, 0u);
+  return mesh;
+}
+
+bool is_gltf(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension == ".gltf" || extension == ".glb";
 }
 
 }  // namespace penumbra::scenes

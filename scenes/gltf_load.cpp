@@ -2,15 +2,17 @@
 
 #include "base/error.hpp"
 #include "mesh/opened_files.hpp"
+#include "scenes/gltf_numbers.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
 
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
-#include <fstream>
+#include <cerrno>
 #include <limits>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
 namespace penumbra::scenes {
@@ -18,37 +20,42 @@ namespace {
 
 /// What tinygltf may open; it asks through the callbacks below.
 struct Confinement {
-  std::filesystem::path folder;
+  int folder = -1;
+  std::filesystem::path folder_name;
   bool allow_outside = false;
-  std::string refused;  ///< the last existing file that lies outside
+  std::string refused;  ///< the last name that leads outside
 
-  bool allows(const std::string& name) {
-    std::error_code error;
-    const auto path = std::filesystem::weakly_canonical(name, error);
-    if (error || !std::filesystem::is_regular_file(path, error)) return false;
-    if (allow_outside || std::ranges::mismatch(folder, path).in1 == folder.end()) return true;
-    refused = name;
-    return false;
+  /// Nothing if it may not be opened, or is no regular file.
+  Descriptor open(const std::string& name) {
+    constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+    Descriptor file;
+    if (allow_outside) {
+      file = Descriptor(::openat(folder, name.c_str(), kFlags));
+    } else {
+      mesh::OpenedBeneath beneath = mesh::open_beneath(folder, name, kFlags);
+      if (beneath.error == EXDEV) refused = name;
+      file = std::move(beneath.descriptor);
+    }
+    struct stat info {};
+    const bool regular = file.is_open() && ::fstat(file.get(), &info) == 0 && S_ISREG(info.st_mode);
+    return regular ? std::move(file) : Descriptor();
   }
 };
 
-bool read_bytes(const std::string& name, std::vector<unsigned char>& bytes) {
-  mesh::note_opened_file(name);
-  std::error_code error;
-  const auto size = std::filesystem::file_size(name, error);
-  std::ifstream stream(name, std::ios::binary);
-  if (error || !stream) return false;
-  bytes.resize(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  return static_cast<bool>(stream);
-}
-
 tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   tinygltf::FsCallbacks files{};
-  files.FileExists = [](const std::string& name, void* user) { return static_cast<Confinement*>(user)->allows(name); };
+  files.FileExists = [](const std::string& name, void* user) {
+    return static_cast<Confinement*>(user)->open(name).is_open();
+  };
   files.ExpandFilePath = [](const std::string& name, void*) { return name; };  // no ~ and no $VARIABLES from a file
   files.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* user) {
-    if (static_cast<Confinement*>(user)->allows(name) && read_bytes(name, *bytes)) return true;
+    const Descriptor file = static_cast<Confinement*>(user)->open(name);
+    if (file.is_open()) {
+      mesh::note_opened_file(static_cast<Confinement*>(user)->folder_name / name);
+      const std::string content = mesh::read_content(file.get(), name);
+      bytes->assign(content.begin(), content.end());
+      return true;
+    }
     *error = "cannot be read";
     return false;
   };
@@ -59,13 +66,15 @@ tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   return files;
 }
 
-std::uint32_t little_endian(const std::vector<unsigned char>& bytes, std::size_t at) {
-  return bytes[at] | std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at + 2]} << 16 |
-         std::uint32_t{bytes[at + 3]} << 24;
+std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
 }
 
-/// The chunks of a GLB must fit into the file: tinygltf reads up to eight bytes past its end otherwise.
-void check_glb(const std::vector<unsigned char>& bytes, const std::string& file) {
+/// The chunks of a GLB must fit into the file: tinygltf reads up to eight bytes past its end otherwise. The first chunk
+/// comes back: the JSON.
+std::string_view check_glb(std::string_view bytes, const std::string& file) {
   constexpr std::size_t kHeader = 12, kChunkHeader = 8;
   if (bytes.size() < kHeader + kChunkHeader)
     throw InputError("{}: a GLB of {} bytes; it is truncated", file, bytes.size());
@@ -84,6 +93,7 @@ void check_glb(const std::vector<unsigned char>& bytes, const std::string& file)
     }
     at += kChunkHeader + chunk;
   }
+  return bytes.substr(kHeader + kChunkHeader, little_endian(bytes, kHeader));
 }
 
 std::string without_line_ends(std::string text) {
@@ -94,13 +104,12 @@ std::string without_line_ends(std::string text) {
 
 }  // namespace
 
-void load_gltf_model(const std::filesystem::path& file, bool allow_outside, tinygltf::Model& model) {
-  const std::string name = file.string();
-  std::vector<unsigned char> bytes;
-  if (!read_bytes(name, bytes)) throw InputError("{}: it cannot be read", name);
+void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model) {
+  const std::string name = input.name.string();
+  const std::string bytes = mesh::read_content(input.content.get(), name);
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) throw InputError("{}: more than 4 GiB", name);
 
-  Confinement confinement{std::filesystem::weakly_canonical(file).parent_path(), allow_outside, {}};
+  Confinement confinement{input.folder.get(), std::filesystem::absolute(input.name).parent_path(), allow_outside, {}};
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(confined_files(confinement));
   parser.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
@@ -108,19 +117,15 @@ void load_gltf_model(const std::filesystem::path& file, bool allow_outside, tiny
                         nullptr);
   std::string error, warning;  // its warnings are about images only
   const auto size = static_cast<unsigned>(bytes.size());
-  const std::string folder = confinement.folder.string();
+  const std::string here;  // names are looked for from the folder's descriptor
   bool loaded = false;
-  if (size >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0) {
-    check_glb(bytes, name);
-    loaded = parser.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(), size, folder, tinygltf::NO_REQUIRE);
+  if (bytes.starts_with("glTF")) {
+    check_gltf_numbers(check_glb(bytes, name), name);
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+    loaded = parser.LoadBinaryFromMemory(&model, &error, &warning, data, size, here, tinygltf::NO_REQUIRE);
   } else {
-    const auto* text = reinterpret_cast<const char*>(bytes.data());
-    loaded = parser.LoadASCIIFromString(&model, &error, &warning, text, size, folder, tinygltf::NO_REQUIRE);
-  }
-  // glTF 1.0 has objects where 2.0 has arrays: tinygltf then finds nothing, which is not the message that helps.
-  if (!model.asset.version.empty() && !model.asset.version.starts_with("2.")) {
-    throw InputError("{}: /asset/version: glTF {} is not supported; export it again as glTF 2.0", name,
-                     model.asset.version);
+    check_gltf_numbers(bytes, name);
+    loaded = parser.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, here, tinygltf::NO_REQUIRE);
   }
   if (!confinement.refused.empty() && !loaded) {
     throw InputError("{}: it refers to {}, which is outside its folder; copy it there or pass --allow-outside", name,
@@ -135,7 +140,6 @@ void load_gltf_model(const std::filesystem::path& file, bool allow_outside, tiny
   if (!loaded || !error.empty()) {
     throw InputError("{}: {}", name, error.empty() ? "it is no glTF file" : without_line_ends(error));
   }
-  if (model.asset.version.empty()) throw InputError("{}: /asset/version is missing; this is no glTF 2.0 file", name);
 }
 
 }  // namespace penumbra::scenes

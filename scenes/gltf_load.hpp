@@ -1,7 +1,6 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
+#include "mesh/input_file.hpp"
 
 namespace tinygltf {
 class Model;
@@ -11,6 +10,6 @@ namespace penumbra::scenes {
 
 /// Parses a .gltf or .glb file (told apart by its first bytes) with its buffers, but without its images. Buffers come
 /// from the file's folder and below, or from anywhere if `allow_outside`. Throws InputError.
-void load_gltf_model(const std::filesystem::path& file, bool allow_outside, tinygltf::Model& model);
+void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model);
 
 }  // namespace penumbra::scenes

@@ -10,8 +10,8 @@
 namespace penumbra::scenes {
 
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
-  mesh::require_regular_file(file);
-  mesh::HelperJob job{"gltf", file, {}};
+  const mesh::InputFile input = mesh::open_input(file);
+  mesh::HelperJob job{"gltf", input, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});

@@ -23,6 +23,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <new>
+#include <stdexcept>
 #include <string_view>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -122,19 +123,28 @@ Answer message(mesh::HelperStatus status) {
   return answer;
 }
 
+mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& arguments) {
+  if (scenes::is_gltf(input.name)) return scenes::import_gltf_mesh(input, arguments.options.allow_outside);
+  return mesh::read_mesh(input);
+}
+
 Answer answer_for(const Arguments& arguments) {
+  const mesh::InputFile input{arguments.file, Descriptor(mesh::kInputDescriptor), Descriptor(mesh::kFolderDescriptor)};
+  mesh::note_opened_file(std::filesystem::absolute(input.name));
   try {
     Answer answer = message(mesh::HelperStatus::done);
     if (arguments.kind == "mesh") {
-      mesh::put_mesh(answer.payload, mesh::read_mesh_file(arguments.file));
+      mesh::put_mesh(answer.payload, read_mesh(input, arguments));
     } else if (arguments.kind == "gltf") {
-      scenes::put_scene(answer.payload, scenes::import_gltf(arguments.file, arguments.options));
+      scenes::put_scene(answer.payload, scenes::import_gltf(input, arguments.options));
     } else {
-      scenes::put_texture(answer.payload, scenes::read_texture_file(arguments.file));
+      scenes::put_texture(answer.payload, scenes::read_texture_file(input));
     }
     answer.head.put_strings(mesh::opened_files());
     return answer;
   } catch (const std::bad_alloc&) {
+    return message(mesh::HelperStatus::out_of_memory);
+  } catch (const std::length_error&) {  // more than any memory could hold
     return message(mesh::HelperStatus::out_of_memory);
   } catch (const std::exception& error) {
     // What a library catches itself is told as text alone.

@@ -5,12 +5,15 @@
 #include "mesh/shapes.hpp"
 #include "scenes/package_files.hpp"
 
+#include <fcntl.h>
+
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -23,13 +26,13 @@ namespace {
 
 using nlohmann::json;
 
-mesh::TriangleSoup import_file(const std::filesystem::path& path, const std::string& shown, const Place& place,
-                               Scene& scene) {
+mesh::TriangleSoup import_file(const SceneFile& file, const std::string& shown, const Place& place,
+                               const ReadOptions& options, Scene& scene) {
   return at_place(place, [&] {
-    mesh::ImportedMesh imported = mesh::import_mesh(path);
-    scene.sources.push_back(path);
+    mesh::ImportedMesh imported = mesh::import_mesh(file.input, {}, options.allow_outside);
+    scene.sources.push_back(file.path);
     std::ranges::copy_if(imported.sources, std::back_inserter(scene.sources),
-                         [&](const std::filesystem::path& source) { return source != path; });
+                         [&](const std::filesystem::path& source) { return source != file.path; });
     for (const std::string& note : imported.notes) scene.warnings.push_back(fmt::format("{}: {}", shown, note));
     return std::move(imported.soup);
   });
@@ -59,11 +62,15 @@ mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadO
   if (mesh.contains("package")) {
     const std::string package = mesh["package"]["name"].get<std::string>();
     const std::string name = mesh["package"]["file"].get<std::string>();
-    const std::filesystem::path path = at_place(place / "package", [&] { return find_package_file(package, name); });
-    return import_file(path, path.string(), place / "package", scene);
+    const SceneFile file = at_place(place / "package", [&] {
+      mesh::InputFile opened = open_package_file(package, name);
+      std::filesystem::path path = opened.name;
+      return SceneFile{std::move(opened), std::move(path)};
+    });
+    return import_file(file, file.path.string(), place / "package", options, scene);
   }
   const std::string name = mesh["file"].get<std::string>();
-  return import_file(resolve_file(name, place / "file", options), name, place / "file", scene);
+  return import_file(open_scene_file(name, place / "file", options), name, place / "file", options, scene);
 }
 
 /// Vertices that no triangle uses are no part of the scene: they would move its origin without being seen.
@@ -149,26 +156,30 @@ Affine read_affine(const json& transform, const Place& place) {
 
 }  // namespace
 
-std::filesystem::path resolve_file(const std::string& name, const Place& place, const ReadOptions& options) {
+SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(place.file).parent_path();
   const std::filesystem::path path = folder / name;  // an absolute name stands for itself
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    // Said only of what lies inside: whether other files exist is none of the scene's business.
-    const std::filesystem::path lexical = std::filesystem::path(name).lexically_normal();
-    if (options.allow_outside || (!lexical.is_absolute() && *lexical.begin() != "..")) {
-      throw InputError("{}: no such file \"{}\" (paths are relative to the scene file)", place.str(), name);
-    }
+  const auto missing = [&] {
+    return InputError("{}: no such file \"{}\" (paths are relative to the scene file)", place.str(), name);
+  };
+  if (options.allow_outside) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) throw missing();
+    return at_place(place, [&] { return SceneFile{mesh::open_input(path), path}; });
   }
-  if (options.allow_outside) return path;
-  const std::filesystem::path home = std::filesystem::canonical(folder.empty() ? "." : folder, error);
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
-  const std::filesystem::path relative = target.lexically_relative(home);
-  if (error || relative.empty() || *relative.begin() == "..") {
+  const std::filesystem::path home = folder.empty() ? "." : folder;
+  const Descriptor opened(::open(home.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!opened.is_open()) throw InputError("{}: the scene's folder cannot be opened", place.str());
+  mesh::InputBeneath file = at_place(place, [&] { return mesh::open_input_beneath(opened.get(), name, path); });
+  if (file.error == EXDEV) {
     throw InputError("{}: \"{}\" leads outside the scene's folder; move it there or pass --allow-outside", place.str(),
                      name);
   }
-  return target;
+  if (file.error == ENOENT) throw missing();
+  if (file.error != 0) {
+    throw InputError("{}: \"{}\": {}", place.str(), name, std::generic_category().message(file.error));
+  }
+  return {std::move(file.input), home / file.path};
 }
 
 glm::dvec3 read_vector(const json& value) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/input_file.hpp"
 #include "mesh/triangle_soup.hpp"
 #include "scenes/json_document.hpp"
 #include "scenes/reader.hpp"
@@ -16,9 +17,14 @@ namespace penumbra::scenes {
 
 glm::dvec3 read_vector(const nlohmann::json& value);
 
-/// The named file, from the scene file's folder. Links are resolved before it is decided what lies outside. InputError
-/// for what does not exist, or lies outside and may not.
-std::filesystem::path resolve_file(const std::string& name, const Place& place, const ReadOptions& options);
+struct SceneFile {
+  mesh::InputFile input;
+  std::filesystem::path path;  ///< where it lies, with links resolved as they were when it was opened
+};
+
+/// The named file, from the scene file's folder, opened. What leads out of the folder, by its name or through links, is
+/// refused unless the options allow it. InputError also for what does not exist, is no regular file or is empty.
+SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options);
 
 /// Reads, generates or lists the mesh, and brings it into world space. What was changed on the way goes to
 /// `scene.warnings`, the files that were read to `scene.sources`.

@@ -69,9 +69,9 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
                      place.str());
   }
   const std::string name = value["texture"].get<std::string>();
-  const std::filesystem::path file = resolve_file(name, place, options);
-  Texture texture = at_place(place, [&] { return read_texture(file, name); });
-  scene.sources.push_back(file);
+  const SceneFile file = open_scene_file(name, place, options);
+  Texture texture = at_place(place, [&] { return read_texture(file.input, name); });
+  scene.sources.push_back(file.path);
   return texture;
 }
 

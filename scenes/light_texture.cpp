@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
-#include <system_error>
 
 namespace penumbra::scenes {
 namespace {
@@ -21,11 +20,9 @@ constexpr mesh::ImportLimits kTextureLimits{.memory_bytes = 1ull << 30, .output_
 
 }  // namespace
 
-Texture read_texture(const std::filesystem::path& file, const std::string& shown) {
-  std::error_code ignored;  // what is not there is no regular file either
-  if (!std::filesystem::is_regular_file(file, ignored)) throw InputError("\"{}\" is not a regular file", shown);
+Texture read_texture(const mesh::InputFile& input, const std::string& shown) {
   try {
-    const mesh::HelperAnswer answer = mesh::run_import_helper({"texture", file, {}}, kTextureLimits);
+    const mesh::HelperAnswer answer = mesh::run_import_helper({"texture", input, {}}, kTextureLimits);
     mesh::WireReader from(answer.payload);
     Texture texture = get_texture(from);
     from.expect_end();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/input_file.hpp"
 #include "scenes/scene.hpp"
 #include "scenes/texture_file.hpp"
 
@@ -14,7 +15,7 @@ namespace penumbra::scenes {
 /// and B, or Y alone, linear with the primaries of Rec. 709; a premultiplied alpha is left out); the file's first bytes
 /// say which. It is read in a child process under limits. `shown` is its name in messages. InputError for anything
 /// else, and for texels as check_texture says.
-Texture read_texture(const std::filesystem::path& file, const std::string& shown);
+Texture read_texture(const mesh::InputFile& input, const std::string& shown);
 
 /// Sizes that fit, finite texels from 0 up, and one at least above 0: InputError otherwise, with the texel. `where`
 /// begins the message.

@@ -2,9 +2,13 @@
 
 #include "base/error.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace penumbra::scenes {
@@ -33,7 +37,39 @@ std::vector<std::filesystem::path> package_lists(std::string_view package, const
   return lists;
 }
 
+/// All paths that the lists name.
+std::set<std::string> listed_files(const std::vector<std::filesystem::path>& lists) {
+  std::set<std::string> files;
+  for (const std::filesystem::path& list : lists) {
+    std::ifstream lines(list);
+    for (std::string line; std::getline(lines, line);) files.insert(line);
+  }
+  return files;
+}
+
+/// Packages may name /lib what lies in /usr/lib: the links at the root are the system's own.
+bool is_listed(const std::set<std::string>& files, const std::string& path) {
+  constexpr std::string_view kUsr = "/usr";
+  return files.contains(path) || (path.starts_with("/usr/") && files.contains(path.substr(kUsr.size())));
+}
+
 }  // namespace
+
+mesh::InputFile open_package_file(std::string_view package, std::string_view file,
+                                  const std::filesystem::path& dpkg_info) {
+  const std::filesystem::path path = find_package_file(package, file, dpkg_info);
+  const Descriptor root(::open("/", O_PATH | O_DIRECTORY | O_CLOEXEC));
+  mesh::InputBeneath opened = mesh::open_input_beneath(root.get(), path.string(), path);
+  if (opened.error != 0) {
+    throw InputError("{}: {}; the package \"{}\" lists it", path.string(),
+                     std::generic_category().message(opened.error), package);
+  }
+  if (!is_listed(listed_files(package_lists(package, dpkg_info)), "/" + opened.path)) {
+    throw InputError("{}: a link leads to /{}, which is no file of the package \"{}\"", path.string(), opened.path,
+                     package);
+  }
+  return std::move(opened.input);
+}
 
 std::filesystem::path find_package_file(std::string_view package, std::string_view file,
                                         const std::filesystem::path& dpkg_info) {
@@ -47,11 +83,8 @@ std::filesystem::path find_package_file(std::string_view package, std::string_vi
   }
   const std::string ending = "/" + std::string(file);
   std::vector<std::string> found;
-  for (const std::filesystem::path& list : lists) {
-    std::ifstream lines(list);
-    for (std::string line; std::getline(lines, line);) {
-      if (line.ends_with(ending) && std::find(found.begin(), found.end(), line) == found.end()) found.push_back(line);
-    }
+  for (const std::string& line : listed_files(lists)) {
+    if (line.ends_with(ending)) found.push_back(line);
   }
   if (found.empty()) {
     throw InputError("the package \"{0}\" has no file that ends with \"{1}\"; see: dpkg -L {0}", package, ending);

@@ -3,16 +3,16 @@
 #include "base/error.hpp"
 #include "base/exr.hpp"
 #include "base/png.hpp"
-#include "mesh/opened_files.hpp"
+
+#include <sys/stat.h>
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <fstream>
 #include <span>
-#include <system_error>
+#include <string>
 #include <vector>
 
 namespace penumbra::scenes {
@@ -23,16 +23,13 @@ constexpr std::array kExrMark = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x3
 /// The largest picture that is read, uncompressed, with four 32-bit channels, and room for what else a file holds.
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{128} << 20;
 
-std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) throw InputError("{}", error.message());
-  if (size > kMostBytes) throw InputError("{} bytes; a texture's file has at most {}", size, kMostBytes);
-  std::vector<std::byte> bytes(size);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) throw InputError("it cannot be read");
-  return bytes;
+std::string read_bytes(const mesh::InputFile& input) {
+  struct stat info {};
+  const bool known = ::fstat(input.content.get(), &info) == 0;
+  if (known && static_cast<std::uintmax_t>(info.st_size) > kMostBytes) {
+    throw InputError("{} bytes; a texture's file has at most {}", info.st_size, kMostBytes);
+  }
+  return mesh::read_content(input.content.get(), input.name.string());
 }
 
 template <std::size_t kSize>
@@ -70,14 +67,16 @@ LinearImage read_exr_picture(const std::filesystem::path& file) {
 
 }  // namespace
 
-Texture read_texture_file(const std::filesystem::path& file) {
-  mesh::note_opened_file(file.string());
-  const std::vector<std::byte> bytes = read_bytes(file);
+Texture read_texture_file(const mesh::InputFile& input) {
+  const std::string content = read_bytes(input);
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
   const bool is_png = begins_with(bytes, kPngMark);
   if (!is_png && !begins_with(bytes, kExrMark)) {
     throw InputError("it is neither a PNG nor an OpenEXR picture; a texture is one of the two");
   }
-  LinearImage image = is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(file);
+  // OpenEXR opens files by name: this is the one that is open already.
+  const std::filesystem::path opened = fmt::format("/proc/self/fd/{}", input.content.get());
+  LinearImage image = is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(opened);
   return {{}, image.width, image.height, std::move(image.pixels)};
 }
 

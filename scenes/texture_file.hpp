@@ -1,9 +1,9 @@
 #pragma once
 
+#include "mesh/input_file.hpp"
 #include "scenes/scene.hpp"
 
 #include <cstdint>
-#include <filesystem>
 
 /// Runs inside the import helper only: pictures are foreign files, too.
 namespace penumbra::scenes {
@@ -13,6 +13,6 @@ namespace penumbra::scenes {
 inline constexpr std::uint32_t kLargestTextureSide = 2048;
 
 /// What read_texture says of it (scenes/light_texture.hpp), but the file's name in messages, and check_texture.
-Texture read_texture_file(const std::filesystem::path& file);
+Texture read_texture_file(const mesh::InputFile& input);
 
 }  // namespace penumbra::scenes

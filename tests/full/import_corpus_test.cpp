@@ -34,7 +34,7 @@ void try_file(const std::filesystem::path& file, Counts& counts, Read read) {
     EXPECT_GT(message.size(), file.string().size() + 2) << "no reason given";
     ++counts.refused;
     if (message.find("no importer for") != std::string::npos) ++counts.unknown_kind;
-    if (message.find("crashed the importer") != std::string::npos) ++counts.crashed;
+    if (message.find("the importer crashed") != std::string::npos) ++counts.crashed;
     if (message.find("took longer than") != std::string::npos) ++counts.timed_out;
     if (message.find("crashed") != std::string::npos) fmt::print("{}\n", message);
   } catch (const std::exception& error) {

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "mesh/import.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace penumbra::mesh {
+
+/// Reads an STL file, ASCII or binary. Not through Assimp, because its reader refuses binary files with bytes after
+/// their last triangle or with a header that begins with "solid", and ASCII ones whose keywords are capitals.
+///
+/// Throws InputError: a binary file shorter than its count promises; in an ASCII one, with the line, facets without
+/// an end, coordinates that are no numbers or not finite.
+ImportedMesh read_stl(std::string_view content, const std::string& file);
+
+}  // namespace penumbra::mesh
