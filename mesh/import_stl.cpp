@@ -115,7 +115,7 @@ class AsciiStl {
       facet_line_ = line_number_;
       corners_ = 0;
     } else if (same_keyword(word, "normal")) {
-      line = {};  // three numbers that are not looked at
+      for (int i = 0; i < 3; ++i) take_word(line);  // which are not looked at
     } else if (same_keyword(word, "vertex")) {
       vertex(line);
     } else if (same_keyword(word, "endfacet")) {
