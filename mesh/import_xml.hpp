@@ -13,7 +13,8 @@
 
 namespace penumbra::mesh {
 
-/// An XML text with places for messages. pugixml expands no entities that a file defines and opens no files.
+/// An XML text with places for messages; what the AMF and 3MF readers stand on. Internal to this room. pugixml expands
+/// no entities that a file defines and opens no files.
 class XmlText {
  public:
   /// Throws InputError with the line of the first syntax error. `text` must outlive this.

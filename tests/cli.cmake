@@ -13,3 +13,17 @@ target_link_libraries(cli_test PRIVATE penumbra_app penumbra_visibility penumbra
                       nlohmann_json::nlohmann_json GTest::gmock GTest::gtest_main)
 add_dependencies(cli_test penumbra)
 gtest_discover_tests(cli_test TEST_PREFIX cli. PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+
+# Every mesh of two packages through inspect and compare; prints a table.
+include(${PROJECT_SOURCE_DIR}/cmake/cgal_corpus.cmake)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
+add_executable(corpus_sweep_test
+  agreement/face_counters_binary.cpp agreement/face_counters_text.cpp cli/program.cpp full/corpus_sweep_test.cpp)
+target_compile_definitions(corpus_sweep_test PRIVATE
+  PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>" PENUMBRA_SCENES="${PROJECT_SOURCE_DIR}/scenes")
+target_link_libraries(corpus_sweep_test PRIVATE
+  penumbra_mesh PkgConfig::MINIZIP penumbra_warnings nlohmann_json::nlohmann_json GTest::gtest_main)
+penumbra_cgal_corpus(corpus_sweep_test)
+add_dependencies(corpus_sweep_test penumbra)
+gtest_discover_tests(corpus_sweep_test PROPERTIES LABELS full DISCOVERY_TIMEOUT 120 TIMEOUT 7200)

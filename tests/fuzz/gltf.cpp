@@ -1,0 +1,56 @@
+// The glTF reader on any file, as a scene and as a mesh: an InputError, or a scene that passes the checks of the
+// importer's answer, and the same triangles both times.
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "mesh/import_wire.hpp"
+#include "scenes/gltf_import.hpp"
+#include "scenes/scene_wire.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/folder.hpp"
+#include "tests/fuzz/imported.hpp"
+
+#include <new>
+#include <optional>
+#include <stdexcept>
+
+namespace {
+
+using namespace penumbra;
+
+/// What comes out; nothing if the file is refused.
+template <typename Read>
+auto attempt(Read read) -> std::optional<decltype(read())> {
+  try {
+    return read();
+  } catch (const InputError&) {
+  } catch (const std::bad_alloc&) {  // the helper answers with these, too
+  } catch (const std::length_error&) {
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fuzz::Folder folder;
+  if (size == 0) return 0;
+  const mesh::InputFile input = mesh::open_input(folder.write("scene.glb", {data, size}));
+  const auto scene = attempt([&] { return scenes::import_gltf(input, {.needs_light = false}); });
+  if (scene) {
+    mesh::WireWriter writer;
+    scenes::put_scene(writer, *scene);
+    mesh::WireReader reader(writer.bytes());
+    const scenes::Scene again = scenes::get_scene(reader);  // throws if a promise is broken
+    PENUMBRA_ASSERT(again.soup.triangles == scene->soup.triangles, "{} triangles became {}",
+                    scene->soup.triangles.size(), again.soup.triangles.size());
+  }
+  const auto mesh = attempt([&] { return scenes::import_gltf_mesh(input, false); });
+  if (mesh) fuzz::check_imported(*mesh);
+  // A scene may be refused for its cameras and lights alone, a mesh for nothing that a scene is not refused for.
+  PENUMBRA_ASSERT(mesh || !scene, "read as a scene, but not as a mesh");
+  if (scene && mesh) {
+    PENUMBRA_ASSERT(mesh->soup.triangles == scene->soup.triangles, "{} triangles as a mesh, {} as a scene",
+                    mesh->soup.triangles.size(), scene->soup.triangles.size());
+  }
+  return 0;
+}
