@@ -137,6 +137,7 @@ std::string in_bytes(std::uint64_t bytes) {
   const auto value = static_cast<double>(bytes);
   if (value >= kGibi) return fmt::format("{:.3g} GiB", value / kGibi);
   if (value >= kMebi) return fmt::format("{:.3g} MiB", value / kMebi);
+  if (value >= 1024) return fmt::format("{:.3g} KiB", value / 1024);
   return fmt::format("{} bytes", bytes);
 }
 

@@ -24,7 +24,7 @@ struct ImportLimits {
   std::uint64_t output_bytes = 4ull << 30;
 };
 
-/// Reads OBJ, OFF, STL, AMF and 3MF by readers of our own, glTF/GLB by the scenes', and PLY, 3DS and whatever else it
+/// Reads OBJ, PLY, OFF, STL, AMF and 3MF by readers of our own, glTF/GLB by the scenes', and 3DS and whatever else it
 /// reads by Assimp.
 ///
 /// The soup drops no face with an area or without: duplicates and degenerate triangles stay. Polygons become triangles

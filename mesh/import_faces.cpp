@@ -18,7 +18,6 @@ void FaceCollector::add(std::span<const std::uint32_t> corners) {
     ++(corners.size() == 1 ? points_ : lines_);
     return;
   }
-  ++surfaces_;
   const std::size_t first = soup_.triangles.size();
   if (corners.size() == 3) {
     soup_.triangles.push_back({corners[0], corners[1], corners[2]});

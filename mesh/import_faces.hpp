@@ -21,10 +21,6 @@ class FaceCollector {
   void skip_points(std::uint64_t count) { points_ += count; }
   void skip_lines(std::uint64_t count) { lines_ += count; }
 
-  /// Faces added, whatever became of them.
-  [[nodiscard]] std::uint64_t faces() const { return next_face_; }
-  /// Faces that became triangles.
-  [[nodiscard]] std::uint64_t surfaces() const { return surfaces_; }
   /// One note for each kind of thing that happened.
   [[nodiscard]] std::vector<std::string> notes() const;
   /// What was in the file in place of surfaces ("12 points, 3 lines"), for the message that there are none.
@@ -34,7 +30,7 @@ class FaceCollector {
   TriangleSoup& soup_;
   std::uint32_t next_face_ = 0;
   std::uint64_t convex_ = 0, concave_ = 0, tangled_ = 0, polygon_triangles_ = 0;
-  std::uint64_t surfaces_ = 0, empty_ = 0, points_ = 0, lines_ = 0, collapsed_ = 0;
+  std::uint64_t empty_ = 0, points_ = 0, lines_ = 0, collapsed_ = 0;
 };
 
 }  // namespace penumbra::mesh

@@ -3,10 +3,10 @@
 #include "base/error.hpp"
 #include "mesh/import_3mf.hpp"
 #include "mesh/import_amf.hpp"
-#include "mesh/import_audit.hpp"
 #include "mesh/import_faces.hpp"
 #include "mesh/import_obj.hpp"
 #include "mesh/import_off.hpp"
+#include "mesh/import_ply.hpp"
 #include "mesh/import_stl.hpp"
 #include "mesh/import_text.hpp"
 #include "mesh/import_unicode.hpp"
@@ -156,7 +156,6 @@ class SceneReader {
     note_lost_precision();
     return std::move(mesh_);
   }
-  [[nodiscard]] std::uint64_t faces() const { return faces_.faces(); }
 
  private:
   /// Meshes that no node shows are not part of what the file depicts, unless the importer delivers a tree with holes
@@ -305,7 +304,6 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
   if (!extension.empty() && !importer.IsExtensionSupported(extension)) {
     throw InputError("{}: no importer for '{}' files; known are {}", file, extension, supported_extensions(importer));
   }
-  const std::uint64_t promised = lower_extension(input.name) == ".ply" ? audit_ply(content, file).value_or(0) : 0;
   // No post-processing: some of its steps drop faces.
   const aiScene* scene = importer.ReadFile(shown_to_assimp, 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
@@ -316,12 +314,7 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
     }
     throw InputError("{}: {}", file, said.empty() ? "it could not be read" : said);
   }
-  SceneReader reader(*scene, file);
-  ImportedMesh mesh = reader.read();
-  if (reader.faces() < promised) {
-    mesh.notes.push_back(
-        fmt::format("the file says it has {} faces, but the importer delivered {}", promised, reader.faces()));
-  }
+  ImportedMesh mesh = SceneReader(*scene, file).read();
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());
   return mesh;
@@ -330,6 +323,7 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
 ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content) {
   const std::string file = input.name.string();
   if (extension == ".obj") return read_obj_text(content, file);
+  if (extension == ".ply") return read_ply(content, file);
   if (extension == ".off") return read_off_text(content, file);
   if (extension == ".stl") return read_stl(content, file);
   if (extension == ".amf") return read_amf(content, file);

@@ -1,6 +1,5 @@
 // What runs inside the import helper, on any file: the first byte chooses the format, the rest is the file's content.
-// Assimp is the system's and not instrumented (of these formats it reads PLY); our readers and the faces' way into the
-// soup are.
+// All of these are read by our own code.
 #include "base/error.hpp"
 #include "mesh/import_read.hpp"
 #include "tests/fuzz/bytes.hpp"

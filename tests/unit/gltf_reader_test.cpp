@@ -1,5 +1,6 @@
 #include "scenes/gltf_reader.hpp"
 
+#include "mesh/import.hpp"
 #include "tests/unit/import_files.hpp"
 
 #include <glm/geometric.hpp>
@@ -325,6 +326,34 @@ TEST_F(GltfReader, EveryTruncationAndManyFlipsAreRefusedOrRead) {
       EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("crashed"))) << "byte " << at;
     }
   }
+}
+
+/// Whoever names a glTF file, one reader reads it: of every file of a corpus, both ways tell the same.
+TEST(GltfCorpus, AsAMeshAndAsASceneAreOne) {
+  int files = 0, read = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator("/usr/share/assimp/models")) {
+    const auto extension = entry.path().extension();
+    if (extension != ".gltf" && extension != ".glb") continue;
+    ++files;
+    SCOPED_TRACE(entry.path().string());
+    std::string as_scene, as_mesh;
+    std::vector<mesh::Triangle> of_scene, of_mesh;
+    try {
+      of_scene = read_gltf(entry.path(), {.needs_light = false}).soup.triangles;
+    } catch (const InputError& error) {
+      as_scene = error.what();
+    }
+    try {
+      of_mesh = mesh::import_mesh(entry.path()).soup.triangles;
+    } catch (const InputError& error) {
+      as_mesh = error.what();
+    }
+    EXPECT_EQ(as_scene, as_mesh);
+    EXPECT_EQ(of_scene, of_mesh);
+    read += as_scene.empty() ? 1 : 0;
+  }
+  EXPECT_GT(files, 40);
+  EXPECT_GT(read, 20);
 }
 
 }  // namespace

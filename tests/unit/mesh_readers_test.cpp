@@ -149,6 +149,73 @@ TEST_F(MeshReaders, StlFacetsThatAreNone) {
   expect_refused("nothing.stl", "solid a\nendsolid a\n", {"no triangles"});
 }
 
+// -------------------------------------------------------------------------------------------------------------- PLY
+
+std::string ply_header(const std::string& format, const std::string& faces) {
+  return "ply\nformat " + format +
+         " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement " + faces +
+         "\nend_header\n";
+}
+
+TEST_F(MeshReaders, PlyListsThatPromiseMoreThanThereIs) {
+  const std::string faces = "face 1\nproperty list uint int vertex_indices";
+  const std::string positions = bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f);
+  for (const std::uint32_t length : {4294967295u, 3000u, 4u}) {
+    expect_refused("list.ply", ply_header("binary_little_endian", faces) + positions + bytes_of(length, 0, 1, 2),
+                   {fmt::format("a list 'vertex_indices' of {} numbers, but only 12 bytes follow", length)});
+  }
+  expect_refused("ascii.ply", ply_header("ascii", faces) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4294967295 0 1 2\n",
+                 {"line 14", "a list 'vertex_indices' of 4294967295 numbers"});
+  expect_refused(
+      "negative.ply",
+      ply_header("ascii", "face 1\nproperty list int int vertex_index") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 0 1 2\n",
+      {"line 14", "of -1 numbers"});
+}
+
+TEST_F(MeshReaders, PlyWithWhatIsNotOurs) {
+  // Lists before and between, faces before vertices, a column too many, an element of another kind.
+  const ImportedMesh mesh =
+      read("odd.ply",
+           "ply\nformat ascii 1.0\ncomment faces first\nelement face 2\nproperty list uchar float weights\n"
+           "property list uchar uint vertex_index\nproperty uchar red\nelement edge 1\nproperty int a\n"
+           "property int b\nelement vertex 4\nproperty double z\nproperty double y\nproperty list char "
+           "int more\nproperty double x\nend_header\n2 0.5 0.5 4 0 1 2 3 255\n0 3 0 2\n3 9\n0 1\n"
+           "0 0 0 0.1\n0 0 2 7 8 1\n0 1 0 1 99\n0 1 0 0\n");
+  ASSERT_EQ(mesh.soup.triangles.size(), 3u);
+  EXPECT_EQ(mesh.soup.positions[0], glm::dvec3(0.1, 0, 0)) << "in double";
+  EXPECT_EQ(mesh.soup.positions[1], glm::dvec3(1, 0, 0));
+  EXPECT_EQ(mesh.soup.source_face, (std::vector<std::uint32_t>{0, 0, 1}));
+  EXPECT_THAT(mesh.notes, Contains("1 elements 'edge' skipped"));
+  EXPECT_THAT(mesh.notes, Contains("ignored properties of 'face': weights red"));
+  EXPECT_THAT(mesh.notes, Contains("1 lines have more numbers than the header declares"));
+}
+
+TEST_F(MeshReaders, PlyStripsHaveOneWinding) {
+  const ImportedMesh mesh =
+      read("strips.ply", ply_header("ascii", "tristrips 1\nproperty list int int vertex_indices") +
+                             "0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 1 3 2\n");
+  ASSERT_EQ(mesh.soup.triangles.size(), 3u);
+  for (std::size_t t = 0; t < 3; ++t) {
+    const glm::dvec3 a = corner(mesh.soup, t, 0), b = corner(mesh.soup, t, 1), c = corner(mesh.soup, t, 2);
+    EXPECT_GT((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), 0) << t;
+  }
+}
+
+TEST_F(MeshReaders, PlyHeadersThatDoNotSay) {
+  expect_refused("format.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n",
+                 {"line 2", "binary_middle_endian"});
+  expect_refused("none.ply", "ply\nelement vertex 0\nend_header\n", {"no format"});
+  expect_refused("type.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n",
+                 {"line 4", "'half'"});
+  expect_refused("flat.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+                 {"'vertex' needs one property z"});
+  expect_refused("index.ply",
+                 ply_header("ascii", "face 1\nproperty list uchar float vertex_indices") +
+                     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 1.5\n",
+                 {"line 14", "vertex 1.5"});
+}
+
 // -------------------------------------------------------------------------------------------------------------- AMF
 
 std::string amf_object(const std::string& id, int volumes) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace penumbra::mesh {
+
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::size_t size_of(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;
+  bool is_list = false;
+  PlyType length_type = PlyType::uint8;  ///< of a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+enum class PlyFormat : std::uint8_t { ascii, little_endian, big_endian };
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t lines = 0;  ///< of the header
+  std::string_view body;  ///< what follows it
+};
+
+/// Throws InputError for what is no header, and for one that promises more elements than bytes follow.
+PlyHeader read_ply_header(std::string_view content, const std::string& file);
+
+}  // namespace penumbra::mesh
