@@ -328,7 +328,7 @@ ImportedMesh read_as(const std::string& extension, const InputFile& input, const
   if (extension == ".stl") return read_stl(content, file);
   if (extension == ".amf") return read_amf(content, file);
   if (extension == ".3mf") return read_3mf(content, file);
-  if (content.starts_with("FORM") && content.substr(8, 4) == "LWOB") {
+  if (content.starts_with("FORM") && std::string_view(content).substr(4).find("LWOB") == 4) {
     throw InputError("{}: LWOB, the format of LightWave before version 6, is not supported; save it as LWO2 or OBJ",
                      file);
   }
