@@ -193,8 +193,8 @@ class PlyReader {
       return;
     }
     const double length = numbers_.number(property.length_type);
-    const double most = static_cast<double>(numbers_.bytes_left() / Numbers::least_size(property.type));
-    if (!(length >= 0 && length <= most) || length != std::floor(length)) {
+    const std::size_t most = numbers_.bytes_left() / Numbers::least_size(property.type);
+    if (!(length >= 0 && length <= static_cast<double>(most)) || length != std::floor(length)) {
       numbers_.fail("a list '{}' of {} numbers, but only {} bytes follow; the file is truncated or damaged",
                     property.name, length, numbers_.bytes_left());
     }

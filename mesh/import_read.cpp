@@ -1,6 +1,7 @@
 #include "mesh/import_read.hpp"
 
 #include "base/error.hpp"
+#include "mesh/audit_3ds.hpp"
 #include "mesh/import_3mf.hpp"
 #include "mesh/import_amf.hpp"
 #include "mesh/import_faces.hpp"
@@ -285,6 +286,7 @@ void rethrow_out_of_memory(std::string_view message) {
 
 ImportedMesh read_with_assimp(const InputFile& input, const std::string& content) {
   const std::string file = input.name.string(), extension = input.name.extension().string();
+  if (lower_extension(input.name) == ".3ds") audit_3ds(content, file);
   Complaints complaints;
   Assimp::Logger* logger = Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
   logger->attachStream(&complaints, Assimp::Logger::Warn | Assimp::Logger::Err);

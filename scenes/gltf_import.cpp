@@ -364,7 +364,7 @@ Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options) {
 
 mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside) {
   Scene scene = import_for(Purpose::mesh, input, allow_outside);
-  mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings)};
+  mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings), {}};
   // One object, whose faces are numbered through.
   std::uint32_t number = 0;
   for (std::uint32_t& face : mesh.soup.source_face) face = number++;
