@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 namespace penumbra::mesh {
 namespace {
@@ -27,9 +28,9 @@ class Assembly {
       stack.pop_back();
       add(parts_[next.part], next.placement);
       placed_[next.part] = true;
-      const auto& children = parts_[next.part].children;
-      for (auto child = children.rbegin(); child != children.rend(); ++child) {  // so that they come off in order
-        stack.push_back({child->part, next.placement * child->placement});
+      for (const PlacedPart& child :
+           parts_[next.part].children | std::views::reverse) {  // so that they come off in order
+        stack.push_back({child.part, next.placement * child.placement});
       }
     }
     if (mesh_.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file_);

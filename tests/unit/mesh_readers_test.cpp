@@ -370,6 +370,24 @@ TEST_F(MeshReaders, TextOfAnyUnicode) {
   expect_refused("half.obj", std::string("\xFF\xFE\x00\xDC", 4), {"byte order mark says UTF-16", "byte 2"});
 }
 
+std::string chunk_3ds(std::uint16_t number, const std::string& content) {
+  return bytes_of(number, static_cast<std::uint32_t>(content.size() + 6)) + content;
+}
+
+TEST_F(MeshReaders, ThreeDsChunksThatPromiseMoreThanThereIs) {
+  const auto file = [](std::uint16_t vertices, std::uint32_t more) {
+    const std::string positions = bytes_of(vertices, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
+    const std::string faces =
+        bytes_of(std::uint16_t{1}, std::uint16_t{0}, std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{0});
+    std::string mesh = chunk_3ds(0x4110, positions) + chunk_3ds(0x4120, faces);
+    mesh.replace(2, 4, bytes_of(static_cast<std::uint32_t>(6 + positions.size()) + more));
+    return chunk_3ds(0x4D4D, chunk_3ds(0x3D3D, chunk_3ds(0x4000, std::string("a\0", 2) + chunk_3ds(0x4100, mesh))));
+  };
+  EXPECT_EQ(read("whole.3ds", file(3, 0)).soup.triangles.size(), 1u);
+  expect_refused("count.3ds", file(60000, 0), {"chunk 0x4110 at byte 26", "60000 entries"});
+  expect_refused("length.3ds", file(3, 4000000000u), {"chunk 0x4110 at byte 26", "says that it has 4000000044 bytes"});
+}
+
 TEST_F(MeshReaders, LightWaveOfOldIsRefusedByName) {
   expect_refused("old.lwo", std::string("FORM\0\0\0\x04LWOB", 12), {"LWOB", "not supported"});
 }
