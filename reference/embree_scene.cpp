@@ -14,9 +14,11 @@ struct EmbreeScene::Parts {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::vector<std::uint32_t> triangles;
+  EmbreeRange range;
   std::atomic<std::int64_t> bytes = 0, peak_bytes = 0;
 
-  Parts() = default;
+  Parts(const visibility::SceneFloats& floats, std::vector<std::uint32_t> chosen)
+      : triangles(std::move(chosen)), range(floats, triangles) {}
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
   ~Parts() {
@@ -46,9 +48,8 @@ struct EmbreeScene::Parts {
 };
 
 EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter)
-    : parts_(std::make_unique<Parts>()) {
+    : parts_(std::make_unique<Parts>(scene, std::move(chosen))) {
   Parts& parts = *parts_;
-  parts.triangles = std::move(chosen);
   parts.device = rtcNewDevice(nullptr);
   if (parts.device == nullptr) {
     parts.check(nullptr);
@@ -69,7 +70,8 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), parts.triangles.size()));
     if (positions != nullptr && indices != nullptr) {
       for (const glm::vec3& position : scene.positions) {
-        for (int axis = 0; axis < 3; ++axis) *positions++ = position[axis];
+        const glm::vec3 scaled = parts.range.scaled(position);
+        for (int axis = 0; axis < 3; ++axis) *positions++ = scaled[axis];
       }
       for (const std::uint32_t triangle : parts.triangles) {
         for (const std::uint32_t vertex : scene.triangles[triangle]) *indices++ = vertex;
@@ -94,6 +96,9 @@ RTCSceneTy* EmbreeScene::handle() const {
 }
 const std::vector<std::uint32_t>& EmbreeScene::triangles() const {
   return parts_->triangles;
+}
+const EmbreeRange& EmbreeScene::range() const {
+  return parts_->range;
 }
 int EmbreeScene::native_width() const {
   if (rtcGetDeviceProperty(parts_->device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) return 16;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "reference/embree_range.hpp"
 #include "visibility/scene_floats.hpp"
 
 #include <cstdint>
@@ -11,7 +12,8 @@ struct RTCSceneTy;
 namespace penumbra::reference {
 
 /// The triangles `chosen` (indices into SceneFloats::triangles) in an Embree scene of one geometry, robust mode, best
-/// build quality. Primitive i is triangle chosen[i]. Errors, out of memory among them, are thrown as ResourceError.
+/// build quality. Primitive i is triangle chosen[i]. Lengths are range().scaled: rays must be, too. Embree's errors,
+/// out of memory among them, are thrown as ResourceError, what it has no range for as InputError.
 class EmbreeScene {
  public:
   enum class Filter { none, by_context };  ///< may a ray's context carry a filter function?
@@ -23,6 +25,7 @@ class EmbreeScene {
 
   [[nodiscard]] RTCSceneTy* handle() const;
   [[nodiscard]] const std::vector<std::uint32_t>& triangles() const;
+  [[nodiscard]] const EmbreeRange& range() const;
   /// The most rays that this processor traces at once: 16 (AVX-512), 8 (AVX) or 4.
   [[nodiscard]] int native_width() const;
   [[nodiscard]] std::uint64_t peak_bytes() const;

@@ -85,11 +85,7 @@ Exact::Exact(const visibility::MethodOptions& options) {
                            "add areas in double on exactly projected vertices, or in rational numbers (slow)"}};
   visibility::check_options(description_, options);
   const auto sweep = options.find("sweep");
-  if (sweep == options.end() || sweep->second == "rounded") return;
-  if (sweep->second != "rational") {
-    throw UsageError("method exact: option sweep is \"{}\"; it must be rounded or rational", sweep->second);
-  }
-  arithmetic_ = SweepArithmetic::rational;
+  if (sweep != options.end() && sweep->second == "rational") arithmetic_ = SweepArithmetic::rational;
 }
 
 void Exact::prepare_mesh(const SceneFloats& scene) {

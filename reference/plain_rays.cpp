@@ -4,6 +4,7 @@
 #include "reference/embree_packets.hpp"
 #include "reference/tracing_order.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <pmmintrin.h>
@@ -54,8 +55,9 @@ void PlainRays::build(std::int32_t without_light) {
 
 void PlainRays::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
-  offset_ = 0x1p-16f * glm::length(scene.upper - scene.lower);  // a few ulps of the scene's size
   build(-1);
+  const EmbreeRange& range = embree_->range();
+  offset_ = 0x1p-16f * glm::length(range.scaled(scene.upper) - range.scaled(scene.lower));  // a few ulps of its size
 }
 
 void PlainRays::prepare_light(const visibility::Light& light) {
@@ -67,15 +69,26 @@ void PlainRays::prepare_light(const visibility::Light& light) {
   order_.resize(light.sample_count());
   std::iota(order_.begin(), order_.end(), 0u);
   if (options_.neighbours) order_ = tracing_order(light);
-  if (light.kind != visibility::LightKind::sphere) points_.assign(light.points, order_);
+  if (light.kind == visibility::LightKind::sphere) {
+    const auto radius = static_cast<float>(light.radius);
+    return embree_->range().require_light(light, light.center - radius, light.center + radius);
+  }
+  glm::vec3 lower = light.points.front(), upper = lower;
+  for (const glm::vec3& point : light.points) {
+    lower = glm::min(lower, point);
+    upper = glm::max(upper, point);
+  }
+  embree_->range().require_light(light, lower, upper);
+  points_.assign(light.points, order_, embree_->range());
 }
 
-void PlainRays::PointArrays::assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order) {
+void PlainRays::PointArrays::assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order,
+                                    const EmbreeRange& range) {
   constexpr std::size_t kWidest = 16;
   const std::size_t padded = (order.size() + kWidest - 1) / kWidest * kWidest;
   for (std::vector<float>* axis : {&x, &y, &z}) axis->resize(padded);
   for (std::size_t i = 0; i < padded; ++i) {
-    const glm::vec3& point = points[order[std::min(i, order.size() - 1)]];
+    const glm::vec3 point = range.scaled(points[order[std::min(i, order.size() - 1)]]);
     x[i] = point.x;
     y[i] = point.y;
     z[i] = point.z;
@@ -125,10 +138,12 @@ template <int kWidth>
 void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::span<float> visibility) const {
   const visibility::Light& light = *light_;
   const bool sphere = light.kind == visibility::LightKind::sphere;
-  const glm::vec3 light_normal = glm::cross(light.center_u - light.center, light.center_v - light.center);
+  const EmbreeRange& range = embree_->range();
+  const glm::vec3 light_center = range.scaled(light.center);
+  const glm::dvec3 light_normal = glm::cross(glm::dvec3(light.center_u - light.center),  // may be far too long
+                                             glm::dvec3(light.center_v - light.center));
   const tbb::blocked_range2d<std::size_t> pixels(0, samples.height, 8, 0, samples.width, 32);
   tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::size_t>& block) {
-    const FlushDenormals flush;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = options_.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -142,14 +157,15 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
         const auto carrier = static_cast<std::size_t>(samples.triangle[pixel]);
         if (scene_->emits[carrier] >= 0 || scene_->receives_shadow[carrier] == 0) continue;
         visibility[pixel] = 0;
-        const glm::vec3 n = samples.n[pixel], p = samples.p[pixel] + offset_ * n;
+        const glm::vec3 n = samples.n[pixel], p = range.scaled(samples.p[pixel]) + offset_ * n;
         if (sphere) {
           light_points_for(light, samples.p[pixel], own_points.data());
-          own_arrays.assign(own_points, order_);
+          own_arrays.assign(own_points, order_, range);
         } else {
-          const float front = glm::dot(light_normal, p - light.center);
+          const double front = glm::dot(light_normal, glm::dvec3(p - light_center));
           if (light.two_sided ? front == 0 : front <= 0) continue;
         }
+        const FlushDenormals flush;  // no sooner: scene floats may be such, but scaled they are not
         const int visible = trace_pixel<kWidth>(p, n, sphere ? own_arrays : points_, context);
         visibility[pixel] = static_cast<float>(visible) / static_cast<float>(light.sample_count());
       }

@@ -35,10 +35,10 @@ class PlainRays {
   void evaluate(const visibility::ViewSamples& samples, std::span<float> visibility) const;
 
  private:
-  /// The light points in the order of tracing, by axis, padded to whole packets.
+  /// The light points, scaled, in the order of tracing, by axis, padded to whole packets.
   struct PointArrays {
     std::vector<float> x, y, z;
-    void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order);
+    void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order, const EmbreeRange& range);
   };
 
   template <int kWidth>

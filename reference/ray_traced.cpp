@@ -4,7 +4,7 @@
 // segment p→l is the ray p + t (l − p), 0 < t < 1: Embree reports t > tnear = 0 and t ≤ tfar, so tfar is the largest
 // float below 1. A filter function turns away hits on the carrying triangle and on what is exactly coplanar with it,
 // and on the light's own body: an offset origin would lose contact shadows. Triangles that cast none are not in the
-// scene.
+// scene. Scene and rays are scaled to where float32 neither underflows nor overflows (EmbreeRange).
 
 #include "reference/ray_traced.hpp"
 
@@ -57,7 +57,7 @@ void ignore_own_plane(const RTCFilterFunctionNArguments* hits) {
 }
 
 struct Counts {
-  std::atomic<std::uint64_t> rays = 0, horizon_pairs = 0;
+  std::atomic<std::uint64_t> rays = 0, short_rays = 0, horizon_pairs = 0;
 };
 
 class RayTraced final : public visibility::Method {
@@ -73,7 +73,7 @@ class RayTraced final : public visibility::Method {
   void read_masks(std::span<std::uint32_t> masks) override;
   void read_visibility(std::span<float> visibility) override;
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
-    return {{"rays", counts_.rays}, {"horizonPairs", counts_.horizon_pairs}};
+    return {{"rays", counts_.rays}, {"shortRays", counts_.short_rays}, {"horizonPairs", counts_.horizon_pairs}};
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override {
     return (embree_ ? embree_->peak_bytes() : 0) + masks_.capacity() * sizeof(std::uint32_t);
@@ -82,10 +82,13 @@ class RayTraced final : public visibility::Method {
  private:
   /// Room for one thread's work on one pixel.
   struct Workspace {
-    std::vector<glm::vec3> points;
+    std::vector<glm::vec3> points, scaled;  // of a sphere
     std::vector<std::uint32_t> above;
   };
 
+  /// Of the light samples `above` p takes out, and decides exactly, those too near to p for Embree.
+  void decide_short_rays(std::size_t pixel, const std::vector<glm::vec3>& scaled, std::vector<std::uint32_t>& above,
+                         std::span<std::uint32_t> visible);
   template <int kWidth>
   void trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible);
   template <int kWidth>
@@ -98,6 +101,7 @@ class RayTraced final : public visibility::Method {
   const ViewSamples* samples_ = nullptr;
   std::optional<EmbreeScene> embree_;
   std::vector<std::uint32_t> plane_of_primitive_;
+  std::vector<glm::vec3> scaled_points_;  // of a light that is no sphere
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> full_mask_;
   glm::vec3 lower_{0}, upper_{0};     // bounds of all light points
@@ -130,12 +134,7 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
       {"packet", "auto|1|4|8|16", "auto", "shadow rays traced together; auto: as the processor does"}};
   visibility::check_options(description_, options);
   if (const auto packet = options.find("packet"); packet != options.end()) {
-    const std::string& value = packet->second;
-    if (value == "auto") return;
-    if (value != "1" && value != "4" && value != "8" && value != "16") {
-      throw UsageError("method raytrace: option packet is \"{}\"; it must be auto, 1, 4, 8 or 16", value);
-    }
-    width_ = std::stoi(value);
+    if (packet->second != "auto") width_ = std::stoi(packet->second);
   }
 }
 
@@ -174,7 +173,10 @@ void RayTraced::prepare_light(const Light& light) {
       upper_ = glm::max(upper_, point);
     }
   }
-  counts_.rays = counts_.horizon_pairs = 0;
+  embree_->range().require_light(light, lower_, upper_);
+  scaled_points_.clear();
+  for (const glm::vec3& point : light.points) scaled_points_.push_back(embree_->range().scaled(point));
+  counts_.rays = counts_.short_rays = counts_.horizon_pairs = 0;
 }
 
 std::uint32_t RayTraced::max_tile_rows() const {
@@ -182,6 +184,20 @@ std::uint32_t RayTraced::max_tile_rows() const {
   const std::uint64_t row_bytes = std::uint64_t{samples_->width} * light_->words_per_mask() * sizeof(std::uint32_t);
   const std::uint64_t rows = std::max<std::uint64_t>(1, kMaxMaskBytes / std::max<std::uint64_t>(1, row_bytes));
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, std::max(1u, samples_->height)));
+}
+
+void RayTraced::decide_short_rays(std::size_t pixel, const std::vector<glm::vec3>& scaled,
+                                  std::vector<std::uint32_t>& above, std::span<std::uint32_t> visible) {
+  const glm::vec3 p = embree_->range().scaled(samples_->p[pixel]);
+  for (std::uint32_t sample = 0; sample < scaled.size(); ++sample) {
+    const std::uint32_t bit = 1u << (sample % 32);
+    const glm::vec3 way = glm::abs(scaled[sample] - p);
+    if ((above[sample / 32] & bit) == 0 || std::max({way.x, way.y, way.z}) >= embree_->range().shortest_ray()) continue;
+    above[sample / 32] &= ~bit;
+    counts_.short_rays.fetch_add(1, std::memory_order_relaxed);
+    const visibility::PairTruth truth = visibility::decide_pair(*scene_, *samples_, pixel, *light_, sample);
+    if (truth.outcome == visibility::PairOutcome::visible) visible[sample / 32] |= bit;
+  }
 }
 
 template <int kWidth>
@@ -193,8 +209,15 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
     return;
   }
   const glm::vec3 p = samples_->p[pixel];
-  if (light_->kind == LightKind::sphere) light_points_for(*light_, p, work.points.data());
-  const std::vector<glm::vec3>& points = light_->kind == LightKind::sphere ? work.points : light_->points;
+  const EmbreeRange& range = embree_->range();
+  const bool sphere = light_->kind == LightKind::sphere;
+  if (sphere) {
+    light_points_for(*light_, p, work.points.data());
+    std::ranges::transform(work.points, work.scaled.begin(), [&](const glm::vec3& l) { return range.scaled(l); });
+  }
+  const std::vector<glm::vec3>& points = sphere ? work.points : light_->points;
+  const std::vector<glm::vec3>& scaled_points = sphere ? work.scaled : scaled_points_;
+  const glm::vec3 origin = range.scaled(p);
   const visibility::HorizonTest horizon(scene_->corners(carrier), samples_->facing[pixel], lower_, upper_);
   horizon.mask(points, work.above);
   std::uint64_t above_count = 0;
@@ -202,6 +225,10 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   counts_.horizon_pairs.fetch_add(points.size() - above_count, std::memory_order_relaxed);
   if (above_count == 0 || !in_front_of_light(*light_, p)) return;
   counts_.rays.fetch_add(above_count, std::memory_order_relaxed);
+  const glm::vec3 nearest = glm::max(glm::max(range.scaled(lower_) - origin, origin - range.scaled(upper_)), 0.0f);
+  if (std::max({nearest.x, nearest.y, nearest.z}) < range.shortest_ray()) {
+    decide_short_rays(pixel, scaled_points, work.above, visible);
+  }
 
   PixelContext context{};
   rtcInitIntersectContext(&context.embree);
@@ -212,9 +239,9 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   typename Packet<kWidth>::Rays rays{};
   alignas(64) int valid[kWidth];
   for (std::size_t lane = 0; lane < kWidth; ++lane) {
-    lanes(rays.org_x)[lane] = p.x;
-    lanes(rays.org_y)[lane] = p.y;
-    lanes(rays.org_z)[lane] = p.z;
+    lanes(rays.org_x)[lane] = origin.x;
+    lanes(rays.org_y)[lane] = origin.y;
+    lanes(rays.org_z)[lane] = origin.z;
     lanes(rays.mask)[lane] = 0xffffffffu;
   }
   for (std::size_t first = 0; first < points.size(); first += kWidth) {
@@ -224,7 +251,7 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
       const bool traced = first + lane < points.size() && ((work.above[sample / 32] >> (sample % 32)) & 1u) != 0;
       valid[lane] = traced ? -1 : 0;
       alive |= valid[lane];
-      const glm::vec3 direction = points[sample] - p;
+      const glm::vec3 direction = scaled_points[sample] - origin;
       lanes(rays.dir_x)[lane] = direction.x;
       lanes(rays.dir_y)[lane] = direction.y;
       lanes(rays.dir_z)[lane] = direction.z;
@@ -245,7 +272,8 @@ void RayTraced::trace_tile(const Tile& tile) {
   const std::size_t words = light_->words_per_mask();
   const tbb::blocked_range2d<std::size_t> pixels(0, tile.row_count, 8, 0, samples_->width, 32);
   tbb::parallel_for(pixels, [&](const tbb::blocked_range2d<std::size_t>& block) {
-    Workspace work{std::vector<glm::vec3>(light_->sample_count()), std::vector<std::uint32_t>(words)};
+    const std::vector<glm::vec3> room(light_->kind == LightKind::sphere ? light_->sample_count() : 0);
+    Workspace work{room, room, std::vector<std::uint32_t>(words)};
     for (std::size_t row = block.rows().begin(); row != block.rows().end(); ++row) {
       for (std::size_t x = block.cols().begin(); x != block.cols().end(); ++x) {
         const std::size_t in_tile = row * samples_->width + x;

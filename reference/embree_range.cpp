@@ -1,0 +1,54 @@
+#include "reference/embree_range.hpp"
+
+#include "base/error.hpp"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::reference {
+namespace {
+
+constexpr int kMeshExponent = 14;      // of the first power of two that no coordinate of the mesh reaches
+constexpr double kFarthest = 0x1p60;   // of light points
+constexpr double kSmallest = 0x1p-50;  // largest edge component of a triangle
+constexpr double kLeastTerm = 0x1p-95;
+
+double largest_component(const glm::dvec3& x) {
+  return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+}
+
+}  // namespace
+
+EmbreeRange::EmbreeRange(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casting) {
+  const double size = std::max(largest_component(scene.lower), largest_component(scene.upper));
+  if (size > 0) scale_ = std::ldexp(1.0, kMeshExponent - 1 - std::ilogb(size));
+
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t triangle : casting) {
+    const auto [a, b, c] = scene.corners(triangle);
+    const double edges =
+        std::max(largest_component(glm::dvec3(b) - glm::dvec3(a)), largest_component(glm::dvec3(c) - glm::dvec3(a)));
+    if (edges * scale_ < kSmallest) {
+      throw InputError(
+          "rays: triangle {} measures {} in a scene of {}: Embree's float32 cannot hold both; exact and view-sample "
+          "can "
+          "(compare: --reference exact)",
+          triangle, edges, size);
+    }
+    smallest = std::min(smallest, edges * scale_);
+  }
+  shortest_ray_ = static_cast<float>(kLeastTerm / (smallest * smallest));
+}
+
+void EmbreeRange::require_light(const visibility::Light& light, const glm::vec3& lower, const glm::vec3& upper) const {
+  const double farthest = std::max(largest_component(lower), largest_component(upper));
+  if (farthest * scale_ <= kFarthest) return;
+  throw InputError(
+      "light \"{}\" is {} away from a scene of {}: Embree's float32 cannot hold both; bring the light nearer (compare: "
+      "--reference exact)",
+      light.name, farthest, std::ldexp(1.0, kMeshExponent) / scale_);
+}
+
+}  // namespace penumbra::reference
