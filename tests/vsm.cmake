@@ -8,7 +8,9 @@ add_executable(vsm_tests
   ${CMAKE_CURRENT_LIST_DIR}/property/mask_lattice.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_patterns.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_triangle_tree.cpp)
-add_executable(agreement_tests ${CMAKE_CURRENT_LIST_DIR}/agreement/masks_raytrace.cpp)
+add_executable(agreement_tests
+  ${CMAKE_CURRENT_LIST_DIR}/agreement/long_walks.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/agreement/masks_raytrace.cpp)
 foreach(target vsm_tests agreement_tests)
   target_compile_definitions(${target} PRIVATE PENUMBRA_SCENES="${PROJECT_SOURCE_DIR}/scenes")
   target_link_libraries(${target} PRIVATE

@@ -18,16 +18,16 @@ using visibility::TriangleTree;
 
 constexpr std::uint32_t kBlock = 8, kClusters = 4;  // as in edge_scatter.glsl
 
-/// Head of the buffer of lists.
-struct Counts {
-  std::uint32_t words = 0, questions = 0, unfinished = 0;
-};
-
 render::Buffer make_texels(const render::Device& device, const char* name, const std::vector<Texel>& texels) {
   return render::make_buffer<Texel>(device, name, texels, render::BufferUse::texels);
 }
 
 }  // namespace
+
+/// Head of the buffer of lists.
+struct EdgeLists::Counts {
+  std::uint32_t words = 0, questions = 0, unfinished = 0;
+};
 
 EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crops)
     : device_(&device), method_(std::move(method)), sides_(method_), crops_(crops) {
@@ -38,6 +38,7 @@ EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crop
 
 void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
+  part_levels_ = 0;
   scale_ = render::device_scale(scene);
   tree_ = visibility::make_triangle_tree(scene);
   triangle_nodes_.emplace(make_texels(*device_, "triangle nodes", render::node_texels(tree_, scale_)));
@@ -177,25 +178,45 @@ std::uint64_t EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push
   const std::uint64_t pixels = std::uint64_t{tile_.row_count} * samples_->width;
   render::grow(*device_, heads_, "heads of lists", blocks() * kClusters * 8 + pixels * 4);
   for (;; ++retries_) {
-    push.list_capacity = capacity_;
-    render::grow(*device_, lists_, "edge lists", sizeof(Counts) + std::uint64_t{capacity_} * 4);
-    commands.fill(*lists_, 0, 0, sizeof(Counts));
-    commands.fill(*lists_, keep, sizeof(std::uint32_t), sizeof(std::uint32_t));
+    const Counts counts = walk(commands, push, edges, keep);
+    if (counts.unfinished != 0) {
+      // What is left of the deepest walk when all levels are taken is one leaf.
+      if (part_levels_ >= std::max(tree_.depth, edges.depth)) {
+        throw ResourceError("{}: {} cuts off loops that a hierarchy over {} triangles needs", method_,
+                            device_->info().name, scene_->triangles.size());
+      }
+      ++part_levels_;
+    } else if (counts.words <= capacity_) {
+      return counts.words;
+    } else {
+      capacity_ = counts.words + counts.words / 8;
+    }
+  }
+}
+
+/// Some processors' drivers end loops after 65,535 turns of a workgroup: where that is too few, the hierarchies are
+/// walked in parts, one dispatch after the other.
+EdgeLists::Counts EdgeLists::walk(render::Commands& commands, gpu::ScatterPush& push, const SideBuffers& edges,
+                                  std::uint32_t keep) {
+  push.list_capacity = capacity_;
+  push.part_levels = part_levels_;
+  render::grow(*device_, lists_, "edge lists", sizeof(Counts) + std::uint64_t{capacity_} * 4);
+  commands.fill(*lists_, 0, 0, sizeof(Counts));
+  commands.fill(*lists_, keep, sizeof(std::uint32_t), sizeof(std::uint32_t));
+  times_.clear();
+  Counts counts;
+  for (push.part = 0; push.part < 1U << (3 * part_levels_); ++push.part) {
     pass_->record(commands, push,
                   {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots[0], *edges.slots[1],
                    *edges.slots[2], *edges.slots[3], *edges.slots[4], *edges.slots[5], *triangle_corners_[0],
                    *triangle_corners_[1], *triangle_corners_[2]},
                   blocks());
-    times_ = commands.submit();
-    Counts counts;
+    const std::vector<visibility::PassTime> part = commands.submit();
+    times_.insert(times_.end(), part.begin(), part.end());
     lists_->read(std::span(&counts, 1));
-    if (counts.unfinished != 0) {
-      throw ResourceError("{}: {} cuts off loops that a hierarchy over {} triangles needs", method_,
-                          device_->info().name, scene_->triangles.size());
-    }
-    if (counts.words <= capacity_) return counts.words;
-    capacity_ = counts.words + counts.words / 8;
+    if (counts.unfinished != 0) break;
   }
+  return counts;
 }
 
 std::uint32_t EdgeLists::question_count() const {

@@ -67,6 +67,8 @@ class EdgeLists {
   [[nodiscard]] const SideBuffers& of_side(float side) const;
   [[nodiscard]] std::uint64_t blocks() const;
   void describe(gpu::ScatterPush& push) const;
+  struct Counts;
+  Counts walk(render::Commands& commands, gpu::ScatterPush& push, const SideBuffers& edges, std::uint32_t keep);
 
   const render::Device* device_;
   std::string method_;
@@ -95,6 +97,7 @@ class EdgeLists {
   visibility::Tile tile_;
   std::unique_ptr<render::Buffer> view_, heads_, lists_;
   std::uint32_t capacity_ = 1U << 20;  // words; grows
+  std::uint32_t part_levels_ = 0;      // grows: 8 to that power are the parts that the hierarchies are walked in
   std::uint64_t retries_ = 0;
   std::vector<visibility::PassTime> times_;
 };

@@ -29,6 +29,8 @@ struct ScatterPush {
   uint question_capacity;
   uint edge_depth, triangle_depth;  // levels of the hierarchies; 0: empty
   uint near_plane;           // something is near the light's plane: view samples close to that are for the host
+  uint part_levels, part;    // find_edges: of both hierarchies only what lies below one child of each of so many levels;
+                             // which child, three bits a level from the lowest
   uint touched_low, touched_high;   // light rows with samples that something touches; of more than 64 rows: all or none
 };
 

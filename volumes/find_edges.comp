@@ -84,13 +84,33 @@ uint emit(uint next, uint count) {
   return first;
 }
 
-// Returns the list.
-uint walk(Shaft shaft, bool edges) {
+// Lays the root of this dispatch's part of a hierarchy on the stack; or, if a leaf lies above the part's level, the leaf
+// with the first of the parts that it could belong to. Returns the sizes of stack and leaves.
+uvec2 first_of_part(bool edges) {
+  uint node = 0;
+  uvec2 sizes = uvec2(1, 0);
+  for (uint level = 0; level < push.part_levels; ++level) {
+    const int child = int(node * kTeam + (push.part >> (3 * level) & 7));
+    const uint reference = edges ? texelFetch(edge_nodes, 3 * child).w : texelFetch(triangle_nodes, 2 * child).w;
+    if (sizes.x == 1) {
+      const bool leaf = reference != kNone && (reference & kLeafBit) != 0;
+      sizes = uvec2(reference == kNone || leaf ? 0 : 1, leaf && push.part >> (3 * level + 3) == 0 ? 1 : 0);
+      node = reference;
+    }
+  }
+  stack[0] = node;                                        // every lane writes the same
+  if (sizes.y == 1) leaves[0] = node & ~kLeafBit;
+  return sizes;
+}
+
+// Adds to the list `head`, which it returns.
+uint walk(Shaft shaft, bool edges, uint head) {
   const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
-  uint stack_size = 1, head = kNone;
-  stack[0] = 0;                                           // every lane writes the same
-  while (stack_size > 0) {
-    uint leaf_count = 0, item_count = 0, i = 0;
+  const uvec2 sizes = first_of_part(edges);
+  uint stack_size = sizes.x, known_leaves = sizes.y;
+  while (stack_size + known_leaves > 0) {
+    uint leaf_count = known_leaves, item_count = 0, i = 0;
+    known_leaves = 0;
     subgroupMemoryBarrierShared();
     subgroupBarrier();
     // Short, because some devices run all of a loop's body whatever its branches say.
@@ -208,12 +228,14 @@ void list_for(uint cluster, uint block) {
   height = subgroupMax(height);
   middle = 0.5 * lower + 0.5 * upper;
   half_size = (0.5 * upper - 0.5 * lower) * (1.0 + 8.0 * kRound);
-  uint edges = kNone, triangles = kNone;
-  if (push.edge_depth > 0) edges = walk(make_shaft(low, half_cells, slopes, height), true);
-  if (push.triangle_depth > 0) triangles = walk(make_shaft(low, low, corner_slopes, height), false);
+  const uint place = 2 * (block * kClusters + cluster);
+  const bool first_part = push.part == 0;                 // the others go on with its lists
+  uint edges = first_part ? kNone : heads[place], triangles = first_part ? kNone : heads[place + 1];
+  if (push.edge_depth > 0) edges = walk(make_shaft(low, half_cells, slopes, height), true, edges);
+  if (push.triangle_depth > 0) triangles = walk(make_shaft(low, low, corner_slopes, height), false, triangles);
   if (gl_SubgroupInvocationID == 0) {
-    heads[2 * (block * kClusters + cluster)] = edges;
-    heads[2 * (block * kClusters + cluster) + 1] = triangles;
+    heads[place] = edges;
+    heads[place + 1] = triangles;
   }
 }
 

@@ -54,11 +54,31 @@ uint parts_around(bool on) {
   return outside_of;
 }
 
+// Lays the root of this dispatch's part of the tree on the stack; or, if a leaf lies above the part's level, the leaf with
+// the first of the parts that it could belong to. Returns the sizes of stack and leaves.
+uvec2 first_of_part() {
+  uint node = 0;
+  uvec2 sizes = uvec2(1, 0);
+  for (uint depth = 0; depth < push.part_levels; ++depth) {
+    const uint reference = texelFetch(nodes, int((node * kTeam + (push.part >> (3 * depth) & 7)) * 2)).w;
+    if (sizes.x == 1) {
+      const bool leaf = reference != kNone && (reference & kLeafBit) != 0;
+      sizes = uvec2(reference == kNone || leaf ? 0 : 1, leaf && push.part >> (3 * depth + 3) == 0 ? 1 : 0);
+      node = reference;
+    }
+  }
+  stack[0] = node;                                        // every lane writes the same
+  if (sizes.y == 1) leaves[0] = node & ~kLeafBit;
+  return sizes;
+}
+
 void walk(bool on, float side, uint header, uint outside_of) {
   const Shaft shaft = make_shaft(on, side);
   const uint lane = gl_SubgroupInvocationID, teams = kLanes / kTeam, team = lane / kTeam, member = lane % kTeam;
-  uint stack_size = 1, leaf_count = 0;
-  stack[0] = 0;                                           // every lane writes the same
+  const uvec2 sizes = first_of_part();
+  uint stack_size = sizes.x, leaf_count = sizes.y;
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
   while (stack_size > 0 || leaf_count > 0) {
     // Short, because some devices run all of a loop's body whatever its branches say.
     while (stack_size > 0 && leaf_count < kChunk) {
@@ -105,10 +125,11 @@ void main() {
   for (uint word = 0; word < kSharedWords; ++word) blocked[slot_of(word)] = 0;
   bool on = inside && carrier != kNone;
   bool all_blocked = false;
+  const bool first_part = push.part == 0;
 
   // (2) p strictly on an emitting side of the light's plane.
   if (on && abs(level) <= level_error) {
-    ask(kWholePixel, kAllSamples);
+    if (first_part) ask(kWholePixel, kAllSamples);
     on = false;
   }
   if (on && push.two_sided == 0 && level < 0.0) {
@@ -123,13 +144,13 @@ void main() {
     if (above.z + span < -error) {
       all_blocked = true;
       on = false;
-    } else if (above.z - span <= error) {
+    } else if (above.z - span <= error && first_part) {
       mark(HalfPlanes(vec4(-above.x, vec3(0.0)), vec4(-above.y, vec3(0.0)), vec4(-above.z, vec3(1.0)),
                       vec4(error, vec3(kAlwaysError))), kWholeLight, kCarrier);
     }
   }
   const uint words = (push.sample_count + 31) / 32;
-  if (inside) {
+  if (inside && first_part) {
     for (uint word = 0; word < words; ++word) {
       masks[pixel * words + word] = all_blocked ? bits(0, int(min(push.sample_count - 32 * word, 32)) - 1) : 0;
     }

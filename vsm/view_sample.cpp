@@ -66,6 +66,7 @@ class ViewSampleMapping final : public visibility::Method {
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
+    part_levels_ = 0;
     scale_ = render::device_scale(scene);
     tree_ = visibility::make_triangle_tree(scene);
     if (scene.triangles.size() >> kPartShift != 0) {
@@ -296,15 +297,16 @@ class ViewSampleMapping final : public visibility::Method {
       render::grow(*device_, questions_, "open questions", question_bytes);
       push.question_capacity = question_capacity_;
       push.chunk_capacity = chunk_capacity_;
-      commands_.fill(*questions_, 0, 0, sizeof(Counts));
-      find_leaves_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *nodes_, *parts_},
-                           blocks);
-      submit();
-      Counts counts;
-      questions_->read(std::span(&counts, 1));
+      Counts counts = find_leaves(push, blocks);
       if ((counts.unfinished & gpu::kWalkCut) != 0) {
-        throw ResourceError("view-sample: {} cuts off loops that a tree over {} triangles needs", device_->info().name,
-                            scene_->triangles.size());
+        // What is left of the deepest walk when all levels are taken is one leaf.
+        if (part_levels_ >= tree_.depth) {
+          throw ResourceError("view-sample: {} cuts off loops that a tree over {} triangles needs",
+                              device_->info().name, scene_->triangles.size());
+        }
+        ++part_levels_;
+        ++counters_["loopRetries"];
+        continue;
       }
       if (counts.chunks > chunk_capacity_) {
         chunk_capacity_ = counts.chunks + counts.chunks / 8;
@@ -334,6 +336,21 @@ class ViewSampleMapping final : public visibility::Method {
       answer(counts.questions);
       return true;
     }
+  }
+
+  /// In parts of the tree, one dispatch after the other, where the device ends loops too soon for all of it.
+  Counts find_leaves(gpu::ViewSamplePush& push, std::uint64_t blocks) {
+    Counts counts;
+    commands_.fill(*questions_, 0, 0, sizeof(Counts));
+    push.part_levels = part_levels_;
+    for (push.part = 0; push.part < 1U << (3 * part_levels_); ++push.part) {
+      find_leaves_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *nodes_, *parts_},
+                           blocks);
+      submit();
+      questions_->read(std::span(&counts, 1));
+      if (counts.unfinished != 0) break;
+    }
+    return counts;
   }
 
   void answer(std::uint32_t count) {
@@ -384,6 +401,7 @@ class ViewSampleMapping final : public visibility::Method {
   std::vector<Texel> view_texels_;
   std::uint32_t view_row_ = 0, view_rows_ = 0;  // what view_ holds
   std::unique_ptr<render::Buffer> view_, masks_, visibility_, chunks_, questions_, answers_;
+  std::uint32_t part_levels_ = 0;  // grows: 8 to that power are the parts that the tree is walked in
   std::uint32_t chunk_capacity_ = kFirstChunks, question_capacity_ = kFirstQuestions;
   visibility::Tile tile_;
 

@@ -26,6 +26,8 @@ struct ViewSamplePush {
   uint shift_step;             // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
   uint question_capacity, chunk_capacity;
   uint empty_tree;
+  uint part_levels, part;      // find_leaves: of the tree only what lies below one child of each of so many levels; which
+                               // child, three bits a level from the lowest. Part 0 does what is done once, too
   uint closed_parts;           // bit k: part k, from 1, is apart from the light, and has dispensable triangles
 };
 

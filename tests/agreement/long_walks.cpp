@@ -1,0 +1,77 @@
+// Scenes so dense before the light that one block of pixels looks at more of a hierarchy than some drivers' loops may
+// turn (65,535 times a workgroup): every engine comes to an end, with the same bits.
+
+#include "tests/agreement/mask_methods.hpp"
+#include "tests/agreement/support.hpp"
+#include "volumes/depth_complexity.hpp"
+
+namespace penumbra {
+namespace {
+
+using LongWalks = tests::DeviceTest;
+
+/// `count` small triangles, without neighbours: each edge is a silhouette from everywhere, so that nothing is left out.
+scenes::Scene swarm_over_floor(int count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> real(-1, 1);
+  const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, -1, 0}, {4, 0, 0}, {0, 0, -4}));
+  std::vector<tests::Corners> swarm;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 at = glm::dvec3(0, 1.5, 0) + point(0.5);
+    swarm.push_back({at + point(0.002), at + point(0.002), at + point(0.002)});
+  }
+  tests::add_object(scene, "swarm", swarm);
+  scene.lights.push_back(tests::ceiling_light(4, 3));
+  scene.cameras.push_back(tests::camera({0, 0.5, 0}, {0, -1, 0}, 60));
+  scene.cameras[0].up = {0, 0, 1};
+  return scene;
+}
+
+/// Expects the bits that the processor's own walk finds; returns how often the method had to begin anew.
+std::uint64_t expect_same_bits(visibility::Method& method, const tests::Stage& stage, const tests::Masks& expected) {
+  const tests::Masks masks = tests::run(method, stage.floats, stage.light, stage.samples);
+  EXPECT_EQ(tests::differing_bits(masks, expected), 0U) << method.description().name;
+  const auto counters = method.counters();
+  const auto count = [&](const char* name) { return counters.contains(name) ? counters.at(name) : 0; };
+  return count("listRetries") + count("loopRetries");
+}
+
+class LongWalk {
+ public:
+  LongWalk(const render::Device& device, int triangles)
+      : stage(swarm_over_floor(triangles), 8, 8, {16, 4, 4, visibility::SamplePattern::rows, 0}),
+        expected(tests::run(*tests::kNativeViewSample.make(device, {}), stage.floats, stage.light, stage.samples)) {
+    std::size_t part = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      part += expected.visible_count(i) > 0 && expected.visible_count(i) < 16 ? 1 : 0;
+    }
+    EXPECT_GT(part, stage.samples.size() / 4);
+  }
+
+  tests::Stage stage;
+  tests::Masks expected;
+};
+
+TEST_F(LongWalks, OverEdgesEndWithTheSameBits) {
+  const LongWalk walk(device(), 250'000);
+  const std::uint64_t scattered = expect_same_bits(*tests::kEdgeScatter.make(device(), {}), walk.stage, walk.expected);
+  const std::uint64_t counted =
+      expect_same_bits(*volumes::make_depth_complexity(device(), {}), walk.stage, walk.expected);
+  if (device().info().name.starts_with("llvmpipe")) {
+    EXPECT_GT(scattered, 0U) << "this driver's loops are no longer too short: more triangles";
+    EXPECT_GT(counted, 0U);
+  }
+}
+
+TEST_F(LongWalks, OverTrianglesEndWithTheSameBitsFull) {
+  const LongWalk walk(device(), 3'000'000);
+  const std::uint64_t mapped = expect_same_bits(*tests::kViewSample.make(device(), {}), walk.stage, walk.expected);
+  if (device().info().name.starts_with("llvmpipe")) {
+    EXPECT_GT(mapped, 0U) << "this driver's loops are no longer too short: more triangles";
+  }
+}
+
+}  // namespace
+}  // namespace penumbra
