@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -27,6 +28,7 @@ void print_table(const compare::Metrics& metrics) {
              "shadow s");
   const auto line = [](const std::string& name, const compare::Stats& stats, const compare::MethodResult* result) {
     std::string rmse = "-", max = "-", bias = "-", differing = "-", pairs = "-";
+    if (result != nullptr && result->failure) rmse = "failed";
     if (result != nullptr && result->error) {
       rmse = fmt::format("{:.6f}", result->error->rmse);
       max = fmt::format("{:.5f}", result->error->max);
@@ -88,19 +90,28 @@ class CompareCommand : public Command {
     const compare::Metrics metrics = compare_methods(run_, options_, global.arguments, progress);
     print_table(metrics);
     spdlog::info("{} shows it all", (run_.out / "report.html").string());
-    if (!max_rmse_) return 0;
+    // What failed has been said; the others' answers are written all the same.
+    const auto failed =
+        std::ranges::find_if(metrics.methods, [](const auto& result) { return result.failure.has_value(); });
+    const bool exceeded = max_rmse_ && exceeds_max_rmse(metrics);
+    if (failed != metrics.methods.end()) return failed->failure->exit_code;
+    return static_cast<int>(exceeded ? ExitCode::answer_is_no : ExitCode::done);
+  }
+
+ private:
+  [[nodiscard]] bool exceeds_max_rmse(const compare::Metrics& metrics) const {
     bool exceeded = false;
     for (const compare::MethodResult& result : metrics.methods) {
+      if (result.failure) continue;
       // No judged pixel, no error: that the error is small has not been shown.
       if (result.error && result.error->rmse <= *max_rmse_) continue;
       exceeded = true;
       spdlog::error("{}: rmse {} exceeds --max-rmse {}", result.entry,
                     result.error ? fmt::format("{}", result.error->rmse) : "(no judged pixels)", *max_rmse_);
     }
-    return static_cast<int>(exceeded ? ExitCode::answer_is_no : ExitCode::done);
+    return exceeded;
   }
 
- private:
   /// The main job: all that this build has of geometry-based and image-based methods.
   static std::string default_methods() {
     std::string groups;

@@ -1,6 +1,7 @@
 #include "app/comparison.hpp"
 
 #include "app/device_source.hpp"
+#include "app/failure.hpp"
 #include "app/judge.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
@@ -28,6 +29,13 @@ namespace {
 using visibility::Light;
 using visibility::MethodDescription;
 using visibility::Output;
+
+/// A method as asked for, with what its options make of it.
+struct Entry {
+  std::string label;
+  MethodDescription description;
+  visibility::MethodOptions options;
+};
 
 /// A run with what is made of it on the way.
 struct Finished {
@@ -70,7 +78,7 @@ class Comparison {
 
   compare::Metrics run(const std::vector<std::string>& arguments) {
     run_reference();
-    for (const MethodEntry& entry : entries_) run_entry(entry);
+    for (const Entry& entry : entries_) run_or_report(entry);
     write_error_pictures();
     progress_.clear();
     const std::string json = compare::json_text(compare::to_json(report_.metrics));
@@ -82,13 +90,13 @@ class Comparison {
   }
 
  private:
-  static const MethodDescription& describe_reference(const std::string& name) {
+  static Entry describe_reference(const std::string& name) {
     const MethodDescription& description = describe_method(name);
     if (description.family != visibility::Family::reference) {
       throw UsageError("--reference {}: a {} method is no judge; expected raytrace or exact", name,
                        visibility::name_of(description.family));
     }
-    return description;
+    return {"reference", description, {}};
   }
 
   [[nodiscard]] visibility::SampleRequest parse_reference_samples() const {
@@ -129,14 +137,17 @@ class Comparison {
 
   /// Refuses, before anything long, what would fail later; leaves out of a group what cannot do the lights.
   void choose_entries() {
-    for (const Light& light : session_.lights) check_light(reference_, light);
-    for (MethodEntry entry : options_.methods) {
-      const MethodDescription& description = describe_method(entry.name);
-      if (entry.from_group && !can_do(description, session_.lights)) {
-        warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.name));
+    for (const Light& light : session_.lights) check_light(reference_.description, light);
+    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
+    for (const MethodEntry& chosen : with_method_options()) {
+      // With its options: they may change what it gives and which lights it can do.
+      Entry entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
+      if (chosen.from_group && !can_do(entry.description, session_.lights)) {
+        warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
         continue;
       }
-      for (const Light& light : session_.lights) check_light(description, light);
+      for (const Light& light : session_.lights) check_light(entry.description, light);
+      if (wants_bits(entry)) check_bits(entry.description, session_.lights.front());
       entries_.push_back(std::move(entry));
     }
     if (entries_.empty()) {
@@ -145,9 +156,14 @@ class Comparison {
           "`penumbra methods`)",
           session_.scene.name);
     }
+  }
+
+  /// The chosen methods, each with those of --method-option that it has.
+  [[nodiscard]] std::vector<MethodEntry> with_method_options() const {
+    std::vector<MethodEntry> entries = options_.methods;
     for (const auto& [key, value] : options_.method_options) {
       bool known = false;
-      for (MethodEntry& entry : entries_) {
+      for (MethodEntry& entry : entries) {
         const auto& has = describe_method(entry.name).options;
         if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
         entry.options.emplace(key, value);  // an entry's own option stands
@@ -155,6 +171,7 @@ class Comparison {
       }
       if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
     }
+    return entries;
   }
 
   [[nodiscard]] std::vector<Light> lights_of_reference() const {
@@ -167,65 +184,80 @@ class Comparison {
   }
 
   void run_reference() {
-    const visibility::MethodOptions no_options;
-    const bool keep_masks = same_samples_ && reference_.output == Output::mask;
-    Finished done = run_one("reference", reference_, no_options, reference_lights_, [&](const TileResult& tile) {
+    const bool keep_masks = same_samples_ && reference_.description.output == Output::mask;
+    Finished done = run_one(reference_, reference_lights_, [&](const TileResult& tile) {
       if (keep_masks && tile.light == 0) {
         reference_masks_.insert(reference_masks_.end(), tile.masks.begin(), tile.masks.end());
       }
     });
     report_.exposure = compare::auto_exposure(done.beauty);
-    const MethodLabel label{reference_, no_options, device_of(reference_, devices_.name())};
-    report_.metrics.reference = make_stats(session_, reference_lights_, label, done.run);
+    report_.metrics.reference = make_stats(session_, reference_lights_, label_of(reference_), done.run);
     report_.metrics.judged_pixels = judged_.size();
     report_.metrics.horizon_pixels = horizon_.size();
-    report_.reference = pictures_of("reference", reference_, done);
+    report_.reference = pictures_of(reference_, done);
     reference_visibility_ = std::move(done.run.visibility.front());
     reference_beauty_ = std::move(done.beauty);
   }
 
-  void run_entry(const MethodEntry& entry) {
-    const MethodDescription& description = describe_method(entry.name);
+  /// One method that fails is no reason to lose what the others have to say.
+  void run_or_report(const Entry& entry) {
+    try {
+      run_entry(entry);
+    } catch (...) {
+      const Failure failure = current_failure();
+      progress_.clear();
+      spdlog::error("{}: {}", entry.label, failure.message);
+      compare::MethodResult result;
+      result.entry = entry.label;
+      result.stats = make_stats(session_, session_.lights, label_of(entry), {});
+      result.stats.seconds = {};
+      result.failure = {static_cast<int>(failure.code), failure.message};
+      report_.metrics.methods.push_back(std::move(result));
+      report_.methods.emplace_back().description = entry.description;
+      visibility_.emplace_back();
+    }
+  }
+
+  void run_entry(const Entry& entry) {
     std::optional<PairJudge> judge;
-    if (!reference_masks_.empty() && description.output == Output::mask) judge.emplace(session_, reference_masks_);
-    Finished done = run_one(entry.label, description, entry.options, session_.lights, [&](const TileResult& tile) {
+    if (!reference_masks_.empty() && entry.description.output == Output::mask) {
+      judge.emplace(session_, reference_masks_);
+    }
+    Finished done = run_one(entry, session_.lights, [&](const TileResult& tile) {
       if (judge && tile.light == 0) judge->add(tile);
     });
 
-    const MethodLabel label{description, entry.options, device_of(description, devices_.name())};
     compare::MethodResult result;
     result.entry = entry.label;
-    result.stats = make_stats(session_, session_.lights, label, done.run);
+    result.stats = make_stats(session_, session_.lights, label_of(entry), done.run);
     result.error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, judged_);
     result.horizon_error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, horizon_);
     result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, judged_);
     if (judge) {
       result.pairs = judge->counts();
-      const compare::PairVerdicts verdicts = judge->decide(progress_);
-      result.stats.counters["exactDecided"] = verdicts.decided;
-      result.stats.counters["methodRight"] = verdicts.method_right;
-      result.stats.counters["referenceRight"] = verdicts.reference_right;
-      if (judge->kept_all()) {
-        result.verdicts = verdicts;
-      } else {
-        result.stats.warnings.push_back(fmt::format("{} pairs differ; {} of them, evenly spaced, were decided exactly",
-                                                    result.pairs->differing, verdicts.decided));
+      result.verdicts = judge->decide(progress_);
+      result.stats.counters["exactDecided"] = result.verdicts->decided;
+      result.stats.counters["methodRight"] = result.verdicts->method_right;
+      result.stats.counters["referenceRight"] = result.verdicts->reference_right;
+      if (!judge->kept_all()) {
+        result.stats.warnings.push_back(
+            fmt::format("{}: {} pairs differ; {} of them, evenly spaced, were decided exactly", entry.label,
+                        result.pairs->differing, result.verdicts->decided));
       }
     }
+    compare::ReportEntry pictures = pictures_of(entry, done);
     report_.metrics.methods.push_back(std::move(result));
-    report_.methods.push_back(pictures_of(entry.label, description, done));
+    report_.methods.push_back(std::move(pictures));
     visibility_.push_back(std::move(done.run.visibility.front()));
   }
 
   /// Runs a method and writes its EXR and, if wanted, its bits.
-  Finished run_one(const std::string& name, const MethodDescription& description,
-                   const visibility::MethodOptions& options, const std::vector<Light>& lights, const TileSink& sink) {
-    const auto method = make_method(description.name, options, devices_);
+  Finished run_one(const Entry& entry, const std::vector<Light>& lights, const TileSink& sink) {
+    const MethodDescription& description = entry.description;
+    const auto method = make_method(description.name, entry.options, devices_);
     BeautyAccumulator beauty(session_, lights);
     std::optional<BitsOutput> bits;
-    if (options_.bits && description.output == Output::mask) {
-      bits.emplace(file_of(name, ".bits"), session_, lights.front(), description);
-    }
+    if (wants_bits(entry)) bits.emplace(file_of(entry.label, ".bits"), session_, lights.front());
     RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
     // An oracle without samples is not raced, and it may take minutes: once is enough.
     if (description.family == visibility::Family::reference && description.output != Output::mask) {
@@ -244,20 +276,26 @@ class Comparison {
     done.beauty = beauty.pixels();
     devices_.check_validation();
     progress_.clear();
-    const MethodLabel label{description, options, device_of(description, devices_.name())};
-    write_picture(file_of(name, ".exr"), session_, lights, label, done.run, done.beauty);
+    write_picture(file_of(entry.label, ".exr"), session_, lights, label_of(entry), done.run, done.beauty);
     if (bits) bits->commit();
     return done;
   }
 
-  compare::ReportEntry pictures_of(const std::string& name, const MethodDescription& description,
-                                   const Finished& done) {
-    compare::ReportEntry entry;
-    entry.description = description;
-    entry.beauty = to_srgb(session_.width, session_.height, done.beauty, report_.exposure);
-    entry.visibility = compare::visibility_picture(session_.samples, done.run.visibility.front());
-    if (options_.png) write_png(file_of(name, ".png"), *entry.beauty);
-    return entry;
+  [[nodiscard]] bool wants_bits(const Entry& entry) const {
+    return options_.bits && entry.description.output == Output::mask;
+  }
+
+  [[nodiscard]] MethodLabel label_of(const Entry& entry) const {
+    return {entry.description, entry.options, device_of(entry.description, devices_.name())};
+  }
+
+  compare::ReportEntry pictures_of(const Entry& entry, const Finished& done) {
+    compare::ReportEntry pictures;
+    pictures.description = entry.description;
+    pictures.beauty = to_srgb(session_.width, session_.height, done.beauty, report_.exposure);
+    pictures.visibility = compare::visibility_picture(session_.samples, done.run.visibility.front());
+    if (options_.png) write_png(file_of(entry.label, ".png"), *pictures.beauty);
+    return pictures;
   }
 
   /// Last, because all share one scale.
@@ -268,6 +306,7 @@ class Comparison {
     }
     report_.error_limit = compare::error_scale_limit(largest);
     for (std::size_t i = 0; i < visibility_.size(); ++i) {
+      if (visibility_[i].empty()) continue;  // it failed
       report_.methods[i].error =
           compare::error_picture(session_.samples, visibility_[i], reference_visibility_, report_.error_limit);
       write_png(file_of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].error);
@@ -298,20 +337,20 @@ class Comparison {
   const RunOptions& run_;
   const ComparisonOptions& options_;
   Progress& progress_;
-  const MethodDescription& reference_;
+  const Entry reference_;
   bool same_samples_;
   visibility::SampleRequest reference_request_;
   OutputFiles outputs_;
   DeviceSource devices_;
   Session session_;
   std::vector<Light> reference_lights_;
-  std::vector<MethodEntry> entries_;
+  std::vector<Entry> entries_;
   std::vector<std::uint32_t> judged_, horizon_;       ///< pixels that errors are taken over
   std::optional<std::vector<std::uint32_t>> wanted_;  ///< both, if --sample-pixels chose; nothing: all pixels
   std::vector<std::uint32_t> reference_masks_;        ///< of the first light; empty unless pairs can be compared
   std::vector<float> reference_visibility_;           ///< of the first light
   std::vector<glm::vec3> reference_beauty_;
-  std::vector<std::vector<float>> visibility_;  ///< of each entry, of the first light
+  std::vector<std::vector<float>> visibility_;  ///< of each entry, of the first light; empty: it failed
   std::vector<std::string> warnings_;
   compare::ReportInput report_;
 };

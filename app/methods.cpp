@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <type_traits>
 
 // A family that this build goes without is not a CMake target; its methods are then not in the table.
 #ifdef PENUMBRA_HAS_VSM
@@ -41,17 +42,30 @@ using visibility::MethodOptions;
 
 struct TableRow {
   const MethodDescription& (*describe)();
+  MethodDescription (*describe_with)(const MethodOptions&);  ///< what these options make of it
   std::unique_ptr<Method> (*make)(DeviceSource&, const MethodOptions&);
   bool on_device = false;
 };
+
+template <auto kDescribe>
+MethodDescription describe_with(const MethodOptions& options) {
+  if constexpr (std::is_invocable_v<decltype(kDescribe), const MethodOptions&>) {
+    return kDescribe(options);
+  } else {
+    MethodDescription description = kDescribe();
+    visibility::check_options(description, options);
+    return description;
+  }
+}
 
 /// A method that runs on the Vulkan device.
 template <auto kDescribe, auto kMake>
 [[maybe_unused]] TableRow on_device() {
   return {[]() -> const MethodDescription& {
-            static const MethodDescription description = kDescribe();
+            static const MethodDescription description = describe_with<kDescribe>({});
             return description;
           },
+          describe_with<kDescribe>,
           [](DeviceSource& devices, const MethodOptions& options) { return kMake(devices.device(), options); }, true};
 }
 
@@ -62,6 +76,7 @@ template <auto kMake>
             static const MethodDescription description = kMake({})->description();
             return description;
           },
+          [](const MethodOptions& options) { return MethodDescription(kMake(options)->description()); },
           [](DeviceSource&, const MethodOptions& options) { return kMake(options); }, false};
 }
 
@@ -158,6 +173,10 @@ std::optional<std::vector<const MethodDescription*>> method_group(std::string_vi
 
 const MethodDescription& describe_method(std::string_view name) {
   return find_row(name).describe();
+}
+
+MethodDescription describe_method(std::string_view name, const MethodOptions& options) {
+  return find_row(name).describe_with(options);
 }
 
 std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& options, DeviceSource& devices) {

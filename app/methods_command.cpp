@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
@@ -38,8 +39,15 @@ void print_json(const std::vector<const MethodDescription*>& methods) {
   for (const MethodDescription* method : methods) {
     auto options = nlohmann::ordered_json::array();
     for (const OptionDescription& option : method->options) {
-      options.push_back(
-          {{"name", option.name}, {"values", option.values}, {"default", option.default_value}, {"help", option.help}});
+      nlohmann::ordered_json row = {
+          {"name", option.name}, {"values", option.values}, {"default", option.default_value}, {"help", option.help}};
+      const visibility::OptionValues values = visibility::values_of(option);
+      if (values.choices.empty()) {
+        row["range"] = {{"least", values.least}, {"most", values.most}, {"whole", values.whole}};
+      } else {
+        row["choices"] = values.choices;
+      }
+      options.push_back(std::move(row));
     }
     rows.push_back({{"name", method->name},
                     {"family", visibility::name_of(method->family)},
@@ -47,6 +55,8 @@ void print_json(const std::vector<const MethodDescription*>& methods) {
                     {"output", visibility::name_of(method->output)},
                     {"exactFor", method->exact_for},
                     {"lights", light_names(*method)},
+                    {"textures", method->textures},
+                    {"anyPattern", method->any_pattern},
                     {"options", options}});
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"methods", rows}}.dump(2));

@@ -78,9 +78,7 @@ void BeautyAccumulator::add(const TileResult& result) {
   }
 }
 
-BitsOutput::BitsOutput(std::filesystem::path path, const Session& session, const visibility::Light& light,
-                       const visibility::MethodDescription& description)
-    : path_(std::move(path)), session_(session), light_(light) {
+void check_bits(const visibility::MethodDescription& description, const visibility::Light& light) {
   if (description.output != visibility::Output::mask) {
     throw UsageError("--bits: method {} gives V alone, not one bit a light sample; see `penumbra methods`",
                      description.name);

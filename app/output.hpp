@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::app {
@@ -32,12 +33,15 @@ class BeautyAccumulator {
   std::vector<glm::vec3> pixels_;
 };
 
+/// Throws UsageError if `--bits` cannot be had of this method and light.
+void check_bits(const visibility::MethodDescription& description, const visibility::Light& light);
+
 /// `--bits` as tiles come. The file is opened with the first of them: until then an interrupt need not wait.
 class BitsOutput {
  public:
-  /// Throws UsageError now for a method without masks, or a sphere light. All must outlive it.
-  BitsOutput(std::filesystem::path path, const Session& session, const visibility::Light& light,
-             const visibility::MethodDescription& description);
+  /// check_bits comes first. All must outlive it.
+  BitsOutput(std::filesystem::path path, const Session& session, const visibility::Light& light)
+      : path_(std::move(path)), session_(session), light_(light) {}
   /// The tiles of `light` in order.
   void add(const TileResult& result);
   void commit();

@@ -42,7 +42,7 @@ class RenderCommand : public Command {
 
   int run(const GlobalOptions& global) override {
     const auto method_options = parse_method_options(options_.method_options);
-    if (!method_.empty()) check_options(describe_method(method_), method_options);
+    if (!method_.empty()) describe_method(method_, method_options);  // refuses now what would be refused later
     const std::vector<std::filesystem::path> pictures = picture_paths();
     if (options_.out.extension() != ".exr") {
       throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
@@ -61,10 +61,15 @@ class RenderCommand : public Command {
     const Session session = open_session(options_, devices, 0, progress);
     outputs.refuse_inputs(session.scene.sources);
     report_warnings(session, progress);
-    const auto& description = method_.empty() ? default_method(session.lights) : describe_method(method_);
+    const auto description =
+        describe_method(method_.empty() ? default_method(session.lights).name : method_, method_options);
+    for (const visibility::Light& light : session.lights) check_light(description, light);
     const MethodLabel label{description, method_options, device_of(description, devices.name())};
     std::optional<BitsOutput> bits;
-    if (!bits_.empty()) bits.emplace(bits_, session, session.lights.front(), description);
+    if (!bits_.empty()) {
+      check_bits(description, session.lights.front());
+      bits.emplace(bits_, session, session.lights.front());
+    }
     const auto method = make_method(description.name, method_options, devices);
 
     BeautyAccumulator beauty(session, session.lights);

@@ -154,7 +154,11 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   }
   result.times.light = median(std::move(light_seconds));
   result.times.evaluate = median(std::move(evaluate_seconds));
-  if (first) result.times.warmup = first->light + first->evaluate - result.times.light - result.times.evaluate;
+  if (first) {
+    // A first run that chance made faster than the median warmed nothing up.
+    const double longer = first->light + first->evaluate - result.times.light - result.times.evaluate;
+    result.times.warmup = std::max(longer, 0.0);
+  }
   result.passes = method.take_pass_times();
   result.memory_bytes = method.memory_bytes();
   result.times.total = total.seconds();

@@ -143,6 +143,11 @@ void for_each_differing_pair(const MaskPair& masks, std::span<const std::uint32_
   }
 }
 
+double decided_share(const PairCounts& counts, const PairVerdicts& verdicts) {
+  if (counts.differing == 0) return 1;
+  return static_cast<double>(verdicts.decided) / static_cast<double>(counts.differing);
+}
+
 PairVerdicts judge_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels,
                          const std::function<PairDecision(std::uint32_t, std::uint32_t)>& decide) {
   PairVerdicts verdicts;

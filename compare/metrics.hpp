@@ -80,15 +80,18 @@ struct PairDecision {
   bool zero_predicate = false;  ///< some exact predicate was zero, and read as the definition says
 };
 
-/// Who was right on the differing pairs. Each pair makes exactly one of the two right.
+/// Who was right on differing pairs: on all of them, or on a sample. Each pair makes exactly one of the two right.
 struct PairVerdicts {
-  std::uint64_t decided = 0;
+  std::uint64_t decided = 0;  ///< `pairsDecided`; the other counts are of these
   std::uint64_t method_right = 0;
   std::uint64_t reference_right = 0;
-  std::uint64_t zero_predicate = 0;  ///< `pairsZeroPredicate`: of those decided
+  std::uint64_t zero_predicate = 0;  ///< `pairsZeroPredicate`
 
   bool operator==(const PairVerdicts&) const = default;
 };
+
+/// The part of the differing pairs that was decided; 1 where none differ.
+double decided_share(const PairCounts& counts, const PairVerdicts& verdicts);
 
 /// Has every differing pair decided by `decide(pixel, light sample)`, typically visibility::decide_pair.
 PairVerdicts judge_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels,

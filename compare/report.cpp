@@ -187,6 +187,7 @@ std::string errors_html(const ReportInput& in) {
                     {}};
   const MethodResult* best = smallest(in.metrics.methods, rmse_of);
   for (const MethodResult& result : in.metrics.methods) {
+    if (result.failure) continue;
     std::vector<std::string> cells = error_cells(result.error);
     if (&result == best) cells[1] = "<span class=\"best\">" + cells[1] + "</span>";
     cells.insert(cells.begin(), {escape_html(result.entry), "judged"});
@@ -207,9 +208,10 @@ std::string pairs_html(const ReportInput& in) {
                         escape_html(in.metrics.reference.method) + "?",
                     {"Method", "Differing pairs", "of all pairs", "share", "of pairs in penumbrae", "share"},
                     {}};
-  ReportTable verdicts{"Who is right where they differ? Decided by exact arithmetic, which does not round.",
-                       {"Method", "Pairs decided", "Method right", "Reference right", "Ties read by rule"},
-                       {}};
+  ReportTable verdicts{
+      "Who is right where they differ? Decided by exact arithmetic, which does not round.",
+      {"Method", "Pairs decided", "of those that differ", "Method right", "Reference right", "Ties read by rule"},
+      {}};
   const auto share = [](std::uint64_t part, std::uint64_t whole) {
     return whole == 0 ? std::string("–")
                       : fmt::format("{:.2g}", static_cast<double>(part) / static_cast<double>(whole));
@@ -223,18 +225,33 @@ std::string pairs_html(const ReportInput& in) {
     }
     if (result.verdicts) {
       const PairVerdicts& v = *result.verdicts;
-      verdicts.rows.push_back({escape_html(result.entry), count_text(v.decided), count_text(v.method_right),
-                               count_text(v.reference_right), count_text(v.zero_predicate)});
+      verdicts.rows.push_back({escape_html(result.entry), count_text(v.decided),
+                               percent_text(result.pairs ? decided_share(*result.pairs, v) : 1),
+                               count_text(v.method_right), count_text(v.reference_right),
+                               count_text(v.zero_predicate)});
     }
   }
   std::string html;
   if (!table.rows.empty()) html += table_html(table);
   if (!verdicts.rows.empty()) {
-    html += table_html(verdicts) +
-            "<p class=\"note\">A tie: the line of sight meets an edge or a corner exactly; the "
-            "definition of visibility says how to read it.</p>\n";
+    html +=
+        table_html(verdicts) +
+        "<p class=\"note\">A tie: the line of sight meets an edge or a corner exactly; the "
+        "definition of visibility says how to read it. Where too many pairs differ, an evenly spaced sample of them "
+        "is decided.</p>\n";
   }
   return html;
+}
+
+/// Nothing if every method answered.
+std::string failures_html(const ReportInput& in) {
+  ReportTable table{"Methods that gave no answer, and why. Nothing else on this page is about them.",
+                    {"Method", "What went wrong"},
+                    {}};
+  for (const MethodResult& result : in.metrics.methods) {
+    if (result.failure) table.rows.push_back({escape_html(result.entry), escape_html(result.failure->message)});
+  }
+  return table.rows.empty() ? std::string() : table_html(table);
 }
 
 std::string seconds_html(const ReportInput& in) {
@@ -254,6 +271,7 @@ std::string seconds_html(const ReportInput& in) {
       false, "–");
   const MethodResult* best = smallest(in.metrics.methods, shadow_of);
   for (const MethodResult& result : in.metrics.methods) {
+    if (result.failure) continue;
     row(label_html(result.entry, fmt::format("{} light samples, {}", result.stats.light_samples, result.stats.device)),
         result.stats, &result == best, speed_text(shadow_of(result), reference.seconds.shadow()));
   }
@@ -366,8 +384,8 @@ std::string report_html(const ReportInput& in) {
   if (!warnings.empty()) html += "<a href=\"#warnings\">Warnings</a>";
   html += "<a href=\"#words\">Words</a><a href=\"#again\">Do it again</a></nav>\n</header>\n<main>\n";
   html += question_html(in) + scene_html(in) + gallery_html(in);
-  html += "<section id=\"numbers\"><h2>The numbers</h2>\n" + errors_html(in) + pairs_html(in) + seconds_html(in) +
-          details_html(in) + "</section>\n";
+  html += "<section id=\"numbers\"><h2>The numbers</h2>\n" + failures_html(in) + errors_html(in) + pairs_html(in) +
+          seconds_html(in) + details_html(in) + "</section>\n";
   html += methods_html(in) + machine_html(in) + warnings;
   html += "<section id=\"words\"><h2>Words</h2>\n" + std::string(kReportGlossary) + "</section>\n";
   html +=

@@ -36,9 +36,13 @@ Json to_json(const MethodResult& result) {
   json["pairsAll"] = pairs ? Json(pairs->all) : Json();
   json["pairsDiffering"] = pairs ? Json(pairs->differing) : Json();
   const auto& verdicts = result.verdicts;
+  json["pairsDecided"] = verdicts ? Json(verdicts->decided) : Json();
+  json["pairsDecidedShare"] = pairs && verdicts ? Json(decided_share(*pairs, *verdicts)) : Json();
   json["pairsZeroPredicate"] = verdicts ? Json(verdicts->zero_predicate) : Json();
   json["pairsMethodRight"] = verdicts ? Json(verdicts->method_right) : Json();
   json["pairsReferenceRight"] = verdicts ? Json(verdicts->reference_right) : Json();
+  const auto& failure = result.failure;
+  json["failure"] = failure ? Json{{"exitCode", failure->exit_code}, {"message", failure->message}} : Json();
   return json;
 }
 

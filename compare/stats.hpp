@@ -20,7 +20,7 @@ struct Seconds {
   std::optional<double> view;      ///< view samples: shared by all methods
   std::optional<double> light;     ///< redone when a light moves
   std::optional<double> evaluate;  ///< from stored view samples to V or masks in the method's memory
-  std::optional<double> warmup;    ///< first run less the median
+  std::optional<double> warmup;    ///< first run less the median, at least 0
   std::optional<double> total;     ///< of the command up to here
 
   [[nodiscard]] std::optional<double> shadow() const;
@@ -43,6 +43,12 @@ struct Stats {
   std::vector<std::string> warnings;
 };
 
+/// Why a method gave no result.
+struct MethodFailure {
+  int exit_code = 0;  ///< what the program would have ended with, had it been asked for this method alone
+  std::string message;
+};
+
 /// One line of metrics.json. What does not apply stays empty and becomes null.
 struct MethodResult {
   std::string entry;  ///< the method as asked for: "pcss:search=16"
@@ -51,7 +57,8 @@ struct MethodResult {
   std::optional<VisibilityError> horizon_error;  ///< over horizon pixels
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
   std::optional<PairCounts> pairs;               ///< two sample-based methods on the same samples
-  std::optional<PairVerdicts> verdicts;          ///< if every differing pair was decided exactly
+  std::optional<PairVerdicts> verdicts;          ///< of all differing pairs, or of an evenly spaced sample of them
+  std::optional<MethodFailure> failure;          ///< then there are no seconds, errors and pairs
 };
 
 /// metrics.json.

@@ -27,7 +27,7 @@ std::vector<visibility::OptionDescription> map_option_descriptions() {
   return {
       {"size", fmt::format("{} … {}", kSmallestSize, kLargestSize), fmt::format("{}", defaults.size),
        "texels on a side of a map"},
-      {"bias", fmt::format("0 … {}", kLargestBias), fmt::format("{}", defaults.bias),
+      {"bias", fmt::format("0.0 … {:.1f}", kLargestBias), fmt::format("{}", defaults.bias),
        "how far, in texels, a surface may rise above the receiver's plane without shading it; grows with the slope"}};
 }
 

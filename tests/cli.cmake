@@ -3,8 +3,11 @@ find_package(nlohmann_json REQUIRED)
 add_executable(cli_test
   cli/bad_input_test.cpp
   cli/compare_test.cpp
+  cli/covering_array.cpp
   cli/interrupt_test.cpp
   cli/options_test.cpp
+  cli/options_together_support.cpp
+  cli/options_together_test.cpp
   cli/program.cpp
   cli/render_test.cpp
   cli/tables_test.cpp)
@@ -12,7 +15,9 @@ target_compile_definitions(cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penu
 target_link_libraries(cli_test PRIVATE penumbra_app penumbra_visibility penumbra_base penumbra_warnings
                       nlohmann_json::nlohmann_json GTest::gmock GTest::gtest_main)
 add_dependencies(cli_test penumbra)
-gtest_discover_tests(cli_test TEST_PREFIX cli. PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+gtest_discover_tests(cli_test TEST_PREFIX cli. TEST_FILTER "-*EveryTriple*" PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+gtest_discover_tests(cli_test TEST_PREFIX cli. TEST_FILTER "*EveryTriple*" TEST_LIST cli_test_full
+                     PROPERTIES LABELS full TIMEOUT 7200 DISCOVERY_TIMEOUT 120)
 
 # Every mesh of two packages through inspect and compare; prints a table.
 include(${PROJECT_SOURCE_DIR}/cmake/cgal_corpus.cmake)

@@ -25,10 +25,21 @@ const char* name_of(Output output);
 
 struct OptionDescription {
   std::string name;
-  std::string values;  ///< "on|off", "1 … 4096"
+  /// "on|off": one of these; "1 … 4096": a whole number; "0.0 … 8.0": any number, ends included. Nothing else.
+  std::string values;
   std::string default_value;
   std::string help;
 };
+
+/// OptionDescription::values, read: choices, or a range.
+struct OptionValues {
+  std::vector<std::string> choices;
+  double least = 0, most = 0;  ///< where there are no choices
+  bool whole = false;          ///< only whole numbers
+
+  [[nodiscard]] bool permit(const std::string& value) const;
+};
+OptionValues values_of(const OptionDescription& option);
 
 /// What `penumbra methods` and `penumbra inspect` print of a method.
 struct MethodDescription {
@@ -96,7 +107,8 @@ class Method {
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return 0; }
 };
 
-/// Refuses, with what can be done instead, a light that the method cannot do and options that it does not have.
+/// Refuses, with what can be done instead, a light that the method cannot do, and options that it does not have or
+/// values that they cannot have.
 void check_light(const MethodDescription& description, const Light& light);
 void check_options(const MethodDescription& description, const MethodOptions& options);
 

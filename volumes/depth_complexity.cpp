@@ -44,18 +44,13 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
             "triangles without area, which cast nothing, and where variant=laine is only approximate"}})};
 }
 
-/// The value of an option that is one of these, the first if it is not given.
-std::string choice(const visibility::MethodOptions& options, const std::string& key,
-                   const std::vector<std::string>& values) {
+std::string choice(const visibility::MethodOptions& options, const std::string& key, const char* otherwise) {
   const auto option = options.find(key);
-  if (option == options.end()) return values.front();
-  if (std::ranges::find(values, option->second) != values.end()) return option->second;
-  throw UsageError("depth-complexity: {}={} is not known; take one of {}", key, option->second,
-                   fmt::join(values, ", "));
+  return option == options.end() ? otherwise : option->second;
 }
 
 Variant variant_of(const visibility::MethodOptions& options) {
-  const std::string name = choice(options, "variant", {"soup", "laine", "forest"});
+  const std::string name = choice(options, "variant", "soup");
   const Variant variant = name == "soup" ? Variant::soup : name == "laine" ? Variant::laine : Variant::forest;
   const char* without = variant == Variant::forest ? "crop" : "counter-bits";
   if (options.contains(without)) throw UsageError("depth-complexity: variant={} has no option {}", name, without);
@@ -276,9 +271,9 @@ class DepthComplexity final : public DepthCounters {
 
 }  // namespace
 
-visibility::MethodDescription depth_complexity_description() {
+visibility::MethodDescription depth_complexity_description(const visibility::MethodOptions& options) {
   using visibility::LightKind;
-  return {
+  visibility::MethodDescription description{
       .name = "depth-complexity",
       .family = visibility::Family::geometry,
       .paper = "Laine et al. 2005; Lehtinen et al. 2006; Forest et al. 2008; any soup: ours, after Bergeron 1986",
@@ -297,14 +292,16 @@ visibility::MethodDescription depth_complexity_description() {
                    "the same"},
                   {"counter-bits", "6|8|16", "16", "forest: of a packed counter; where it overflows, pairs are exact"}},
       .verdict_on = verdict_on};
+  visibility::check_options(description, options);
+  variant_of(options);
+  return description;
 }
 
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
                                                           const visibility::MethodOptions& options) {
-  visibility::check_options(depth_complexity_description(), options);
+  depth_complexity_description(options);
   const Variant variant = variant_of(options);
-  const std::string crop = choice(options, "crop", {"on", "off"});
-  const std::string bits = choice(options, "counter-bits", {"16", "8", "6"});
+  const std::string crop = choice(options, "crop", "on"), bits = choice(options, "counter-bits", "16");
   if (variant == Variant::forest) return make_packed_counters(device, static_cast<std::uint32_t>(std::stoul(bits)));
   return std::make_unique<DepthComplexity>(device, variant, crop == "on", false);
 }

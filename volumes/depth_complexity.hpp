@@ -24,7 +24,8 @@ std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& 
                                                           const visibility::MethodOptions& options);
 
 /// What it is; needs no device.
-visibility::MethodDescription depth_complexity_description();
+/// Throws UsageError for options that are not its own or exclude each other.
+visibility::MethodDescription depth_complexity_description(const visibility::MethodOptions& options = {});
 
 /// A variant that keeps its counters beside its masks: to look at them.
 class DepthCounters : public visibility::Method {

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace penumbra::volumes {
@@ -240,16 +241,12 @@ class EdgeScatter final : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
 };
 
-bool rows_are_exact(const visibility::MethodOptions& options) {
-  const auto found = options.find("rows");
-  if (found == options.end() || found->second == "samples") return false;
-  if (found->second == "exact") return true;
-  throw UsageError("edge-scatter: rows is samples or exact, not \"{}\"", found->second);
+bool has(const visibility::MethodOptions& options, const std::string& key, std::string_view value) {
+  const auto found = options.find(key);
+  return found != options.end() && found->second == value;
 }
 
-}  // namespace
-
-visibility::MethodDescription edge_scatter_description() {
+visibility::MethodDescription describe() {
   return {.name = "edge-scatter",
           .family = visibility::Family::geometry,
           .paper = "ours; after Laine et al. 2005 and Bergeron 1986",
@@ -265,22 +262,29 @@ visibility::MethodDescription edge_scatter_description() {
           .verdict_on = verdict_on};
 }
 
+}  // namespace
+
+visibility::MethodDescription edge_scatter_description(const visibility::MethodOptions& options) {
+  visibility::MethodDescription description = describe();
+  visibility::check_options(description, options);
+  if (!has(options, "rows", "exact")) return description;
+  if (has(options, "engine", "vulkan")) {
+    throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
+  }
+  description.output = visibility::Output::radiance;
+  description.exact_for =
+      "the visible share of a rectangle light, to float32, for any triangle soup; the beauty under constant radiance";
+  description.textures = false;
+  return description;
+}
+
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
                                                       const visibility::MethodOptions& options) {
-  visibility::MethodDescription description = edge_scatter_description();
-  visibility::check_options(description, options);
-  const bool natively = native::runs_natively(device, options, description.name);
-  if (rows_are_exact(options)) {
-    if (const auto engine = options.find("engine"); engine != options.end() && engine->second == "vulkan") {
-      throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
-    }
-    description.output = visibility::Output::radiance;
-    description.exact_for =
-        "the visible share of a rectangle light, to float32, for any triangle soup; the beauty under constant radiance";
-    description.textures = false;
-    return make_native_edge_scatter(std::move(description), true);
+  visibility::MethodDescription description = edge_scatter_description(options);
+  const bool exact = description.output == visibility::Output::radiance;
+  if (exact || native::runs_natively(device, options, description.name)) {
+    return make_native_edge_scatter(std::move(description), exact);
   }
-  if (natively) return make_native_edge_scatter(std::move(description), false);
   return std::make_unique<EdgeScatter>(device, options);
 }
 

@@ -15,6 +15,8 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
                                                       const visibility::MethodOptions& options);
 
 /// What it is; needs no device.
-visibility::MethodDescription edge_scatter_description();
+/// With these options, which must be among its own: rows=exact has no masks. Throws UsageError for options that exclude
+/// each other.
+visibility::MethodDescription edge_scatter_description(const visibility::MethodOptions& options = {});
 
 }  // namespace penumbra::volumes

@@ -69,6 +69,79 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
             differing);
 }
 
+/// A method that gives areas on request has no pairs, whatever the table of methods says of it; its error is given.
+TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
+  const Outcome outcome =
+      compare({"--methods", "edge-scatter:rows=exact,edge-scatter,edge-scatter:rows=exact", "--bits", "--reference",
+               "raytrace", "--reference-samples", "same", "--max-rmse", "0.2"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json methods = metrics().at("methods");
+  ASSERT_EQ(methods.size(), 3u);
+  for (const std::size_t i : {0u, 2u}) {
+    EXPECT_GT(methods[i].at("error").at("rmse"), 0);
+    for (const char* key : {"pairs", "pairsAll", "pairsDiffering", "pairsDecided"}) {
+      EXPECT_TRUE(methods[i].at(key).is_null()) << key;
+    }
+  }
+  EXPECT_EQ(methods[0].at("error"), methods[2].at("error"));
+  EXPECT_EQ(methods[1].at("pairsDiffering"), 0);
+  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter:rows=exact.bits")));
+  EXPECT_TRUE(std::filesystem::exists(path("dir/edge-scatter.bits")));
+  EXPECT_EQ(read_exr(path("dir/edge-scatter:rows=exact.exr")).attributes.at("penumbra.output"), "radiance");
+  // What cannot be is refused before the reference is traced.
+  const Outcome bits = run({"render", path("scene.json"), "-o", path("a.exr"), "--method", "edge-scatter",
+                            "--method-option", "rows=exact", "--bits", path("a.bits")});
+  EXPECT_EQ(bits.code, 2) << bits.err;
+}
+
+/// One method that fails takes nothing from the others, and its failure is the command's exit code.
+TEST_F(Compare, AMethodThatFailsIsReportedAndTheOthersGoOn) {
+  const Outcome outcome = compare({"--methods", "edge-scatter:engine=vulkan,view-sample,depth-complexity",
+                                   "--light-samples", "2x2048", "--reference-samples", "same", "--max-rmse", "1"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("edge-scatter:engine=vulkan: "));
+  EXPECT_THAT(outcome.out, HasSubstr("failed"));
+  const json methods = metrics().at("methods");
+  ASSERT_EQ(methods.size(), 3u);
+  EXPECT_EQ(methods[0].at("failure").at("exitCode"), 3);
+  EXPECT_THAT(methods[0].at("failure").at("message").get<std::string>(), HasSubstr("2048"));
+  EXPECT_TRUE(methods[0].at("error").is_null());
+  EXPECT_TRUE(methods[0].at("seconds").at("shadow").is_null());
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_TRUE(methods[i].at("failure").is_null());
+    EXPECT_EQ(methods[i].at("pairsDiffering"), 0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter:engine=vulkan.exr")));
+  EXPECT_TRUE(std::filesystem::exists(path("dir/view-sample.exr")));
+  EXPECT_THAT(read("dir/report.html"), HasSubstr("What went wrong"));
+}
+
+TEST_F(Compare, AFileThatCannotBeWrittenIsItsMethodsFailure) {
+  std::filesystem::create_directories(path("dir/edge-scatter.exr"));  // a folder where the picture should be
+  const Outcome outcome = compare({"--methods", "edge-scatter,view-sample", "--light-samples", "16"});
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_EQ(metrics().at("methods").at(0).at("failure").at("exitCode"), 4);
+  EXPECT_TRUE(std::filesystem::exists(path("dir/view-sample.exr")));
+}
+
+/// Where too many pairs differ for each to be decided, an evenly spaced sample of them is, and it says how large it is.
+TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
+  const Outcome outcome = compare({"--methods", "accumulate:size=8,raytrace", "--light-samples", "64",
+                                   "--reference-samples", "same", "--size", "96x64"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json result = metrics();
+  const json& method = result.at("methods").at(0);
+  const auto count = [&](const char* key) { return method.at(key).get<std::uint64_t>(); };
+  EXPECT_GT(count("pairsDiffering"), 8000u) << "a map of 8 texels is coarse";
+  EXPECT_LE(count("pairsDecided"), 4000u);
+  EXPECT_GE(count("pairsDecided"), 2000u);
+  EXPECT_DOUBLE_EQ(method.at("pairsDecidedShare").get<double>(),
+                   static_cast<double>(count("pairsDecided")) / static_cast<double>(count("pairsDiffering")));
+  EXPECT_EQ(count("pairsMethodRight") + count("pairsReferenceRight"), count("pairsDecided"));
+  EXPECT_GT(count("pairsReferenceRight"), 0.99 * static_cast<double>(count("pairsDecided")));
+  EXPECT_EQ(result.at("methods").at(1).at("pairsDecidedShare"), 1);
+}
+
 TEST_F(Compare, ErrorsCanBeRecomputedFromTheImages) {
   const Outcome outcome = compare({"--methods", "raytrace", "--reference-samples", "1024", "--light-samples", "16"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

@@ -69,7 +69,11 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   result.error = VisibilityError{0.1, 0.2, 0.3, 0.4, 0.5, -0.6};
   result.pairs = PairCounts{400, 300, 2};
   result.beauty_error = BeautyError{0.25, -0.125};
-  metrics.methods = {result, MethodResult{}};
+  MethodResult sampled = result;
+  sampled.verdicts = PairVerdicts{.decided = 1, .method_right = 1, .reference_right = 0, .zero_predicate = 1};
+  MethodResult failed;
+  failed.failure = MethodFailure{4, "out of memory"};
+  metrics.methods = {result, MethodResult{}, sampled, failed};
   const auto json = to_json(metrics);
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "methods"}));
   EXPECT_EQ(json["reference"]["method"], "pcss");
@@ -88,6 +92,17 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   for (const char* key : {"error", "beautyError", "pairs", "pairsAll", "pairsDiffering", "pairsZeroPredicate"}) {
     EXPECT_TRUE(second.contains(key) && second[key].is_null()) << key;
   }
+  EXPECT_TRUE(second.at("failure").is_null());
+  const auto& third = json["methods"][2];
+  EXPECT_EQ(third["pairsDecided"], 1);
+  EXPECT_EQ(third["pairsDecidedShare"], 0.5);
+  EXPECT_EQ(third["pairsMethodRight"], 1);
+  EXPECT_EQ(third["pairsReferenceRight"], 0);
+  EXPECT_EQ(third["pairsZeroPredicate"], 1);
+  const auto& fourth = json["methods"][3];
+  EXPECT_EQ(fourth["failure"]["exitCode"], 4);
+  EXPECT_EQ(fourth["failure"]["message"], "out of memory");
+  EXPECT_TRUE(fourth["error"].is_null() && fourth["seconds"]["shadow"].is_null());
 }
 
 TEST(JsonText, SurvivesBytesThatAreNoUtf8) {

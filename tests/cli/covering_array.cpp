@@ -1,0 +1,156 @@
+#include "tests/cli/covering_array.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <unordered_set>
+
+namespace penumbra::tests {
+namespace {
+
+using Code = std::uint64_t;  // up to three (factor, value), 20 bits each, ascending
+
+Code code_of(std::size_t factor, std::size_t value) {
+  return static_cast<Code>(factor) << 10U | static_cast<Code>(value + 1);
+}
+constexpr unsigned kBits = 20;
+
+/// Calls `visit(code)` for each combination of `strength` chosen values; with `with`, of those that hold this factor.
+template <typename Visit>
+void for_each_combination(const Choices& row, std::size_t strength, std::optional<std::size_t> with, Visit visit) {
+  const auto has = [&](std::size_t i) { return row[i].has_value(); };
+  const auto wanted = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return !with || *with == a || *with == b || *with == c;
+  };
+  for (std::size_t a = 0; a < row.size(); ++a) {
+    if (!has(a)) continue;
+    for (std::size_t b = a + 1; b < row.size(); ++b) {
+      if (!has(b)) continue;
+      const Code two = code_of(a, *row[a]) << kBits | code_of(b, *row[b]);
+      if (strength == 2) {
+        if (wanted(a, b, b)) visit(two);
+        continue;
+      }
+      for (std::size_t c = b + 1; c < row.size(); ++c) {
+        if (has(c) && wanted(a, b, c)) visit(two << kBits | code_of(c, *row[c]));
+      }
+    }
+  }
+}
+
+/// Chooses the factor's value and whatever it has to have to mean something. False if that is chosen otherwise.
+bool choose(const std::vector<Factor>& factors, std::size_t factor, std::size_t value, Choices& row) {
+  if (row[factor] && *row[factor] != value) return false;
+  row[factor] = value;
+  const auto& only_if = factors[factor].only_if;
+  return !only_if || choose(factors, only_if->first, only_if->second, row);
+}
+
+class Generator {
+ public:
+  Generator(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed)
+      : factors_(factors), strength_(strength), allowed_(allowed) {
+    for (const Factor& factor : factors) used_.emplace_back(factor.values.size(), 0);
+    Choices row(factors.size());
+    collect(row, 0, strength);
+  }
+
+  std::vector<Choices> rows() {
+    std::vector<Choices> rows;
+    for (const auto& [seed, code] : wanted_) {
+      if (open_.contains(code)) rows.push_back(completed(seed, rows.size()));
+    }
+    return rows;
+  }
+
+  std::size_t without(const std::vector<Choices>& rows) {
+    for (const Choices& row : rows) cover(row);
+    return open_.size();
+  }
+
+ private:
+  /// All combinations of `left` more factors from `first` on.
+  void collect(const Choices& row, std::size_t first, std::size_t left) {
+    if (left == 0) {
+      add(row);
+      return;
+    }
+    for (std::size_t factor = first; factor < factors_.size(); ++factor) {
+      for (std::size_t value = 0; value < factors_[factor].values.size(); ++value) {
+        Choices more = row;
+        more[factor] = value;
+        collect(more, factor + 1, left - 1);
+      }
+    }
+  }
+
+  void add(const Choices& combination) {
+    Choices seed = combination;
+    for (std::size_t factor = 0; factor < seed.size(); ++factor) {
+      if (combination[factor] && !choose(factors_, factor, *combination[factor], seed)) return;
+    }
+    if (!allowed_(seed)) return;
+    for_each_combination(combination, strength_, {}, [&](Code code) {
+      wanted_.emplace_back(seed, code);
+      open_.insert(code);
+    });
+  }
+
+  Choices completed(Choices row, std::size_t number) {
+    const std::size_t count = row.size();
+    for (std::size_t i = 0; i < 2 * count; ++i) {  // twice: what means nothing yet may mean something at the end
+      const std::size_t factor = (i + number) % count;
+      if (!row[factor] && means_something(row, factor)) row[factor] = best_value(row, factor);
+    }
+    cover(row);
+    return row;
+  }
+
+  [[nodiscard]] bool means_something(const Choices& row, std::size_t factor) const {
+    const auto& only_if = factors_[factor].only_if;
+    return !only_if || row[only_if->first] == only_if->second;
+  }
+
+  /// The allowed value that covers most of what is open; of several, the one that was used least.
+  [[nodiscard]] std::optional<std::size_t> best_value(Choices row, std::size_t factor) const {
+    std::optional<std::size_t> best;
+    std::pair<std::size_t, std::size_t> best_gain;
+    for (std::size_t value = 0; value < factors_[factor].values.size(); ++value) {
+      row[factor] = value;
+      if (!allowed_(row)) continue;
+      std::size_t gain = 0;
+      for_each_combination(row, strength_, factor, [&](Code code) { gain += open_.contains(code) ? 1 : 0; });
+      const std::pair<std::size_t, std::size_t> now{gain, SIZE_MAX - used_[factor][value]};
+      if (best && now <= best_gain) continue;
+      best = value;
+      best_gain = now;
+    }
+    return best;
+  }
+
+  void cover(const Choices& row) {
+    for_each_combination(row, strength_, {}, [&](Code code) { open_.erase(code); });
+    for (std::size_t factor = 0; factor < row.size(); ++factor) {
+      if (row[factor]) ++used_[factor][*row[factor]];
+    }
+  }
+
+  const std::vector<Factor>& factors_;
+  std::size_t strength_;
+  const Allowed& allowed_;
+  std::vector<std::pair<Choices, Code>> wanted_;
+  std::unordered_set<Code> open_;
+  std::vector<std::vector<std::size_t>> used_;
+};
+
+}  // namespace
+
+std::vector<Choices> covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed) {
+  return Generator(factors, strength, allowed).rows();
+}
+
+std::size_t uncovered_combinations(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,
+                                   const std::vector<Choices>& rows) {
+  return Generator(factors, strength, allowed).without(rows);
+}
+
+}  // namespace penumbra::tests

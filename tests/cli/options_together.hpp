@@ -1,0 +1,71 @@
+#pragma once
+
+#include "tests/cli/covering_array.hpp"
+#include "tests/cli/program.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace penumbra::tests {
+
+/// A scene of a few triangles and two lights or more, and what these ask of a method.
+struct LitScene {
+  std::string name, file;
+  std::vector<std::string> lights;  ///< kinds, in order
+  bool texture = false;
+};
+
+/// Writes NAME.json of the scenes with which options are tried. `many`: more of them.
+std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool many);
+
+/// What `penumbra methods --json` says, with the questions that a command line raises.
+class MethodTable {
+ public:
+  explicit MethodTable(nlohmann::json methods) : methods_(std::move(methods)) {}
+
+  [[nodiscard]] const nlohmann::json& all() const { return methods_; }
+  [[nodiscard]] bool can_do(const nlohmann::json& method, const LitScene& scene, const std::string& pattern) const;
+
+ private:
+  nlohmann::json methods_;
+};
+
+/// Choices with names: what a row of a covering array says.
+class Row {
+ public:
+  Row(const std::vector<Factor>& factors, const Choices& choices);
+  /// Empty where nothing is chosen.
+  [[nodiscard]] const std::string& operator[](const std::string& factor) const;
+  [[nodiscard]] bool has(const std::string& factor) const { return values_.contains(factor); }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+/// Values that an option of a method is tried with, from its description.
+std::vector<std::string> values_to_try(const nlohmann::json& option);
+
+/// Do these options of a method exclude each other, or what else is chosen? Only what its page says.
+bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,
+                     const LitScene& scene, const std::string& light_samples);
+
+/// Options chosen for the method: factors are named METHOD.OPTION.
+std::map<std::string, std::string> options_of(const Row& row, const nlohmann::json& method);
+
+/// What must hold of each file that is there after a run. Adds failures to the current test.
+void expect_whole_picture(const std::string& path, bool all_pixels);
+void expect_whole_png(const std::string& path);
+void expect_whole_bits(const std::string& path);
+void expect_sane_stats(const nlohmann::json& stats);
+void expect_sane_metrics(const nlohmann::json& metrics);
+
+/// Calls the test on the `part`-th of `parts` equal shares of the rows.
+void for_rows(const std::vector<Factor>& factors, const std::vector<Choices>& rows, std::size_t part, std::size_t parts,
+              const std::function<void(const Row&)>& test);
+
+}  // namespace penumbra::tests

@@ -1,0 +1,317 @@
+// Options together: a covering array of all options of `render` and `compare`, of all methods and their own options.
+// Each was tried alone elsewhere; here any two (quick) or three (full) of them meet. What is there is asked of the
+// program, so a new method or option is tried without a word here.
+
+#include "tests/cli/options_together.hpp"
+
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::size_t kParts = 8;  // tests that share the rows, so that they run side by side
+const char* const kOn = "on";
+
+class OptionsTogether : public ProgramTest {
+ protected:
+  OptionsTogether() : table_(json::parse(run({"methods", "--json"}).out).at("methods")) {}
+
+  /// Options that both commands have.
+  void add_common_factors() {
+    Factor scene{"scene", {}};
+    for (const LitScene& one : scenes_) scene.values.push_back(one.name);
+    factors_.push_back(scene);
+    factors_.push_back({"pattern", {"rows", "grid", "sobol", "jittered"}});
+    factors_.push_back({"light-samples", {"1", "16", "5x7"}});
+    factors_.push_back({"seed", {"", "7"}});
+    factors_.push_back({"size", {"12x8", "5x7"}});
+    factors_.push_back({"light", {"", "second"}});
+    factors_.push_back({"device", {"", "cpu"}});
+    for (const char* flag : {"bits", "png", "stats", "verbose"}) factors_.push_back({flag, {"", kOn}});
+  }
+
+  void add_options_of(const json& method, std::optional<std::pair<std::size_t, std::size_t>> only_if) {
+    for (const json& option : method.at("options")) {
+      factors_.push_back({method.at("name").get<std::string>() + "." + option.at("name").get<std::string>(),
+                          values_to_try(option), only_if});
+    }
+  }
+
+  [[nodiscard]] const LitScene& scene_of(const Row& row) const {
+    return *std::ranges::find(scenes_, row["scene"], &LitScene::name);
+  }
+
+  [[nodiscard]] std::string name_of_second_light(const LitScene& scene) const {
+    return json::parse(read(scene.name + ".json")).at("lights").at(1).at("name");
+  }
+
+  /// What both commands are told.
+  [[nodiscard]] std::vector<std::string> common_arguments(const Row& row) const {
+    const LitScene& scene = scene_of(row);
+    std::vector<std::string> arguments = {scene.file};
+    const auto add = [&](const char* option, const std::string& value) {
+      if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+    };
+    add("--sample-pattern", row["pattern"]);
+    add("--light-samples", row["light-samples"]);
+    add("--sample-seed", row["seed"]);
+    add("--size", row["size"]);
+    add("--device", row["device"]);
+    if (!row["light"].empty()) add("--light", name_of_second_light(scene));
+    if (!row["verbose"].empty()) arguments.emplace_back("--verbose");
+    return arguments;
+  }
+
+  static std::string text_of(const std::vector<std::string>& arguments) {
+    std::string text = "penumbra";
+    for (const std::string& argument : arguments) text += " " + argument;
+    return text;
+  }
+
+  void expect_exit(const Outcome& outcome, const testing::Matcher<int>& code) const {
+    EXPECT_THAT(outcome.code, code) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("internal")));
+    if (outcome.code > 1) {
+      EXPECT_THAT(outcome.err, HasSubstr("error: "));
+    }
+    for (const std::string& name : files()) EXPECT_THAT(name, Not(HasSubstr(".part"))) << "left behind";
+  }
+
+  MethodTable table_;
+  std::vector<LitScene> scenes_;
+  std::vector<Factor> factors_;
+};
+
+class RenderTogether : public OptionsTogether, public testing::WithParamInterface<std::size_t> {
+ protected:
+  void run_rows(std::size_t strength, bool many) {
+    scenes_ = write_lit_scenes(folder_, many);
+    add_common_factors();
+    Factor method{"method", {""}};
+    for (const json& one : table_.all()) method.values.push_back(one.at("name"));
+    factors_.push_back(method);
+    const std::size_t of_method = factors_.size() - 1;
+    for (std::size_t i = 0; i < table_.all().size(); ++i) add_options_of(table_.all()[i], {{of_method, i + 1}});
+    const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
+    const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
+    EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows), 0U);
+    RecordProperty("rows", static_cast<int>(rows.size()));
+    for_rows(factors_, rows, GetParam(), kParts, [&](const Row& row) { render(row); });
+  }
+
+ private:
+  [[nodiscard]] const json* method_of(const Row& row) const {
+    for (const json& one : table_.all()) {
+      if (one.at("name") == row["method"]) return &one;
+    }
+    return nullptr;
+  }
+
+  [[nodiscard]] bool can_be(const Row& row) const {
+    const json* method = method_of(row);
+    const bool has_scene = row.has("scene");
+    const LitScene any{"", "", {}};
+    const LitScene& scene = has_scene ? scene_of(row) : any;
+    if (!row["bits"].empty()) {
+      if (method != nullptr && method->at("output") != "mask") return false;
+      if (row["edge-scatter.rows"] == "exact") return false;
+      if (has_scene && scene.lights.front() == "sphere") return false;
+    }
+    if (row.has("method") && method == nullptr)
+      return !has_scene || scene.lights.front() != "sphere";  // some method can
+    if (method == nullptr) return true;
+    return table_.can_do(*method, scene, row["pattern"]) &&
+           !options_exclude(row["method"], options_of(row, *method), scene, row["light-samples"]);
+  }
+
+  void render(const Row& row) {
+    std::filesystem::remove_all(path("out"));
+    std::filesystem::create_directories(path("out"));
+    std::vector<std::string> arguments = common_arguments(row);
+    arguments.insert(arguments.begin(), "render");
+    arguments.insert(arguments.end(), {"-o", path("out/a.exr")});
+    for (const char* output : {"bits", "png", "stats"}) {
+      if (!row[output].empty())
+        arguments.insert(arguments.end(), {std::string("--") + output, path("out/a.") + output});
+    }
+    if (const json* method = method_of(row)) {
+      arguments.insert(arguments.end(), {"--method", row["method"]});
+      for (const auto& [key, value] : options_of(row, *method)) {
+        arguments.insert(arguments.end(), {"--method-option", key + "=" + value});
+      }
+    }
+    SCOPED_TRACE(text_of(arguments));
+    const Outcome outcome = run(arguments);
+    expect_exit(outcome, 0);
+    if (outcome.code != 0) return;
+    expect_whole_picture(path("out/a.exr"), true);
+    if (!row["png"].empty()) expect_whole_png(path("out/a.png"));
+    if (!row["bits"].empty()) expect_whole_bits(path("out/a.bits"));
+    if (!row["stats"].empty()) expect_sane_stats(json::parse(read("out/a.stats")));
+  }
+};
+
+class CompareTogether : public OptionsTogether, public testing::WithParamInterface<std::size_t> {
+ protected:
+  void run_rows(std::size_t strength, bool many) {
+    scenes_ = write_lit_scenes(folder_, many);
+    add_common_factors();
+    factors_.push_back({"reference", {"raytrace", "exact"}});
+    factors_.push_back({"reference-samples", {"same", "64"}});
+    factors_.push_back({"sample-pixels", {"all", "3", "2,3;4,5"}});
+    factors_.push_back({"max-rmse", {"", "0", "2"}});
+    factors_.push_back({"runs", {"1", "2"}});
+    factors_.push_back({"twice", {"", kOn}});
+    for (const json& method : table_.all()) add_options_of(method, {});
+    const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
+    const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
+    EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows), 0U);
+    RecordProperty("rows", static_cast<int>(rows.size()));
+    for_rows(factors_, rows, GetParam(), kParts, [&](const Row& row) { compare(row); });
+  }
+
+ private:
+  /// An option of a method that cannot do the scene is left open.
+  [[nodiscard]] bool can_be(const Row& row) const {
+    if (!row["bits"].empty() && row.has("scene") && scene_of(row).lights.front() == "sphere") return false;
+    for (const json& method : table_.all()) {
+      const auto name = method.at("name").get<std::string>();
+      const auto has_option = [&](const json& option) {
+        return row.has(name + "." + option.at("name").get<std::string>());
+      };
+      if (!std::ranges::any_of(method.at("options"), has_option)) continue;
+      const LitScene any{"", "", {}};
+      const LitScene& scene = row.has("scene") ? scene_of(row) : any;
+      if (!table_.can_do(method, scene, row["pattern"])) return false;
+      if (options_exclude(name, options_of(row, method), scene, row["light-samples"])) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::string methods_of(const Row& row) const {
+    std::vector<std::string> entries;
+    for (const json& method : table_.all()) {
+      if (!table_.can_do(method, scene_of(row), row["pattern"])) continue;
+      auto entry = method.at("name").get<std::string>();
+      for (const auto& [key, value] : options_of(row, method)) entry += fmt::format(":{}={}", key, value);
+      entries.push_back(entry);
+    }
+    if (!row["twice"].empty()) entries.push_back(entries.front());
+    return fmt::format("{}", fmt::join(entries, ","));
+  }
+
+  void compare(const Row& row) {
+    std::filesystem::remove_all(path("out"));
+    std::vector<std::string> arguments = common_arguments(row);
+    arguments.insert(arguments.begin(), "compare");
+    arguments.insert(arguments.end(), {"-o", path("out"), "--methods", methods_of(row)});
+    for (const char* option : {"reference", "reference-samples", "sample-pixels", "max-rmse", "runs"}) {
+      if (!row[option].empty()) arguments.insert(arguments.end(), {std::string("--") + option, row[option]});
+    }
+    for (const char* flag : {"bits", "png"}) {
+      if (!row[flag].empty()) arguments.emplace_back(std::string("--") + flag);
+    }
+    if (!row["stats"].empty()) arguments.insert(arguments.end(), {"--stats", path("out/again.json")});
+    SCOPED_TRACE(text_of(arguments));
+    const Outcome outcome = run(arguments);
+    expect_exit(outcome, row["max-rmse"].empty() ? testing::Matcher<int>(0) : testing::Matcher<int>(AnyOf(0, 1)));
+    if (outcome.code > 1) return;
+    const json metrics = json::parse(read("out/metrics.json"));
+    expect_sane_metrics(metrics);
+    if (!row["stats"].empty()) {
+      EXPECT_EQ(read("out/again.json"), read("out/metrics.json"));
+    }
+    const std::string report = read("out/report.html");
+    EXPECT_NE(report.rfind("</html>"), std::string::npos);
+    std::vector<std::string> names = {"reference"};
+    for (const json& method : metrics.at("methods")) names.push_back(method.at("entry"));
+    for (const std::string& name : names) {
+      expect_whole_picture(path("out/" + name + ".exr"), row["sample-pixels"] == "all");
+      if (!row["png"].empty()) expect_whole_png(path("out/" + name + ".png"));
+      if (std::filesystem::exists(path("out/" + name + ".bits"))) expect_whole_bits(path("out/" + name + ".bits"));
+    }
+    for (std::size_t i = 1; i < names.size(); ++i) expect_whole_png(path("out/" + names[i] + "-error.png"));
+  }
+};
+
+TEST_P(RenderTogether, EveryPair) {
+  run_rows(2, false);
+}
+TEST_P(CompareTogether, EveryPair) {
+  run_rows(2, false);
+}
+INSTANTIATE_TEST_SUITE_P(Part, RenderTogether, testing::Range<std::size_t>(0, kParts));
+INSTANTIATE_TEST_SUITE_P(Part, CompareTogether, testing::Range<std::size_t>(0, kParts));
+
+using RenderThree = RenderTogether;
+using CompareThree = CompareTogether;
+TEST_P(RenderThree, EveryTriple) {
+  run_rows(3, true);
+}
+TEST_P(CompareThree, EveryTriple) {
+  run_rows(3, true);
+}
+INSTANTIATE_TEST_SUITE_P(Part, RenderThree, testing::Range<std::size_t>(0, kParts));
+INSTANTIATE_TEST_SUITE_P(Part, CompareThree, testing::Range<std::size_t>(0, kParts));
+
+/// What cannot be is refused with a documented code and a reason, whatever is wrong with it.
+TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
+  scenes_ = write_lit_scenes(folder_, false);
+  for (const json& method : table_.all()) {
+    const auto name = method.at("name").get<std::string>();
+    for (const LitScene& scene : scenes_) {
+      const bool can = table_.can_do(method, scene, "sobol");
+      const bool masks = method.at("output") == "mask" && scene.lights.front() != "sphere";
+      if (can && masks) continue;
+      const std::vector<std::string> arguments = {"render", scene.file, "-o",           path("a.exr"),      "--method",
+                                                  name,     "--bits",   path("a.bits"), "--sample-pattern", "sobol"};
+      SCOPED_TRACE(text_of(arguments));
+      const Outcome outcome = run(arguments);
+      expect_exit(outcome, can ? testing::Matcher<int>(2) : testing::Matcher<int>(AnyOf(2, 3)));
+      EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
+    }
+    for (const json& option : method.at("options")) {
+      const std::string key = option.at("name");
+      for (const char* value : {"", "no such value", "-1", "1e400", "nan"}) {
+        const std::vector<std::string> arguments = {
+            "compare", scenes_[0].file, "-o", path("out"), "--methods", fmt::format("{}:{}={}", name, key, value)};
+        SCOPED_TRACE(text_of(arguments));
+        const Outcome outcome = run(arguments);
+        expect_exit(outcome, 2);
+        EXPECT_THAT(outcome.err, HasSubstr(key));
+      }
+    }
+  }
+}
+
+TEST(CoveringArray, HasEveryAllowedCombination) {
+  const std::vector<Factor> factors = {{"a", {"0", "1", "2"}},
+                                       {"b", {"0", "1"}},
+                                       {"c", {"0", "1", "2", "3"}, {{0, 2}}},  // only if a is 2
+                                       {"d", {"0", "1"}},
+                                       {"e", {"0", "1", "2"}}};
+  const Allowed allowed = [](const Choices& row) { return !(row[1] == 1U && row[3] == 1U); };
+  for (const std::size_t strength : {2U, 3U}) {
+    const std::vector<Choices> rows = covering_array(factors, strength, allowed);
+    EXPECT_EQ(uncovered_combinations(factors, strength, allowed, rows), 0U);
+    EXPECT_LT(rows.size(), strength == 2 ? 25U : 60U) << "all rows: 3 · 2 · 2 · 3 · 1.5 and more";
+    for (const Choices& row : rows) {
+      EXPECT_TRUE(allowed(row));
+      EXPECT_EQ(row[2].has_value(), row[0] == 2U);
+    }
+    // The check can fail.
+    EXPECT_GT(uncovered_combinations(factors, strength, allowed, {rows.begin(), rows.end() - 1}), 0U);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests
