@@ -1,0 +1,47 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "tests/fuzz/soup_case.hpp"
+#include "visibility/method.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace penumbra::fuzz {
+
+/// What was found of one case, or of many.
+struct SoupFindings {
+  std::uint64_t cases = 0, pairs = 0, visible = 0;  ///< pairs: of each case, by the judge
+  std::uint64_t answers = 0;                        ///< pairs that a method answered
+  std::uint64_t refusals = 0;                       ///< cases that a method cannot do, though it can do such lights
+  std::uint64_t wrong = 0;
+  std::string first_wrong;  ///< which method, and the pair in numbers
+
+  void operator+=(const SoupFindings& other);
+};
+
+/// Every method that promises all bits to be the truth of their pairs, in each of its variants, on one device.
+class SoupMethods {
+ public:
+  explicit SoupMethods(const render::Device& device) : device_(&device) {}
+
+  /// Holds every bit of every method, and visibility::decide_pair, against SoupJudge.
+  SoupFindings check(const SoupCase& judged);
+
+ private:
+  struct Variant {
+    std::string name;
+    std::unique_ptr<visibility::Method> method;
+  };
+  /// Those for this number and kind of light samples: a method that is given others compiles its shaders anew.
+  std::vector<Variant>& variants_for(const visibility::Light& light);
+
+  const render::Device* device_;
+  std::map<std::tuple<visibility::LightKind, std::uint32_t, std::uint32_t>, std::vector<Variant>> variants_;
+};
+
+}  // namespace penumbra::fuzz
