@@ -132,7 +132,7 @@ TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
   const json result = metrics();
   const json& method = result.at("methods").at(0);
   const auto count = [&](const char* key) { return method.at(key).get<std::uint64_t>(); };
-  EXPECT_GT(count("pairsDiffering"), 8000u) << "a map of 8 texels is coarse";
+  ASSERT_GT(count("pairsDiffering"), 4000u) << "a map of 8 texels is coarse";
   EXPECT_LE(count("pairsDecided"), 4000u);
   EXPECT_GE(count("pairsDecided"), 2000u);
   EXPECT_DOUBLE_EQ(method.at("pairsDecidedShare").get<double>(),

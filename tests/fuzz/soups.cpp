@@ -8,7 +8,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // Drivers and pipelines take far longer to make than a case to judge.
-  static const penumbra::render::Device device({});
+  static const penumbra::render::Device device(penumbra::render::DeviceOptions{});
   static penumbra::fuzz::SoupMethods methods(device);
   const auto judged = penumbra::fuzz::read_soup_case({data, size});
   if (!judged) return 0;
