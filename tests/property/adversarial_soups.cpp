@@ -42,7 +42,7 @@ void expect_worth(const fuzz::SoupFindings& found, std::uint32_t count) {
 }
 
 TEST(AdversarialSoups, EveryBitIsTheTruth) {
-  constexpr std::uint32_t kCount = 60;
+  constexpr std::uint32_t kCount = 24;  // a driver on the processor compiles shaders for nearly each
   expect_worth(check_soups(0, kCount), kCount);
 }
 
