@@ -2,7 +2,7 @@
 
 #include "app/pixel_samples.hpp"
 #ifdef PENUMBRA_HAS_REFERENCE
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 #endif
 
 #include <tbb/parallel_for.h>
@@ -68,7 +68,7 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
   const std::vector<LitPoint> samples = where_edges_appear(soft, judged_samples(scene, floats, light));
   outcome.points = volumes::check_coverage(soft, light, samples, report);
 #ifdef PENUMBRA_HAS_REFERENCE
-  reference::ExactArea area(floats);
+  areas::ExactArea area(floats);
   area.set_light(light);
   outcome.hidden.resize(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {

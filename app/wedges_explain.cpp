@@ -5,7 +5,7 @@
 #include "app/pixel_samples.hpp"
 #include "base/error.hpp"
 #ifdef PENUMBRA_HAS_REFERENCE
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 #endif
 
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ const char* name_of(PixelClass kind) {
 
 std::optional<double> exact_visibility(const ToExplain& input, const volumes::LitPoint& sample) {
 #ifdef PENUMBRA_HAS_REFERENCE
-  reference::ExactArea area(input.floats);
+  areas::ExactArea area(input.floats);
   area.set_light(input.light);
   return area.visibility({sample.p, sample.carrier, sample.facing});
 #else

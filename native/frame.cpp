@@ -18,6 +18,15 @@ float shift_of(std::uint32_t row, std::uint32_t step) {
   return static_cast<float>(static_cast<int>((row * step + 32768U) & 0xffffU) - 32768) / 65536.0F;
 }
 
+/// across, along (X and Y of a point are products with them, in cells), axis (of unit length, to the side).
+std::array<glm::dvec3, 3> axes_of(const glm::dvec3& u, const glm::dvec3& v, float side, const glm::vec2& half_cells) {
+  const glm::dvec3 n = glm::cross(u, v);
+  const double squared = glm::dot(n, n);
+  return {glm::cross(v, n) / squared * static_cast<double>(half_cells.x),
+          glm::cross(n, u) / squared * static_cast<double>(half_cells.y),
+          static_cast<double>(side) * n / std::sqrt(squared)};
+}
+
 }  // namespace
 
 Frame make_frame(const FrameInput& input) {
@@ -25,16 +34,15 @@ Frame make_frame(const FrameInput& input) {
   const double squared = glm::dot(n, n);
   Frame frame;
   frame.center = input.light.center;
-  frame.corner = input.corner;
+  frame.corner = 3.0 * input.plane[0] - input.plane[1] - input.plane[2];
   frame.radius = (glm::length(input.light.u) + glm::length(input.light.v)) * 1.0001F + input.light.deviation;
   frame.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
   frame.first_cell = frame.half_cells - 0.5F;
-  frame.axes = {glm::cross(v, n) / squared * static_cast<double>(frame.half_cells.x),
-                glm::cross(n, u) / squared * static_cast<double>(frame.half_cells.y),
-                static_cast<double>(input.side) * n / std::sqrt(squared)};
-  frame.across = glm::vec3(frame.axes[0]);
-  frame.along = glm::vec3(frame.axes[1]);
-  frame.axis = glm::vec3(frame.axes[2]);
+  const std::array axes = axes_of(u, v, input.side, frame.half_cells);
+  frame.across = glm::vec3(axes[0]);
+  frame.along = glm::vec3(axes[1]);
+  frame.axis = glm::vec3(axes[2]);
+  frame.axes = axes_of(input.plane[1] - input.plane[0], input.plane[2] - input.plane[0], input.side, frame.half_cells);
   frame.axis_size = glm::abs(frame.axis);
   frame.per_length = std::max(glm::length(frame.across), glm::length(frame.along)) * 1.00001F;
   frame.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
@@ -113,7 +121,7 @@ Cluster make_cluster(const Frame& frame, std::span<const Placed> samples) {
 }
 
 Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed) {
-  Sample at{placed, {}, {}, 0, 0, 0, 0, 0, {}, 0};
+  Sample at{placed, {}, {}, 0, 0, 0, 0, 0, {}, 0, 0};
   at.local = at.p - cluster.middle;
   // As dot() of find.cpp: one order, nothing fused.
   const auto dot = [&](const glm::vec3& n) { return (at.local.x * n.x + at.local.y * n.y) + at.local.z * n.z; };
@@ -127,6 +135,10 @@ Sample complete(const Frame& frame, const Cluster& cluster, const Placed& placed
   at.per_foot = kMore * (kRound * (4 * lengths + 8) + frame.deviation / at.height);
   at.fixed = kMore *
              (kRound * frame.per_length * (4 * at.away + frame.cut_reach) + cells + frame.per_length * frame.deviation);
+  // A way is off by 8 ε of its lengths, and aside by as many cells: seen from a small light's height, that is more.
+  const glm::vec2 off = glm::abs(at.foot - frame.first_cell), window = 2.0F * frame.half_cells + 2.0F;
+  at.per_lift = 64 * kRound *
+                (1 + 0.125F * (std::max(off.x, off.y) + frame.per_length * at.height) / std::min(window.x, window.y));
   at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
   at.per_lean = kRound * (8 * frame.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
   return at;

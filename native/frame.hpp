@@ -23,7 +23,7 @@ struct Frame {
   glm::vec2 half_cells{0}, first_cell{0};
   glm::dvec3 corner{0};              ///< of the light, in the plane of its stored points: where rows and columns begin
   float radius = 0;                  ///< no light sample is farther from the centre
-  std::array<glm::dvec3, 3> axes{};  ///< across, along, axis before rounding
+  std::array<glm::dvec3, 3> axes{};  ///< across, along, axis in double, of the light's stored points
   float per_length = 0, skew = 1, deviation = 0, reach = 0, cut_reach = 0;
   float side = 1;
   std::uint32_t rows = 0, columns = 0, light = 0;
@@ -33,7 +33,7 @@ struct Frame {
 };
 struct FrameInput {
   const visibility::LightFrame& light;
-  glm::dvec3 corner;
+  std::array<glm::dvec3, 3> plane;  ///< the light's stored points: centre, centre + halfU, centre + halfV, scaled
   std::uint32_t rows, columns, light_index;
   float side, reach, cut_reach, scale;
   std::span<const glm::vec3> points;  ///< light samples
@@ -62,7 +62,9 @@ struct Sample : Placed {
   /// The error of a projected point at height w over p, `far_x` from the cluster's middle, that appears F from the
   /// foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
   float per_way = 0, per_foot = 0, fixed = 0;
-  glm::vec2 lean{0};   ///< the way to the light's corner, in cells for a unit of height
+  glm::vec2 lean{0};  ///< the way to the light's corner, in cells for a unit of height
+  /// An edge within (far_x + far) · per_lift of p's height may be where p is, but for rounding. (bound window)
+  float per_lift = 0;
   float per_lean = 0;  ///< the error of a corner's place beside that way is (far_x + far) per_lean (bound corner)
 };
 constexpr float kPerReach = 8 * kRound;

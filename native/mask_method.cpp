@@ -71,16 +71,21 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(light_frame_.rows, "light {} has no rows that a step describes", light.name);
   visibility::check_size(light, light_frame_, description_.name);
   const bool cut = prepare_casters();
-  const glm::dvec3 center(light.center);
-  const glm::dvec3 corner =
-      (3.0 * center - glm::dvec3(light.center_u) - glm::dvec3(light.center_v)) * static_cast<double>(scale_);
+  const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale_); };
   const float reach = visibility::reach_of(*scene_, light_frame_, scale_);
   frames_.clear();
   for (const float side : {1.0F, -1.0F}) {
     if (side < 0 && !light.two_sided) continue;
-    frames_.push_back(
-        make_frame({light_frame_, corner, light.rows, light.columns, static_cast<std::uint32_t>(light.index), side,
-                    reach, cut ? 4 * reach : 0, scale_, light.points}));
+    frames_.push_back(make_frame({light_frame_,
+                                  {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                  light.rows,
+                                  light.columns,
+                                  static_cast<std::uint32_t>(light.index),
+                                  side,
+                                  reach,
+                                  cut ? 4 * reach : 0,
+                                  scale_,
+                                  light.points}));
   }
 }
 
@@ -136,7 +141,7 @@ void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t
       const Outlook outlook = look(view, static_cast<std::uint32_t>(first_pixel() + pixel), at);
       if (outlook == Outlook::scattered) ++count;
       if (outlook == Outlook::all) visible_[pixel] = light_->sample_count();
-      if (outlook == Outlook::open && frame.side > 0) decide_all(at, judge);  // one of two sides asks
+      if (outlook == Outlook::open && frame.side > 0 && !do_open(at)) decide_all(at, judge);  // one of two sides asks
     }
     ends[i / (kSmallBlock * kSmallBlock)] = count;
   }

@@ -49,6 +49,8 @@ class MaskMethod : public visibility::Method {
   virtual Blocks begin_region(const Frame& frame, const Cluster& all) = 0;
   /// All view samples of a cluster. Sets how many light samples they see and, unless that is none or all, their masks.
   virtual void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
+  /// A view sample within rounding of the light's plane. False: exact predicates decide its light samples.
+  virtual bool do_open(const Placed&) { return false; }
   /// Something cuts what casts shadow at the light's plane: errors grow by that.
   virtual bool prepare_casters() = 0;
   /// Does the clusters of the tile last evaluated again, for what was not asked for then; counts nothing.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 /// Which light samples a view sample sees, and what is not certain of that.
@@ -34,14 +35,21 @@ struct Seen {
   std::uint32_t visible = 0;
 };
 
+/// The light point centre + s u + t v is above the carrier's plane where A s + B t + C > 0.
+struct HorizonLine {
+  glm::dvec3 above{0};  ///< (A, B, C), in double
+  glm::dvec3 error{0};  ///< what they are off by at most
+};
+
 /// Decides what is open by exact predicates.
 class Judge {
  public:
   virtual ~Judge() = default;
   /// How many triangles are before the light point centre + s u + t v, up to its rounding to float.
   virtual std::uint32_t depth(const Placed& sample, const glm::dvec2& st) = 0;
-  /// (A, B, C): the light point centre + s u + t v is above the carrier's plane where A s + B t + C > 0. In double.
-  virtual glm::dvec3 horizon(const Placed& sample) = 0;
+  /// The same for exactly that point of the light's plane. Nothing: double does not know which triangles to ask.
+  virtual std::optional<std::uint32_t> depth_in_plane(const Placed& sample, const glm::dvec2& st) = 0;
+  virtual HorizonLine horizon(const Placed& sample) = 0;
   /// The triangle's normal, of any length, turned to the side that p is on; 0: p is in its plane, or the triangle is so
   /// thin that double does not know its normal.
   virtual glm::dvec3 normal_towards(const Placed& sample, std::uint32_t triangle) = 0;

@@ -15,14 +15,23 @@ std::uint32_t OpenJudge::depth(const Placed& sample, const glm::dvec2& st) {
   return judge_.depth(sample.pixel, glm::vec3(point));
 }
 
-glm::dvec3 OpenJudge::horizon(const Placed& sample) {
+std::optional<std::uint32_t> OpenJudge::depth_in_plane(const Placed& sample, const glm::dvec2& st) {
+  ++pairs_;
+  return judge_.depth_in_plane(sample.pixel, st);
+}
+
+HorizonLine OpenJudge::horizon(const Placed& sample) {
   const auto carrier = static_cast<std::uint32_t>(judge_.samples.triangle[sample.pixel]);
   const auto corners = judge_.scene.corners(carrier);
   const glm::dvec3 a(corners[0]), center(judge_.light.center);
-  const glm::dvec3 n = glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a) *
-                       static_cast<double>(judge_.samples.facing[sample.pixel]);
-  return {glm::dot(n, glm::dvec3(judge_.light.center_u) - center),
-          glm::dot(n, glm::dvec3(judge_.light.center_v) - center), glm::dot(n, center - a)};
+  const glm::dvec3 e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
+  const glm::dvec3 n = glm::cross(e1, e2) * static_cast<double>(judge_.samples.facing[sample.pixel]);
+  const glm::dvec3 u = glm::dvec3(judge_.light.center_u) - center, v = glm::dvec3(judge_.light.center_v) - center;
+  const glm::dvec3 from = center - a;
+  // A determinant of three differences (certain_meeting.cpp): fewer than 2⁻⁴⁶ of the product of their lengths.
+  const double lengths = 0x1p-46 * glm::length(e1) * glm::length(e2);
+  return {{glm::dot(n, u), glm::dot(n, v), glm::dot(n, from)},
+          lengths * glm::dvec3(glm::length(u), glm::length(v), glm::length(from))};
 }
 
 glm::dvec3 OpenJudge::normal_towards(const Placed& sample, std::uint32_t triangle) {

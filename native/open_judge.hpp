@@ -4,6 +4,7 @@
 #include "visibility/pair_judge.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace penumbra::native {
@@ -14,7 +15,8 @@ class OpenJudge final : public Judge {
   OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
 
   std::uint32_t depth(const Placed& sample, const glm::dvec2& st) override;
-  glm::dvec3 horizon(const Placed& sample) override;
+  std::optional<std::uint32_t> depth_in_plane(const Placed& sample, const glm::dvec2& st) override;
+  HorizonLine horizon(const Placed& sample) override;
   glm::dvec3 normal_towards(const Placed& sample, std::uint32_t triangle) override;
   void decide(const Placed& sample, const Open& open, Seen& seen) override;
 

@@ -48,6 +48,7 @@ WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::
       put(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
       put(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
     }
+    leaf.cut[lane] = slots[5][slot].number == 0 ? 0 : slots[5][slot].number - 1;
     if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
   }
   return tree;

@@ -31,6 +31,7 @@ struct alignas(64) WideEdges {
   WidePoints a, b;
   std::array<WidePoints, 2> n, anchor;
   std::array<WideWords, 2> plane;
+  WideWords cut;  ///< 0, or the number, from 1, of what a method knows of an edge's ends beside a and b
   std::uint32_t used = 0;
 };
 

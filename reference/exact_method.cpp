@@ -2,7 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -16,6 +16,7 @@
 namespace penumbra::reference {
 namespace {
 
+using areas::ExactArea, areas::ExactView, areas::Receiver, areas::SweepArithmetic;
 using visibility::Light;
 using visibility::LightKind;
 using visibility::SceneFloats;

@@ -7,11 +7,13 @@
 
 namespace penumbra::visibility {
 
-std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners) {
+std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
+                                    double off) {
   const glm::dvec3 way = l - p;
   const std::array d{glm::dvec3(corners[0]) - p, glm::dvec3(corners[1]) - p, glm::dvec3(corners[2]) - p};
   const std::array squared{glm::dot(d[0], d[0]), glm::dot(d[1], d[1]), glm::dot(d[2], d[2])};
-  const double way_squared = glm::dot(way, way);
+  // What l is off by adds as much to a determinant as a way that is longer by 2⁴⁶ of it.
+  const double way_length = glm::length(way) + 0x1p46 * off, way_squared = way_length * way_length;
   // A determinant of three differences, each right to 2⁻⁵³ of itself in each coordinate, has three such errors, and
   // rounds six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ ·
   // 6 of that product. Its square, where nothing underflows; what is smaller than that is not certain.

@@ -8,7 +8,9 @@
 namespace penumbra::visibility {
 
 /// Does the open segment p→l meet the triangle, if double arithmetic is certain: no sign on the way is within its
-/// rounding. As segment_meets_triangle (pair_truth.hpp) where both say something; p and l may be no floats.
-std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners);
+/// rounding. As segment_meets_triangle (pair_truth.hpp) where both say something; p and l may be no floats. `off`: how
+/// far l may be from where it is meant to be.
+std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
+                                    double off = 0);
 
 }  // namespace penumbra::visibility

@@ -6,8 +6,11 @@
 #include "visibility/triangle_tree.hpp"
 #include "visibility/view_samples.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace penumbra::visibility {
 
@@ -27,6 +30,20 @@ struct PairJudge {
     std::uint32_t met = 0;
     static_cast<void>(tree.any_along(samples.p[pixel], l, [&](std::uint32_t triangle) {
       met += meets(pixel, l, triangle) ? 1 : 0;
+      return false;
+    }));
+    return met;
+  }
+  /// The same for the exact point centre + s u + t v of the light's plane: a triangle counts where it is strictly
+  /// between p and that plane. Nothing: double does not know which triangles to ask (SegmentInBox).
+  [[nodiscard]] std::optional<std::uint32_t> depth_in_plane(std::size_t pixel, const glm::dvec2& st) const {
+    const PlanePoint l(light, st);
+    const glm::dvec3 p(samples.p[pixel]);
+    if (!(glm::length(l.rounded - p) > 0x1p8 * 0x1p32 * l.off)) return std::nullopt;
+    std::uint32_t met = 0;
+    static_cast<void>(tree.any_along(p, l.rounded, [&](std::uint32_t triangle) {
+      if (may_occlude(scene, light, static_cast<std::uint32_t>(samples.triangle[pixel]), triangle))
+        met += meets_before_light(samples.p[pixel], l, scene.corners(triangle), light) ? 1 : 0;
       return false;
     }));
     return met;

@@ -8,7 +8,10 @@
 
 #include <CGAL/MP_Float.h>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace penumbra::visibility {
@@ -101,6 +104,46 @@ Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std
     all_right &= sign < 0;
   }
   return {all_left || all_right, true};
+}
+
+PlanePoint::PlanePoint(const Light& light, const glm::dvec2& at) : st(at) {
+  PENUMBRA_ASSERT(light.kind != LightKind::sphere, "a sphere has no plane");
+  const glm::dvec3 c(light.center), u = glm::dvec3(light.center_u) - c, v = glm::dvec3(light.center_v) - c;
+  rounded = c + st.x * u + st.y * v;
+  // A rounding of each of two differences, two products and two sums, of no more than these lengths.
+  off = 0x1p-50 * (glm::length(c) + std::abs(st.x) * glm::length(u) + std::abs(st.y) * glm::length(v));
+}
+
+bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::array<glm::vec3, 3>& corners,
+                        const Light& light) {
+  if (const std::optional<bool> certain = certainly_meets(glm::dvec3(p), l.rounded, corners, l.off)) return *certain;
+  const auto& [a, b, c] = corners;
+  // Nothing of it is before the light: cheaper to know than what follows, and the rule for what lies in its plane.
+  const auto side = [&](const glm::vec3& x) { return side_of_plane(light.center, light.center_u, light.center_v, x); };
+  const Side before = side(p);
+  if (std::ranges::none_of(corners, [&](const glm::vec3& corner) { return side(corner) == before; })) return false;
+  const Side side_p = side_of_plane(a, b, c, p);
+  if (side_p == Side::on) return false;
+  const ExactVector u = difference(light.center_u, light.center), v = difference(light.center_v, light.center);
+  const Exact s(l.st.x), t(l.st.y);
+  const auto way_from = [&](const glm::vec3& x) {
+    const ExactVector d = difference(light.center, x);
+    return ExactVector{d.x + s * u.x + t * v.x, d.y + s * u.y + t * v.y, d.z + s * u.z + t * v.z};
+  };
+  const int side_l = sign_of_determinant(difference(b, a), difference(c, a), way_from(a));
+  if (side_l * static_cast<int>(side_p) >= 0) return false;
+  const ExactVector way = way_from(p);
+  const std::array d{difference(a, p), difference(b, p), difference(c, p)};
+  int first = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    int sign = 0;
+    for (const ExactVector* direction : {&way, &u, &v}) {
+      if (sign == 0) sign = sign_of_determinant(*direction, d[i], d[(i + 1) % 3]);
+    }
+    if (sign == 0 || sign == -first) return false;
+    first = sign;
+  }
+  return true;
 }
 
 bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l) {

@@ -5,6 +5,7 @@
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
@@ -31,6 +32,20 @@ int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const 
 /// are not met. Does not know about carriers: coplanar triangles are the caller's.
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light);
+
+/// The point centre + s u + t v of a light's plane, of its stored points. Not of a sphere.
+struct PlanePoint {
+  PlanePoint(const Light& light, const glm::dvec2& at);
+
+  glm::dvec2 st{0};
+  glm::dvec3 rounded{0};  ///< in double
+  double off = 0;         ///< that is no farther from the point
+};
+
+/// Does something of the triangle that is strictly between p and the light's plane meet the way from p to this very
+/// point? Exact; zeros are read as by segment_meets_triangle.
+bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::array<glm::vec3, 3>& corners,
+                        const Light& light);
 
 enum class PairOutcome : std::uint8_t {
   visible,

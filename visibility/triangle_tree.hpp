@@ -39,7 +39,7 @@ struct TriangleTree {
   /// Does `visit(triangle)` hold for one of the triangles in the leaves whose boxes the segment p→l touches? Stops at
   /// the first. Boxes are taken a little larger than they are (2⁻⁴⁰ of the segment), which outweighs double rounding.
   template <typename Visit>
-  bool any_along(const glm::vec3& p, const glm::vec3& l, Visit&& visit) const;
+  bool any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const;
 };
 
 TriangleTree make_triangle_tree(const SceneFloats& scene);
@@ -99,8 +99,8 @@ class SegmentInBox {
 };
 
 template <typename Visit>
-bool TriangleTree::any_along(const glm::vec3& p, const glm::vec3& l, Visit&& visit) const {
-  const SegmentInBox segment(glm::dvec3(p), glm::dvec3(l) - glm::dvec3(p));
+bool TriangleTree::any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const {
+  const SegmentInBox segment(p, l - p);
   std::vector<std::uint32_t> stack;
   if (!nodes.empty()) stack.push_back(0);
   while (!stack.empty()) {

@@ -1,5 +1,8 @@
 #include "volumes/edge_cut.hpp"
 
+#include "mesh/predicates.hpp"
+#include "volumes/cut_ends.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -22,7 +25,8 @@ glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
     std::swap(from, to);
     std::swap(h0, h1);
   }
-  return glm::vec3(h0 == h1 ? from : from + (to - from) * (h0 / (h0 - h1)));
+  // Double heights within rounding of 0 may have one sign where the exact ones have two.
+  return glm::vec3(h0 == h1 ? from : from + (to - from) * std::clamp(h0 / (h0 - h1), 0.0, 1.0));
 }
 
 /// May the segment a b in the light's plane touch the light? With an eighth of the light around it.
@@ -46,41 +50,62 @@ double LightSide::height_of(const glm::vec3& x) const {
   return sign * glm::dot(glm::cross(u, v), glm::dvec3(stored(x)) - center);
 }
 
+int LightSide::place_of(const glm::vec3& x) const {
+  return static_cast<int>(mesh::side_of_plane(plane[0], plane[1], plane[2], glm::dvec3(stored(x)))) *
+         (sign < 0 ? -1 : 1);
+}
+
 bool reaches_behind(const SceneFloats& scene, const LightSide& side) {
   for (int corner = 0; corner < 8; ++corner) {
     const glm::vec3 x((corner & 1) != 0 ? scene.upper.x : scene.lower.x,
                       (corner & 2) != 0 ? scene.upper.y : scene.lower.y,
                       (corner & 4) != 0 ? scene.upper.z : scene.lower.z);
-    if (side.height_of(x) <= 0) return true;
+    if (side.place_of(x) <= 0) return true;
   }
   return false;
 }
 
-bool keep_in_front(EdgeRecord& record, const LightSide& side) {
-  const double ha = side.height_of(record.a), hb = side.height_of(record.b);
-  if (ha <= 0 && hb <= 0) return false;
-  const glm::vec3 x = ha < 0 || hb < 0 ? cut(side, record.a, record.b) : record.a;
-  if (ha < 0) record.a = x;
-  if (hb < 0) record.b = x;
+bool keep_in_front(EdgeRecord& record, const LightSide& side, CutEnds* ends) {
+  const int at_a = side.place_of(record.a), at_b = side.place_of(record.b);
+  if (at_a <= 0 && at_b <= 0) return false;
+  if (at_a >= 0 && at_b >= 0) return true;
+  if (ends != nullptr) {
+    record.cut = ends->of_edge(record.a, record.b, at_a < 0);
+  } else {
+    (at_a < 0 ? record.a : record.b) = cut(side, record.a, record.b);
+  }
   return true;
 }
 
 std::vector<EdgeRecord> edges_in_plane(const SceneFloats& scene, const EdgeCasters& casters,
-                                       std::span<const std::uint32_t> triangles, const LightSide& side) {
+                                       std::span<const std::uint32_t> triangles, const LightSide& side, CutEnds* ends) {
   std::vector<EdgeRecord> records;
+  using Crossing = CutEnds::Crossing;
+  const auto rounded = [&](const Crossing& at) { return at.a == at.b ? at.a : cut(side, at.a, at.b); };
   for (const std::uint32_t triangle : triangles) {
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
     // Around the triangle: where it leaves the front, and where it comes back.
-    std::optional<glm::vec3> leaves, returns;
+    std::optional<Crossing> leaves, returns;
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::vec3 &a = corners[i], &b = corners[(i + 1) % 3];
-      const bool from = side.height_of(a) > 0, to = side.height_of(b) > 0;
-      if (from && !to) leaves = side.height_of(b) == 0 ? b : cut(side, a, b);
-      if (!from && to) returns = side.height_of(a) == 0 ? a : cut(side, a, b);
+      const int from = side.place_of(a), to = side.place_of(b);
+      if (from > 0 && to <= 0) leaves = to == 0 ? Crossing{b, b} : Crossing{a, b};
+      if (from <= 0 && to > 0) returns = from == 0 ? Crossing{a, a} : Crossing{a, b};
     }
-    if (!leaves || !returns || *leaves == *returns || !may_touch_light(side, *leaves, *returns)) continue;
+    if (!leaves || !returns) continue;
     // Run around as the corners do: in front where those are counter-clockwise.
-    records.push_back({*leaves, *returns, {plane_of(scene, casters, triangle), EdgeSide{}}});
+    EdgeRecord record{{}, {}, {plane_of(scene, casters, triangle), EdgeSide{}}};
+    if (ends != nullptr) {
+      record.cut = ends->in_plane(*leaves, *returns);
+      if (record.cut == 0) continue;
+      record.a = ends->rounded((*ends)[record.cut].a);
+      record.b = ends->rounded((*ends)[record.cut].b);
+    } else {
+      record.a = rounded(*leaves);
+      record.b = rounded(*returns);
+      if (record.a == record.b || !may_touch_light(side, record.a, record.b)) continue;
+    }
+    records.push_back(record);
   }
   return records;
 }

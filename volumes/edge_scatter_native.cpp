@@ -52,10 +52,10 @@ class NativeEdges : public native::MaskMethod {
     front_ = edges.has_body ? &without_body_->edges : &whole_;
     back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
     const std::int32_t without = edges.has_body ? light().index : -1;
-    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back});
-    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front});
+    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, between_rows_});
+    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, between_rows_});
     touch_ = between_rows_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
-    return edges.front.has_value();
+    return edges.front.has_value() && !between_rows_;  // whose edges stay whole
   }
   Blocks begin_region(const Frame& frame, const Cluster& all) override {
     Scratch& scratch = scratch_.local();
@@ -78,13 +78,14 @@ class NativeEdges : public native::MaskMethod {
     scratch.samples.clear();
     for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
     do_lists({frame, touch_, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
-              scratch.dense ? kDenseGroup : kGroup, between_rows_},
+              scratch.dense ? kDenseGroup : kGroup, between_rows_, cut_edges(frame).ends(), front_->plane_of_light()},
              judge, seen);
   }
 
-  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const {
-    return frame.side < 0 && !back_.tree().nodes.empty() ? back_.tree() : front_->tree();
+  [[nodiscard]] const CutEdges& cut_edges(const Frame& frame) const {
+    return frame.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
   }
+  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const { return cut_edges(frame).tree(); }
   /// View samples with nothing before the light.
   virtual void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
   virtual void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) = 0;
@@ -137,6 +138,14 @@ class NativeEdgeRows final : public NativeEdges {
  public:
   explicit NativeEdgeRows(visibility::MethodDescription given) : NativeEdges(std::move(given), true) {}
 
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    NativeEdges::prepare_mesh(scene);
+    areas_.prepare_mesh(scene, tree());
+  }
+  void prepare_light(const visibility::Light& light) override {
+    areas_.prepare_light(light);
+    NativeEdges::prepare_light(light);
+  }
   void evaluate(const visibility::Tile& tile) override {
     shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
     NativeEdges::evaluate(tile);
@@ -168,26 +177,47 @@ class NativeEdgeRows final : public NativeEdges {
   }
 
   void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen>) override {
+    RowSum rows(frame, scene(), scale());
     for (const Placed& at : placed) {
-      shares_[tile_pixel(at)] = at.straddles ? share_above_horizon(frame, judge.horizon(at)) : 1.0F;
+      std::optional<double> share = 1;
+      if (at.straddles) {
+        rows.begin(at);
+        rows.add_horizon(judge.horizon(at));
+        share = rows.visible_share(0, nullptr);
+      }
+      if (!share) {
+        do_exactly(at);
+        continue;
+      }
+      shares_[tile_pixel(at)] = static_cast<float>(*share);
       if (!radiance_.empty()) radiance_[tile_pixel(at)] = unshadowed(at.pixel);
     }
   }
-  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) override {
+  bool do_open(const Placed& at) override {
+    do_exactly(at);
+    return true;
+  }
+  void do_exactly(const Placed& at) {
+    ++scratch_.local().unproven;
+    const areas::ExactView exact = areas_.view(samples(), at.pixel);
+    shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
+    if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor.x;
+  }
+  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen>) override {
     std::vector<float> shares(input.samples.size());
     std::vector<double> radiance(radiance_.empty() ? 0 : input.samples.size());
-    integrate({input, light(), samples()}, scratch_.local(), judge, seen, {shares, radiance});
+    integrate({input, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge, {shares, radiance});
     for (std::size_t i = 0; i < shares.size(); ++i) shares_[tile_pixel(input.samples[i])] = shares[i];
     for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(input.samples[i])] = radiance[i];
   }
 
-  /// Whatever is decided by exact predicates here is a view sample left to light samples.
   void count(std::map<std::string, std::uint64_t>& counters) override {
     NativeEdges::count(counters);
-    if (counters["openPixels"] > 0) counters["sampledPixels"] = counters["openPixels"];
+    for (Scratch& scratch : scratch_) counters["unprovenPixels"] += std::exchange(scratch.unproven, 0);
   }
 
-  std::vector<std::optional<float>> shares_;     // of the tile; none: light samples say it
+  AreasOnDemand areas_;
+  std::vector<std::optional<float>> shares_;     // of the tile; none: the light is behind, or below the horizon
   std::vector<std::optional<double>> radiance_;  // likewise; empty: not wanted
 };
 

@@ -1,6 +1,7 @@
 #include "volumes/edge_set.hpp"
 
 #include "mesh/predicates.hpp"
+#include "volumes/plane_normal.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -19,12 +20,6 @@ using visibility::SceneFloats;
 glm::dvec3 normal_of(const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a(corners[0]);
   return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
-}
-
-/// Rounded to float with its largest coordinate brought near 1, so that nothing over- or underflows.
-glm::vec3 rounded(const glm::dvec3& n) {
-  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  return largest == 0 ? glm::vec3(0) : glm::vec3(n * std::ldexp(1.0, -std::ilogb(largest)));
 }
 
 /// Of exactly coplanar triangles the largest: for each plane number.
@@ -91,7 +86,7 @@ EdgeCasters edge_casters(const SceneFloats& scene, std::int32_t light_index) {
 EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle) {
   const std::uint32_t plane = scene.plane[triangle], chosen = casters.largest_in_plane[plane];
   const std::array<glm::vec3, 3> corners = scene.corners(chosen);
-  const glm::vec3 n = rounded(normal_of(corners));
+  const glm::vec3 n = rounded_normal(corners);
   return {turned_alike(scene, triangle, chosen) ? n : -n, corners[0], plane};
 }
 
@@ -123,6 +118,7 @@ struct Cone {
   [[nodiscard]] bool is_all() const { return cosine <= 0; }
 };
 constexpr Cone kAllDirections{{0, 0, 0}, 0};
+constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space leave nothing out
 
 Cone joined(const Cone& x, Cone y) {
   if (x.is_all() || y.is_all()) return kAllDirections;
@@ -132,15 +128,15 @@ Cone joined(const Cone& x, Cone y) {
   if (between + ry <= rx) return x;
   if (between + rx <= ry) return y;
   const double radius = 0.5 * (between + rx + ry);
-  if (radius >= 1.57) return kAllDirections;
+  if (radius >= kWidest) return kAllDirections;
   // From x's axis towards y's by radius − rx.
-  const double turn = between > 1e-12 ? (radius - rx) / between : 0;
+  const double turn = between > 0 ? (radius - rx) / between : 0;
   const glm::dvec3 axis = glm::normalize(x.axis * (1 - turn) + y.axis * turn);
   // The chord is not the arc: take the radius that holds both.
   const double to_x = std::acos(std::clamp(glm::dot(axis, x.axis), -1.0, 1.0)) + rx;
   const double to_y = std::acos(std::clamp(glm::dot(axis, y.axis), -1.0, 1.0)) + ry;
   const double reach = std::max(to_x, to_y);
-  return reach >= 1.57 ? kAllDirections : Cone{axis, std::cos(reach)};
+  return reach >= kWidest ? kAllDirections : Cone{axis, std::cos(reach)};
 }
 
 /// The record's two normals, the second turned so that k_e = 0 where p is on the same side of both.
@@ -149,7 +145,7 @@ Cone cone_of(const EdgeRecord& record) {
   if (n1 == glm::dvec3(0) || n2 == glm::dvec3(0)) return kAllDirections;
   const glm::dvec3 x = glm::normalize(n1), y = glm::normalize(n2);
   const glm::dvec3 sum = x + y;
-  if (glm::dot(x, y) < -0.999) return kAllDirections;
+  if (glm::dot(x, y) < -0.999) return kAllDirections;  // half of 177 degrees and more
   const glm::dvec3 axis = glm::normalize(sum);
   return {axis, std::min(glm::dot(axis, x), glm::dot(axis, y))};
 }
@@ -211,7 +207,8 @@ EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
   texels.nodes.reserve(boxed.size() / 2 * 3);
   for (std::size_t child = 0; child < boxed.size() / 2; ++child) {
     const Cone& cone = cones.of_child(child / TriangleTree::kWidth, child % TriangleTree::kWidth);
-    // A little wider than it is: float32 rounds axis and cosine.
+    // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
+    // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a tenth of this in 20 levels.
     const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
     texels.nodes.push_back(boxed[2 * child]);
     texels.nodes.push_back(boxed[2 * child + 1]);
@@ -228,7 +225,7 @@ EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
       texels.slots[2].push_back({s.n, used ? 1U : 0U});
       texels.slots[3].push_back({s.anchor * scale, used ? 1U : 0U});
       texels.slots[4].push_back({t.n, used ? 1U : 0U});
-      texels.slots[5].push_back({t.anchor * scale, used ? 1U : 0U});
+      texels.slots[5].push_back({t.anchor * scale, used ? 1 + record.cut : 0U});
     }
   }
   if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty

@@ -29,6 +29,7 @@ struct EdgeSide {
 struct EdgeRecord {
   glm::vec3 a{0}, b{0};
   std::array<EdgeSide, 2> sides;
+  std::uint32_t cut = 0;  ///< CutEnds: the number of its ends as they are before rounding; 0: a and b are not rounded
 };
 
 /// The triangles that may shade a light, and their edges.
@@ -52,7 +53,7 @@ std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const
 
 /// As texels: the hierarchy, three a child (render::node_texels' two, and the cone of normals: axis, cosine of its
 /// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
-/// (anchor 2), the numbers of the last four 1 for a record and 0 for an empty slot.
+/// (anchor 2), the numbers of the last four 0 for an empty slot and else 1, of the very last 1 + EdgeRecord::cut.
 ///
 /// A cone holds, up to sign, the two normals of each record below such that k_e(p) = 0 where p is in front of both, or
 /// behind both. Cosine 0: at least one record below that has none, or normals that point all over.

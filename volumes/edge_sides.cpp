@@ -10,14 +10,19 @@ namespace {
 /// The light's plane as its stored points span it, in double, and the frame's rectangle in it.
 LightSide front_of_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale) {
   const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center;
+  const std::array plane{center, glm::dvec3(light.center_u), glm::dvec3(light.center_v)};
   if (light.kind == visibility::LightKind::rectangle) {
-    return {center, to_u, glm::dvec3(light.center_v) - center, 1, scale};
+    return {plane, center, to_u, glm::dvec3(light.center_v) - center, 1, scale};
   }
   const glm::dvec3 normal = glm::normalize(glm::cross(to_u, glm::dvec3(light.center_v) - center));
   const auto in_plane = [&](const glm::dvec3& d) { return d - normal * glm::dot(normal, d); };
   const double unscaled = 1 / static_cast<double>(scale);
-  return {center + in_plane(glm::dvec3(frame.center) * unscaled - center), in_plane(glm::dvec3(frame.u) * unscaled),
-          in_plane(glm::dvec3(frame.v) * unscaled), 1, scale};
+  return {plane,
+          center + in_plane(glm::dvec3(frame.center) * unscaled - center),
+          in_plane(glm::dvec3(frame.u) * unscaled),
+          in_plane(glm::dvec3(frame.v) * unscaled),
+          1,
+          scale};
 }
 
 }  // namespace

@@ -75,6 +75,8 @@ native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float sc
 
 void CutEdges::mend() {
   if (!is_cut_) return;
+  ends_.reset();
+  plane_of_light_ = native::Cluster::kSeveral;
   for (const auto& [node, used] : nodes_) tree_.nodes[node].used = used;
   for (const auto& [leaf, used] : leaves_) tree_.leaves[leaf].used = used;
   nodes_.clear();
@@ -91,7 +93,15 @@ void CutEdges::cut(const CutInput& input) {
   roots_ = tree_.roots.size();
   nodes_count_ = tree_.nodes.size();
   leaves_count_ = tree_.leaves.size();
-  std::vector<EdgeRecord> records = edges_in_plane(input.scene, input.casters, triangles_across(input), input.side);
+  if (input.exact_ends) ends_.emplace(input.side);
+  const std::vector<std::uint32_t> across = triangles_across(input);
+  for (const std::uint32_t triangle : across) {
+    const auto corners = input.scene.corners(triangle);
+    const bool in_plane = std::ranges::all_of(corners, [&](const auto& x) { return input.side.place_of(x) == 0; });
+    if (in_plane) plane_of_light_ = input.scene.plane[triangle];
+  }
+  std::vector<EdgeRecord> records =
+      edges_in_plane(input.scene, input.casters, across, input.side, ends_ ? &*ends_ : nullptr);
   cut_nodes(input.side, records);
   native::append(tree_, wide_edges(records, input.side.scale));
 }
@@ -129,8 +139,8 @@ void CutEdges::cut_leaf(const LightSide& side, std::uint32_t number, std::vector
     const auto lane = static_cast<std::size_t>(std::countr_zero(left));
     EdgeRecord record = record_of(leaf, lane, side.scale);
     const glm::vec3 a = record.a, b = record.b;
-    const bool kept = keep_in_front(record, side);
-    if (kept && record.a == a && record.b == b) continue;
+    const bool kept = keep_in_front(record, side, ends_ ? &*ends_ : nullptr);
+    if (kept && record.cut == 0 && record.a == a && record.b == b) continue;
     leaf.used &= ~(1U << lane);
     if (kept) records.push_back(record);
   }

@@ -1,11 +1,15 @@
 #pragma once
 
+#include "native/frame.hpp"
 #include "native/trees.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
+#include "volumes/cut_ends.hpp"
 #include "volumes/edge_cut.hpp"
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 /// Edge scatter on a processor: edges for lights whose plane cuts them. Inside volumes/ only.
@@ -20,6 +24,7 @@ struct CutInput {
   const EdgeCasters& casters;
   std::int32_t without;  ///< the light whose body is not among them, or −1
   LightSide side;
+  bool exact_ends = false;  ///< keep where edges pass through the plane as it is before rounding
 };
 
 /// A hierarchy of edges that is cut at a light's plane, and mended for the next light. Only what the plane cuts is made
@@ -30,6 +35,11 @@ class CutEdges {
   explicit CutEdges(native::WideEdgeTree whole) : tree_(std::move(whole)) {}
 
   [[nodiscard]] const native::WideEdgeTree& tree() const { return tree_; }
+  /// Of edges with a number (WideEdges::cut); null: none has.
+  [[nodiscard]] const CutEnds* ends() const { return ends_ ? &*ends_ : nullptr; }
+  /// The number of the plane (SceneFloats::plane) that the light lies in, if triangles lie in it: nothing of them is
+  /// before the light.
+  [[nodiscard]] std::uint32_t plane_of_light() const { return plane_of_light_; }
   void cut(const CutInput& input);
   void mend();
 
@@ -42,6 +52,8 @@ class CutEdges {
     std::uint32_t number, used;
   };
   native::WideEdgeTree tree_;
+  std::optional<CutEnds> ends_;
+  std::uint32_t plane_of_light_ = native::Cluster::kSeveral;
   bool is_cut_ = false;
   std::size_t roots_ = 0, nodes_count_ = 0, leaves_count_ = 0;  // of the whole
   std::vector<Used> nodes_, leaves_;                            // that were changed

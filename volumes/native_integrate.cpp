@@ -31,7 +31,9 @@ std::optional<std::int32_t> depth_by_other_place(const Frame& frame, const RowSu
     // Kronecker's sequence with the square roots of 2 and 3: on no lattice.
     const glm::dvec2 share = glm::fract(glm::dvec2(0.4142135623, 0.7320508075) * (i + 1.0));
     const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(frame.half_cells));
-    if (relative) return static_cast<std::int32_t>(judge.depth(at, 2.0 * share - 1.0)) - *relative;
+    if (!relative) continue;
+    const std::optional<std::uint32_t> depth = judge.depth_in_plane(at, 2.0 * share - 1.0);
+    return depth ? std::optional(static_cast<std::int32_t>(*depth) - *relative) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -43,7 +45,7 @@ struct Rows {
   bool parts_asked = false;
 };
 
-/// Nothing: left to light samples.
+/// Nothing: double cannot prove it.
 std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const Sample& at, Rows& all, Judge& judge) {
   RowSum& rows = all.sum;
   all.parts.clear();
@@ -52,8 +54,8 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
   std::int32_t depth = 0;
   if (scratch.lists.triangles.count > 0) {
     const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
-    depth = static_cast<std::int32_t>(
-        count_to_corner({in.frame, in.tree, scratch.lists.triangles, at, !edges && !at.straddles}, open));
+    depth = static_cast<std::int32_t>(count_to_corner(
+        {in.frame, in.tree, scratch.lists.triangles, at, !edges && !at.straddles, in.light_plane}, open));
   }
   CrossingTable& crossing = scratch.crossing;
   // The vectors only sort out; what they cannot place is looked at as well.
@@ -63,11 +65,12 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
     });
   };
   Projection{in, at, scratch.lists, crossing}(special);
-  rows.clear();
+  rows.begin(at);
   for (std::size_t i = 0; i < crossing.count; ++i) {
     const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
     const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
-    if (!rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, at, judge)) return std::nullopt;
+    rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, in.ends);
+    if (rows.is_open()) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {
     const std::optional<std::int32_t> found = depth_by_other_place(in.frame, rows, at, judge);
@@ -77,6 +80,7 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
   if (at.straddles) {
     rows.add_horizon(judge.horizon(at));
   } else if (scratch.crossing.count == 0) {
+    if (rows.is_open()) return std::nullopt;
     return depth == 0 ? 1 : 0;
   }
   return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
@@ -96,22 +100,20 @@ double form_factor_of(const IntegralInput& in, const Placed& at, const std::vect
   return std::max(sum, 0.0);
 }
 
-void integrate_here(const IntegralInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen,
-                    const Integral& out) {
+void integrate_here(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out) {
   const ScatterInput& in = input.scatter;
-  Rows rows{RowSum(in.frame), {}, !out.radiance.empty()};
+  Rows rows{RowSum(in.frame, input.scene, input.scale), {}, !out.radiance.empty()};
   for (std::size_t first = 0; first < in.samples.size(); first += in.group) {
     const auto group = in.samples.subspan(first, std::min(in.group, in.samples.size() - first));
     sort_out(in, group, scratch.lists);
     for (std::size_t i = 0; i < group.size(); ++i) {
-      std::optional<double> share = share_of(in, scratch, group[i], rows, judge);
+      const std::optional<double> share = share_of(in, scratch, group[i], rows, judge);
       if (!share) {
-        scratch.open.clear();
-        scratch.open.pixel = true;
-        std::fill_n(seen[first + i].mask, mask_words(in.frame), std::uint16_t{0});
-        judge.decide(group[i], scratch.open, seen[first + i]);
-        share = static_cast<double>(seen[first + i].visible) / (in.frame.rows * in.frame.columns);
-        rows.parts.clear();
+        ++scratch.unproven;
+        const areas::ExactView exact = input.areas.view(input.samples, group[i].pixel);
+        out.shares[first + i] = static_cast<float>(exact.visibility);
+        if (!out.radiance.empty()) out.radiance[first + i] = exact.form_factor.x;
+        continue;
       }
       out.shares[first + i] = static_cast<float>(*share);
       if (!out.radiance.empty()) out.radiance[first + i] = form_factor_of(input, group[i], rows.parts, *share);
@@ -128,8 +130,8 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(integrate_here);
 
-void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen, const Integral& out) {
-  HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, seen, out);
+void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out) {
+  HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, out);
 }
 
 }  // namespace penumbra::volumes

@@ -249,7 +249,7 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
   const Way a(edges[kAx][edge] - at.seen.x, edges[kAy][edge] - at.seen.y, at.seen.z - edges[kAh][edge]);
   const Way b(edges[kBx][edge] - at.seen.x, edges[kBy][edge] - at.seen.y, at.seen.z - edges[kBh][edge]);
   const float far = edges[kFar][edge], through_p = 64 * kRound * (far + at.far);
-  const Cut part = in.settled ? Cut{a, b} : cut_to_window(frame, at, a, b, through_p);
+  const Cut part = in.settled ? Cut{a, b} : cut_to_window(frame, at, a, b, at.per_lift * (far + at.far));
   if (part.nothing || k == 0) return;
   if (!in.settled && std::min(part.start.z, part.end.z) < through_p) {
     marks.pixel();

@@ -112,12 +112,13 @@ class Projection {
     // Beyond the table's end there is anything.
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
     const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(64 * kRound), far);
+    const V lift = hn::Mul(set(at_.per_lift), far);
     V from = set(0), to = set(1);
     for (int axis = 0; axis < 2; ++axis) {
       const V xa = hn::Add(hn::Mul(axis == 0 ? a.x : a.y, set(at_.height)), hn::Mul(set(off[axis]), a.w));
       const V xb = hn::Add(hn::Mul(axis == 0 ? b.x : b.y, set(at_.height)), hn::Mul(set(off[axis]), b.w));
-      const V wide_a = hn::Mul(set(window[axis]), hn::Add(a.w, through_p));
-      const V wide_b = hn::Mul(set(window[axis]), hn::Add(b.w, through_p));
+      const V wide_a = hn::Mul(set(window[axis]), hn::Add(a.w, lift));
+      const V wide_b = hn::Mul(set(window[axis]), hn::Add(b.w, lift));
       for (const bool upper : {false, true}) {
         const V inside_a = upper ? hn::Add(wide_a, xa) : hn::Sub(wide_a, xa);
         const V inside_b = upper ? hn::Add(wide_b, xb) : hn::Sub(wide_b, xb);

@@ -1,5 +1,8 @@
 #include "volumes/native_rows.hpp"
 
+#include "mesh/predicates.hpp"
+#include "volumes/plane_normal.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -10,6 +13,8 @@
 namespace penumbra::volumes {
 namespace {
 
+constexpr double kUnit = 0x1p-53;  // half a unit in the last place of 1
+
 double at_height(const RowEdge& edge, double y) {
   const double t = std::clamp((y - edge.y0) / (edge.y1 - edge.y0), 0.0, 1.0);
   return edge.x0 + t * (edge.x1 - edge.x0);
@@ -19,85 +24,177 @@ glm::dvec3 point(const WidePoints& points, std::size_t lane) {
   return {points[0][lane], points[1][lane], points[2][lane]};
 }
 
-/// p over the light's plane.
-struct View {
-  glm::dvec2 foot{0};  // from the light's corner, in cells
-  double height = 0;
+/// Is the light's corner within `error` of the edge?
+bool passes_corner(const RowEdge& edge, double error) {
+  const auto holds = [&](double a, double b) { return std::min(a, b) <= error && std::max(a, b) >= -error; };
+  if (!holds(edge.x0, edge.x1) || !holds(edge.y0, edge.y1)) return false;
+  const double beside = std::abs(edge.x0 * edge.y1 - edge.x1 * edge.y0);
+  return beside <= error * (std::abs(edge.x1 - edge.x0) + std::abs(edge.y1 - edge.y0));
+}
 
-  /// Where a way (across, along, up) from p ends on the light.
-  [[nodiscard]] glm::dvec2 appears(const glm::dvec3& way) const {
-    return foot + height / way.z * glm::dvec2(way.x, way.y);
+}  // namespace
+
+RowSum::RowSum(const Frame& frame, const visibility::SceneFloats& scene, float scale)
+    : frame_(frame),
+      scene_(scene),
+      scale_(scale),
+      per_length_(std::max(glm::length(frame.axes[0]), glm::length(frame.axes[1]))),
+      skew_(frame.skew) {}
+
+/// (bound foot)
+void RowSum::begin(const Placed& at) {
+  edges_.clear();
+  left_.clear();
+  at_corner_ = 0;
+  error_ = largest_error_ = 0;
+  corner_is_open_ = is_open_ = false;
+  p_ = glm::dvec3(at.p);
+  plane_ = at.plane;
+  const glm::dvec3 from = p_ - frame_.corner;
+  foot_ = {glm::dot(frame_.axes[0], from), glm::dot(frame_.axes[1], from)};
+  height_ = glm::dot(frame_.axes[2], from);
+  const double away = glm::length(from), off = 8 * kUnit * static_cast<double>(frame_.reach);
+  error_foot_ = per_length_ * (32 * kUnit * skew_ * away + off);
+  error_height_ = 16 * kUnit * skew_ * away + off;
+  steepness_ = height_ / (away + 2 * static_cast<double>(frame_.radius));
+  is_open_ = !(height_ > 8 * error_height_);
+}
+
+/// Which side of one of the edge's triangles is p on? n is the exact normal rounded to float: what that may change (16
+/// · 2⁻²⁴ of each term, bound side) exact predicates say.
+int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const {
+  const glm::dvec3 n = point(leaf.n[side], lane), from = p_ - point(leaf.anchor[side], lane);
+  const double f = glm::dot(n, from), error = 16 * static_cast<double>(kRound) * glm::dot(glm::abs(n), glm::abs(from));
+  if (std::abs(f) > error) return f > 0 ? 1 : -1;
+  const auto corners = scene_.corners(leaf.plane[side][lane]);  // a plane's number is that of a triangle in it
+  const glm::dvec3 unscaled = p_ / static_cast<double>(scale_);
+  const auto at = mesh::side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), unscaled);
+  if (at == mesh::Side::on) return 0;
+  // Both normals have the signs of the exact ones, which are parallel: so have all terms of their product.
+  const bool alike = glm::dot(n, glm::dvec3(rounded_normal(corners))) > 0;
+  return alike == (at == mesh::Side::front) ? 1 : -1;
+}
+
+/// As seen from the light's front.
+int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
+  int k = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (leaf.plane[side][lane] == plane_) continue;  // its own plane hides nothing
+    if (point(leaf.n[side], lane) == glm::dvec3(0)) continue;
+    k += side_of(leaf, side, lane);
   }
-};
+  return frame_.side < 0 ? -k : k;
+}
 
-/// The part of an edge that appears in a window of about twice the light, before any division. (bound window)
-std::optional<std::pair<glm::dvec3, glm::dvec3>> cut_to_window(const Frame& frame, const View& view,
-                                                               const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec2 middle(frame.half_cells), window = 2.0 * middle + 2.0;
-  double from = 0, to = 1;
+/// (bound way)
+RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
+  const glm::dvec3 d = point - p_;
+  const double length = glm::length(d), error = kUnit * skew_ * length;
+  return {{glm::dot(frame_.axes[0], d), glm::dot(frame_.axes[1], d), -glm::dot(frame_.axes[2], d)},
+          64 * error * per_length_,
+          32 * error,
+          length};
+}
+
+RowSum::Way RowSum::way_to(const CutEnd& end) const {
+  if (!end.place) {
+    Way way = way_to(end.point);  // computed from points no farther than `reach`
+    const double off = 16 * kUnit * static_cast<double>(frame_.reach);
+    way.error += off * per_length_;
+    way.error_up += off;
+    return way;
+  }
+  const glm::dvec2 place = *end.place * 2.0 * glm::dvec2(frame_.half_cells), to = place - foot_;
+  const double size = std::abs(place.x) + std::abs(place.y);
+  return {{to.x, to.y, height_},
+          error_foot_ + 4 * kUnit * (size + std::abs(foot_.x) + std::abs(foot_.y)),
+          error_height_,
+          height_ / steepness_ * (1 + size)};
+}
+
+RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const {
+  const std::uint32_t cut = leaf.cut[lane];
+  if (cut == 0 || ends == nullptr) return {way_to(point(leaf.a, lane)), way_to(point(leaf.b, lane))};
+  const CutEnds::Edge& edge = (*ends)[cut];
+  return {way_to(edge.a), way_to(edge.b)};
+}
+
+/// The part of an edge that appears in a window of about twice the light, before any division. (bound window) False:
+/// nothing of it is on the light.
+bool RowSum::cut_to_window(Ways& ways) {
+  auto& [a, b] = ways;
+  const glm::dvec2 middle(frame_.half_cells), window = 2.0 * middle + 2.0;
+  double from = 0, to = 1, error = 0;
   for (int axis = 0; axis < 2; ++axis) {
-    const double off = view.foot[axis] - middle[axis];
-    const double xa = a[axis] * view.height + off * a.z, xb = b[axis] * view.height + off * b.z;
+    const double off = foot_[axis] - middle[axis];
+    const double xa = a.to[axis] * height_ + off * a.to.z, xb = b.to[axis] * height_ + off * b.to.z;
+    const auto error_of = [&](const Way& way) {
+      return 2 * (height_ * way.error + (window[axis] + std::abs(off)) * way.error_up +
+                  error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
+    };
+    const double error_a = error_of(a), error_b = error_of(b);
+    error = std::max({error, error_a, error_b});
     for (const double sign : {-1.0, 1.0}) {
-      const double inside_a = window[axis] * a.z + sign * xa, inside_b = window[axis] * b.z + sign * xb;
-      if (inside_a < 0 && inside_b < 0) return std::nullopt;
+      const double inside_a = window[axis] * a.to.z + sign * xa, inside_b = window[axis] * b.to.z + sign * xb;
+      if (inside_a < 0 && inside_b < 0) {
+        if (inside_a > -error_a || inside_b > -error_b) is_open_ = true;
+        return false;
+      }
       const double t = inside_a / (inside_a - inside_b);
       if (inside_a < 0) from = std::max(from, t);
       if (inside_b < 0) to = std::min(to, t);
     }
   }
-  if (from > to) return std::nullopt;
-  return std::pair(from > 0 ? glm::mix(a, b, from) : a, to < 1 ? glm::mix(a, b, to) : b);
-}
-
-}  // namespace
-
-void RowSum::clear() {
-  edges_.clear();
-  left_.clear();
-  at_corner_ = 0;
-  corner_is_open_ = false;
-}
-
-/// Which side of one of the edge's triangles is p on? n is stored as a float: within what that rounds (16 · 2⁻²⁴ of
-/// each term, bound side) exact predicates say it.
-int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane, const Sample& at, Judge& judge) {
-  const glm::dvec3 n = point(leaf.n[side], lane), from = glm::dvec3(at.p) - point(leaf.anchor[side], lane);
-  const double f = glm::dot(n, from), error = 16 * static_cast<double>(kRound) * glm::dot(glm::abs(n), glm::abs(from));
-  const double sure = std::abs(f) > error ? f : glm::dot(n, judge.normal_towards(at, leaf.plane[side][lane]));
-  return sure > 0 ? 1 : sure < 0 ? -1 : 0;
-}
-
-bool RowSum::add(const WideEdges& leaf, std::size_t lane, const Sample& at, Judge& judge) {
-  const glm::dvec3 p(at.p);
-  int k = 0;
-  for (std::size_t side = 0; side < 2; ++side) {
-    if (leaf.plane[side][lane] == at.plane) continue;  // its own plane hides nothing
-    if (point(leaf.n[side], lane) != glm::dvec3(0)) k += side_of(leaf, side, lane, at, judge);
+  const auto mixed = [&](double t) { return glm::mix(a.to, b.to, t); };
+  if (from > to) {
+    // It passes by, unless it passes p within rounding: no nearer than that, whatever of it is on the light is so high
+    // over p that the error cannot have hidden it. (bound apex)
+    const glm::dvec2 scale(per_length_);
+    const glm::dvec3 near_a(glm::dvec2(a.to) / scale, a.to.z), near_b(glm::dvec2(b.to) / scale, b.to.z);
+    const double nearest = glm::length(glm::cross(near_a, near_b)) / std::max(a.length + b.length, 0x1p-300);
+    if (!(nearest * steepness_ * std::min(middle.x, middle.y) > 4 * error)) is_open_ = true;
+    return false;
   }
-  if (k == 0) return true;
-  const auto way = [&](const WidePoints& end) {
-    const glm::dvec3 d = point(end, lane) - p;
-    return glm::dvec3(glm::dot(frame_.axes[0], d), glm::dot(frame_.axes[1], d), -glm::dot(frame_.axes[2], d));
-  };
-  const glm::dvec3 from_corner = p - frame_.corner;
-  const View view{{glm::dot(frame_.axes[0], from_corner), glm::dot(frame_.axes[1], from_corner)},
-                  glm::dot(frame_.axes[2], from_corner)};
-  const glm::dvec3 a = way(leaf.a), b = way(leaf.b);
-  const std::optional<std::pair<glm::dvec3, glm::dvec3>> part = cut_to_window(frame_, view, a, b);
-  if (!part) return true;
-  if (std::min(part->first.z, part->second.z) < 0x1p-45 * (glm::length(a) + glm::length(b))) return false;
-  const glm::dvec2 from = view.appears(part->first), to = view.appears(part->second);
-  add({from.x, from.y, to.x, to.y, frame_.side < 0 ? -k : k});
+  const glm::dvec3 start = from > 0 ? mixed(from) : a.to, end = to < 1 ? mixed(to) : b.to;
+  a.to = start;
+  b.to = end;
   return true;
 }
 
-void RowSum::add(RowEdge edge) {
+void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
+  const int k = multiplicity(leaf, lane);
+  if (k == 0 || is_open_) return;
+  Ways ways = ways_of(leaf, lane, ends);
+  if (!cut_to_window(ways)) return;
+  const auto& [a, b] = ways;
+  const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
+               error_up = std::max(a.error_up, b.error_up);
+  if (!(lowest > 8 * error_up)) {  // it passes through p but for rounding
+    is_open_ = true;
+    return;
+  }
+  const glm::dvec2 seen_a = height_ / a.to.z * glm::dvec2(a.to), seen_b = height_ / b.to.z * glm::dvec2(b.to);
+  const double far = std::max(glm::length(seen_a), glm::length(seen_b));
+  // (bound place)
+  const double off = 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
+                          8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
+  const glm::dvec2 from = foot_ + seen_a, to = foot_ + seen_b;
+  add({from.x, from.y, to.x, to.y, k}, off);
+}
+
+/// `error`: of where its ends appear.
+void RowSum::add(RowEdge edge, double error) {
+  if (!(error < 0.5)) {
+    is_open_ = true;
+    return;
+  }
+  error_ += error;
+  largest_error_ = std::max(largest_error_, error);
+  if (passes_corner(edge, 2 * error)) corner_is_open_ = true;
   const double width = frame_.columns, height = frame_.rows;
   if (edge.y0 > edge.y1) edge = {edge.x1, edge.y1, edge.x0, edge.y0, -edge.k};
   if ((edge.x0 < 0) != (edge.x1 < 0)) {
     const double y = edge.y0 + (0 - edge.x0) / (edge.x1 - edge.x0) * (edge.y1 - edge.y0);
-    if (std::abs(y) < 1e-7) corner_is_open_ = true;
     // Crossing it upwards, if it runs to the right: +k.
     if (y > 0 && y < height) left_.push_back({y, edge.x0 < edge.x1 ? edge.k : -edge.k});
   }
@@ -120,14 +217,16 @@ void RowSum::add(RowEdge edge) {
     edge.x1 = at_height(whole, height);
     edge.y1 = height;
   }
-  constexpr double kLevel = 1e-200;  // lower ones have no slope that a double holds, and no area
+  // A lower one has a slope that is more than 2¹³ (columns) times this, and products with it overflow; without it areas
+  // change by less than columns times this.
+  constexpr double kLevel = 0x1p-900;
   if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
 }
 
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
   const auto [x, y] = std::pair(place.x, place.y);
-  // More than what rounding the light point to float moves it by.
-  const double near = std::max(1e-5, 8.0 * static_cast<double>(kRound * frame_.reach * frame_.per_length));
+  // No true edge is nearer than half of this, nor is the rounding of what follows as large.
+  const double near = 4 * largest_error_ + 64 * kUnit * (frame_.columns + frame_.rows);
   std::int32_t depth = 0;
   for (const RowStep& step : left_) {
     if (std::abs(step.y - y) < near) return std::nullopt;
@@ -136,19 +235,27 @@ std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) cons
   for (const RowEdge& edge : edges_) {
     if (edge.y0 > y + near || edge.y1 < y - near) continue;
     if (std::abs(edge.y0 - y) < near || std::abs(edge.y1 - y) < near) return std::nullopt;
-    const double crossing = at_height(edge, y);
-    if (std::abs(crossing - x) < near) return std::nullopt;
+    const double crossing = at_height(edge, y), slope = std::abs(edge.x1 - edge.x0) / (edge.y1 - edge.y0);
+    if (std::abs(crossing - x) < near * (1 + slope)) return std::nullopt;
     if (crossing < x) depth -= edge.k;
   }
   return depth;
 }
 
-void RowSum::add_horizon(const glm::dvec3& above) {
+void RowSum::add_horizon(const HorizonLine& line) {
   const double width = frame_.columns, height = frame_.rows;
   // above · (s, t, 1) as a X + b Y + c, from the light's corner.
+  const glm::dvec3& above = line.above;
   const double a = 2 * above.x / width, b = 2 * above.y / height;
   const double c = above.z - above.x - above.y;
   const double low = c, high = b * height + c;  // at the ends of the light's left side
+  const double largest = std::abs(above.x) + std::abs(above.y) + std::abs(above.z);
+  const double error = 4 * (line.error.x + line.error.y + line.error.z) + 16 * kUnit * largest;
+  // At the end of the side that is farther from the line, so that a line through the corner is counted once.
+  if (!(std::max(std::abs(low), std::abs(high)) > error)) {
+    is_open_ = true;
+    return;
+  }
   if (a == 0 && b == 0) {
     at_corner_ = low > 0 ? 0 : 1;
     return;
@@ -158,26 +265,29 @@ void RowSum::add_horizon(const glm::dvec3& above) {
   const double squared = a * a + b * b, foot = -(c + a * width / 2 + b * height / 2) / squared;
   const double x = width / 2 + a * foot, y = height / 2 + b * foot, far = 2 * (width + height) / std::sqrt(squared);
   const double sign = a > 0 ? 1 : -1;  // upward
-  // To the right of it, where it runs upward, is above the plane if a > 0: one layer less.
-  add({x + sign * b * far, y - sign * a * far, x - sign * b * far, y + sign * a * far, a > 0 ? 1 : -1});
-  // At the end of the side that is farther from the line, so that a line through the corner is counted once.
+  const double off = 2 * error / std::sqrt(squared);
+  if (std::max(std::abs(x), std::abs(y)) < 4 * (width + height) + off) {
+    // To the right of it, where it runs upward, is above the plane if a > 0: one layer less.
+    const bool open = corner_is_open_;
+    add({x + sign * b * far, y - sign * a * far, x - sign * b * far, y + sign * a * far, a > 0 ? 1 : -1},
+        off + 64 * kUnit * (width + height));
+    corner_is_open_ = open;  // the corner's depth is that of triangles
+  }
   const std::int32_t change = left_.size() > before ? left_.back().change : 0;
   at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
 std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts) {
-  const double width = frame_.columns, height = frame_.rows;
+  const double width = frame_.columns, height = frame_.rows, all = width * height;
   if (parts != nullptr) parts->clear();
-  const auto [visible, impossible] = sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts});
-  if (impossible > 1e-6 * width * height) return std::nullopt;
-  return std::clamp(visible / (width * height), 0.0, 1.0);
-}
-
-float share_above_horizon(const Frame& frame, const glm::dvec3& above) {
-  RowSum rows(frame);
-  rows.clear();
-  rows.add_horizon(above);
-  return static_cast<float>(rows.visible_share(0, nullptr).value_or(0));
+  if (is_open_) return std::nullopt;
+  const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * all;
+  const auto [visible, impossible, disorder] =
+      sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts});
+  // (bound share)
+  const double off = error_ * (width + height + 2) + 4 * disorder + rounded;
+  if (!(off <= kProven * all) || !(impossible <= off)) return std::nullopt;
+  return std::clamp(visible / all, 0.0, 1.0);
 }
 
 }  // namespace penumbra::volumes

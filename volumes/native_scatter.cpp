@@ -260,9 +260,10 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
                     std::vector<Counter>& left, const Sample& at, Judge& judge, Seen& seen) {
   const Frame& frame = in.frame;
   const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
-  std::uint32_t depth = scratch.lists.triangles.count == 0
-                            ? 0
-                            : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges}, scratch.open);
+  std::uint32_t depth =
+      scratch.lists.triangles.count == 0
+          ? 0
+          : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges, in.light_plane}, scratch.open);
   bool changes_any = false;
   if (edges) {
     histogram.assign(std::size_t{frame.columns} * frame.padded_rows, 0);

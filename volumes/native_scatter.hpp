@@ -8,6 +8,8 @@
 #include "visibility/light_samples.hpp"
 #include "visibility/light_touch.hpp"
 #include "visibility/view_samples.hpp"
+#include "volumes/areas_on_demand.hpp"
+#include "volumes/cut_ends.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +40,10 @@ struct ScatterInput {
   std::span<const Sample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
-  std::size_t group;  ///< view samples that sort out edges together
-  bool between_rows;  ///< edges that cross no light row matter, too
+  std::size_t group;          ///< view samples that sort out edges together
+  bool between_rows;          ///< edges that cross no light row matter, too
+  const CutEnds* ends;        ///< of edges of the tree (WideEdges::cut); null: none is cut
+  std::uint32_t light_plane;  ///< CutEdges::plane_of_light
 };
 /// What of a view sample is open before anything is looked at: light samples that something touches.
 void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed& at, Open& open);
@@ -58,6 +62,7 @@ struct CornerInput {
   const TriangleTable& triangles;
   const Sample& at;
   bool one_will_do;
+  std::uint32_t light_plane;  ///< of triangles in it nothing is before the light
 };
 std::uint32_t count_to_corner(const CornerInput& input, Open& open);
 
@@ -74,25 +79,26 @@ struct Scratch {
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
   Open open;
-  std::uint64_t listed = 0, dense_regions = 0;  // counted
+  std::uint64_t listed = 0, dense_regions = 0, unproven = 0;  // counted
 };
 
 /// `seen`: one a view sample; of its mask all or nothing is written.
 void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen);
 
-/// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample that an edge passes
-/// through, or that rounding leaves in contradiction, gets the share of visible light samples, decided exactly.
-/// `radiance`, if there: form factors of what is visible (of a view sample left to light samples: the light's, times
-/// that share).
+/// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample whose share double cannot
+/// prove gets it from integers (areas::ExactArea). `radiance`, if there: form factors of what is visible.
 struct Integral {
   std::span<float> shares;
   std::span<double> radiance;
 };
 struct IntegralInput {
   const ScatterInput& scatter;
+  const visibility::SceneFloats& scene;
   const visibility::Light& light;
   const visibility::ViewSamples& samples;
+  AreasOnDemand& areas;
+  float scale;  ///< render::device_scale
 };
-void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen, const Integral& out);
+void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out);
 
 }  // namespace penumbra::volumes

@@ -133,7 +133,7 @@ double Projected::error() const {
 }
 
 // r = p − o, d = x − p: S = −det(r, v, d), T = −det(u, r, d), W = −det(u, v, d), over K = det(u, v, r), as in
-// reference/back_projection.hpp. d is taken first: an edge that nearly touches p is seen as sharply as any other.
+// areas/back_projection.hpp. d is taken first: an edge that nearly touches p is seen as sharply as any other.
 LightProjection::LightProjection(const visibility::Light& light, const glm::vec3& p) : p_(p) {
   if (light.kind == visibility::LightKind::sphere) {
     turn_ = p == light.center ? 0 : 1;

@@ -27,8 +27,11 @@ double RowSweep::next_row() const {
 void RowSweep::end_gap(std::size_t number, double y) {
   Gap& gap = gaps_[number];
   const double since = std::exchange(gap.since, y);
-  if (gap.depth > 0 || !(y > since)) return;
+  if (!(y > since)) return;
   const Line &left = lines_[number - 1], &right = lines_[number];
+  const double narrowest = std::min(right.at(since) - left.at(since), right.at(y) - left.at(y));
+  if (narrowest < 0) area_.disorder -= narrowest * (y - since);
+  if (gap.depth > 0) return;
   const double middle = 0.5 * since + 0.5 * y, area = (right.at(middle) - left.at(middle)) * (y - since);
   (gap.depth == 0 ? area_.visible : area_.impossible) += area;
   if (gap.depth == 0 && in_.parts != nullptr && area > 0) {

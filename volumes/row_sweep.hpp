@@ -47,6 +47,7 @@ class RowSweep {
   struct Area {
     double visible = 0;     ///< of depth 0
     double impossible = 0;  ///< of less than that
+    double disorder = 0;    ///< of gaps whose left side is right of their right side: there, depths may be wrong
   };
   Area operator()(const Input& input);
 

@@ -224,7 +224,7 @@ struct Checked {
 
 Checked check(const tests::Stage& stage, const Casters& casters) {
   const SoftVisibility soft(stage.floats, stage.light, casters);
-  reference::ExactArea area(stage.floats);
+  areas::ExactArea area(stage.floats);
   area.set_light(stage.light);
   Checked checked;
   checked.points = check_coverage(soft, stage.light, judged(stage), checked.report);

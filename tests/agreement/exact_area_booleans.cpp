@@ -11,7 +11,7 @@
 
 #include <list>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
@@ -117,4 +117,4 @@ TEST_P(ExactAreaBooleans, Agree) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ExactAreaBooleans, testing::Range(0u, 12u));
 
 }  // namespace
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

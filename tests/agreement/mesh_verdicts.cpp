@@ -4,7 +4,7 @@
 #include "app/methods.hpp"
 #include "app/pixel_samples.hpp"
 #include "mesh/broken_meshes.hpp"
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 #include "tests/agreement/differences.hpp"
 #include "volumes/layer_areas.hpp"
 #include "volumes/soft_visibility.hpp"

@@ -3,7 +3,7 @@
 // A scene as soft shadow volumes see it, beside their C++ twin and the exact areas.
 
 #include "mesh/shapes.hpp"
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 #include "render/visibility_buffer.hpp"
 #include "scenes/reader.hpp"
 #include "tests/agreement/support.hpp"
@@ -62,7 +62,7 @@ struct SoftStage {
     return at_judged([&](std::size_t i) { return soft.at(lit(i), viewer).visibility; });
   }
   [[nodiscard]] std::vector<double> exact() const {
-    reference::ExactArea area(floats);
+    areas::ExactArea area(floats);
     area.set_light(light);
     return at_judged([&](std::size_t i) {
       const volumes::LitPoint point = lit(i);

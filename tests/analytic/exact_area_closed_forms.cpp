@@ -12,7 +12,7 @@
 #include <numbers>
 #include <set>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using tests::area_scene;
@@ -202,4 +202,4 @@ TEST(ExactAreaClosedForm, NothingInTheWayIsExactlyOneAndEverythingExactlyZero) {
 }
 
 }  // namespace
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using tests::area_scene;
@@ -278,7 +278,7 @@ std::vector<glm::dvec3> form_factors(const tests::Stage& stage, visibility::Meth
 
 TEST(ExactRadiance, TheMethodGivesTheSameBitsOnAnyNumberOfThreadsAndOnlyWhatIsWanted) {
   const tests::Stage stage(boards_before_a_panel(), 32, 24);
-  const auto method = make_exact({});
+  const auto method = reference::make_exact({});
   const std::vector<glm::dvec3> many = form_factors(stage, *method);
   {
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
@@ -301,4 +301,4 @@ TEST(ExactRadiance, TheMethodGivesTheSameBitsOnAnyNumberOfThreadsAndOnlyWhatIsWa
 }
 
 }  // namespace
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

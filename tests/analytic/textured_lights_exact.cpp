@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using tests::area_scene;
@@ -122,4 +122,4 @@ TEST(TexturedLightExact, AnEdgeAcrossAGradientLeavesItsIntegral) {
 }
 
 }  // namespace
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

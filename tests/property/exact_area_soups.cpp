@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using tests::AreaStage;
@@ -141,4 +141,4 @@ TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
 }
 
 }  // namespace
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
 #include "volumes/layer_areas.hpp"
 #include "volumes/soft_visibility.hpp"
@@ -25,7 +25,7 @@ struct CoverageStage {
 
   /// On the carrier, triangle 0, seen from above.
   [[nodiscard]] volumes::LitPoint lit(const glm::vec3& p) const {
-    const reference::Receiver receiver = receiver_at(floats, p);
+    const areas::Receiver receiver = receiver_at(floats, p);
     return {receiver.p, receiver.carrier, receiver.facing};
   }
   [[nodiscard]] volumes::LayerSum center(const glm::vec3& p) const { return soft.at(lit(p), volumes::Viewer::center); }
@@ -41,7 +41,7 @@ struct CoverageStage {
   visibility::Light light;
   volumes::Casters casters;
   volumes::SoftVisibility soft;
-  reference::ExactArea area;
+  areas::ExactArea area;
 };
 
 /// A shape's triangles as corners, for add_object.

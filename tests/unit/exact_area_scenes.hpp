@@ -3,7 +3,7 @@
 // Scenes and view samples for the tests of exact areas. All coordinates are multiples of 1/64 and the scene's bounding
 // box is centred on 0: stored floats are the numbers written here.
 
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 #include "tests/unit/visibility_scenes.hpp"
 
 #include <glm/geometric.hpp>
@@ -35,7 +35,7 @@ inline double random_dyadic(std::mt19937& random, double low, double high, doubl
 }
 
 /// A view sample at p on the carrier, seen from the side where the light is.
-inline reference::Receiver receiver_at(const visibility::SceneFloats& floats, const glm::vec3& p) {
+inline areas::Receiver receiver_at(const visibility::SceneFloats& floats, const glm::vec3& p) {
   const auto [a, b, c] = floats.corners(0);
   const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
   return {p, 0, static_cast<std::int8_t>(normal.y > 0 ? 1 : -1)};
@@ -54,13 +54,13 @@ struct AreaStage {
   AreaStage& operator=(const AreaStage&) = delete;
 
   [[nodiscard]] double visibility(const glm::vec3& p,
-                                  reference::SweepArithmetic arithmetic = reference::SweepArithmetic::rounded) const {
+                                  areas::SweepArithmetic arithmetic = areas::SweepArithmetic::rounded) const {
     return area.visibility(receiver_at(floats, p), arithmetic);
   }
 
   visibility::SceneFloats floats;
   visibility::Light light;
-  reference::ExactArea area;
+  areas::ExactArea area;
 };
 
 }  // namespace penumbra::tests

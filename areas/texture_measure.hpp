@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/area_sweep.hpp"
+#include "areas/area_sweep.hpp"
 #include "visibility/light_texture.hpp"
 
 #include <gmpxx.h>
@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <vector>
 
-// Inside reference/ only: a texture's luminance integrated over a region of the light, for the sweep.
+// Inside areas/ only: a texture's luminance integrated over a region of the light, for the sweep.
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 /// A texture's columns as sums from t = −1 upward, so that what lies between two heights is a difference.
 class TextureColumns {
@@ -110,4 +110,4 @@ class TextureMeasure {
   std::uint32_t column_ = 0;
 };
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

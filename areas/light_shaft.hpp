@@ -1,15 +1,15 @@
 #pragma once
 
-#include "reference/back_projection.hpp"
+#include "areas/back_projection.hpp"
 
 #include <glm/vec3.hpp>
 
 #include <array>
 
-// Inside reference/ only: the same planes as BackProjection's in double, with their error bounds; for what is not near
+// Inside areas/ only: the same planes as BackProjection's in double, with their error bounds; for what is not near
 // any of them, which is most.
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 class LightShaft {
  public:
@@ -38,4 +38,4 @@ class LightShaft {
   std::array<Plane, kClipPlanes + 1> planes_;
 };
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

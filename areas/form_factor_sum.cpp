@@ -1,4 +1,4 @@
-#include "reference/form_factor_sum.hpp"
+#include "areas/form_factor_sum.hpp"
 
 #include "base/assert.hpp"
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 /// A convex polygon: a trapezoid cut by lines, each of which adds a corner at most.
@@ -132,4 +132,4 @@ void FormFactorSum::add_blocks(const std::array<glm::dvec2, 4>& corners) {
   }
 }
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-// Inside reference/ only: the light as an exact region of its own plane.
+// Inside areas/ only: the light as an exact region of its own plane.
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 /// A point of the light's plane, centre + s · u + t · v with u, v the axes of the stored frame.
 struct PlanePoint {
@@ -61,4 +61,4 @@ class IntegerGrid {
   int bits_ = 0;
 };
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-// Inside reference/ only: the part of a region that no polygon covers, by a sweep over slabs.
+// Inside areas/ only: the part of a region that no polygon covers, by a sweep over slabs.
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 /// One edge of a polygon that runs counter-clockwise. What a vertical line counts when it crosses the edge upward: +1
 /// for an edge that runs toward larger s (the polygon is above it), −1 for one that runs back.
@@ -183,4 +183,4 @@ class AreaSweep {
   std::vector<Active> active_;
 };
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -1,6 +1,6 @@
-#include "reference/texture_measure.hpp"
+#include "areas/texture_measure.hpp"
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 TextureColumns::TextureColumns(const visibility::LightTexture& texture)
     : width_(texture.width), height_(texture.height) {
@@ -17,4 +17,4 @@ TextureColumns::TextureColumns(const visibility::LightTexture& texture)
   integral_ *= mpq_class(4) / (mpz_class(width_) * height_);
 }
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -9,16 +9,16 @@
 // Why not polygon Booleans: the union of n triangles has to merge every inner edge of a surface, which here cancels
 // before any crossing is looked for.
 
-#include "reference/exact_area.hpp"
+#include "areas/exact_area.hpp"
 
 #include "base/assert.hpp"
 #include "mesh/predicates.hpp"
-#include "reference/area_sweep.hpp"
-#include "reference/back_projection.hpp"
-#include "reference/form_factor_sum.hpp"
-#include "reference/light_region.hpp"
-#include "reference/light_shaft.hpp"
-#include "reference/texture_measure.hpp"
+#include "areas/area_sweep.hpp"
+#include "areas/back_projection.hpp"
+#include "areas/form_factor_sum.hpp"
+#include "areas/light_region.hpp"
+#include "areas/light_shaft.hpp"
+#include "areas/texture_measure.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/seen_light.hpp"
 #include "visibility/triangle_tree.hpp"
@@ -30,7 +30,7 @@
 #include <optional>
 #include <vector>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using visibility::Light;
@@ -120,7 +120,8 @@ std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions) {
 
 struct ExactAreaData {
   const SceneFloats* scene = nullptr;
-  TriangleTree tree;
+  TriangleTree own_tree;  ///< unless there was one
+  const TriangleTree* tree = nullptr;
   std::vector<std::uint32_t> corner;  ///< for each position, the one that stands for its place
   IntegerGrid grid;                   ///< of all positions
   const Light* light = nullptr;
@@ -169,9 +170,9 @@ class OccluderEdges {
   template <typename Visit>
   void for_each_candidate(Visit&& visit) {
     std::vector<std::uint32_t> stack;
-    if (!data_.tree.nodes.empty()) stack.push_back(0);
+    if (!data_.tree->nodes.empty()) stack.push_back(0);
     while (!stack.empty()) {
-      const TriangleTree::Node& node = data_.tree.nodes[stack.back()];
+      const TriangleTree::Node& node = data_.tree->nodes[stack.back()];
       stack.pop_back();
       for (const TriangleTree::Child& child : node) {
         if (child.reference == TriangleTree::kNoChild || shaft_.misses(child.lower, child.upper)) continue;
@@ -179,7 +180,7 @@ class OccluderEdges {
           stack.push_back(child.reference);
           continue;
         }
-        for (const std::uint32_t triangle : data_.tree.leaves[child.reference & ~TriangleTree::kLeafBit]) {
+        for (const std::uint32_t triangle : data_.tree->leaves[child.reference & ~TriangleTree::kLeafBit]) {
           if (triangle != TriangleTree::kNoTriangle) visit(triangle);
         }
       }
@@ -292,9 +293,14 @@ double share_left(const Question& question, std::vector<SweepEdge<Number>> edges
 
 }  // namespace
 
-ExactArea::ExactArea(const SceneFloats& scene) : data_(std::make_unique<ExactAreaData>()) {
+ExactArea::ExactArea(const SceneFloats& scene) : ExactArea(scene, TriangleTree()) {
+  data_->own_tree = make_triangle_tree(scene);
+  data_->tree = &data_->own_tree;
+}
+
+ExactArea::ExactArea(const SceneFloats& scene, const TriangleTree& tree) : data_(std::make_unique<ExactAreaData>()) {
   data_->scene = &scene;
-  data_->tree = make_triangle_tree(scene);
+  data_->tree = &tree;
   data_->corner = weld(scene.positions);
   for (const glm::vec3& position : scene.positions) data_->grid.include(position);
 }
@@ -367,8 +373,9 @@ double ExactArea::look(const Receiver& receiver, SweepArithmetic arithmetic, Are
 }
 
 std::uint64_t ExactArea::memory_bytes() const {
-  return data_->tree.nodes.size() * sizeof(TriangleTree::Node) +
-         data_->tree.leaves.size() * sizeof(TriangleTree::Leaf) + data_->corner.size() * sizeof(std::uint32_t);
+  const TriangleTree& tree = data_->own_tree;
+  return tree.nodes.size() * sizeof(TriangleTree::Node) + tree.leaves.size() * sizeof(TriangleTree::Leaf) +
+         data_->corner.size() * sizeof(std::uint32_t);
 }
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -2,13 +2,14 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
+#include "visibility/triangle_tree.hpp"
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <memory>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 /// In what the sweep over the light's plane computes. Projecting, clipping and facing are exact in both.
 enum class SweepArithmetic {
@@ -48,6 +49,8 @@ class ExactArea {
  public:
   /// `scene` must outlive it.
   explicit ExactArea(const visibility::SceneFloats& scene);
+  /// `tree`, of the same scene, too.
+  ExactArea(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree);
   ~ExactArea();
   ExactArea(ExactArea&&) noexcept;
   ExactArea& operator=(ExactArea&&) noexcept;
@@ -69,4 +72,4 @@ class ExactArea {
   std::unique_ptr<ExactAreaData> data_;
 };
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -1,8 +1,8 @@
-#include "reference/back_projection.hpp"
+#include "areas/back_projection.hpp"
 
 #include "base/assert.hpp"
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using Integers = std::array<mpz_class, 3>;
@@ -127,4 +127,4 @@ HalfPlane BackProjection::above_plane(const std::array<glm::vec3, 3>& corners, i
   return {dot(normal, difference(c_, a)), dot(normal, u_), dot(normal, v_)};
 }
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

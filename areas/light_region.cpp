@@ -1,4 +1,4 @@
-#include "reference/light_region.hpp"
+#include "areas/light_region.hpp"
 
 #include "base/assert.hpp"
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 using Integers = std::array<mpz_class, 3>;
@@ -139,4 +139,4 @@ std::array<mpz_class, 3> IntegerGrid::integers(const glm::dvec3& point) const {
   return {integer(point.x), integer(point.y), integer(point.z)};
 }
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

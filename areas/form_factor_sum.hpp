@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/area_sweep.hpp"
+#include "areas/area_sweep.hpp"
 #include "visibility/light_texture.hpp"
 #include "visibility/seen_light.hpp"
 
@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-// Inside reference/ only: form factors of what the sweep finds uncovered.
+// Inside areas/ only: form factors of what the sweep finds uncovered.
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 /// A trapezoid of the light's plane with sides along t: at s0 from low0 to high0, at s1 from low1 to high1.
 struct Trapezoid {
@@ -121,4 +121,4 @@ class FormFactorMeasure {
   FormFactorSum* sum_;
 };
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/light_region.hpp"
+#include "areas/light_region.hpp"
 #include "visibility/light_samples.hpp"
 
 #include <glm/vec3.hpp>
@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-// Inside reference/ only: triangles as seen from a view sample p on the light's plane, exactly.
+// Inside areas/ only: triangles as seen from a view sample p on the light's plane, exactly.
 //
 // With r = p − c and d = q − p the line from p through q meets the light's plane c + s u + t v at s = S/W, t = T/W:
 //     S = −det(r, v, d)    T = −det(u, r, d)    W = −det(u, v, d)    (all negated if p is behind the plane, so that
 // W > 0 for what lies toward the light). All three are linear in q; W is 0 on the plane through p that is parallel to
 // the light and K = det(u, v, r) on the light. q can hide something only where 0 < W < K.
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 
 /// A point of a clipped triangle: (S, T, W) times m, and m > 0. One more coordinate, and no division.
 struct ProjectivePoint {
@@ -83,4 +83,4 @@ class BackProjection {
 ProjectivePoint crossing(const ProjectivePoint& a, const mpz_class& height_a, const ProjectivePoint& b,
                          const mpz_class& height_b);
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

@@ -1,9 +1,9 @@
-#include "reference/light_shaft.hpp"
+#include "areas/light_shaft.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace penumbra::reference {
+namespace penumbra::areas {
 namespace {
 
 // Each height is a sum of products of at most three differences of stored numbers and one grid coordinate. `size` is
@@ -64,4 +64,4 @@ bool LightShaft::misses(const glm::vec3& lower, const glm::vec3& upper) const {
   return false;
 }
 
-}  // namespace penumbra::reference
+}  // namespace penumbra::areas

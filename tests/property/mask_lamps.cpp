@@ -1,0 +1,59 @@
+// Every pair of lamps with panels in, near and through their planes, with mixed magnitudes and needles: the mask
+// methods against the exact decision, without tolerance.
+
+#include "tests/agreement/hostile_lamps.hpp"
+#include "tests/agreement/mask_methods.hpp"
+#include "tests/agreement/support.hpp"
+
+#include <fmt/format.h>
+
+#include <tuple>
+
+namespace penumbra {
+namespace {
+
+using tests::Hostility;
+
+class MaskLamps : public tests::DeviceTest,
+                  public testing::WithParamInterface<std::tuple<Hostility, tests::MaskMethod>> {
+ protected:
+  static void look(std::uint32_t first, std::uint32_t count) {
+    const auto& [hostility, under_test] = GetParam();
+    const auto method = under_test.make(device(), {});
+    tests::PairCounts counts;
+    std::uint32_t refused = 0;
+    for (std::uint32_t seed = first; seed < first + count; ++seed) {
+      tests::HostileLamp lamp(hostility, seed);
+      const visibility::SceneFloats floats = visibility::make_scene_floats(lamp.scene());
+      const visibility::Light light =
+          visibility::make_light(lamp.scene(), 0, floats.origin, {20, 0, 0, visibility::SamplePattern::rows, 0});
+      const visibility::ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 5, 5);
+      try {
+        const tests::Masks masks = tests::run(*method, floats, light, samples);
+        const auto result = tests::equals_truth(floats, light, samples, masks, &counts);
+        EXPECT_TRUE(result) << name_of(hostility) << " seed " << seed;
+        if (!result) break;
+      } catch (const InputError&) {  // float32 cannot span light and scene together
+        ++refused;
+      }
+    }
+    fmt::print("{} {}: {} lamps, {} refused, {} pairs, {} blocked\n", under_test.name, name_of(hostility), count,
+               refused, counts.pairs, counts.blocked);
+    EXPECT_GT(counts.visible, counts.pairs / 20);
+    EXPECT_GT(counts.blocked, counts.pairs / 20);
+    EXPECT_LT(refused, count / 4);
+  }
+};
+
+TEST_P(MaskLamps, EveryPairIsTheExactDecision) {
+  look(0, std::get<1>(GetParam()).any_light ? 12 : 25);
+}
+TEST_P(MaskLamps, TwentyThousandFull) {
+  look(1000, 20000);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, MaskLamps, testing::Combine(testing::ValuesIn(tests::kHostilities), testing::ValuesIn(tests::kMaskMethods)),
+    [](const auto& it) { return fmt::format("{}_{}", std::get<1>(it.param).name, name_of(std::get<0>(it.param))); });
+
+}  // namespace
+}  // namespace penumbra
