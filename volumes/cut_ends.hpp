@@ -37,7 +37,7 @@ class CutEnds {
   CutEnds(CutEnds&&) noexcept;
   CutEnds& operator=(CutEnds&&) noexcept;
 
-  /// The number of an edge that passes through the plane, cut there at its end a, or b.
+  /// The number of an edge that passes through the plane or ends in it, cut there at its end a, or b.
   std::uint32_t of_edge(const glm::vec3& a, const glm::vec3& b, bool at_a);
   /// The number of an edge in the plane; 0 if it does not touch the light.
   std::uint32_t in_plane(const Crossing& from, const Crossing& to);

@@ -68,10 +68,11 @@ bool reaches_behind(const SceneFloats& scene, const LightSide& side) {
 bool keep_in_front(EdgeRecord& record, const LightSide& side, CutEnds* ends) {
   const int at_a = side.place_of(record.a), at_b = side.place_of(record.b);
   if (at_a <= 0 && at_b <= 0) return false;
-  if (at_a >= 0 && at_b >= 0) return true;
+  if (at_a > 0 && at_b > 0) return true;
   if (ends != nullptr) {
-    record.cut = ends->of_edge(record.a, record.b, at_a < 0);
-  } else {
+    // An end in the plane, too: where edges in the plane begin, and at no other place by rounding.
+    record.cut = ends->of_edge(record.a, record.b, at_a <= 0);
+  } else if (at_a < 0 || at_b < 0) {
     (at_a < 0 ? record.a : record.b) = cut(side, record.a, record.b);
   }
   return true;

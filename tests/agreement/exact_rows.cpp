@@ -145,16 +145,22 @@ class HostileLamps : public ExactRows, public testing::WithParamInterface<tests:
  protected:
   static Found look(std::uint32_t first, std::uint32_t count) {
     Found found;
+    std::uint32_t refused = 0;
     for (std::uint32_t seed = first; seed < first + count && found.wrong == 0; ++seed) {
       SCOPED_TRACE(fmt::format("{} seed {}", name_of(GetParam()), seed));
       tests::HostileLamp lamp(GetParam(), seed);
       const SceneFloats floats = visibility::make_scene_floats(lamp.scene());
       const Light light = visibility::make_light(lamp.scene(), 0, floats.origin, {});
       const ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 6, 8);
-      compare(floats, light, samples, kTolerance, found);
+      try {
+        compare(floats, light, samples, kTolerance, found);
+      } catch (const InputError&) {  // float32 cannot span light and scene together
+        ++refused;
+      }
     }
-    fmt::print("{}: {} lamps, {} view samples, {} partly lit, {} unproven, off by {:.2e} at most\n",
-               name_of(GetParam()), count, found.pixels, found.partly, found.unproven, found.largest);
+    EXPECT_LT(refused, count / 10);
+    fmt::print("{}: {} lamps, {} refused, {} view samples, {} partly lit, {} unproven, off by {:.2e} at most\n",
+               name_of(GetParam()), count, refused, found.pixels, found.partly, found.unproven, found.largest);
     EXPECT_EQ(found.wrong, 0U);
     EXPECT_GT(found.partly, found.pixels / 50);
     EXPECT_LT(found.unproven, found.pixels / 2);  // a third lies in the light's own plane where there are panels
