@@ -45,9 +45,10 @@ struct HorizonLine {
 class Judge {
  public:
   virtual ~Judge() = default;
-  /// How many triangles are before the light point centre + s u + t v, up to its rounding to float.
-  virtual std::uint32_t depth(const Placed& sample, const glm::dvec2& st) = 0;
-  /// The same for exactly that point of the light's plane. Nothing: double does not know which triangles to ask.
+  /// How many triangles are before a light sample.
+  virtual std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) = 0;
+  /// The same for exactly the point centre + s u + t v of the light's plane. Nothing: double does not know which
+  /// triangles to ask.
   virtual std::optional<std::uint32_t> depth_in_plane(const Placed& sample, const glm::dvec2& st) = 0;
   virtual HorizonLine horizon(const Placed& sample) = 0;
   /// The triangle's normal, of any length, turned to the side that p is on; 0: p is in its plane, or the triangle is so

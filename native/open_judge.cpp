@@ -7,12 +7,9 @@
 
 namespace penumbra::native {
 
-std::uint32_t OpenJudge::depth(const Placed& sample, const glm::dvec2& st) {
+std::uint32_t OpenJudge::depth(const Placed& sample, std::uint32_t light_sample) {
   ++pairs_;
-  const glm::dvec3 center(judge_.light.center);
-  const glm::dvec3 point = center + st.x * (glm::dvec3(judge_.light.center_u) - center) +
-                           st.y * (glm::dvec3(judge_.light.center_v) - center);
-  return judge_.depth(sample.pixel, glm::vec3(point));
+  return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
 }
 
 std::optional<std::uint32_t> OpenJudge::depth_in_plane(const Placed& sample, const glm::dvec2& st) {

@@ -14,7 +14,7 @@ class OpenJudge final : public Judge {
  public:
   OpenJudge(const visibility::PairJudge& judge, const Frame& frame) : judge_(judge), frame_(frame) {}
 
-  std::uint32_t depth(const Placed& sample, const glm::dvec2& st) override;
+  std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) override;
   std::optional<std::uint32_t> depth_in_plane(const Placed& sample, const glm::dvec2& st) override;
   HorizonLine horizon(const Placed& sample) override;
   glm::dvec3 normal_towards(const Placed& sample, std::uint32_t triangle) override;

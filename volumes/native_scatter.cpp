@@ -218,12 +218,6 @@ void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t d
   seen.visible = static_cast<std::uint32_t>(visible);
 }
 
-/// (s, t) of a light sample.
-glm::dvec2 place_of(const Frame& frame, std::uint32_t row, std::uint32_t column) {
-  return {2 * (column + 0.5 + static_cast<double>(frame.shift[row])) / frame.columns - 1,
-          2 * (row + 0.5) / frame.rows - 1};
-}
-
 /// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
 template <typename Counter>
 std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& changes, Open& open, const Sample& at,
@@ -237,7 +231,7 @@ std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& 
           static_cast<std::int32_t>(changes.cells[std::size_t{column} * frame.padded_rows + row]));
       const std::uint32_t sample = row * frame.columns + column;
       if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
-      return judge.depth(at, place_of(frame, row, column)) - depth;
+      return judge.depth(at, sample) - depth;
     }
   }
   open.pixel = true;
@@ -248,7 +242,7 @@ std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& 
 std::uint32_t depth_by_any_sample(const Frame& frame, Open& open, const Sample& at, Judge& judge) {
   for (std::uint32_t sample = 0; sample < frame.rows * frame.columns; ++sample) {
     if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
-    return judge.depth(at, place_of(frame, sample / frame.columns, sample % frame.columns));
+    return judge.depth(at, sample);
   }
   open.pixel = true;
   return 0;

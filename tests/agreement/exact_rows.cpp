@@ -141,6 +141,29 @@ TEST_F(ExactRows, LatticeSoups) {
   EXPECT_GT(found.partly, found.pixels / 20);
 }
 
+/// Lamps that were wrong: black where the light is visible, or off by a few in a million.
+class ExactRowsOfLamps : public ExactRows, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ExactRowsOfLamps, AreTheExactAreas) {
+  const scenes::Scene scene =
+      scenes::read_scene(std::filesystem::path(PENUMBRA_TEST_LAMPS) / (std::string(GetParam()) + ".json"));
+  const SoftStage stage(scene, device(), 24, 24);
+  Found found;
+  compare(stage.floats, stage.light, stage.samples, kTolerance, found);
+  EXPECT_EQ(found.wrong, 0U);
+  EXPECT_EQ(found.wrong_form_factors, 0U);
+  EXPECT_GT(found.pixels, 50U);
+}
+INSTANTIATE_TEST_SUITE_P(Lamps, ExactRowsOfLamps,
+                         testing::Values("panel-in-plane", "panel-as-light", "panel-larger", "panel-frame",
+                                         "soup-and-panel-in-plane", "soup-and-panel-near-1", "soup-and-panel-near-2",
+                                         "magnitudes-1", "magnitudes-2"),
+                         [](const auto& it) {
+                           std::string name = it.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
 class HostileLamps : public ExactRows, public testing::WithParamInterface<tests::Hostility> {
  protected:
   static Found look(std::uint32_t first, std::uint32_t count) {
@@ -149,10 +172,10 @@ class HostileLamps : public ExactRows, public testing::WithParamInterface<tests:
     for (std::uint32_t seed = first; seed < first + count && found.wrong == 0; ++seed) {
       SCOPED_TRACE(fmt::format("{} seed {}", name_of(GetParam()), seed));
       tests::HostileLamp lamp(GetParam(), seed);
-      const SceneFloats floats = visibility::make_scene_floats(lamp.scene());
-      const Light light = visibility::make_light(lamp.scene(), 0, floats.origin, {});
-      const ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 6, 8);
       try {
+        const SceneFloats floats = visibility::make_scene_floats(lamp.scene());
+        const Light light = visibility::make_light(lamp.scene(), 0, floats.origin, {});
+        const ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 6, 8);
         compare(floats, light, samples, kTolerance, found);
       } catch (const InputError&) {  // float32 cannot span light and scene together
         ++refused;
@@ -171,7 +194,7 @@ TEST_P(HostileLamps, AreTheExactAreas) {
   look(0, 400);
 }
 TEST_P(HostileLamps, AHundredThousandFull) {
-  look(1000, 100000);
+  for (std::uint32_t first = 1000; first < 101000 && !HasFailure(); first += 10000) look(first, 10000);
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, HostileLamps, testing::ValuesIn(tests::kHostilities),
                          [](const auto& it) { return tests::name_of(it.param); });

@@ -24,11 +24,11 @@ class MaskLamps : public tests::DeviceTest,
     std::uint32_t refused = 0;
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       tests::HostileLamp lamp(hostility, seed);
-      const visibility::SceneFloats floats = visibility::make_scene_floats(lamp.scene());
-      const visibility::Light light =
-          visibility::make_light(lamp.scene(), 0, floats.origin, {20, 0, 0, visibility::SamplePattern::rows, 0});
-      const visibility::ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 5, 5);
       try {
+        const visibility::SceneFloats floats = visibility::make_scene_floats(lamp.scene());
+        const visibility::Light light =
+            visibility::make_light(lamp.scene(), 0, floats.origin, {20, 0, 0, visibility::SamplePattern::rows, 0});
+        const visibility::ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 5, 5);
         const tests::Masks masks = tests::run(*method, floats, light, samples);
         const auto result = tests::equals_truth(floats, light, samples, masks, &counts);
         EXPECT_TRUE(result) << name_of(hostility) << " seed " << seed;
@@ -41,15 +41,20 @@ class MaskLamps : public tests::DeviceTest,
                refused, counts.pairs, counts.blocked);
     EXPECT_GT(counts.visible, counts.pairs / 20);
     EXPECT_GT(counts.blocked, counts.pairs / 20);
-    EXPECT_LT(refused, count / 4);
+    EXPECT_LE(refused, count / 4);
   }
 };
 
 TEST_P(MaskLamps, EveryPairIsTheExactDecision) {
   look(0, std::get<1>(GetParam()).any_light ? 12 : 25);
 }
-TEST_P(MaskLamps, TwentyThousandFull) {
-  look(1000, 20000);
+/// Found among thousands: a corner of the light whose depth was counted at a light sample rounded anew.
+TEST_P(MaskLamps, WhatWasWrong) {
+  if (std::get<0>(GetParam()) == Hostility::panels) look(5983, 3);
+}
+TEST_P(MaskLamps, TensOfThousandsFull) {
+  const std::uint32_t last = std::get<0>(GetParam()) == Hostility::panels ? 61000 : 21000;
+  for (std::uint32_t first = 1000; first < last && !HasFailure(); first += 2000) look(first, 2000);
 }
 INSTANTIATE_TEST_SUITE_P(
     Kinds, MaskLamps, testing::Combine(testing::ValuesIn(tests::kHostilities), testing::ValuesIn(tests::kMaskMethods)),
