@@ -89,7 +89,7 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
 /// (bound way)
 RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
   const glm::dvec3 d = point - p_;
-  const double length = glm::length(d), error = kUnit * skew_ * length;
+  const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;
   return {{glm::dot(frame_.axes[0], d), glm::dot(frame_.axes[1], d), -glm::dot(frame_.axes[2], d)},
           64 * error * per_length_,
           32 * error,
@@ -119,25 +119,37 @@ RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutE
   return {way_to(edge.a), way_to(edge.b)};
 }
 
+/// What double makes of how far the end of a way is inside a side of the window.
+double RowSum::error_inside(const Way& way, int axis) const {
+  const double middle = static_cast<double>(frame_.half_cells[axis]), window = 2 * middle + 2;
+  return 2 * (height_ * way.error + (window + std::abs(foot_[axis] - middle)) * way.error_up +
+              error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
+}
+
+/// An edge that is outside of one side of the window after the other: it passes by, unless it passes p within rounding.
+/// No nearer than that, whatever of it is on the light is so high over p that no error can have hidden it. (bound apex)
+bool RowSum::may_pass_p(const Ways& ways) const {
+  const auto& [a, b] = ways;
+  const double error = std::max({error_inside(a, 0), error_inside(a, 1), error_inside(b, 0), error_inside(b, 1)});
+  const glm::dvec2 lengths = glm::dvec2(1 / per_length_);
+  const glm::dvec3 near_a(glm::dvec2(a.to) * lengths, a.to.z), near_b(glm::dvec2(b.to) * lengths, b.to.z);
+  const double nearest = glm::length(glm::cross(near_a, near_b)) / std::max(a.length + b.length, 0x1p-300);
+  return !(nearest * steepness_ * static_cast<double>(std::min(frame_.half_cells.x, frame_.half_cells.y)) > 4 * error);
+}
+
 /// The part of an edge that appears in a window of about twice the light, before any division. (bound window) False:
 /// nothing of it is on the light.
 bool RowSum::cut_to_window(Ways& ways) {
   auto& [a, b] = ways;
   const glm::dvec2 middle(frame_.half_cells), window = 2.0 * middle + 2.0;
-  double from = 0, to = 1, error = 0;
+  double from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
     const double off = foot_[axis] - middle[axis];
     const double xa = a.to[axis] * height_ + off * a.to.z, xb = b.to[axis] * height_ + off * b.to.z;
-    const auto error_of = [&](const Way& way) {
-      return 2 * (height_ * way.error + (window[axis] + std::abs(off)) * way.error_up +
-                  error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
-    };
-    const double error_a = error_of(a), error_b = error_of(b);
-    error = std::max({error, error_a, error_b});
     for (const double sign : {-1.0, 1.0}) {
       const double inside_a = window[axis] * a.to.z + sign * xa, inside_b = window[axis] * b.to.z + sign * xb;
       if (inside_a < 0 && inside_b < 0) {
-        if (inside_a > -error_a || inside_b > -error_b) is_open_ = true;
+        is_open_ = is_open_ || inside_a > -error_inside(a, axis) || inside_b > -error_inside(b, axis);
         return false;
       }
       const double t = inside_a / (inside_a - inside_b);
@@ -145,17 +157,12 @@ bool RowSum::cut_to_window(Ways& ways) {
       if (inside_b < 0) to = std::min(to, t);
     }
   }
-  const auto mixed = [&](double t) { return glm::mix(a.to, b.to, t); };
   if (from > to) {
-    // It passes by, unless it passes p within rounding: no nearer than that, whatever of it is on the light is so high
-    // over p that the error cannot have hidden it. (bound apex)
-    const glm::dvec2 scale(per_length_);
-    const glm::dvec3 near_a(glm::dvec2(a.to) / scale, a.to.z), near_b(glm::dvec2(b.to) / scale, b.to.z);
-    const double nearest = glm::length(glm::cross(near_a, near_b)) / std::max(a.length + b.length, 0x1p-300);
-    if (!(nearest * steepness_ * std::min(middle.x, middle.y) > 4 * error)) is_open_ = true;
+    is_open_ = is_open_ || may_pass_p(ways);
     return false;
   }
-  const glm::dvec3 start = from > 0 ? mixed(from) : a.to, end = to < 1 ? mixed(to) : b.to;
+  if (from == 0 && to == 1) return true;
+  const glm::dvec3 start = from > 0 ? glm::mix(a.to, b.to, from) : a.to, end = to < 1 ? glm::mix(a.to, b.to, to) : b.to;
   a.to = start;
   b.to = end;
   return true;
@@ -174,7 +181,7 @@ void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
     return;
   }
   const glm::dvec2 seen_a = height_ / a.to.z * glm::dvec2(a.to), seen_b = height_ / b.to.z * glm::dvec2(b.to);
-  const double far = std::max(glm::length(seen_a), glm::length(seen_b));
+  const double far = std::max(std::abs(seen_a.x) + std::abs(seen_a.y), std::abs(seen_b.x) + std::abs(seen_b.y));
   // (bound place)
   const double off = 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
                           8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));

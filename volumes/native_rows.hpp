@@ -39,7 +39,7 @@ class RowSum {
   [[nodiscard]] bool is_open() const { return is_open_; }
 
  private:
-  /// A way from p: across and along, and up to the light; what these are off by; and how long the edge's ways are.
+  /// A way from p: across and along, and up to the light; what these are off by; and at least how long it is.
   struct Way {
     glm::dvec3 to{0};
     double error = 0, error_up = 0, length = 0;
@@ -52,6 +52,8 @@ class RowSum {
   [[nodiscard]] Ways ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const;
   [[nodiscard]] int multiplicity(const WideEdges& leaf, std::size_t lane) const;
   [[nodiscard]] int side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const;
+  [[nodiscard]] double error_inside(const Way& way, int axis) const;
+  [[nodiscard]] bool may_pass_p(const Ways& ways) const;
   [[nodiscard]] bool cut_to_window(Ways& ways);
   void add(RowEdge edge, double error);
 

@@ -26,16 +26,17 @@ double RowSweep::next_row() const {
 
 void RowSweep::end_gap(std::size_t number, double y) {
   Gap& gap = gaps_[number];
-  const double since = std::exchange(gap.since, y);
-  if (!(y > since)) return;
+  const double since = std::exchange(gap.since, y), high = y - since;
+  if (!(high > 0)) return;
   const Line &left = lines_[number - 1], &right = lines_[number];
-  const double narrowest = std::min(right.at(since) - left.at(since), right.at(y) - left.at(y));
-  if (narrowest < 0) area_.disorder -= narrowest * (y - since);
+  const double low_left = left.at(since), low_right = right.at(since), high_left = left.at(y), high_right = right.at(y);
+  const double first = low_right - low_left, last = high_right - high_left, narrowest = std::min(first, last);
+  if (narrowest < 0) area_.disorder -= narrowest * high;
   if (gap.depth > 0) return;
-  const double middle = 0.5 * since + 0.5 * y, area = (right.at(middle) - left.at(middle)) * (y - since);
+  const double area = 0.5 * (first + last) * high;
   (gap.depth == 0 ? area_.visible : area_.impossible) += area;
   if (gap.depth == 0 && in_.parts != nullptr && area > 0) {
-    in_.parts->push_back({{since, left.at(since), right.at(since)}, {y, left.at(y), right.at(y)}});
+    in_.parts->push_back({{since, low_left, low_right}, {y, high_left, high_right}});
   }
 }
 
