@@ -2,6 +2,7 @@
 find_package(TBB REQUIRED)
 add_executable(vsm_tests
   ${CMAKE_CURRENT_LIST_DIR}/analytic/view_sample_closed_forms.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/property/cut_ends.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/edge_cut.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_closed_parts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/view_sample_invariance.cpp
@@ -15,7 +16,7 @@ add_executable(agreement_tests
 foreach(target vsm_tests agreement_tests)
   target_compile_definitions(${target} PRIVATE PENUMBRA_SCENES="${PROJECT_SOURCE_DIR}/scenes")
   target_link_libraries(${target} PRIVATE
-    penumbra_vsm penumbra_volumes penumbra_reference penumbra_scenes penumbra_warnings GTest::gtest_main TBB::tbb)
+    penumbra_vsm penumbra_volumes penumbra_reference penumbra_scenes penumbra_warnings GTest::gtest_main TBB::tbb gmpxx gmp)
 endforeach()
 gtest_discover_tests(vsm_tests TEST_FILTER "-*Full*" PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
 gtest_discover_tests(vsm_tests TEST_FILTER "*Full*" TEST_LIST vsm_full_tests

@@ -7,6 +7,7 @@
 
 #include "tests/unit/visibility_scenes.hpp"
 
+#include <glm/geometric.hpp>
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -51,10 +52,10 @@ struct ExactTriangle {
 /// Lattice coordinates are multiples of 2⁻⁴ below 2⁴: no determinant that is not zero is closer to it than 2⁻¹².
 const Rational kEpsilon(1, mpz_class("1000000000000000000000000000000"));
 
-bool meets(const glm::vec3& p_float, const glm::vec3& l_float, const std::array<glm::vec3, 3>& corners,
-           const Light& light, const Rational& epsilon) {
+bool meets(const glm::vec3& p_float, const Vector& l, const std::array<glm::vec3, 3>& corners, const Light& light,
+           const Rational& epsilon) {
   const ExactTriangle triangle(corners);
-  const Vector p = exact(p_float), l = exact(l_float);
+  const Vector p = exact(p_float);
   if (is_zero(triangle.normal) || triangle.height(p) == 0 || triangle.height(l) == 0) return false;
   const Vector u = exact(light.center_u) - exact(light.center), v = exact(light.center_v) - exact(light.center);
   const Vector direction = l + epsilon * u + epsilon * epsilon * v - p;
@@ -66,6 +67,11 @@ bool meets(const glm::vec3& p_float, const glm::vec3& l_float, const std::array<
   return dot(cross(triangle.b - q, triangle.c - q), triangle.normal) >= 0 &&
          dot(cross(triangle.c - q, triangle.a - q), triangle.normal) >= 0 &&
          dot(cross(triangle.a - q, triangle.b - q), triangle.normal) >= 0;
+}
+
+bool meets(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners, const Light& light,
+           const Rational& epsilon) {
+  return meets(p, exact(l), corners, light, epsilon);
 }
 
 bool on_light_plane(const Light& light, const glm::vec3& p) {
@@ -125,6 +131,29 @@ TEST_P(PairTruthOnLattice, SegmentAgainstOneTriangle) {
   EXPECT_GT(met, 10);
   EXPECT_GT(zeros, 50);
   EXPECT_GT(zeros_met, 5);
+}
+
+/// Points of the light's plane that no float is: the same sentence, of the part of the triangle before that plane.
+TEST_P(PairTruthOnLattice, PointsOfTheLightsPlane) {
+  Lattice lattice(GetParam() + 700);
+  int met = 0;
+  for (int round = 0; round < 800; ++round) {
+    const Light light = lattice.light();
+    const glm::vec3 p = lattice.point();
+    if (on_light_plane(light, p)) continue;
+    const std::array<glm::vec3, 3> corners = {lattice.point(), lattice.point(), lattice.point()};
+    // Eighths, for ties; or numbers with all 53 digits.
+    const double unit = round % 2 == 0 ? 0.125 : 0.1234567890123456;
+    const glm::dvec2 st(unit * lattice.number(-8, 8), unit * lattice.number(-8, 8));
+    const Vector c = exact(light.center), u = exact(light.center_u) - c, v = exact(light.center_v) - c;
+    const Vector l = c + Rational(st.x) * u + Rational(st.y) * v;
+    const PlanePoint point(light, st);
+    ASSERT_LE(glm::length(glm::dvec3(l[0].get_d(), l[1].get_d(), l[2].get_d()) - point.rounded), point.off);
+    const bool expected = meets(p, l, corners, light, kEpsilon);
+    ASSERT_EQ(meets_before_light(p, point, corners, light), expected) << "round " << round;
+    met += expected ? 1 : 0;
+  }
+  EXPECT_GT(met, 10);
 }
 
 TEST_P(PairTruthOnLattice, ASplitTriangleIsMetExactlyWhenTheWholeIs) {
