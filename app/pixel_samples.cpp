@@ -14,7 +14,7 @@ namespace {
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// The contract's view sample: least t, then least rank.
+/// The view sample (docs/definitions.md): least t, then least rank.
 std::int32_t carrier_of(const SceneFloats& scene, const visibility::PinholeCamera& camera, std::uint32_t pixel) {
   const glm::dvec3 direction = camera.direction(pixel % camera.width, pixel / camera.width);
   std::int32_t carrier = ViewSamples::kBackground;

@@ -27,7 +27,7 @@ struct WedgesResult {
   std::filesystem::path svg{};  ///< of the explanation
 };
 
-/// The contract's JSON, and beside it "counts", and if they were validated "checks",
+/// The JSON of `wedges --json`, and beside it "counts", and if they were validated "checks",
 /// "tightness" and "coverage", if
 /// a pixel was to be explained "explain".
 void write_wedges_json(const std::filesystem::path& path, const WedgesResult& result);

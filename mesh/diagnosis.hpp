@@ -66,7 +66,7 @@ struct Diagnosis {
   double volume = 0;  ///< signed, as wound, relative to the bounds' centre; the enclosed volume if closed_as_wound
   glm::dvec3 lower{0}, upper{0};  ///< bounds of the triangles' corners
 
-  /// What float32 does to it: positions are taken relative to the bounds' centre (contract: scene floats).
+  /// What float32 does to it: positions are taken relative to the bounds' centre (docs/definitions.md, "Scene floats").
   double largest_coordinate = 0;     ///< in absolute value, as the file has it
   double float_spacing = 0;          ///< of floats at the farthest corner from the centre
   double shortest_edge = 0;          ///< that is not zero

@@ -10,7 +10,7 @@
 namespace penumbra::mesh {
 
 /// Three outcomes. Whoever meets a tie reads it the one documented way: a triangle whose plane contains the point p
-/// is seen edge-on from p, counts 0 on all three of its edges, and is not met (contract: "Truth of a pair").
+/// is seen edge-on from p, counts 0 on all three of its edges, and is not met (docs/definitions.md, "Truth of a pair").
 enum class Side { back = -1, on = 0, front = 1 };
 
 constexpr Side opposite(Side side) {

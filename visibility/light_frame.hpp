@@ -18,7 +18,7 @@ struct LightFrame {
   glm::vec3 center{0}, u{0}, v{0};
   bool rows = false;             ///< the samples form rows of a rectangle (not: disks, polygons, sobol, jittered)
   std::uint32_t shift_step = 0;  ///< rows: a row's shift in cells is (row · shift_step) / 2¹⁶, modulo 1 into [−½, ½)
-  std::vector<glm::vec2> coordinates;  ///< (s, t) of each light sample, contract order
+  std::vector<glm::vec2> coordinates;  ///< (s, t) of each light sample, in their order
   float deviation = 0;                 ///< the largest distance of a stored sample from its place in this frame
 };
 

@@ -62,7 +62,7 @@ struct Light {
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
 };
 
-/// The unit-square samples of a pattern, in [0, 1)², in contract order (row-major for rows and grid: x along the row).
+/// The unit-square samples of a pattern, in [0, 1)², in the order of every method (row-major for rows and grid: x along the row).
 /// rows: L = round(√N) rows of B = ceil(N / L) points, cell-centred, each row shifted along itself by its own fixed
 /// fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: one point in
 /// each of N strata of equal area, in L = round(√N) rows.

@@ -1,4 +1,4 @@
-// The contract's "Truth of a pair", decided exactly.
+// The truth of a pair (docs/definitions.md), decided exactly.
 
 #include "visibility/pair_truth.hpp"
 

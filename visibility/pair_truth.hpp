@@ -18,13 +18,13 @@ using mesh::collinear, mesh::coplanar, mesh::Side, mesh::side_of_plane;
 /// What an exact segment–triangle test found, and whether some predicate on the way was exactly zero.
 struct Meeting {
   bool meets = false;
-  bool zero_predicate = false;  ///< an edge sign or a plane side was exactly zero (and read as the contract says), and
+  bool zero_predicate = false;  ///< an edge sign or a plane side was exactly zero (and read as defined), and
                                 ///< the signs that are not zero do not already say that the line passes the triangle by
 };
 
-/// On which side of the line p→l the edge a→b passes: the sign of det(l − p, a − p, b − p), and where that is zero the
-/// contract's reading of it (below), so that neighbouring triangles agree about their edge. 0 only if p is on the line
-/// a b or on the light's plane. Exact.
+/// On which side of the line p→l the edge a→b passes: the sign of det(l − p, a − p, b − p), and where that is zero what
+/// docs/definitions.md reads it as, so that neighbouring triangles agree about their edge. 0 only if p is on the line a
+/// b or on the light's plane. Exact.
 int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light);
 
 /// Does the open segment p→l meet the triangle? Exact. An edge sign that is zero is read as that of
@@ -73,7 +73,7 @@ inline bool may_occlude(const SceneFloats& scene, const Light& light, std::uint3
          scene.emits[triangle] != light.index;
 }
 
-/// The truth of a pair (contract: "Truth of a pair"): the last judge. Tries every triangle whose box the segment's box
+/// The truth of a pair (docs/definitions.md): the last judge. Tries every triangle whose box the segment's box
 /// touches: microseconds per thousand triangles; for hundreds of pairs, not for images. `pixel` must not be background.
 PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light,
                       std::uint32_t light_sample);

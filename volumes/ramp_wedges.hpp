@@ -30,7 +30,7 @@ inline constexpr std::size_t kRampPlanes = 4;
 LightWedges ramp_wedges_of(const LightVolumes& volumes, const visibility::Light& light);
 
 /// What the edges add to the count at c, at p: k times the ramp or, on the negative side, the ramp less 1. The C++ twin
-/// of wedge_ramp.frag; ties of the side as the contract reads them.
+/// of wedge_ramp.frag; ties of the side as docs/definitions.md reads them.
 double ramp_sum(const LightWedges& wedges, const visibility::Light& light, const glm::vec3& p);
 
 /// What the shader reads: four coefficients a plane, four planes an edge.

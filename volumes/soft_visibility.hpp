@@ -68,7 +68,7 @@ struct LayerSum {
 /// side counts −1: there the method approximates.
 ///
 /// What is coplanar with the carrier does not count, nor does a triangle that touches p. D at the reference point and
-/// the side of every edge are exact, ties read as the contract does, so that nothing jumps by a whole light.
+/// the side of every edge are exact, ties read as docs/definitions.md says, so that nothing jumps by a whole light.
 class SoftVisibility {
  public:
   /// Borrows all three; `casters` are casters_of(scene, light). ResourceError: a texture too large (TextureWeights).

@@ -40,7 +40,7 @@ std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const vis
                                const ClosedParts& closed, float scale);
 
 /// The shaders' table of light samples: uint first_point[257], then (s, t) of each, sorted by t, so that a triangle
-/// looks at one stretch of them. Rows are computed, not read: their table is empty and their order the contract's.
+/// looks at one stretch of them. Rows are computed, not read: their table is empty and their order the light samples'.
 struct SampleTable {
   std::vector<std::byte> bytes;
   std::vector<std::uint32_t> bit_of;  ///< for each of the shaders' sample numbers, the light sample
