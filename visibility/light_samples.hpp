@@ -62,10 +62,10 @@ struct Light {
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
 };
 
-/// The unit-square samples of a pattern, in [0, 1)², in the order of every method (row-major for rows and grid: x along the row).
-/// rows: L = round(√N) rows of B = ceil(N / L) points, cell-centred, each row shifted along itself by its own fixed
-/// fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: one point in
-/// each of N strata of equal area, in L = round(√N) rows.
+/// The unit-square samples of a pattern, in [0, 1)², in the order of every method (row-major for rows and grid: x along
+/// the row). rows: L = round(√N) rows of B = ceil(N / L) points, cell-centred, each row shifted along itself by its own
+/// fixed fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: one point in each of N
+/// strata of equal area, in L = round(√N) rows.
 std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
 
 /// Throws InputError for a light of zero area, one whose points are not finite in float32 relative to `origin`, or one
