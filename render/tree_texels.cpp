@@ -15,7 +15,8 @@ float device_scale(const visibility::SceneFloats& scene) {
   float largest = 0;
   for (int axis = 0; axis < 3; ++axis)
     largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
-  return largest > 0 ? std::ldexp(1.0F, -std::ilogb(largest)) : 1.0F;
+  // Of subnormal floats the inverse is none: they are scaled as far as floats go.
+  return largest > 0 ? std::ldexp(1.0F, std::min(-std::ilogb(largest), 127)) : 1.0F;
 }
 
 bool normal_is_known(const std::array<glm::vec3, 3>& corners) {

@@ -47,6 +47,20 @@ glm::dvec3 center_of_bounds(const std::vector<glm::dvec3>& positions) {
                    position, at.x, at.y, at.z, owner, origin.x, origin.y, origin.z);
 }
 
+/// Below this, products of coordinates with a picture's other numbers are subnormal on devices, which may take them for
+/// 0.
+constexpr float kSmallestScene = 0x1p-120F;
+
+void refuse_subnormal(const SceneFloats& floats) {
+  float size = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    size = std::max({size, std::abs(floats.lower[axis]), std::abs(floats.upper[axis])});
+  }
+  if (size == 0 || size >= kSmallestScene) return;
+  throw InputError("the scene reaches only {} from its middle; float32 has full precision from 1e-36 on: scale it up",
+                   size);
+}
+
 struct Ranked {
   std::array<float, 9> vertices;  // the triangle's sorted vertices: the key
   std::uint32_t triangle;
@@ -92,6 +106,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
       floats.lower = glm::min(floats.lower, position);
       floats.upper = glm::max(floats.upper, position);
     }
+    refuse_subnormal(floats);
   }
 
   floats.triangles = scene.soup.triangles;

@@ -83,7 +83,7 @@ std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool
   if (many) {
     json nothing = scene_of(1, {key, fill});
     nothing["camera"]["target"] = {4, 9, 12};
-    made.insert(made.end(), {{"huge", scene_of(std::ldexp(1.0, 50), {key, fill})},
+    made.insert(made.end(), {{"huge", scene_of(std::ldexp(1.0, 36), {key, fill})},
                              {"disk", scene_of(1, {disk, polygon})},
                              {"window", scene_of(1, {textured, key})},
                              {"nothing", nothing}});

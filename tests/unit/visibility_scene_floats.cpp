@@ -63,6 +63,19 @@ TEST(SceneFloats, FlagsComeFromObjectsAndZeroAreaCastsNothing) {
   EXPECT_EQ(floats.plane[0], floats.plane[2]);
 }
 
+TEST(SceneFloats, RefusesScenesSoSmallThatFloatsLoseDigits) {
+  for (const int exponent : {-100, -119, -125, -140}) {
+    const double size = std::ldexp(1.0, exponent);
+    scenes::Scene scene;
+    tests::add_object(scene, "a", {{glm::dvec3(size, 0, 0), glm::dvec3(-size, 0, 0), glm::dvec3(0, size, size)}});
+    if (exponent >= -120) {
+      EXPECT_NO_THROW(make_scene_floats(scene)) << exponent;
+    } else {
+      EXPECT_THROW(make_scene_floats(scene), InputError) << exponent;
+    }
+  }
+}
+
 TEST(SceneFloats, RefusesPositionsThatFloatsCannotHold) {
   for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 1e300}) {
     scenes::Scene scene;
