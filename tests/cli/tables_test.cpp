@@ -37,6 +37,16 @@ TEST_F(Tables, MethodsSayWhatTheyAre) {
     }
     EXPECT_FALSE(method.at("lights").empty()) << method;
     EXPECT_TRUE(method.at("options").is_array()) << method;
+    for (const json& option : method.at("options")) {
+      const std::string otherwise = option.at("default");
+      ASSERT_NE(option.contains("choices"), option.contains("range")) << option;
+      if (option.contains("choices")) {
+        EXPECT_THAT(option.at("choices").get<std::vector<std::string>>(), testing::Contains(otherwise));
+      } else {
+        EXPECT_GE(std::stod(otherwise), option.at("range").at("least").get<double>()) << option;
+        EXPECT_LE(std::stod(otherwise), option.at("range").at("most").get<double>()) << option;
+      }
+    }
   }
 }
 

@@ -40,6 +40,33 @@ TEST(Method, RefusesOptionsItDoesNotHave) {
   }
 }
 
+TEST(Method, RefusesValuesThatAnOptionCannotHave) {
+  MethodDescription method = description();
+  method.options.push_back({"bias", "0.0 … 8.5", "0.5", "in texels"});
+  method.options.push_back({"engine", "auto|native", "auto", "where"});
+  for (const MethodOptions& right : {MethodOptions{{"resolution", "64"}, {"bias", "8.5"}},
+                                     {{"resolution", "16384"}},
+                                     {{"bias", "0"}},
+                                     {{"bias", "1e-3"}},
+                                     {{"engine", "native"}}}) {
+    EXPECT_NO_THROW(check_options(method, right));
+  }
+  for (const MethodOptions& wrong : {MethodOptions{{"resolution", "63"}},
+                                     {{"resolution", "16385"}},
+                                     {{"resolution", "100.5"}},
+                                     {{"resolution", ""}},
+                                     {{"resolution", "1e3"}},
+                                     {{"bias", "-0.1"}},
+                                     {{"bias", "9"}},
+                                     {{"bias", "nan"}},
+                                     {{"bias", "1x"}},
+                                     {{"engine", "nativ"}},
+                                     {{"engine", "auto|native"}},
+                                     {{"engine", ""}}}) {
+    EXPECT_THROW(check_options(method, wrong), UsageError) << wrong.begin()->first << "=" << wrong.begin()->second;
+  }
+}
+
 TEST(Method, EveryNameIsSaid) {
   EXPECT_STREQ(name_of(Family::geometry), "geometry");
   EXPECT_STREQ(name_of(Output::mask), "mask");
