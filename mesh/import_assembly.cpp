@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 namespace penumbra::mesh {
 namespace {
@@ -28,9 +27,9 @@ class Assembly {
       stack.pop_back();
       add(parts_[next.part], next.placement);
       placed_[next.part] = true;
-      for (const PlacedPart& child :
-           parts_[next.part].children | std::views::reverse) {  // so that they come off in order
-        stack.push_back({child.part, next.placement * child.placement});
+      const auto& children = parts_[next.part].children;
+      for (std::size_t i = children.size(); i-- > 0;) {  // last first, so that they come off in the file's order
+        stack.push_back({children[i].part, next.placement * children[i].placement});
       }
     }
     if (mesh_.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file_);
