@@ -100,7 +100,9 @@ class CorpusSweep : public ProgramTest {
       return;
     }
     ++tally_.compared;
-    for (const json& method : json::parse(read("out/metrics.json"))["methods"]) {
+    const json metrics = json::parse(read("out/metrics.json"));
+    EXPECT_EQ(metrics["methods"].size(), 2u);
+    for (const json& method : metrics["methods"]) {
       tally_.pairs += method["pairsAll"].get<std::uint64_t>();
       const auto differing = method["pairsDiffering"].get<std::uint64_t>();
       tally_.differing += differing;
@@ -158,6 +160,7 @@ TEST_F(CorpusSweep, ReadsComparesAndCounts) {
       t.not_compared, t.pairs, t.differing, t.method_right, t.reference_right, t.undecided,
       t.same_faces + t.other_faces, t.same_faces, t.other_faces, t.uncounted_faces);
   EXPECT_GT(t.compared, 400u);
+  EXPECT_GT(t.pairs, 100'000u * t.compared);
   EXPECT_EQ(t.reference_right, 0u);
 }
 
