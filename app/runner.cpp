@@ -2,9 +2,11 @@
 
 #include "app/interrupt.hpp"
 #include "app/stopwatch.hpp"
+#include "base/memory.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <string_view>
 #include <utility>
 
 namespace penumbra::app {
@@ -17,6 +19,16 @@ using visibility::Tile;
 
 bool lies_in_light_by_rule(PixelClass pixel) {
   return pixel == PixelClass::background || pixel == PixelClass::emitter || pixel == PixelClass::unshadowed;
+}
+
+/// Refuses a mesh that this machine has no memory for with this method, before it is asked for. Measured, of meshes of
+/// five million triangles, and rounded down: what is refused would not have fitted.
+void require_mesh_memory(const visibility::MethodDescription& method, const visibility::SceneFloats& floats) {
+  const std::string_view name = method.name;
+  const std::uint64_t bytes_per_triangle = name == "edge-scatter" ? 500 : name == "view-sample" ? 200 : 100;
+  require_memory(floats.triangles.size() * bytes_per_triangle,
+                 fmt::format("{} on {} triangles", name, floats.triangles.size()),
+                 "make the meshes smaller, or choose another --method");
 }
 
 /// One run's times, summed over the lights.
@@ -133,6 +145,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
                  std::uint64_t{session.height} * plan.lights.size() * (plan.runs + discarded));
   {
     const MayExitAtOnce at_once;
+    require_mesh_memory(method.description(), session.floats);
     const Stopwatch mesh;
     method.prepare_mesh(session.floats);
     result.times.mesh = mesh.seconds();

@@ -15,15 +15,13 @@ namespace penumbra::mesh::builder {
 
 inline constexpr double kTau = 2 * std::numbers::pi;
 
-/// Says no before the memory is asked for: twice what the shape's own soup is, since it becomes part of a scene's. Most
-/// shapes have a vertex for two triangles; lone triangles have three each.
+/// Says no before the memory is asked for. Most shapes have a vertex for two triangles; lone triangles have three each.
 inline void check_count(std::uint64_t triangles, double vertices_per_triangle = 0.5) {
   if (triangles > kMaxShapeTriangles) {
     throw InputError("the shape would have {} triangles; at most {} are generated", triangles, kMaxShapeTriangles);
   }
   const auto vertices = static_cast<std::uint64_t>(vertices_per_triangle * static_cast<double>(triangles));
-  require_memory(2 * soup_bytes(triangles, vertices), fmt::format("a shape of {} triangles", triangles),
-                 "make it smaller");
+  require_memory(soup_bytes(triangles, vertices), fmt::format("a shape of {} triangles", triangles), "make it smaller");
 }
 
 inline std::uint32_t add_vertex(TriangleSoup& soup, const glm::dvec3& position) {

@@ -141,13 +141,22 @@ Object read_object(const json& value, const Place& place, const std::vector<Area
   return object;
 }
 
-void append(mesh::TriangleSoup& soup, const mesh::TriangleSoup& mesh, std::uint32_t object, const Place& place) {
-  if (soup.positions.size() + mesh.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
+/// Adds the mesh to the scene as the object of that number.
+void append(mesh::TriangleSoup& soup, mesh::TriangleSoup mesh, std::uint32_t object, const Place& place) {
+  const std::size_t positions = soup.positions.size() + mesh.positions.size();
+  const std::size_t triangles = soup.triangles.size() + mesh.triangles.size();
+  if (positions > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError("{}: the scene has more than 2^32 vertices", place.str());
   }
+  if (soup.triangles.empty()) {  // most often the largest, and the only one
+    soup = std::move(mesh);
+    soup.object.assign(soup.triangles.size(), object);
+    return;
+  }
+  // Each array grows into a new one, and the old one goes: the largest decides.
   at_place(place, [&] {
-    require_memory(mesh::soup_bytes(mesh.triangles.size(), mesh.positions.size()),
-                   fmt::format("a scene with {} more triangles", mesh.triangles.size()), "make the meshes smaller");
+    require_memory(positions * sizeof(glm::dvec3) + mesh::soup_bytes(mesh.triangles.size(), 0),
+                   fmt::format("a scene of {} triangles", triangles), "make its meshes smaller");
   });
   const auto first = static_cast<std::uint32_t>(soup.positions.size());
   soup.positions.insert(soup.positions.end(), mesh.positions.begin(), mesh.positions.end());

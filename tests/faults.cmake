@@ -3,6 +3,7 @@ add_executable(faults_test
   faults/child.cpp
   faults/disks.cpp
   faults/limits.cpp
+  faults/memory.cpp
   faults/orphans.cpp
   faults/outputs.cpp
   faults/streams.cpp

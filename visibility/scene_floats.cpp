@@ -3,6 +3,7 @@
 #include "visibility/scene_floats.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "visibility/plane_ids.hpp"
 
 #include <glm/common.hpp>
@@ -90,6 +91,11 @@ std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
 }  // namespace
 
 SceneFloats make_scene_floats(const scenes::Scene& scene) {
+  constexpr std::uint64_t kTriangle = sizeof(Triangle) + 4 * sizeof(std::uint32_t) + 2;  // see SceneFloats
+  constexpr std::uint64_t kSorting = 3 * sizeof(std::uint32_t);
+  const std::uint64_t count_of_triangles = scene.soup.triangles.size();
+  require_memory(count_of_triangles * (kTriangle + kSorting) + scene.soup.positions.size() * sizeof(glm::vec3),
+                 fmt::format("a scene of {} triangles", count_of_triangles), "make its meshes smaller");
   SceneFloats floats;
   floats.origin = center_of_bounds(scene.soup.positions);
   floats.positions.reserve(scene.soup.positions.size());

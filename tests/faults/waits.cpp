@@ -19,7 +19,7 @@ class WaitFaults : public FaultTest {
   }
 };
 
-TEST_F(WaitFaults, AWaitThatIsTooLongIs4) {
+TEST_F(WaitFaults, AWaitBeyondItsLimitIs4) {
   Conditions conditions = long_work();
   conditions.environment["PENUMBRA_DEVICE_TIMEOUT"] = "1";
   const Ending ending = run_under(conditions);

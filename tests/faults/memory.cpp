@@ -1,0 +1,106 @@
+// Memory in proportion to what is used, and asked for only where there is as much.
+#include "base/exr.hpp"
+#include "base/memory.hpp"
+#include "tests/faults/child.hpp"
+
+#include <gmock/gmock.h>
+
+namespace penumbra::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class MemoryFaults : public FaultTest {
+ protected:
+  /// A scene whose light has a picture of so many channels.
+  [[nodiscard]] std::string scene_with_picture(int channels) const {
+    const std::vector<float> values(512 * 512, 1.0f);
+    ExrImage picture;
+    picture.width = picture.height = 512;
+    for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, std::span<const float>(values), 1});
+    for (int i = 3; i < channels; ++i) {
+      picture.channels.push_back({"more." + std::to_string(i), std::span<const float>(values), 1});
+    }
+    write_exr(folder_ / "t.exr", picture);
+    return write("picture.json", R"({"format": "penumbra-scene/1", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]},
+      "meshes": [{"triangles": [[0,0,0, 1,0,0, 0,1,0]]}],
+      "lights": [{"texture": "t.exr", "rectangle": {"center": [0,4,0], "halfU": [1,0,0], "halfV": [0,0,1]}}]})");
+  }
+  [[nodiscard]] std::string scene_of_soups(int count, int triangles) const {
+    std::string meshes;
+    for (int i = 0; i < count; ++i) {
+      meshes += std::string(i == 0 ? "" : ", ") + R"({"shape": {"type": "lattice-soup", "triangles": )" +
+                std::to_string(triangles) + "}}";
+    }
+    return write("soups.json", R"({"format": "penumbra-scene/1", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]},
+      "lights": [{"rectangle": {"center": [0,4,0], "halfU": [1,0,0], "halfV": [0,0,1]}}], "meshes": [)" +
+                                   meshes + "]}");
+  }
+  [[nodiscard]] Ending convert(const std::string& scene, std::vector<Limit> limits = {}) const {
+    return run_under({.arguments = {"convert", scene, "-o", path("out.glb")}, .limits = std::move(limits)});
+  }
+};
+
+TEST_F(MemoryFaults, APicturesOtherChannelsTakeNone) {
+  const Ending few = convert(scene_with_picture(3)), many = convert(scene_with_picture(200));
+  ASSERT_EQ(few.code, 0) << few.err;
+  ASSERT_EQ(many.code, 0) << many.err;
+  // All of them are 200 MiB; the lines that OpenEXR unpacks together are of all channels, 16 of 512.
+  constexpr std::uint64_t kLines = 200u * 512 * 16 * 4;
+  EXPECT_LT(many.peak_bytes, few.peak_bytes + 8 * kLines);
+}
+
+TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
+  constexpr rlim_t kGibi = 1u << 30;
+  for (const auto& [count, triangles] : {std::pair{1, 20'000'000}, {8, 2'000'000}}) {
+    const Ending ending = convert(scene_of_soups(count, triangles), {{RLIMIT_AS, kGibi}});
+    EXPECT_EQ(ending.code, 4) << ending.err;
+    EXPECT_THAT(ending.err, AllOf(HasSubstr("triangles needs about"), HasSubstr("ulimit -v"), HasSubstr("/meshes/")));
+    EXPECT_LT(ending.peak_bytes, kGibi);
+  }
+  const Ending image = run_under({.arguments = {"render", small_scene(), "-o", path("out.exr"), "--size", "16000x8000"},
+                                  .limits = {{RLIMIT_AS, kGibi}}});
+  EXPECT_EQ(image.code, 4);
+  EXPECT_THAT(image.err, AllOf(HasSubstr("16000x8000 pixels"), HasSubstr("GiB"), HasSubstr("--size")));
+}
+
+TEST_F(MemoryFaults, ControlGroupsCount) {
+  const auto room = [&] { return memory_room(folder_).bytes; };
+  write("proc/meminfo", "MemTotal: 9000 kB\nMemFree: 10 kB\nMemAvailable: 8000 kB\n");
+  write("proc/self/statm", "100 10 5 1 0 20 0\n");
+  EXPECT_EQ(room(), 8000u * 1024);
+  // Version 2: the narrowest from the own group to the root; pages of files are given back.
+  write("proc/self/cgroup", "0::/a/b\n");
+  write("sys/fs/cgroup/a/b/memory.max", "max\n");
+  write("sys/fs/cgroup/a/b/memory.current", "5000\n");
+  EXPECT_EQ(room(), 8000u * 1024);
+  write("sys/fs/cgroup/a/memory.max", "1000000\n");
+  write("sys/fs/cgroup/a/memory.current", "600000\n");
+  EXPECT_EQ(room(), 400'000u);
+  write("sys/fs/cgroup/a/memory.stat", "anon 5\ninactive_file 100000\nactive_file 50000\n");
+  EXPECT_EQ(room(), 550'000u);
+  write("sys/fs/cgroup/a/b/memory.max", "5000\n");
+  EXPECT_EQ(room(), 0u);
+  EXPECT_THAT(memory_room(folder_).limit, HasSubstr("control group"));
+  // Version 1, in a container that does not see its own path.
+  write("proc/self/cgroup", "5:cpu:/\n4:memory:/docker/1234\n0::/\n");
+  write("sys/fs/cgroup/memory/memory.limit_in_bytes", "700000\n");
+  write("sys/fs/cgroup/memory/memory.usage_in_bytes", "800000\n");
+  write("sys/fs/cgroup/memory/memory.stat", "inactive_file 1\ntotal_inactive_file 300000\n");
+  EXPECT_EQ(room(), 200'000u);
+}
+
+TEST_F(MemoryFaults, AMessageIsMoreThanBadAlloc) {
+  // A header that promises more than any machine has.
+  write("bomb.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n"
+        "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n");
+  const Ending ending = run_under({.arguments = {"inspect", path("bomb.ply")}});
+  EXPECT_EQ(ending.code, 3) << ending.err;
+  EXPECT_THAT(ending.err, Not(HasSubstr("bad_alloc")));
+}
+
+}  // namespace
+}  // namespace penumbra::tests
