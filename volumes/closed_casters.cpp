@@ -1,6 +1,7 @@
 #include "volumes/closed_casters.hpp"
 
 #include "base/assert.hpp"
+#include "mesh/closed_components.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <glm/common.hpp>
@@ -17,63 +18,20 @@ using mesh::EdgeGraph;
 using mesh::MeshView;
 using mesh::Side;
 
-struct Component {
-  std::vector<std::uint32_t> triangles;
-  bool closed = true;
-};
-
-/// Walks from `first`, winding each triangle as its neighbours: turn is ±1.
-Component wind_component(const EdgeGraph& graph, std::uint32_t first, std::vector<std::int8_t>& turn) {
-  Component component{{first}};
-  turn[first] = 1;
-  for (std::size_t i = 0; i < component.triangles.size(); ++i) {
-    const std::uint32_t t = component.triangles[i];
-    component.closed = component.closed && graph.kind[t] == mesh::TriangleKind::proper;
-    for (const std::uint32_t edge : graph.triangle_edges[t]) {
-      if (edge == EdgeGraph::kNoEdge) continue;
-      const std::span<const mesh::Incidence> around = graph.around(edge);
-      component.closed = component.closed && around.size() == 2;
-      const auto own = std::ranges::find(around, t, &mesh::Incidence::triangle);
-      for (const mesh::Incidence& other : around) {
-        if (other.triangle == t) continue;
-        const auto wanted = static_cast<std::int8_t>(own->reversed != other.reversed ? turn[t] : -turn[t]);
-        if (turn[other.triangle] == 0) {
-          turn[other.triangle] = wanted;
-          component.triangles.push_back(other.triangle);
-        }
-        component.closed = component.closed && turn[other.triangle] == wanted;
-      }
-    }
-  }
-  return component;
-}
-
 std::array<glm::dvec3, 3> corners_of(const MeshView& mesh, std::uint32_t triangle) {
   const mesh::Triangle& t = mesh.triangles[triangle];
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
 
-/// Wound by `turn`: positive if front is outside. Seen from one of its own vertices, so that far away is no worse.
-double signed_volume(const MeshView& mesh, const Component& component, const std::vector<std::int8_t>& turn) {
-  const glm::dvec3 from = corners_of(mesh, component.triangles.front())[0];
-  double sum = 0;
-  for (const std::uint32_t t : component.triangles) {
-    const auto [a, b, c] = corners_of(mesh, t);
-    sum += turn[t] * glm::dot(a - from, glm::cross(b - from, c - from));
-  }
-  return sum;
-}
-
 }  // namespace
 
-ClosedParts::ClosedParts(const MeshView& mesh, const EdgeGraph& graph) : turn_(mesh.triangles.size(), 0) {
-  for (std::uint32_t first = 0; first < mesh.triangles.size(); ++first) {
-    if (turn_[first] != 0) continue;
-    Component component = wind_component(graph, first, turn_);
+ClosedParts::ClosedParts(const MeshView& mesh, const EdgeGraph& graph) {
+  mesh::Components found = mesh::find_components(mesh, graph);
+  for (mesh::Component& component : found.components) {
     if (!component.closed) continue;
     Part part;
-    part.outside = signed_volume(mesh, component, turn_) < 0 ? -1 : 1;
-    part.lower = part.upper = corners_of(mesh, first)[0];
+    part.outside = mesh::signed_volume(mesh, component, found.turn) < 0 ? -1 : 1;
+    part.lower = part.upper = corners_of(mesh, component.triangles.front())[0];
     for (const std::uint32_t t : component.triangles) {
       for (const glm::dvec3& corner : corners_of(mesh, t)) {
         part.lower = glm::min(part.lower, corner);
@@ -83,6 +41,7 @@ ClosedParts::ClosedParts(const MeshView& mesh, const EdgeGraph& graph) : turn_(m
     part.triangles = std::move(component.triangles);
     parts_.push_back(std::move(part));
   }
+  turn_ = std::move(found.turn);
 }
 
 /// Is the winding number of the part around c other than 0? The crossings of a segment that ends beyond its box.

@@ -1,6 +1,6 @@
 #include "vsm/closed_parts.hpp"
 
-#include "mesh/edge_graph.hpp"
+#include "mesh/closed_components.hpp"
 #include "mesh/parallel.hpp"
 
 #include <glm/common.hpp>
@@ -13,7 +13,6 @@
 namespace penumbra::vsm {
 namespace {
 
-using mesh::EdgeGraph;
 using visibility::SceneFloats;
 
 constexpr std::uint32_t kNone = 0xffffffffU;
@@ -35,34 +34,6 @@ Casters casters_of(const SceneFloats& scene) {
   return casters;
 }
 
-/// Walks a component from `first`, winding each triangle as its neighbour. False if it is not closed, not manifold at
-/// an edge, or not orientable.
-bool wind_component(const EdgeGraph& graph, std::uint32_t first, std::vector<std::int8_t>& turn,
-                    std::vector<std::uint32_t>& members) {
-  bool closed = true;
-  members.assign(1, first);
-  turn[first] = 1;
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    const std::uint32_t t = members[i];
-    for (const std::uint32_t edge : graph.triangle_edges[t]) {
-      if (edge == EdgeGraph::kNoEdge) continue;
-      const std::span<const mesh::Incidence> around = graph.around(edge);
-      closed = closed && around.size() == 2;
-      const auto own = std::ranges::find(around, t, &mesh::Incidence::triangle);
-      for (const mesh::Incidence& other : around) {
-        if (other.triangle == t) continue;
-        const auto wanted = static_cast<std::int8_t>(own->reversed != other.reversed ? turn[t] : -turn[t]);
-        if (turn[other.triangle] == 0) {
-          turn[other.triangle] = wanted;
-          members.push_back(other.triangle);
-        }
-        closed = closed && turn[other.triangle] == wanted;
-      }
-    }
-  }
-  return closed;
-}
-
 ClosedPart bounds_of(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr Box kEmpty{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
@@ -81,18 +52,6 @@ ClosedPart bounds_of(const SceneFloats& scene, std::span<const std::uint32_t> tr
     }
   }
   return part;
-}
-
-/// Six times the volume that the triangles enclose, wound by `turn`: positive if their normals point outward. In
-/// double: whichever way it comes out, shadows are right, and only speed depends on it.
-double signed_volume(const SceneFloats& scene, std::span<const std::uint32_t> triangles,
-                     const std::vector<std::int8_t>& turn) {
-  double sum = 0;
-  for (const std::uint32_t t : triangles) {
-    const auto [a, b, c] = scene.corners(t);
-    sum += turn[t] * glm::dot(glm::dvec3(a), glm::cross(glm::dvec3(b), glm::dvec3(c)));
-  }
-  return sum;
 }
 
 /// For each plane, the component that alone has triangles on it, or kNone.
@@ -140,40 +99,37 @@ bool apart_from_light(const Box& box, const visibility::LightFrame& frame, float
 
 ClosedParts find_closed_parts(const SceneFloats& scene) {
   const Casters casters = casters_of(scene);
-  const EdgeGraph graph = mesh::build_edge_graph({casters.positions, casters.triangles});
-  struct Candidate {
-    std::uint32_t component;
-    std::vector<std::uint32_t> triangles;  // of the scene
-  };
-  std::vector<Candidate> candidates;
-  std::vector<std::int8_t> turn(casters.triangles.size());
-  std::vector<std::uint32_t> component(scene.triangles.size(), kNone), members;
-  std::uint32_t components = 0;
-  for (std::uint32_t first = 0; first < casters.triangles.size(); ++first) {
-    if (turn[first] != 0) continue;
-    const bool closed = wind_component(graph, first, turn, members);
-    for (std::uint32_t& t : members) component[t = casters.in_scene[t]] = components;
-    if (closed && members.size() >= ClosedParts::kFewestTriangles) candidates.push_back({components, members});
-    ++components;
+  const mesh::MeshView view{casters.positions, casters.triangles};
+  const mesh::Components found = mesh::find_components(view, mesh::build_edge_graph(view));
+  const std::vector<mesh::Component>& components = found.components;
+  std::vector<std::uint32_t> component(scene.triangles.size(), kNone);  // of each triangle of the scene
+  for (std::uint32_t i = 0; i < components.size(); ++i) {
+    for (const std::uint32_t t : components[i].triangles) component[casters.in_scene[t]] = i;
   }
   const std::vector<std::uint32_t> owner = plane_owners(scene, component);
-  std::erase_if(candidates, [&](const Candidate& c) {
-    return std::ranges::any_of(c.triangles, [&](std::uint32_t t) { return owner[scene.plane[t]] != c.component; });
-  });
-  std::ranges::stable_sort(candidates, std::ranges::greater(), [](const Candidate& c) { return c.triangles.size(); });
-  if (candidates.size() > ClosedParts::kMost) candidates.resize(ClosedParts::kMost);
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t i = 0; i < components.size(); ++i) {
+    if (!components[i].closed || components[i].triangles.size() < ClosedParts::kFewestTriangles) continue;
+    const auto owns_plane = [&](std::uint32_t t) { return owner[scene.plane[casters.in_scene[t]]] == i; };
+    if (std::ranges::all_of(components[i].triangles, owns_plane)) chosen.push_back(i);
+  }
+  std::ranges::stable_sort(chosen, std::ranges::greater(),
+                           [&](std::uint32_t i) { return components[i].triangles.size(); });
+  if (chosen.size() > ClosedParts::kMost) chosen.resize(ClosedParts::kMost);
 
   ClosedParts closed;
-  if (candidates.empty()) return closed;
+  if (chosen.empty()) return closed;
   closed.part.resize(scene.triangles.size());
   closed.turn.resize(scene.triangles.size());
-  for (std::size_t i = 0; i < casters.in_scene.size(); ++i) closed.turn[casters.in_scene[i]] = turn[i];
-  for (const Candidate& candidate : candidates) {
-    closed.parts.push_back(bounds_of(scene, candidate.triangles));
-    const bool outward = signed_volume(scene, candidate.triangles, closed.turn) > 0;
-    for (const std::uint32_t t : candidate.triangles) {
-      closed.part[t] = static_cast<std::uint8_t>(closed.parts.size());
-      if (outward) closed.turn[t] = static_cast<std::int8_t>(-closed.turn[t]);
+  for (const std::uint32_t i : chosen) {
+    const bool outward = mesh::signed_volume(view, components[i], found.turn) > 0;
+    std::vector<std::uint32_t> triangles;  // of the scene
+    for (const std::uint32_t t : components[i].triangles) triangles.push_back(casters.in_scene[t]);
+    closed.parts.push_back(bounds_of(scene, triangles));
+    for (std::size_t k = 0; k < triangles.size(); ++k) {
+      const std::int8_t wound = found.turn[components[i].triangles[k]];
+      closed.part[triangles[k]] = static_cast<std::uint8_t>(closed.parts.size());
+      closed.turn[triangles[k]] = static_cast<std::int8_t>(outward ? -wound : wound);
     }
   }
   return closed;

@@ -7,6 +7,8 @@
 #include "tests/agreement/support.hpp"
 #include "vsm/closed_parts.hpp"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <tuple>
 
@@ -112,6 +114,22 @@ TEST(ClosedParts, WhatCountsAsOne) {
   sphere.triangles.pop_back();
   EXPECT_TRUE(find_closed_parts(floats_of(sphere)).parts.empty()) << "a hole";
   EXPECT_TRUE(find_closed_parts(floats_of(mesh::make_box(glm::dvec3(0), glm::dvec3(1)))).parts.empty()) << "too small";
+}
+
+// A triangle without area casts no shadow, so a T-junction that only it closes leaves the part open.
+TEST(ClosedParts, NeedleWithoutAreaOpensItsPart) {
+  mesh::TriangleSoup sphere = mesh::make_icosphere(glm::dvec3(0), 1, 2);
+  // On a coarse grid, so that the middle of an edge is exact.
+  for (glm::dvec3& position : sphere.positions) position = glm::round(position * 1024.0) / 1024.0;
+  ASSERT_EQ(find_closed_parts(floats_of(sphere)).parts.size(), 1U);
+  const auto [a, b, c] = sphere.triangles[0];
+  const auto middle = static_cast<std::uint32_t>(sphere.positions.size());
+  sphere.positions.push_back((sphere.positions[a] + sphere.positions[b]) / 2.0);
+  sphere.triangles[0] = {a, middle, c};
+  for (const mesh::Triangle& triangle : {mesh::Triangle{middle, b, c}, mesh::Triangle{a, b, middle}}) {
+    sphere.triangles.push_back(triangle);
+  }
+  EXPECT_TRUE(find_closed_parts(floats_of(sphere)).parts.empty());
 }
 
 }  // namespace
