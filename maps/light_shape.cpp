@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 namespace penumbra::maps {
 namespace {
@@ -57,6 +59,20 @@ std::vector<glm::vec2> light_pattern(const visibility::Light& light, const Light
     pattern[i] = light.kind == visibility::LightKind::disk ? light.radius * disk_point(i) : fan.at(r2_point(i));
   }
   return pattern;
+}
+
+LightPattern::LightPattern(const render::Device& device, std::initializer_list<std::uint32_t> counts)
+    : counts_(counts),
+      points_(device, "light pattern",
+              std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}) * sizeof(glm::vec2)) {}
+
+void LightPattern::record(render::Commands& /*commands*/, const MapSet& maps) {
+  std::vector<glm::vec2> points;
+  for (const std::uint32_t count : counts_) {
+    const std::vector<glm::vec2> part = light_pattern(maps.light, maps.frame, count);
+    points.insert(points.end(), part.begin(), part.end());
+  }
+  points_.write<glm::vec2>(points);
 }
 
 double half_width(const visibility::Light& light) {

@@ -167,7 +167,7 @@ gpu::CasterPush face_push(const gpu::LightView& view, const LightFrame& frame, s
   const int s = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
   const gpu::SideView& side = view.side[s];
   const glm::dvec3 up = s == 0 ? frame.n : -frame.n;
-  // The face's axes: across a, b and along w. lookup.glsl chooses faces and coordinates in the same way.
+  // The face's axes: across a, b and along w. taps.glsl chooses faces and coordinates in the same way.
   struct Axes {
     glm::dvec3 a, b, w;
   };

@@ -1,4 +1,6 @@
 // One struct, two languages: how the maps of one light point cover what they cover. README.md has the picture.
+#ifndef PENUMBRA_MAPS_MAP_VIEW  // shaders include this in several ways
+#define PENUMBRA_MAPS_MAP_VIEW
 #ifdef __cplusplus
 #pragma once
 #include <glm/vec2.hpp>
@@ -9,6 +11,9 @@ namespace penumbra::maps::gpu {
 using glm::vec2;
 using glm::vec3;
 using uint = std::uint32_t;
+inline constexpr uint kLookupGroup = 64;
+#else
+const uint kLookupGroup = 64;  // invocations of a look-up's workgroup
 #endif
 
 // One side of the light's plane as a light point sees it. With d = (x, y, z) in the light's frame, z > 0 on this side:
@@ -46,7 +51,7 @@ struct CasterPush {
   vec3 row_w;
 };
 
-// What every look-up needs.
+// What every look-up needs; its own push constants follow.
 struct LookupPush {
   Frame frame;
   float bias;                 // in texels
@@ -55,8 +60,13 @@ struct LookupPush {
   uint first_receiver;        // in the receivers' buffer
   uint receiver_count;
   uint first_result;          // where the results of the first receiver go, counted in receivers
+  uint words_per_pixel;       // of results: a mask's words, or 1 for V
+  uint first_point;           // of the light points whose maps are asked; all of them bits of one word
+  uint point_count;
+  uint faces;                 // of one light point
 };
 
 #ifdef __cplusplus
 }  // namespace penumbra::maps::gpu
 #endif
+#endif  // PENUMBRA_MAPS_MAP_VIEW

@@ -4,16 +4,16 @@
 
 #include "maps/pcss.hpp"
 
-#include "maps/center_map.hpp"
 #include "maps/light_shape.hpp"
+#include "maps/map_method.hpp"
 #include "maps/mesh_verdict.hpp"
-#include "maps/nearest.comp.spv.hpp"
-#include "maps/nearest.shared.h"
+#include "maps/nearest_caster.hpp"
 #include "maps/pcss.comp.spv.hpp"
 #include "maps/pcss.shared.h"
-#include "render/compute_pass.hpp"
 
 #include <fmt/format.h>
+
+#include <utility>
 
 namespace penumbra::maps {
 namespace {
@@ -43,53 +43,6 @@ visibility::MethodDescription describe() {
   return description;
 }
 
-class Pcss final : public CenterMapMethod {
- public:
-  Pcss(const render::Device& device, const visibility::MethodOptions& options)
-      : CenterMapMethod(device, describe(), options),
-        blocker_samples_(
-            whole_number_option(description(), options, "blockerSamples", 1, kMostSamples, kBlockerSamples)),
-        filter_samples_(whole_number_option(description(), options, "filterSamples", 1, kMostSamples, kFilterSamples)),
-        nearest_pass_(device, {.name = "nearest caster",
-                               .spirv = shaders::kNearestComp,
-                               .push_bytes = sizeof(gpu::NearestPush),
-                               .constants = {}}),
-        pass_(device, {.name = "pcss look-up",
-                       .spirv = shaders::kPcssComp,
-                       .push_bytes = sizeof(gpu::PcssPush),
-                       .constants = {}}),
-        nearest_(device, "pcss nearest caster", 2 * sizeof(float)),
-        pattern_(device, "pcss pattern", (std::uint64_t{blocker_samples_} + filter_samples_) * sizeof(glm::vec2)) {}
-
- private:
-  void map_rendered(render::Commands& commands, const Map& map, std::uint32_t faces, const visibility::Light& light,
-                    const LightFrame& frame) override {
-    commands.fill(nearest_, 0x7f800000u);  // infinity
-    const gpu::NearestPush push{options().size, faces};
-    nearest_pass_.record(commands, push, {map.views, map.depths, nearest_}, std::uint64_t{faces} * options().size);
-
-    std::vector<glm::vec2> pattern = light_pattern(light, frame, blocker_samples_);
-    const std::vector<glm::vec2> filter = light_pattern(light, frame, filter_samples_);
-    pattern.insert(pattern.end(), filter.begin(), filter.end());
-    pattern_.write<glm::vec2>(pattern);
-    smallest_near_ = static_cast<float>(half_width(light));
-  }
-
-  void record_lookup(render::Commands& commands, const gpu::LookupPush& lookup, const Receivers::Part& part,
-                     const Map& map, const render::Buffer& visibility) override {
-    const gpu::PcssPush push{lookup, blocker_samples_, filter_samples_, smallest_near_};
-    pass_.record(commands, push, {*part.receivers, map.views, map.depths, nearest_, pattern_, visibility},
-                 part.groups());
-  }
-
-  [[nodiscard]] std::uint64_t own_memory_bytes() const override { return nearest_.bytes() + pattern_.bytes(); }
-
-  std::uint32_t blocker_samples_, filter_samples_;
-  render::ComputePass nearest_pass_, pass_;
-  render::Buffer nearest_, pattern_;
-  float smallest_near_ = 0;
-};
-
 }  // namespace
 
 visibility::MethodDescription pcss_description() {
@@ -97,7 +50,20 @@ visibility::MethodDescription pcss_description() {
 }
 
 std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options) {
-  return std::make_unique<Pcss>(device, options);
+  MapRecipe recipe{.description = describe(), .look_up_name = "pcss look-up", .look_up = shaders::kPcssComp};
+  const auto taps = [&](const char* key, std::uint32_t otherwise) {
+    return whole_number_option(recipe.description, options, key, 1, kMostSamples, otherwise);
+  };
+  const std::uint32_t blocker_samples = taps("blockerSamples", kBlockerSamples);
+  const std::uint32_t filter_samples = taps("filterSamples", kFilterSamples);
+  recipe.products.push_back(std::make_unique<NearestCaster>(device));
+  recipe.products.push_back(
+      std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{blocker_samples, filter_samples}));
+  recipe.push_words = sizeof(gpu::PcssPush) / sizeof(std::uint32_t);
+  recipe.push = [blocker_samples, filter_samples](const visibility::Light& light) {
+    return push_words(gpu::PcssPush{blocker_samples, filter_samples, static_cast<float>(half_width(light))});
+  };
+  return make_map_method(device, std::move(recipe), options);
 }
 
 }  // namespace penumbra::maps

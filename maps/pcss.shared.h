@@ -1,4 +1,4 @@
-// One struct, two languages: pcss.comp's.
+// One struct, two languages: what pcss.comp has behind LookupPush.
 #include "maps/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -6,7 +6,6 @@ namespace penumbra::maps::gpu {
 #endif
 
 struct PcssPush {
-  LookupPush lookup;
   uint blocker_samples;       // the first of the pattern's points
   uint filter_samples;        // those that follow
   float smallest_near;        // no near plane is put nearer to the light than this

@@ -12,8 +12,6 @@
 
 namespace penumbra::maps {
 
-inline constexpr std::uint32_t kLookupGroup = 64;  ///< invocations of the look-up shaders' workgroups
-
 /// View samples on the device, in bands of rows that fit into one storage buffer each.
 class Receivers {
  public:
@@ -26,7 +24,9 @@ class Receivers {
     std::uint32_t first_receiver;  ///< in that buffer
     std::uint32_t count;
     std::uint32_t first_result;  ///< of the tile's pixels
-    [[nodiscard]] std::uint64_t groups() const { return (std::uint64_t{count} + kLookupGroup - 1) / kLookupGroup; }
+    [[nodiscard]] std::uint64_t groups() const {
+      return (std::uint64_t{count} + gpu::kLookupGroup - 1) / gpu::kLookupGroup;
+    }
   };
   [[nodiscard]] std::vector<Part> parts(const visibility::Tile& tile) const;
 

@@ -17,7 +17,7 @@ Bindings::Bindings(Device::State& device, std::string name, const ShaderInterfac
 }
 
 void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std::span<const std::byte> push,
-                    std::initializer_list<std::reference_wrapper<const Buffer>> buffers) const {
+                    BufferList buffers) const {
   PENUMBRA_ASSERT(buffers.size() == shader_.bindings.size(), "{}: {} buffers for {} bindings", name_, buffers.size(),
                   shader_.bindings.size());
   PENUMBRA_ASSERT(push.size() == shader_.push_bytes, "{}: {} bytes of push constants for {}", name_, push.size(),

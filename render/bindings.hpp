@@ -3,8 +3,6 @@
 
 #include "render/vulkan.hpp"
 
-#include <functional>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,7 +18,7 @@ class Bindings {
 
   /// Binds buffers (in binding order) and push constants for what is recorded next.
   void bind(Commands::State& commands, vk::PipelineBindPoint point, std::span<const std::byte> push,
-            std::initializer_list<std::reference_wrapper<const Buffer>> buffers) const;
+            BufferList buffers) const;
   [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,5 +61,9 @@ Buffer make_buffer(const Device& device, std::string name, std::span<const T> va
 /// Makes `buffer` at least `bytes` large (contents are lost when it grows); returns whether it grew.
 bool grow(const Device& device, std::unique_ptr<Buffer>& buffer, const std::string& name, std::uint64_t bytes,
           BufferUse use = BufferUse::storage);
+
+/// Buffers as passes take them: a list written down, or one made at run time.
+using BufferReference = std::reference_wrapper<const Buffer>;
+using BufferList = std::span<const BufferReference>;
 
 }  // namespace penumbra::render

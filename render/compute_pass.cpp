@@ -47,9 +47,8 @@ ComputePass::~ComputePass() = default;
 ComputePass::ComputePass(ComputePass&&) noexcept = default;
 ComputePass& ComputePass::operator=(ComputePass&&) noexcept = default;
 
-void ComputePass::record_bytes(Commands& commands, std::span<const std::byte> push,
-                               std::initializer_list<std::reference_wrapper<const Buffer>> buffers,
-                               std::uint64_t groups) const {
+void ComputePass::record(Commands& commands, std::span<const std::byte> push, BufferList buffers,
+                         std::uint64_t groups) const {
   const State& s = *state_;
   if (groups == 0) return;
   Commands::State& c = commands.state();

@@ -3,7 +3,6 @@
 #include "render/commands.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -34,15 +33,15 @@ class ComputePass {
   /// Dispatches `groups` workgroups in x (split over y when the device's limit is smaller: shaders read
   /// gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x). Buffers in binding order.
   template <typename Push>
-  void record(Commands& commands, const Push& push, std::initializer_list<std::reference_wrapper<const Buffer>> buffers,
-              std::uint64_t groups) const {
-    static_assert(std::is_trivially_copyable_v<Push>);
-    record_bytes(commands, std::as_bytes(std::span(&push, 1)), buffers, groups);
+  requires(std::is_trivially_copyable_v<Push> && !std::is_same_v<Push, std::span<const std::byte>>) void record(
+      Commands& commands, const Push& push, std::initializer_list<BufferReference> buffers,
+      std::uint64_t groups) const {
+    record(commands, std::as_bytes(std::span(&push, 1)), BufferList(buffers.begin(), buffers.size()), groups);
   }
+  /// For push constants and lists that are put together at run time.
+  void record(Commands& commands, std::span<const std::byte> push, BufferList buffers, std::uint64_t groups) const;
 
  private:
-  void record_bytes(Commands& commands, std::span<const std::byte> push,
-                    std::initializer_list<std::reference_wrapper<const Buffer>> buffers, std::uint64_t groups) const;
   struct State;
   std::unique_ptr<State> state_;
 };

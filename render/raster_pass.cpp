@@ -67,6 +67,18 @@ void change_layout(Commands::State& commands, vk::Image image, vk::ImageLayout f
   commands.commands.pipelineBarrier2(vk::DependencyInfo({}, {}, {}, barrier));
 }
 
+vk::CullModeFlags culling(Cull cull) {
+  switch (cull) {
+    case Cull::none:
+      return vk::CullModeFlagBits::eNone;
+    case Cull::front:
+      return vk::CullModeFlagBits::eFront;
+    case Cull::back:
+      return vk::CullModeFlagBits::eBack;
+  }
+  return vk::CullModeFlagBits::eNone;
+}
+
 }  // namespace
 
 void DepthTarget::copy_to(Commands& commands, const Buffer& to, std::uint64_t offset) const {
@@ -84,6 +96,7 @@ struct RasterPass::State {
   Device::State* device = nullptr;
   std::string name;
   bool depth = false;
+  float cleared = 1;  // what the depth is before the first draw
   Bindings bindings;
   vk::raii::Pipeline pipeline{nullptr};
 };
@@ -93,6 +106,7 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
   s.device = &device.state();
   s.name = options.name;
   s.depth = options.depth;
+  s.cleared = options.compare == DepthCompare::greater ? 0.0F : 1.0F;
   // The two stages share one set; a stage may use fewer bindings than the other.
   ShaderInterface shader = reflect(options.vertex, options.name);
   if (!options.fragment.empty()) {
@@ -124,10 +138,12 @@ RasterPass::RasterPass(const Device& device, const RasterPassOptions& options) t
       {}, options.triangle_strip ? vk::PrimitiveTopology::eTriangleStrip : vk::PrimitiveTopology::eTriangleList);
   const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
   const vk::PipelineRasterizationStateCreateInfo raster({}, VK_FALSE, VK_FALSE, vk::PolygonMode::eFill,
-                                                        vk::CullModeFlagBits::eNone, vk::FrontFace::eCounterClockwise,
+                                                        culling(options.cull), vk::FrontFace::eCounterClockwise,
                                                         VK_FALSE, 0, 0, 0, 1.0F);
   const vk::PipelineMultisampleStateCreateInfo multisample({}, vk::SampleCountFlagBits::e1);
-  const vk::PipelineDepthStencilStateCreateInfo depth({}, s.depth, s.depth, vk::CompareOp::eLess);
+  const bool keep_greater = options.compare == DepthCompare::greater;
+  const vk::PipelineDepthStencilStateCreateInfo depth({}, s.depth, s.depth,
+                                                      keep_greater ? vk::CompareOp::eGreater : vk::CompareOp::eLess);
   const vk::PipelineColorBlendStateCreateInfo blend;
   const std::array dynamic{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo dynamic_state({}, dynamic);
@@ -145,9 +161,8 @@ RasterPass::~RasterPass() = default;
 RasterPass::RasterPass(RasterPass&&) noexcept = default;
 RasterPass& RasterPass::operator=(RasterPass&&) noexcept = default;
 
-void RasterPass::record_bytes(Commands& commands, std::span<const std::byte> push,
-                              std::initializer_list<std::reference_wrapper<const Buffer>> buffers,
-                              const Draw& draw) const {
+void RasterPass::record(Commands& commands, std::span<const std::byte> push, BufferList buffers,
+                        const Draw& draw) const {
   const State& s = *state_;
   PENUMBRA_ASSERT(s.depth == (draw.depth != nullptr), "{}: depth target given: {}", s.name, draw.depth != nullptr);
   Commands::State& c = commands.state();
@@ -166,7 +181,7 @@ void RasterPass::record_bytes(Commands& commands, std::span<const std::byte> pus
     depth = vk::RenderingAttachmentInfo(*target.view, vk::ImageLayout::eDepthAttachmentOptimal,
                                         vk::ResolveModeFlagBits::eNone, {}, {},
                                         draw.clear ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad,
-                                        vk::AttachmentStoreOp::eStore, vk::ClearDepthStencilValue(1.0F, 0));
+                                        vk::AttachmentStoreOp::eStore, vk::ClearDepthStencilValue(s.cleared, 0));
     rendering.setPDepthAttachment(&depth);
   }
   c.commands.beginRendering(rendering);

@@ -3,7 +3,6 @@
 #include "render/commands.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -33,6 +32,12 @@ class DepthTarget {
   std::unique_ptr<State> state_;
 };
 
+/// Which fragments a depth test keeps, compared with the depth that is there.
+enum class DepthCompare : std::uint8_t { less, greater };
+
+/// Which triangles are left out, by the side that they show: front is counter-clockwise on the screen, y down.
+enum class Cull : std::uint8_t { none, front, back };
+
 struct RasterPassOptions {
   std::string name;  ///< labels timestamps, debug regions and errors
   std::span<const std::uint32_t> vertex;
@@ -40,11 +45,13 @@ struct RasterPassOptions {
   std::uint32_t push_bytes = 0;             ///< sizeof the push-constant struct; checked against the shaders
   std::vector<std::uint32_t> constants{};   ///< specialization constants 0, 1, 2 … of both stages
   bool triangle_strip = false;              ///< else a list
-  bool depth = false;                       ///< tests (less) and writes a DepthTarget
+  bool depth = false;                       ///< tests and writes a DepthTarget
+  DepthCompare compare = DepthCompare::less;
+  Cull cull = Cull::none;
 };
 
 /// A graphics pipeline without vertex inputs or colours: vertices are read from storage buffers, results go to depth or
-/// to storage buffers. No culling. Bindings and push constants are reflected and checked as in ComputePass.
+/// to storage buffers. Bindings and push constants are reflected and checked as in ComputePass.
 class RasterPass {
  public:
   RasterPass(const Device& device, const RasterPassOptions& options);
@@ -56,19 +63,19 @@ class RasterPass {
     std::uint32_t width = 0, height = 0;  ///< of the viewport, which starts at (0, 0)
     std::uint32_t vertices = 0, instances = 1;
     const DepthTarget* depth = nullptr;  ///< exactly when the pass has depth
-    bool clear = true;                   ///< depth to 1 before
+    bool clear = true;                   ///< depth to 1 before, or to 0 where greater depths are kept
   };
 
+  /// Buffers in binding order.
   template <typename Push>
-  void record(Commands& commands, const Push& push, std::initializer_list<std::reference_wrapper<const Buffer>> buffers,
-              const Draw& draw) const {
-    static_assert(std::is_trivially_copyable_v<Push>);
-    record_bytes(commands, std::as_bytes(std::span(&push, 1)), buffers, draw);
+  requires(std::is_trivially_copyable_v<Push> && !std::is_same_v<Push, std::span<const std::byte>>) void record(
+      Commands& commands, const Push& push, std::initializer_list<BufferReference> buffers, const Draw& draw) const {
+    record(commands, std::as_bytes(std::span(&push, 1)), BufferList(buffers.begin(), buffers.size()), draw);
   }
+  /// For push constants and lists that are put together at run time.
+  void record(Commands& commands, std::span<const std::byte> push, BufferList buffers, const Draw& draw) const;
 
  private:
-  void record_bytes(Commands& commands, std::span<const std::byte> push,
-                    std::initializer_list<std::reference_wrapper<const Buffer>> buffers, const Draw& draw) const;
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -157,12 +157,9 @@ void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu
                                         .height = tile.row_count,
                                         .vertices = kFanVertices,
                                         .instances = static_cast<std::uint32_t>(batch.size())};
-    if (s.table) {
-      s.pass.record(commands, push,
-                    {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer, s.table_buffer}, draw);
-    } else {
-      s.pass.record(commands, push, {*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer}, draw);
-    }
+    std::vector<render::BufferReference> buffers{*s.face_buffer, *s.receiver_buffer, *s.sum_buffer, *s.doubt_buffer};
+    if (s.table) buffers.emplace_back(s.table_buffer);
+    s.pass.record(commands, std::as_bytes(std::span(&push, 1)), buffers, draw);
     s.times.add(commands.submit());
   }
   commands.submit();  // the fills, where there was no face

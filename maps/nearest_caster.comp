@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "maps/nearest.shared.h"
+#include "maps/nearest_caster.shared.h"
 
 // The smallest distance from the light's plane, on either side, of what the maps of one light point hold. One workgroup
 // a row of a face.

@@ -1,4 +1,4 @@
-// One struct, two languages: nearest.comp's.
+// One struct, two languages: nearest_caster.comp's.
 #include "maps/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once

@@ -1,4 +1,4 @@
-// Look-ups in the maps of one light point. Include after the bindings; README.md has the picture.
+// Taps into the maps of one light point; README.md has the picture.
 //
 // A texel holds the depth of the nearest surface in the direction of its *centre*, while the receiver lies somewhere in
 // the texel. Comparing the two depths as they are shades a tilted receiver by itself (acne). So the map is asked where it

@@ -1,0 +1,13 @@
+// V of each receiver from the maps of one light point; see look_up.glsl.
+void main() {
+  const uint i = this_receiver();
+  if (i >= lookup.receiver_count) return;
+  const Receiver receiver = receivers[lookup.first_receiver + i];
+  float v = 1.0;
+  if (receiver.n != vec3(0.0)) {
+    const LightView view = views[0];
+    const vec3 d = to_frame(lookup.frame, receiver.p - view.point);
+    v = on_emitting_side(d) ? visibility_of(view, d, -to_frame(lookup.frame, receiver.n)) : 0.0;
+  }
+  results[lookup.first_result + i] = floatBitsToUint(v);
+}

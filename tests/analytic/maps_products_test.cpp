@@ -1,0 +1,150 @@
+// What maps are made of and made into, against a few lines of C++: the depths of two planes, and products against their
+// twins on maps read back from the device.
+
+#include "maps/caster.frag.spv.hpp"
+#include "maps/caster.vert.spv.hpp"
+#include "maps/map_fit.hpp"
+#include "maps/nearest_caster.hpp"
+#include "tests/analytic/maps_fixture.hpp"
+
+#include <array>
+#include <limits>
+#include <tuple>
+
+namespace penumbra::maps_test {
+namespace {
+
+constexpr std::uint32_t kSize = 64;
+
+/// The maps of a stage's light from its centre.
+struct CentreMaps {
+  CentreMaps(const render::Device& device, const Stage& stage)
+      : frame(maps::frame_of(stage.light)),
+        centre(frame.center),
+        fitted(maps::fit_views(stage.scene, stage.light, frame, std::span(&centre, 1), kSize)),
+        views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
+        depths(device, "depths", std::uint64_t{kSize} * kSize * sizeof(float) * fitted.faces) {
+    maps::CasterMaps casters(device, kSize);
+    casters.upload(stage.scene);
+    render::Commands commands(device);
+    casters.record(commands, fitted.views.front(), frame, stage.light.index, depths, 0);
+    commands.submit();
+  }
+  maps::LightFrame frame;
+  glm::vec3 centre;
+  maps::FittedViews fitted;
+  render::Buffer views, depths;
+};
+
+/// NearestCaster's twin.
+std::array<float, 2> nearest_twin(const CentreMaps& maps, const std::vector<float>& depths) {
+  std::array<float, 2> nearest;
+  nearest.fill(std::numeric_limits<float>::infinity());
+  const maps::gpu::LightView& view = maps.fitted.views.front();
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (depths[i] == 1) continue;
+    const auto row = static_cast<std::uint32_t>(i / kSize), face = row / kSize;
+    const std::size_t side = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
+    // Sideways faces of a hemicube have the height over the light's plane along their rows.
+    const bool sideways = face != view.side[side].first_face;
+    const float height = sideways ? (static_cast<float>(row % kSize) + 0.5F) / static_cast<float>(kSize) : 1.0F;
+    nearest[side] = std::min(nearest[side], depths[i] * height * view.far);
+  }
+  return nearest;
+}
+
+/// A floor below, a sphere between, and for a two-sided light a ceiling above with a board below it.
+scenes::Scene scene_around(bool two_sided, double wall_height) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_sphere(scene, {0.3, 1, 0.2}, 0.5, 8);
+  if (wall_height > 0) add_quad(scene, {3, wall_height / 2, 0}, {0, wall_height / 2, 0}, {0, 0, 3});
+  if (two_sided) {
+    add_quad(scene, {0, 8, 0}, {3, 0, 0}, {0, 0, 3});
+    add_quad(scene, {0.5, 6.5, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  }
+  scene.lights.push_back(square_light(5, 0.5));
+  scene.lights.back().two_sided = two_sided;
+  scene.cameras.push_back(camera_at({0, 3, 8}, {0, 1, 0}));
+  return scene;
+}
+
+class MapsProducts : public MapsTest {};
+
+TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
+  for (const auto& [two_sided, wall] :
+       {std::tuple(false, 0.0), std::tuple(false, 5.0), std::tuple(true, 0.0), std::tuple(true, 6.0)}) {
+    const Stage stage = make_stage(scene_around(two_sided, wall), samples(1), 4);
+    CentreMaps maps(device_, stage);
+    ASSERT_EQ(maps.fitted.faces, (wall > 0 ? 5U : 1U) + (two_sided ? (wall > 5 ? 5U : 1U) : 0U));
+    maps::NearestCaster product(device_);
+    render::Commands commands(device_);
+    product.record(commands, {maps.views, maps.depths, maps.fitted.faces, kSize, stage.light, maps.frame});
+    commands.submit();
+    std::array<float, 2> found{};
+    product.buffer().read<float>(found);
+    std::vector<float> depths(std::size_t{kSize} * kSize * maps.fitted.faces);
+    maps.depths.read<float>(depths);
+    EXPECT_EQ(found, nearest_twin(maps, depths)) << "two-sided: " << two_sided << ", wall " << wall;
+    EXPECT_LT(found[0], 5) << "the sphere is seen";
+    EXPECT_EQ(found[1] < 5, two_sided);
+  }
+}
+
+/// Two parallel quads over all of a window, the nearer one wound one way, the farther one the other way.
+class TwoPlanes : public MapsTest {
+ protected:
+  static constexpr float kNear = 1, kFar = 2, kScene = 4;
+
+  /// The depths of all texels, times kScene; -1 if they are not all the same.
+  float depth(render::DepthCompare compare, render::Cull cull) {
+    const render::RasterPass pass(device_, {.name = "planes",
+                                            .vertex = shaders::kCasterVert,
+                                            .fragment = shaders::kCasterFrag,
+                                            .push_bytes = sizeof(maps::gpu::CasterPush),
+                                            .constants = {},
+                                            .depth = true,
+                                            .compare = compare,
+                                            .cull = cull});
+    std::vector<glm::vec3> corners;
+    for (const float z : {kNear, kFar}) {
+      const float turn = z == kNear ? 1.0F : -1.0F;
+      const glm::vec3 a(-9 * turn, -9, z), b(9 * turn, -9, z), c(9 * turn, 9, z), d(-9 * turn, 9, z);
+      corners.insert(corners.end(), {a, b, c, a, c, d});
+    }
+    const render::Buffer triangles = render::make_buffer<glm::vec3>(device_, "planes", corners);
+    const render::DepthTarget target(device_, "planes", kSize, kSize);
+    render::Buffer depths(device_, "depths", std::uint64_t{kSize} * kSize * sizeof(float));
+    const maps::gpu::CasterPush push{.point = {0, 0, 0},
+                                     .near = 0x1p-20F,
+                                     .row_x = {1, 0, 0},
+                                     .far = kScene,
+                                     .row_y = {0, 1, 0},
+                                     .first_vertex = 0,
+                                     .row_w = {0, 0, 1}};
+    render::Commands commands(device_);
+    pass.record(commands, push, {triangles}, {.width = kSize, .height = kSize, .vertices = 12, .depth = &target});
+    target.copy_to(commands, depths);
+    commands.submit();
+    std::vector<float> texels(std::size_t{kSize} * kSize);
+    depths.read<float>(texels);
+    const bool same = std::ranges::all_of(texels, [&](float texel) { return texel == texels.front(); });
+    return same ? texels.front() * kScene : -1;
+  }
+};
+
+TEST_F(TwoPlanes, TheDepthTestKeepsTheNearestOrTheFarthest) {
+  EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::none), kNear);
+  EXPECT_EQ(depth(render::DepthCompare::greater, render::Cull::none), kFar);
+}
+
+TEST_F(TwoPlanes, CullingLeavesOneSideOut) {
+  // Seen with y down, the nearer plane's corners run clockwise: it shows its back.
+  EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::back), kFar);
+  EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::front), kNear);
+  EXPECT_EQ(depth(render::DepthCompare::greater, render::Cull::back), kFar);
+  EXPECT_EQ(depth(render::DepthCompare::greater, render::Cull::front), kNear);
+}
+
+}  // namespace
+}  // namespace penumbra::maps_test
