@@ -1,5 +1,6 @@
 #include "maps/light_shape.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -77,6 +78,13 @@ void LightPattern::record(render::Commands& /*commands*/, const MapSet& maps) {
 
 double half_width(const visibility::Light& light) {
   return std::sqrt(light.area / std::numbers::pi);
+}
+
+glm::dvec2 half_extent(const visibility::Light& light, const LightFrame& frame) {
+  if (light.kind == visibility::LightKind::disk) return glm::dvec2(light.radius);
+  glm::dvec2 extent(0);
+  for (const glm::vec3& corner : light.outline) extent = glm::max(extent, glm::abs(glm::dvec2(frame.local(corner))));
+  return extent;
 }
 
 }  // namespace penumbra::maps

@@ -31,4 +31,7 @@ class LightPattern final : public MapProduct {
 /// Half the light's width: the radius of the disk of its area.
 double half_width(const visibility::Light& light);
 
+/// How far the light reaches from its centroid along the frame's u and v, on the farther side.
+glm::dvec2 half_extent(const visibility::Light& light, const LightFrame& frame);
+
 }  // namespace penumbra::maps

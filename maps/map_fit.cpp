@@ -55,8 +55,8 @@ struct Window {
   glm::dvec2 lower, upper;
 };
 
-/// The receivers on one side of the light's plane, as far as fitting needs them.
-struct SideReceivers {
+/// The receivers, or the casters, on one side of the light's plane, as far as fitting needs them.
+struct SideTriangles {
   bool any = false;
   bool reach_plane = false;                // some triangle crosses or touches the light's plane
   std::vector<glm::dvec2> hull_x, hull_y;  // (x, z) and (y, z), frame coordinates, z > 0
@@ -67,12 +67,13 @@ bool receives(const visibility::SceneFloats& scene, std::size_t triangle) {
          scene.plane[triangle] != visibility::SceneFloats::kNoPlane;
 }
 
-SideReceivers receivers_on_side(const visibility::SceneFloats& scene, const std::vector<glm::dvec3>& local,
-                                double sign) {
-  SideReceivers side;
+template <typename Counts>
+SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std::vector<glm::dvec3>& local, double sign,
+                                const Counts& counts) {
+  SideTriangles side;
   std::vector<std::uint8_t> used(local.size(), 0);
   for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
-    if (!receives(scene, i)) continue;
+    if (!counts(i)) continue;
     const visibility::Triangle& corners = scene.triangles[i];
     const auto in_front = std::count_if(corners.begin(), corners.end(), [&](auto c) { return sign * local[c].z > 0; });
     if (in_front == 0) continue;
@@ -104,13 +105,31 @@ std::pair<double, double> tangents(const std::vector<glm::dvec2>& hull, double o
   return {lower, upper};
 }
 
+/// What a window has to hold.
+struct Contents {
+  const SideTriangles& receivers;
+  const SideTriangles& casters;  ///< where they are not more than `beside` beside the receivers
+  glm::dvec2 beside;
+};
+
 /// The window of one light point with a texel to spare on every side, or nothing if it would be too wide.
-std::optional<Window> fit_window(const SideReceivers& side, const glm::dvec3& origin, double sign, std::uint32_t size) {
-  if (side.reach_plane) return std::nullopt;
+std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& origin, double sign, std::uint32_t size) {
+  const auto& [receivers, casters, beside] = contents;
+  if (receivers.reach_plane) return std::nullopt;
   Window window{};
   for (int axis = 0; axis < 2; ++axis) {
-    const auto [lower, upper] = tangents(axis == 0 ? side.hull_x : side.hull_y, origin[axis], sign * origin.z);
+    const double origin_z = sign * origin.z;
+    auto [lower, upper] = tangents(axis == 0 ? receivers.hull_x : receivers.hull_y, origin[axis], origin_z);
     if (!(std::max(-lower, upper) <= kWidestTangent)) return std::nullopt;
+    if (casters.any && beside[axis] > 0) {
+      // Casters that reach the light's plane are seen in every direction.
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      const auto [first, last] = casters.reach_plane
+                                     ? std::pair(-kInfinity, kInfinity)
+                                     : tangents(axis == 0 ? casters.hull_x : casters.hull_y, origin[axis], origin_z);
+      lower = std::min(lower, std::max(first, lower - beside[axis]));
+      upper = std::max(upper, std::min(last, upper + beside[axis]));
+    }
     // A receiver seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
     const double texel = std::max((upper - lower) / (size - 2), kWidestTangent * 0x1p-20);
     window.lower[axis] = lower - texel;
@@ -128,7 +147,7 @@ double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
 }  // namespace
 
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightFrame& frame,
-                      std::span<const glm::vec3> points, std::uint32_t size) {
+                      std::span<const glm::vec3> points, const FitOptions& options) {
   std::vector<glm::dvec3> local(scene.positions.size());
   std::transform(scene.positions.begin(), scene.positions.end(), local.begin(),
                  [&](const glm::vec3& x) { return frame.local(x); });
@@ -142,11 +161,17 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   }
   for (int s = 0; s < (light.two_sided ? 2 : 1); ++s) {
     const double sign = s == 0 ? 1 : -1;
-    const SideReceivers receivers = receivers_on_side(scene, local, sign);
+    const SideTriangles receivers =
+        triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, i); });
     if (!receivers.any) continue;
+    const bool beside = options.beside != glm::dvec2(0);
+    const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {
+      return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
+    });
+    const Contents contents{receivers, casters, options.beside};
     bool windows = true;  // for all points of the light or for none
     for (gpu::LightView& view : fitted.views) {
-      const std::optional<Window> window = fit_window(receivers, frame.local(view.point), sign, size);
+      const std::optional<Window> window = fit_window(contents, frame.local(view.point), sign, options.size);
       if (!window) {
         windows = false;
         break;

@@ -20,10 +20,17 @@ struct FittedViews {
   std::uint32_t faces = 0;  ///< of one light point: 0 … 10
 };
 
+struct FitOptions {
+  std::uint32_t size = 0;  ///< texels on a side of a face
+  /// How far beside a receiver's direction a look-up taps the map, in x/z and y/z: windows hold casters that far beside
+  /// the receivers, too. Where there is no caster a tap beside the window finds nothing, and nothing is there.
+  glm::dvec2 beside{0};
+};
+
 /// Fits each point's maps to the receivers of the scene, so that no receiver on an emitting side is ever outside.
-/// Depends on mesh and light only, not on the camera. `size`: texels on a side of a face.
+/// Depends on mesh and light only, not on the camera.
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightFrame& frame,
-                      std::span<const glm::vec3> points, std::uint32_t size);
+                      std::span<const glm::vec3> points, const FitOptions& options);
 
 /// What caster.vert needs for one face of a view; `first_vertex` is the caller's.
 gpu::CasterPush face_push(const gpu::LightView& view, const LightFrame& frame, std::uint32_t face);

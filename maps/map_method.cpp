@@ -90,7 +90,8 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   frame_ = frame_of(light);
   const glm::vec3 centre(frame_.center);
   const bool many = recipe_.points == MapPoints::light_samples;
-  fitted_ = fit_views(*scene_, light, frame_, many ? std::span(light.points) : std::span(&centre, 1), options_.size);
+  const FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, frame_) : glm::dvec2(0)};
+  fitted_ = fit_views(*scene_, light, frame_, many ? std::span(light.points) : std::span(&centre, 1), fit);
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
   check_faces_fit(*device_, options_.size, faces);
 

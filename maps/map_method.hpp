@@ -68,6 +68,8 @@ struct MapRecipe {
   std::string look_up_name;
   std::span<const std::uint32_t> look_up{};
   std::vector<std::unique_ptr<MapProduct>> products{};
+  /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
+  std::function<glm::dvec2(const visibility::Light&, const LightFrame&)> beside{};
   /// What the shader's push constants have behind LookupPush: `push_words` of them, for a light.
   std::uint32_t push_words = 0;
   std::function<std::vector<std::uint32_t>(const visibility::Light&)> push{};

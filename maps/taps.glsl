@@ -50,7 +50,10 @@ Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
     }
   }
   const vec2 texel = (upper - lower) / float(size);
-  const vec2 at = clamp(floor((f.xy / f.z - lower) / texel), vec2(0.0), vec2(float(size - 1)));
+  const vec2 cell = floor((f.xy / f.z - lower) / texel);
+  const vec2 at = clamp(cell, vec2(0.0), vec2(float(size - 1)));
+  // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.
+  const bool beside = side.face_count == 1 && at != cell;
   const vec2 center = lower + (at + 0.5) * texel;
   if (tap.axis == 2) {
     tap.direction = vec3(center, 1.0);
@@ -63,7 +66,7 @@ Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   tap.along = f.z;
   tap.texel = max(texel.x, texel.y);
   const uint map = first_map + side.first_face + face;
-  tap.depth = side.face_count == 0 ? view.far : view.far * maps[(map * size + uint(at.y)) * size + uint(at.x)];
+  tap.depth = side.face_count == 0 || beside ? view.far : view.far * maps[(map * size + uint(at.y)) * size + uint(at.x)];
   return tap;
 }
 

@@ -21,7 +21,7 @@ struct CentreMaps {
   CentreMaps(const render::Device& device, const Stage& stage)
       : frame(maps::frame_of(stage.light)),
         centre(frame.center),
-        fitted(maps::fit_views(stage.scene, stage.light, frame, std::span(&centre, 1), kSize)),
+        fitted(maps::fit_views(stage.scene, stage.light, frame, std::span(&centre, 1), {.size = kSize})),
         views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
         depths(device, "depths", std::uint64_t{kSize} * kSize * sizeof(float) * fitted.faces) {
     maps::CasterMaps casters(device, kSize);
@@ -89,6 +89,30 @@ TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
     EXPECT_LT(found[0], 5) << "the sphere is seen";
     EXPECT_EQ(found[1] < 5, two_sided);
   }
+}
+
+// A receiver far smaller than the light: what shades it stands in none of its directions from the light's centre.
+TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {0.05, 0, 0}, {0, 0, -0.05});
+  // Half the light's height up, from x = 0.3 on: hides the light from x = 0.6 on.
+  add_quad(scene, {4.3, 1, 0}, {4, 0, 0}, {0, 0, -4}).receives_shadow = false;
+  scene.lights.push_back(square_light(2, 1));
+  scene.cameras.push_back(camera_at({0, 0.5, 0.5}, {0, 0, 0}, 20));
+  const Stage stage = make_stage(scene, samples(1), 16);
+  const Result result =
+      run(maps::make_pcss, stage, {{"size", "256"}, {"blockerSamples", "1024"}, {"filterSamples", "1024"}});
+  std::size_t receivers = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;
+    ++receivers;
+    // From p the light is hidden from x = 2 · 0.3 − p.x on. Of n evenly spread points the share beside a line is off by
+    // log₂ n / n at most, and where the map has the board's edge by half a texel, 0.01, that is 0.01 of V.
+    const double x = stage.scene.origin.x + static_cast<double>(stage.samples.p[i].x);
+    const double exact = (1 + 0.6 - x) / 2;
+    EXPECT_NEAR(static_cast<double>(result.visibility[i]), exact, 10.0 / 1024 + 0.01);
+  }
+  EXPECT_GT(receivers, 20U);
 }
 
 /// Two parallel quads over all of a window, the nearer one wound one way, the farther one the other way.
