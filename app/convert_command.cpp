@@ -2,8 +2,8 @@
 #include "app/interrupt.hpp"
 #include "app/output_files.hpp"
 #include "base/error.hpp"
-#include "scenes/reader.hpp"
-#include "scenes/writer.hpp"
+#include "scenes/formats/reader.hpp"
+#include "scenes/formats/writer.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>

@@ -14,12 +14,12 @@
 #include "vsm/view_sample.hpp"
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
-#include "volumes/depth_complexity.hpp"
-#include "volumes/edge_scatter.hpp"
-#include "volumes/hard_volume.hpp"
-#include "volumes/soft_volume.hpp"
-#include "volumes/soft_volume_blend.hpp"
-#include "volumes/wedge_ramp.hpp"
+#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
+#include "volumes/soft/hard_volume.hpp"
+#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/soft_volume_blend.hpp"
+#include "volumes/soft/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/accumulate.hpp"

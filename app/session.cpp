@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "render/visibility_buffer.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 
 #include <fmt/ranges.h>
 

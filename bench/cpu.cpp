@@ -3,10 +3,10 @@
 #include "app/session.hpp"
 #include "app/stopwatch.hpp"
 #include "mesh/edge_graph.hpp"
-#include "render/tree_texels.hpp"
+#include "visibility/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
-#include "volumes/edge_set.hpp"
-#include "volumes/penumbra_wedge.hpp"
+#include "volumes/edges/edge_set.hpp"
+#include "volumes/wedges/penumbra_wedge.hpp"
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ std::vector<CpuEntry> measure_edges(std::uint64_t triangles, std::uint32_t runs)
   add(time_runs(runs, [&] { records = volumes::edge_records(floats, volumes::edge_casters(floats, -1)); }), 0);
   entries.back().items = records.size();
   volumes::EdgeTexels texels;
-  const float scale = render::device_scale(floats);
+  const float scale = visibility::device_scale(floats);
   add(time_runs(runs, [&] { texels = volumes::edge_texels(records, scale); }), records.size());
   entries.back().counts = {{"depth", texels.depth}};
   return entries;

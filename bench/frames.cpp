@@ -4,7 +4,7 @@
 #include "app/stopwatch.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
-#include "volumes/wedge_builder.hpp"
+#include "volumes/raster/wedge_builder.hpp"
 
 #include <fmt/format.h>
 

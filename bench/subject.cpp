@@ -2,7 +2,7 @@
 
 #include "app/parse.hpp"
 #include "base/error.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

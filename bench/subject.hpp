@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "scenes/scene.hpp"
 
 #include <cstdint>

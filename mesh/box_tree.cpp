@@ -1,6 +1,6 @@
 #include "mesh/box_tree.hpp"
 
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <tbb/parallel_invoke.h>
 

@@ -1,7 +1,7 @@
 #include "mesh/edge_graph.hpp"
 
 #include "base/assert.hpp"
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
 
 #include <tbb/parallel_sort.h>

@@ -1,7 +1,7 @@
 #include "mesh/silhouettes.hpp"
 
 #include "base/assert.hpp"
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <algorithm>
 #include <array>

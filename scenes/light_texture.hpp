@@ -2,7 +2,6 @@
 
 #include "mesh/input_file.hpp"
 #include "scenes/scene.hpp"
-#include "scenes/texture_file.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +9,10 @@
 
 /// Pictures on lights. Internal to scenes/.
 namespace penumbra::scenes {
+
+/// More texels a side than the densest light samples (64 x 64) can tell apart, and few enough for every copy of a light
+/// to carry its own: 84 MB at most.
+inline constexpr std::uint32_t kLargestTextureSide = 2048;
 
 /// Reads a PNG (values are sRGB, made linear; transparent texels are put on black) or an OpenEXR picture (channels R, G
 /// and B, or Y alone, linear with the primaries of Rec. 709; a premultiplied alpha is left out); the file's first bytes

@@ -3,7 +3,7 @@ find_package(CGAL REQUIRED)
 find_package(GTest REQUIRED)
 
 add_executable(mesh_diagnosis_test
-  unit/mesh_diagnosis_test.cpp property/mesh_diagnosis_properties.cpp property/diagnosis_oracle.cpp)
+  unit/mesh/mesh_diagnosis_test.cpp property/mesh_diagnosis_properties.cpp property/diagnosis_oracle.cpp)
 target_link_libraries(mesh_diagnosis_test PRIVATE
   penumbra_mesh penumbra_warnings CGAL::CGAL GTest::gmock GTest::gtest_main)
 # Two tests to ctest: hundreds of processes for as many seeds would take longer than the seeds.

@@ -5,7 +5,7 @@ find_library(RAPIDCHECK rapidcheck REQUIRED)
 add_executable(mesh_edges_tests
   ${CMAKE_CURRENT_LIST_DIR}/property/mesh_predicates.cpp
   ${CMAKE_CURRENT_LIST_DIR}/property/mesh_silhouettes.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/unit/mesh_edge_graph.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/unit/mesh/mesh_edge_graph.cpp)
 # GMP's rationals are the judge of the exact predicates: another library, another formula.
 target_link_libraries(mesh_edges_tests PRIVATE
   penumbra_mesh penumbra_warnings ${RAPIDCHECK} GTest::gtest_main TBB::tbb gmpxx gmp)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/diagnosis.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
 
 #include <cstdint>
 #include <initializer_list>

@@ -1,7 +1,7 @@
 #include "vsm/closed_parts.hpp"
 
 #include "mesh/closed_components.hpp"
-#include "mesh/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

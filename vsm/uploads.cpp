@@ -89,7 +89,7 @@ std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const vis
                             scene.receives_shadow[static_cast<std::size_t>(carrier)] == 0;  // the host says V = 1
     texels.push_back(
         {samples.p[i] * scale, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
-    const bool known = !background && render::normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
+    const bool known = !background && visibility::normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
     const std::uint32_t part = background || closed.parts.empty() ? 0U : closed.part[static_cast<std::size_t>(carrier)];
     const std::uint32_t plane = background ? 0U : scene.plane[static_cast<std::size_t>(carrier)];
     texels.push_back({known ? samples.n[i] : glm::vec3(0), plane | part << kPartShift});

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/tree_texels.hpp"
+#include "visibility/tree_texels.hpp"
 #include "visibility/light_frame.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
@@ -17,7 +17,7 @@
 
 namespace penumbra::vsm {
 
-using render::Texel;
+using visibility::Texel;
 
 /// A plane's number shares its word with a closed part's.
 inline constexpr std::uint32_t kPartShift = 27;

@@ -67,14 +67,14 @@ class ViewSampleMapping final : public visibility::Method {
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     part_levels_ = 0;
-    scale_ = render::device_scale(scene);
+    scale_ = visibility::device_scale(scene);
     tree_ = visibility::make_triangle_tree(scene);
     if (scene.triangles.size() >> kPartShift != 0) {
       throw ResourceError("view-sample handles up to 2^{} triangles; this scene has {}", kPartShift,
                           scene.triangles.size());
     }
     closed_ = find_closed_parts(scene);
-    node_texels_ = render::node_texels(tree_, scale_);
+    node_texels_ = visibility::node_texels(tree_, scale_);
     const std::array<std::vector<Texel>, 3> corners = corner_texels(tree_, scene, closed_, scale_);
     using render::BufferUse;
     nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", node_texels_, BufferUse::texels));

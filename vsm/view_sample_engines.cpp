@@ -3,9 +3,9 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "visibility/light_frame.hpp"
-#include "native/mask_method.hpp"
+#include "engines/engine_choice.hpp"
 #include "vsm/view_sample.hpp"
-#include "vsm/view_sample_native.hpp"
+#include "vsm/vectors/view_sample_native.hpp"
 #include "vsm/view_sample_vulkan.hpp"
 
 #include <utility>
@@ -85,7 +85,7 @@ class ViewSample final : public visibility::Method {
 std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
   visibility::check_options(view_sample_description(), options);
-  if (native::runs_natively(device, options, "view-sample")) return std::make_unique<ViewSample>(device);
+  if (engines::runs_natively(device, options, "view-sample")) return std::make_unique<ViewSample>(device);
   return make_vulkan_view_sample(device);
 }
 

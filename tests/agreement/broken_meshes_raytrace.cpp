@@ -3,7 +3,7 @@
 
 #include "tests/agreement/differences.hpp"
 
-#include "mesh/broken_meshes.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
 #include "mesh/import.hpp"
 
 #include <filesystem>

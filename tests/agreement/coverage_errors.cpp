@@ -1,10 +1,10 @@
 // What soft shadow volumes get wrong, predicted and measured: silhouettes of the light's centre, and sums in place of
 // unions. And what they get right, in scenes of several solids that shadow themselves.
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
 #include "tests/unit/exact_area_soups.hpp"
-#include "volumes/coverage_validation.hpp"
+#include "volumes/wedges/coverage_validation.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Sums over silhouettes against areas that know no silhouette: of each triangle by itself, and of their exact union.
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
 #include "tests/unit/exact_area_soups.hpp"
 

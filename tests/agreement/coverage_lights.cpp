@@ -2,7 +2,7 @@
 
 #include "tests/unit/coverage_stage.hpp"
 #include "tests/unit/exact_area_soups.hpp"
-#include "volumes/coverage_validation.hpp"
+#include "volumes/wedges/coverage_validation.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // Sums of the receiver's silhouettes over meshes with every defect, and over real ones: against triangles one by one,
 // and the exact union.
 
-#include "mesh/broken_meshes.hpp"
-#include "mesh/diagnosis.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/import.hpp"
 #include "tests/unit/coverage_stage.hpp"
 #include "visibility/pair_truth.hpp"
-#include "volumes/coverage_validation.hpp"
+#include "volumes/wedges/coverage_validation.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

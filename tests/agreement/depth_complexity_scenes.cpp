@@ -3,9 +3,9 @@
 
 #include "tests/agreement/differences.hpp"
 
-#include "scenes/reader.hpp"
-#include "volumes/depth_complexity.hpp"
-#include "volumes/edge_scatter.hpp"
+#include "scenes/formats/reader.hpp"
+#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
 
 #include <filesystem>
 

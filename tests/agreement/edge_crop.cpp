@@ -3,10 +3,10 @@
 
 #include "tests/agreement/differences.hpp"
 
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 #include "visibility/light_frame.hpp"
-#include "volumes/depth_complexity.hpp"
-#include "volumes/edge_lists.hpp"
+#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/edges/edge_lists.hpp"
 
 #include <filesystem>
 
@@ -74,7 +74,7 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
 int multiplicity(const EdgeTexels& texels, std::uint32_t slot, const glm::vec3& p) {
   int sum = 0;
   for (const std::size_t side : {2U, 4U}) {
-    const render::Texel &n = texels.slots[side][slot], &anchor = texels.slots[side + 1][slot];
+    const visibility::Texel &n = texels.slots[side][slot], &anchor = texels.slots[side + 1][slot];
     const float f = glm::dot(n.value, p - anchor.value);
     sum += f > 0 ? 1 : f < 0 ? -1 : 0;
   }
@@ -86,7 +86,7 @@ class EdgeCropBase : public tests::DeviceTest, public testing::WithParamInterfac
   void check(std::uint32_t size) {
     const CropStage stage(device(), GetParam(), size);
     const auto all = lists_of(device(), stage, false), cropped = lists_of(device(), stage, true);
-    const float scale = render::device_scale(stage.floats);
+    const float scale = visibility::device_scale(stage.floats);
     const EdgeTexels texels = edge_texels(edge_records(stage.floats, edge_casters(stage.floats, -1)), scale);
     double pixels = 0, reached = 0, kept = 0, silhouettes = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {

@@ -6,7 +6,7 @@
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/panel.hpp"
 #include "tests/agreement/soft_stage.hpp"
-#include "volumes/edge_scatter.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
 
 #include <glm/geometric.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "render/device.hpp"
 #include "visibility/method.hpp"
-#include "volumes/edge_scatter.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
 #include "vsm/view_sample.hpp"
 
 #include <array>

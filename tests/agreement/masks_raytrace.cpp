@@ -2,8 +2,8 @@
 
 #include "tests/agreement/differences.hpp"
 
-#include "mesh/shapes.hpp"
-#include "scenes/reader.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "scenes/formats/reader.hpp"
 
 #include <glm/geometric.hpp>
 

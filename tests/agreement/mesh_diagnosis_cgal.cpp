@@ -1,7 +1,7 @@
 // The diagnosis against CGAL's own functions on CGAL's own meshes. Polygons of more than three corners are cut into the
 // same fans for both sides. Where CGAL's function means something else, the comparison says what and why.
 
-#include "mesh/diagnosis.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

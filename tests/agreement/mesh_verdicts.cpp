@@ -3,11 +3,11 @@
 
 #include "app/methods.hpp"
 #include "app/pixel_samples.hpp"
-#include "mesh/broken_meshes.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
 #include "areas/exact_area.hpp"
 #include "tests/agreement/differences.hpp"
-#include "volumes/layer_areas.hpp"
-#include "volumes/soft_visibility.hpp"
+#include "volumes/wedges/layer_areas.hpp"
+#include "volumes/wedges/soft_visibility.hpp"
 
 #include <cmath>
 #include <map>

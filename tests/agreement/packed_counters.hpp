@@ -5,8 +5,8 @@
 
 #include "tests/agreement/support.hpp"
 #include "visibility/triangle_tree.hpp"
-#include "volumes/packed_counters.hpp"
-#include "volumes/wedge_casters.hpp"
+#include "volumes/counters/packed_counters.hpp"
+#include "volumes/wedges/wedge_casters.hpp"
 
 #include "mesh/silhouettes.hpp"
 

@@ -4,7 +4,7 @@
 #include "tests/agreement/packed_counters.hpp"
 
 #include "render/visibility_buffer.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 
 #include <filesystem>
 

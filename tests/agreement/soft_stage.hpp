@@ -2,13 +2,13 @@
 
 // A scene as soft shadow volumes see it, beside their C++ twin and the exact areas.
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "areas/exact_area.hpp"
 #include "render/visibility_buffer.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 #include "tests/agreement/support.hpp"
-#include "volumes/soft_visibility.hpp"
-#include "volumes/wedge_casters.hpp"
+#include "volumes/wedges/soft_visibility.hpp"
+#include "volumes/wedges/wedge_casters.hpp"
 
 #include <glm/common.hpp>
 

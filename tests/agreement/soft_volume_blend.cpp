@@ -2,8 +2,8 @@
 
 #include "tests/agreement/soft_stage.hpp"
 
-#include "volumes/soft_volume.hpp"
-#include "volumes/soft_volume_blend.hpp"
+#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/soft_volume_blend.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "tests/agreement/soft_stage.hpp"
 
-#include "volumes/soft_volume.hpp"
+#include "volumes/soft/soft_volume.hpp"
 
 namespace penumbra::volumes {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "tests/agreement/soft_stage.hpp"
 
-#include "volumes/coverage_table.hpp"
-#include "volumes/soft_volume.hpp"
-#include "volumes/texture_weights.hpp"
+#include "volumes/soft/coverage_table.hpp"
+#include "volumes/soft/soft_volume.hpp"
+#include "volumes/wedges/texture_weights.hpp"
 
 #include <glm/geometric.hpp>
 

@@ -4,9 +4,9 @@
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/soft_stage.hpp"
 
-#include "mesh/broken_meshes.hpp"
-#include "volumes/soft_volume.hpp"
-#include "volumes/soft_volume_blend.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "volumes/soft/soft_volume.hpp"
+#include "volumes/soft/soft_volume_blend.hpp"
 
 namespace penumbra::volumes {
 namespace {

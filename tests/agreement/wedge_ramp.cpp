@@ -2,8 +2,8 @@
 
 #include "tests/agreement/soft_stage.hpp"
 
-#include "volumes/ramp_wedges.hpp"
-#include "volumes/wedge_ramp.hpp"
+#include "volumes/soft/ramp_wedges.hpp"
+#include "volumes/soft/wedge_ramp.hpp"
 
 namespace penumbra::volumes {
 namespace {

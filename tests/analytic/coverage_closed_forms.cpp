@@ -3,7 +3,7 @@
 // Tolerance: an area is a sum of a handful of terms below 4, each off by a few ulps of 1, of ends off by a few ulps of
 // their size: 1e-12 is thousands of ulps and far below what a wrong edge would cost.
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
 
 #include <gtest/gtest.h>

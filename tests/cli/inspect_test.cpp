@@ -1,7 +1,7 @@
 // inspect: what it says of a mesh whose defects are known, in table, JSON and files, and what it refuses.
 #include "tests/cli/program.hpp"
 
-#include "mesh/repair.hpp"
+#include "mesh/repair/repair.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // Every file of Debian's assimp-testmodels either loads or is refused with a message; none crashes or hangs us.
 #include "base/error.hpp"
 #include "mesh/import.hpp"
-#include "scenes/gltf_reader.hpp"
+#include "scenes/formats/gltf_reader.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // On a lattice of small integers, stretched by a power of two from one end of double's range to the other, signs are
 // those of integers; on wild coordinates only what needs no sign is checked.
 #include "base/assert.hpp"
-#include "mesh/diagnosis.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/silhouettes.hpp"
 #include "tests/fuzz/bytes.hpp"
 

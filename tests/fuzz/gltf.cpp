@@ -3,7 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "mesh/import_wire.hpp"
-#include "scenes/gltf_import.hpp"
+#include "import/gltf/gltf_import.hpp"
 #include "scenes/scene_wire.hpp"
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/folder.hpp"

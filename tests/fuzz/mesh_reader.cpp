@@ -1,7 +1,7 @@
 // What runs inside the import helper, on any file: the first byte chooses the format, the rest is the file's content.
 // All of these are read by our own code.
 #include "base/error.hpp"
-#include "mesh/import_read.hpp"
+#include "import/read.hpp"
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/folder.hpp"
 #include "tests/fuzz/imported.hpp"

@@ -1,6 +1,6 @@
 // The OFF reader on any text: an InputError, or a mesh in which everything is in range.
 #include "base/error.hpp"
-#include "mesh/import_off.hpp"
+#include "import/off.hpp"
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/imported.hpp"
 

@@ -1,8 +1,8 @@
-// Repair of any small soup, with CGAL's own checks on: it ends, what comes out is a soup, and triangles without area are
-// gone or spoken of.
+// Repair of any small soup, with CGAL's own checks on: it ends, what comes out is a soup, and triangles without area
+// are gone or spoken of.
 #include "base/assert.hpp"
-#include "mesh/diagnosis.hpp"
-#include "mesh/repair.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
+#include "mesh/repair/repair.hpp"
 #include "tests/fuzz/bytes.hpp"
 
 #include <cmath>

@@ -2,8 +2,8 @@
 // manager's lists is read: the scene's folder does not exist, and there is no import helper.
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "scenes/checks.hpp"
-#include "scenes/json_reader.hpp"
+#include "scenes/formats/checks.hpp"
+#include "scenes/formats/json_reader.hpp"
 #include "tests/fuzz/bytes.hpp"
 
 #include <nlohmann/json.hpp>

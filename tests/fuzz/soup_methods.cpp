@@ -3,8 +3,8 @@
 #include "base/error.hpp"
 #include "tests/fuzz/soup_judge.hpp"
 #include "visibility/pair_truth.hpp"
-#include "volumes/depth_complexity.hpp"
-#include "volumes/edge_scatter.hpp"
+#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
 #include "vsm/view_sample.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Pictures on lights, PNG or OpenEXR, as the import helper reads them: an Error, or as many texels as it says.
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "scenes/texture_file.hpp"
+#include "import/texture_file.hpp"
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/folder.hpp"
 

@@ -1,7 +1,7 @@
 // 3D Studio files as the import helper reads them: by Assimp, which is the system's and not instrumented, and from
 // there by our code. Whatever Assimp makes of a damaged file, a mesh that is let through keeps its promises.
 #include "base/error.hpp"
-#include "mesh/import_read.hpp"
+#include "import/read.hpp"
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/folder.hpp"
 #include "tests/fuzz/imported.hpp"

@@ -2,7 +2,7 @@
 // answers are formulas; the diagnosis searches.
 
 #include "base/error.hpp"
-#include "mesh/broken_meshes.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,8 +3,8 @@
 // Points are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰, as in coverage_properties.cpp: signs are
 // exact.
 
-#include "volumes/radial_coverage.hpp"
-#include "volumes/texture_weights.hpp"
+#include "volumes/wedges/radial_coverage.hpp"
+#include "volumes/wedges/texture_weights.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

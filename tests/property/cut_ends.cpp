@@ -1,8 +1,8 @@
 // Where edges pass through a light's plane, and normals, against rationals.
 
 #include "tests/agreement/hostile_lamps.hpp"
-#include "volumes/cut_ends.hpp"
-#include "volumes/plane_normal.hpp"
+#include "volumes/edges/cut_ends.hpp"
+#include "volumes/edges/plane_normal.hpp"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 
 #include "tests/agreement/differences.hpp"
 
-#include "mesh/broken_meshes.hpp"
-#include "volumes/depth_complexity.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "volumes/counters/depth_complexity.hpp"
 
 #include <atomic>
 #include <cmath>

@@ -2,7 +2,7 @@
 // tolerance, for light samples in rows and for heaps of points.
 
 #include "tests/property/lattice_truth.hpp"
-#include "volumes/depth_complexity.hpp"
+#include "volumes/counters/depth_complexity.hpp"
 
 #include <cmath>
 

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "mesh/diagnosis.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
 
 #include <cstdint>
 #include <map>
 #include <set>
 #include <vector>
 
-/// mesh/diagnosis.hpp once more, straight from its definitions, in time quadratic or worse. For soups whose coordinates
-/// are small integers: all arithmetic that decides is in integers, but for the winding numbers.
+/// mesh/diagnosis/diagnosis.hpp once more, straight from its definitions, in time quadratic or worse. For soups whose
+/// coordinates are small integers: all arithmetic that decides is in integers, but for the winding numbers.
 namespace penumbra::mesh::oracle {
 
 struct Point {

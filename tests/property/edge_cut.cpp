@@ -1,10 +1,10 @@
 // Edges cut at a light's plane inside their hierarchy: what the walk finds is what cutting all records gives, and
 // mending leaves nothing behind.
 
-#include "render/tree_texels.hpp"
+#include "visibility/tree_texels.hpp"
 #include "tests/agreement/lattice.hpp"
-#include "volumes/edge_sides.hpp"
-#include "volumes/native_cut.hpp"
+#include "volumes/edges/edge_sides.hpp"
+#include "volumes/scatter/vectors/cut.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TEST(CutEdges, AreThoseOfAllRecordsCut) {
     visibility::SampleRequest request;
     scene.lights.push_back(soup.light(request));
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const float scale = render::device_scale(floats);
+    const float scale = visibility::device_scale(floats);
     const TriangleTree triangles = visibility::make_triangle_tree(floats);
     EdgeSides sides("test");
     sides.prepare_mesh(floats);

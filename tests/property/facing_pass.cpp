@@ -4,8 +4,8 @@
 #include "tests/agreement/support.hpp"
 
 #include "mesh/predicates.hpp"
-#include "mesh/shapes.hpp"
-#include "volumes/facing.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "volumes/edges/facing.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -4,10 +4,10 @@
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
 
-#include "mesh/broken_meshes.hpp"
-#include "scenes/reader.hpp"
-#include "volumes/hard_volume.hpp"
-#include "volumes/volume_count.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "scenes/formats/reader.hpp"
+#include "volumes/soft/hard_volume.hpp"
+#include "volumes/raster/volume_count.hpp"
 
 #include <filesystem>
 

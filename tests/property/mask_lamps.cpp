@@ -4,7 +4,7 @@
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
-#include "volumes/depth_complexity.hpp"
+#include "volumes/counters/depth_complexity.hpp"
 
 #include <fmt/format.h>
 

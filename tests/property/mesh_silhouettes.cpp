@@ -1,7 +1,7 @@
 // Signed multiplicities and silhouettes: the definition in integers on lattice soups, what must not change them, closed
 // forms, and the conservative list of edges that can be silhouettes.
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "mesh/silhouettes.hpp"
 
 #include <glm/common.hpp>

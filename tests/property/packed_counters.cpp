@@ -3,11 +3,11 @@
 
 #include "tests/agreement/packed_counters.hpp"
 
-#include "mesh/broken_meshes.hpp"
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
-#include "volumes/depth_complexity.hpp"
+#include "volumes/counters/depth_complexity.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Wedges of random and of awkward edges: every plane is proved, exactly, to contain the penumbra; points of it are
 // inside; and the bound is as small as its construction promises.
 
-#include "volumes/penumbra_wedge.hpp"
+#include "volumes/wedges/penumbra_wedge.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "mesh/import_polygon.hpp"
+#include "import/polygon.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The sweep of rows=exact by itself: what no triangle covers has the same area whichever way the rows run.
 
-#include "volumes/row_sweep.hpp"
+#include "volumes/scatter/vectors/row_sweep.hpp"
 
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 
 #include "tests/agreement/support.hpp"
 
-#include "mesh/broken_meshes.hpp"
-#include "mesh/shapes.hpp"
-#include "volumes/silhouette_pass.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "volumes/edges/silhouette_pass.hpp"
 
 #include <cmath>
 

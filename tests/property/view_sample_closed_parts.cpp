@@ -2,7 +2,7 @@
 // the worst that are still closed: spheres in connection only, their vertices anywhere on a lattice, so that they cross
 // themselves, touch their box, the floor and the view samples, and have no inside that deserves the name.
 
-#include "mesh/shapes.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
 #include "vsm/closed_parts.hpp"

@@ -6,7 +6,7 @@
 #include "tests/agreement/support.hpp"
 
 #include "render/visibility_buffer.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 
 #include <numeric>
 

@@ -4,7 +4,7 @@
 
 #include "tests/agreement/differences.hpp"
 
-#include "mesh/broken_meshes.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
 
 #include <optional>
 

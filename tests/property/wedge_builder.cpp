@@ -3,11 +3,11 @@
 #include "tests/agreement/support.hpp"
 #include "tests/property/wedge_cases.hpp"
 
-#include "mesh/broken_meshes.hpp"
-#include "mesh/shapes.hpp"
-#include "scenes/reader.hpp"
-#include "volumes/facing.shared.h"
-#include "volumes/wedge_builder.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "scenes/formats/reader.hpp"
+#include "volumes/edges/facing.shared.h"
+#include "volumes/raster/wedge_builder.hpp"
 
 #include <filesystem>
 

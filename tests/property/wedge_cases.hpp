@@ -1,8 +1,8 @@
 #pragma once
 
 #include "scenes/scene.hpp"
-#include "volumes/wedge_tightness.hpp"
-#include "volumes/wedge_validation.hpp"
+#include "volumes/wedges/wedge_tightness.hpp"
+#include "volumes/wedges/wedge_validation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Wedges of the meshes of Debian's libcgal-demo under every kind of light: as they come, in scene floats.
 
-#include "mesh/diagnosis.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/import.hpp"
 #include "tests/property/wedge_cases.hpp"
 

@@ -1,6 +1,6 @@
 // Boxes cut by half-spaces: exact corners, ties of every kind, and flaws that are found.
 
-#include "volumes/wedge_polyhedron.hpp"
+#include "volumes/wedges/wedge_polyhedron.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // `wedges --validate` as a library: every mesh and every kind of light passes; every fault is caught.
 
-#include "mesh/broken_meshes.hpp"
-#include "scenes/reader.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "scenes/formats/reader.hpp"
 #include "tests/property/wedge_cases.hpp"
-#include "volumes/wedge_faults.hpp"
+#include "volumes/wedges/wedge_faults.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -2,8 +2,8 @@
 
 #include "areas/exact_area.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
-#include "volumes/layer_areas.hpp"
-#include "volumes/soft_visibility.hpp"
+#include "volumes/wedges/layer_areas.hpp"
+#include "volumes/wedges/soft_visibility.hpp"
 
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "scenes/flat_light.hpp"
+#include "import/gltf/flat_light.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "scenes/gltf_reader.hpp"
+#include "scenes/formats/gltf_reader.hpp"
 
 #include "mesh/import.hpp"
-#include "tests/unit/import_files.hpp"
+#include "tests/unit/mesh/import_files.hpp"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>

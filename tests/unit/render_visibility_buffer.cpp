@@ -5,7 +5,7 @@
 #include "tests/agreement/support.hpp"
 
 #include "render/visibility_buffer.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 
 namespace penumbra::render {
 namespace {

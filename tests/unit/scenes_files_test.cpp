@@ -1,4 +1,4 @@
-#include "scenes/package_files.hpp"
+#include "scenes/formats/package_files.hpp"
 #include "tests/unit/scenes_support.hpp"
 
 #include <gtest/gtest.h>

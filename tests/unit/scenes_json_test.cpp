@@ -1,4 +1,4 @@
-#include "scenes/json_schema.hpp"
+#include "scenes/formats/json_schema.hpp"
 #include "tests/unit/scenes_support.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "mesh/broken_meshes.hpp"
-#include "mesh/shapes.hpp"
-#include "scenes/json_meshes.hpp"
-#include "scenes/json_schema.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "scenes/formats/json_meshes.hpp"
+#include "scenes/formats/json_schema.hpp"
 #include "tests/unit/scenes_support.hpp"
 
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
-#include "scenes/reader.hpp"
+#include "scenes/formats/reader.hpp"
 #include "scenes/scene.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "scenes/writer.hpp"
+#include "scenes/formats/writer.hpp"
 #include "tests/unit/scenes_support.hpp"
 
 #include <glm/geometric.hpp>

@@ -3,7 +3,7 @@
 
 #include "base/exr.hpp"
 #include "scenes/light_texture.hpp"
-#include "scenes/writer.hpp"
+#include "scenes/formats/writer.hpp"
 #include "tests/unit/scenes_support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 

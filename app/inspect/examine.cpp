@@ -1,0 +1,171 @@
+#include "app/inspect/examine.hpp"
+
+#include "app/interrupt.hpp"
+#include "app/methods.hpp"
+#include "base/assert.hpp"
+#include "mesh/import.hpp"
+#include "mesh/silhouettes.hpp"
+#include "scenes/formats/checks.hpp"
+#include "scenes/formats/reader.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using visibility::LightKind;
+
+LightKind kind_of(const scenes::AreaLight& light) {
+  struct Kind {
+    LightKind operator()(const scenes::Rectangle&) const { return LightKind::rectangle; }
+    LightKind operator()(const scenes::Disk&) const { return LightKind::disk; }
+    LightKind operator()(const scenes::Polygon&) const { return LightKind::polygon; }
+    LightKind operator()(const scenes::Sphere&) const { return LightKind::sphere; }
+  };
+  return std::visit(Kind(), light.shape);
+}
+
+InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) {
+  scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false});
+  InspectedMesh mesh;
+  mesh.soup = std::move(scene.soup);
+  for (const scenes::Object& object : scene.objects) mesh.objects.push_back(object.name);
+  mesh.notes = std::move(scene.warnings);
+  mesh.sources = std::move(scene.sources);
+  for (const scenes::AreaLight& light : scene.lights) mesh.lights.push_back({light.name, kind_of(light)});
+  return mesh;
+}
+
+/// One object's triangles, with only the positions that they use.
+mesh::TriangleSoup part_of(const mesh::TriangleSoup& soup, const std::vector<std::uint32_t>& triangles,
+                           std::vector<std::uint32_t>& new_index) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  mesh::TriangleSoup part;
+  std::vector<std::uint32_t> touched;
+  for (const std::uint32_t number : triangles) {
+    mesh::Triangle triangle = soup.triangles[number];
+    for (std::uint32_t& corner : triangle) {
+      std::uint32_t& index = new_index[corner];
+      if (index == kUnused) {
+        index = static_cast<std::uint32_t>(part.positions.size());
+        part.positions.push_back(soup.positions[corner]);
+        touched.push_back(corner);
+      }
+      corner = index;
+    }
+    part.triangles.push_back(triangle);
+  }
+  for (const std::uint32_t corner : touched) new_index[corner] = kUnused;  // ready for the next object
+  return part;
+}
+
+std::optional<SilhouetteCounts> count_silhouettes(const mesh::MeshView& mesh, const mesh::Diagnosis& diagnosis,
+                                                  double weld) {
+  const glm::dvec3 extent = diagnosis.upper - diagnosis.lower;
+  const glm::dvec3 center = diagnosis.lower + 0.5 * extent;
+  const double reach = std::hypot(extent.x, extent.y, extent.z) / std::sqrt(3.0);
+  const mesh::EdgeGraph graph = mesh::build_edge_graph(mesh, weld);
+  SilhouetteCounts counts;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 toward(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const glm::dvec3 p = center + reach * toward;
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return std::nullopt;
+    const std::uint64_t count = mesh::silhouette_edges(mesh, graph, p).size();
+    counts.mean += static_cast<double>(count) / 8;
+    counts.most = std::max(counts.most, count);
+  }
+  return counts;
+}
+
+std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis,
+                                       const std::vector<InspectedMesh::Light>& lights) {
+  std::vector<MethodVerdict> verdicts;
+  for (const visibility::MethodDescription* method : all_methods()) {
+    PENUMBRA_ASSERT(method->verdict_on != nullptr, "method {} says nothing of meshes", method->name);
+    visibility::MeshVerdict verdict = method->verdict_on(diagnosis);
+    if (diagnosis.largest_coordinate > scenes::kLargestCoordinate) {
+      verdict = {visibility::Verdict::refused,
+                 fmt::format("scenes hold coordinates up to {:g}; scale it down", scenes::kLargestCoordinate)};
+    }
+    for (const InspectedMesh::Light& light : lights) {
+      if (std::ranges::find(method->lights, light.kind) != method->lights.end()) continue;
+      verdict = {visibility::Verdict::refused,
+                 fmt::format("it cannot do the scene's light \"{}\", a {}", light.name, name_of(light.kind))};
+      break;
+    }
+    verdicts.push_back({method->name, std::move(verdict)});
+  }
+  return verdicts;
+}
+
+ObjectReport examine_part(std::string name, const mesh::TriangleSoup& soup, const InspectedMesh& mesh,
+                          mesh::DiagnosisOptions options, Progress& progress) {
+  constexpr std::uint64_t kSteps = 1000;
+  progress.begin(fmt::format("{}: looking for defects", name), kSteps);
+  std::uint64_t done = 0;
+  options.progress = [&](double share) {
+    const auto reached = static_cast<std::uint64_t>(share * kSteps);
+    if (reached > done) progress.advance(reached - std::exchange(done, reached));
+  };
+  const MayExitAtOnce at_once;
+  const mesh::MeshView view{soup.positions, soup.triangles};
+  ObjectReport report;
+  report.name = std::move(name);
+  report.diagnosis = mesh::diagnose(view, options);
+  report.silhouettes = count_silhouettes(view, report.diagnosis, options.weld);
+  report.verdicts = verdicts_on(report.diagnosis, mesh.lights);
+  return report;
+}
+
+}  // namespace
+
+InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside) {
+  const MayExitAtOnce at_once;
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  InspectedMesh mesh;
+  if (extension == ".json" || extension == ".gltf" || extension == ".glb") {
+    mesh = read_scene(file, allow_outside);
+  } else {
+    mesh::ImportedMesh imported = mesh::import_mesh(file);
+    mesh.soup = std::move(imported.soup);
+    mesh.notes = std::move(imported.notes);
+    mesh.objects = {file.filename().string()};
+  }
+  mesh.sources.push_back(file);
+  return mesh;
+}
+
+FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh, const mesh::DiagnosisOptions& options,
+                   Progress& progress) {
+  FileReport report;
+  report.file = file;
+  report.notes = mesh.notes;
+  report.source_face = mesh.soup.source_face;
+  report.total = examine_part(file.filename().string(), mesh.soup, mesh, options, progress);
+  if (mesh.objects.size() == 1) {  // all together is then this one
+    report.objects.push_back(report.total);
+    report.objects.front().name = mesh.objects.front();
+  } else {
+    std::vector<std::vector<std::uint32_t>> triangles(mesh.objects.size());
+    for (std::uint32_t i = 0; i < mesh.soup.triangles.size(); ++i) triangles[mesh.soup.object[i]].push_back(i);
+    std::vector<std::uint32_t> new_index(mesh.soup.positions.size(), std::numeric_limits<std::uint32_t>::max());
+    for (std::size_t object = 0; object < mesh.objects.size(); ++object) {
+      const mesh::TriangleSoup part = part_of(mesh.soup, triangles[object], new_index);
+      report.objects.push_back(examine_part(mesh.objects[object], part, mesh, options, progress));
+      report.objects.back().triangles = std::move(triangles[object]);
+    }
+  }
+  progress.clear();
+  return report;
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "app/progress.hpp"
+#include "mesh/diagnosis/diagnosis.hpp"
+#include "mesh/triangle_soup.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/mesh_verdict.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// A mesh file, or a scene, as `inspect` looks at it.
+struct InspectedMesh {
+  mesh::TriangleSoup soup;                     ///< world space
+  std::vector<std::string> objects;            ///< their names, by TriangleSoup::object
+  std::vector<std::string> notes;              ///< what reading skipped or changed
+  std::vector<std::filesystem::path> sources;  ///< this file and those it names: never to be overwritten
+  struct Light {
+    std::string name;
+    visibility::LightKind kind;
+  };
+  std::vector<Light> lights;  ///< a scene's
+};
+
+/// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), anything else as a mesh. Throws InputError.
+InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside);
+
+/// How many edges are silhouettes, seen from the eight points that lie one diagonal of the bounds from their centre
+/// toward the corners of a cube. The literature's rule of thumb for closed meshes is n^0.8 of n triangles.
+struct SilhouetteCounts {
+  double mean = 0;
+  std::uint64_t most = 0;
+};
+
+/// What a method says of an object.
+struct MethodVerdict {
+  std::string method;
+  visibility::MeshVerdict verdict;
+};
+
+struct ObjectReport {
+  std::string name;
+  mesh::Diagnosis diagnosis;
+  std::optional<SilhouetteCounts> silhouettes;  ///< nothing if such points are beyond double's range
+  std::vector<std::uint32_t> triangles;         ///< numbers in the file of the diagnosis' triangles; empty: the same
+  std::vector<MethodVerdict> verdicts;
+};
+
+struct FileReport {
+  std::filesystem::path file;
+  std::string error;  ///< why it could not be read; the rest is then empty
+  std::vector<std::string> notes;
+  std::vector<std::uint32_t> source_face;  ///< for each triangle, the face's number in its file
+  std::vector<ObjectReport> objects;
+  ObjectReport total;  ///< of all triangles together, as one soup
+};
+
+/// Diagnoses each object, and all together. `options.progress` is not used: progress goes to the bar.
+FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh, const mesh::DiagnosisOptions& options,
+                   Progress& progress);
+
+}  // namespace penumbra::app

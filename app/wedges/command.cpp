@@ -1,0 +1,189 @@
+#include "app/commands.hpp"
+#include "app/interrupt.hpp"
+#include "app/options.hpp"
+#include "app/output_files.hpp"
+#include "app/wedges/report.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "scenes/formats/reader.hpp"
+#include "volumes/wedges/wedge_export.hpp"
+#include "volumes/wedges/wedge_faults.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+namespace penumbra::app {
+namespace {
+
+struct ChosenConstruction {
+  volumes::Construction construction = volumes::Construction::original;
+  std::optional<volumes::Fault> fault;
+};
+
+ChosenConstruction parse_construction(const std::string& text) {
+  if (text == "original") return {};
+  if (text == "tight") return {volumes::Construction::tight, {}};
+  constexpr std::string_view kBroken = "broken:";
+  if (text.size() == kBroken.size() + 1 && text.starts_with(kBroken) && text.back() >= '1' && text.back() <= '6') {
+    return {volumes::Construction::original, static_cast<volumes::Fault>(text.back() - '0')};
+  }
+  throw UsageError("--construction {}: expected original, tight, or broken:1 … broken:6", text);
+}
+
+volumes::SilhouettesFrom parse_from(const std::string& text) {
+  if (text == "centre") return volumes::SilhouettesFrom::center;
+  if (text == "anywhere") return volumes::SilhouettesFrom::anywhere;
+  throw UsageError("--from {}: expected centre or anywhere", text);
+}
+
+std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
+  if (name.empty()) return 0;
+  const auto found = std::ranges::find(scene.lights, name, &scenes::AreaLight::name);
+  if (found != scene.lights.end()) return static_cast<std::uint32_t>(found - scene.lights.begin());
+  std::vector<std::string> names;
+  for (const scenes::AreaLight& light : scene.lights) names.push_back(light.name);
+  throw UsageError("--light {}: {} has no such name; it has: {}", name, scene.name, fmt::join(names, ", "));
+}
+
+/// What the light itself is, where its hull is larger: points of a disk's rim. A sphere's outline changes with the
+/// point it is seen from; its hull stands for it.
+std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::LightHull& hull) {
+  if (light.kind != visibility::LightKind::disk) return hull.corners;
+  constexpr int kRim = 256;
+  const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
+                                         v = glm::dvec3(light.center_v) - center;
+  std::vector<glm::dvec3> rim;
+  for (int i = 0; i < kRim; ++i) {
+    const double angle = 2 * M_PI * i / kRim;
+    rim.push_back(center + std::cos(angle) * u + std::sin(angle) * v);
+  }
+  return rim;
+}
+
+class WedgesCommand : public Command {
+ public:
+  explicit WedgesCommand(CLI::App& app)
+      : Command(app, "wedges", "penumbra wedges of a light: build, prove by exact signs, export") {
+    cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
+    cli_.add_option("--light", light_, "the light's name (default: the first)")->type_name("NAME");
+    cli_.add_option("--construction", construction_,
+                    "original (Assarsson and Akenine-Möller 2003), tight (the penumbra's own facets), or one that is "
+                    "wrong on purpose, broken:1 to broken:6")
+        ->type_name("NAME")
+        ->capture_default_str();
+    cli_.add_option("--from", from_,
+                    "edges that are silhouettes from the light's centre, or from anywhere on it (tight is then cropped "
+                    "by the planes of adjacent triangles)")
+        ->type_name("centre|anywhere")
+        ->capture_default_str();
+    cli_.add_flag("--validate", validate_, "prove every invariant; exit with 1 if one does not hold");
+    cli_.add_option("--export", export_, "wedges cut by the scene's box, edges, light, offending points")
+        ->type_name("FILE.glb|.obj|.ply");
+    cli_.add_option("--json", json_, "edges, planes, violations")->type_name("FILE");
+    cli_.add_option("--explain", explain_,
+                    "for this pixel of the first camera's image: the wedges that contain what it sees, what each takes "
+                    "from the light or gives back, their sum, and the exact area")
+        ->type_name("X,Y");
+    cli_.add_option("--svg", svg_,
+                    "the light as seen from there, with projected edges (default: beside --export's file, or in the "
+                    "working folder: <name>-X-Y.svg)")
+        ->type_name("FILE.svg")
+        ->needs("--explain");
+    cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
+  }
+
+  int run(const GlobalOptions&) override {
+    const ChosenConstruction chosen = parse_construction(construction_);
+    const volumes::SilhouettesFrom from = parse_from(from_);
+    OutputFiles outputs = named_outputs();
+    outputs.refuse_inputs({&scene_, 1});
+    outputs.require_writable();
+    std::optional<MayExitAtOnce> at_once(std::in_place);  // until files are written
+    const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
+    outputs.refuse_inputs(scene.sources);
+    for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
+    const volumes::LightHull hull = volumes::light_hull(light);
+    const volumes::Casters casters = volumes::casters_of(floats, light);
+    const bool tight = chosen.construction == volumes::Construction::tight;
+    const bool crop = tight && from == volumes::SilhouettesFrom::anywhere;
+    const volumes::CastingEdges casting = volumes::casting_edges(casters, hull, from, crop);
+    const std::vector<volumes::Wedge> wedges = chosen.fault
+                                                   ? volumes::build_faulty_wedges(casting.wedges, hull, *chosen.fault)
+                                                   : volumes::build_wedges(casting.wedges, hull, chosen.construction);
+    WedgesResult result{light, hull, floats.origin, construction_, from_, wedges};
+    std::optional<volumes::ValidationReport> report;
+    std::optional<volumes::Tightness> tightness;
+    std::optional<CoverageOutcome> coverage;
+    if (validate_) {
+      report = volumes::validate({casters, casting, hull, wedges, tight});
+      tightness = volumes::tightness_of(wedges, hull, shape_of(light, hull));
+      coverage = check_scene_coverage(scene, floats, light, casters, *report);
+      result.validation = &*report;
+      result.tightness = &*tightness;
+      result.coverage = &*coverage;
+    }
+    std::optional<Explanation> explanation;
+    if (!explain_.empty()) {
+      const auto [x, y] = parse_pixel(explain_, scene);
+      explanation = explain({scene, floats, light, casters, casting, wedges}, x, y);
+      result.explanation = &*explanation;
+      if (!explanation->picture.empty()) result.svg = picture_path(x, y);
+      if (svg_.empty()) outputs.add("--explain", result.svg);
+      outputs.refuse_inputs(scene.sources);
+      outputs.refuse_inputs({&scene_, 1});
+    }
+    at_once.reset();
+    if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
+    if (!json_.empty()) write_wedges_json(json_, result);
+    if (!export_.empty()) {
+      volumes::export_wedges(export_, {wedges, hull, volumes::bounds_of(casters), floats.origin,
+                                       report ? std::span<const volumes::Violation>(report->violations)
+                                              : std::span<const volumes::Violation>()});
+    }
+    print_wedges(result);
+    return static_cast<int>(report && !report->violations.empty() ? ExitCode::answer_is_no : ExitCode::done);
+  }
+
+ private:
+  [[nodiscard]] OutputFiles named_outputs() const {
+    constexpr std::array kExtensions = {".glb", ".obj", ".ply"};
+    if (!export_.empty() && std::ranges::find(kExtensions, export_.extension()) == kExtensions.end()) {
+      throw UsageError("--export {}: expected a name that ends in .glb, .obj or .ply", export_.string());
+    }
+    if (!svg_.empty() && svg_.extension() != ".svg") {
+      throw UsageError("--svg {}: expected a name that ends in .svg", svg_.string());
+    }
+    OutputFiles outputs;
+    outputs.add("--export", export_);
+    outputs.add("--json", json_);
+    outputs.add("--svg", svg_);
+    return outputs;
+  }
+
+  [[nodiscard]] std::filesystem::path picture_path(std::uint32_t x, std::uint32_t y) const {
+    if (!svg_.empty()) return svg_;
+    const std::filesystem::path beside = export_.empty() ? scene_.filename() : export_;
+    return beside.parent_path() / fmt::format("{}-{}-{}.svg", beside.stem().string(), x, y);
+  }
+
+  std::filesystem::path scene_, export_, json_, svg_;
+  std::string light_, construction_ = "original", from_ = "centre", explain_;
+  bool validate_ = false, allow_outside_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_wedges_command(CLI::App& app) {
+  return std::make_unique<WedgesCommand>(app);
+}
+
+}  // namespace penumbra::app

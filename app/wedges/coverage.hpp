@@ -1,0 +1,24 @@
+#pragma once
+
+#include "scenes/scene.hpp"
+#include "volumes/wedges/coverage_validation.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::app {
+
+/// What `wedges --validate` found of sums over silhouettes.
+struct CoverageOutcome {
+  std::vector<volumes::CoveragePoint> points;
+  std::vector<double> hidden;  ///< for each, the exact area of the union; empty where this build has no such oracle
+  bool textured = false;       ///< areas are weights
+};
+
+/// Invariant `coverage` at up to 64 judged pixels of the scene's first camera and size where an edge appears on the
+/// light, taken evenly from a grid of 32 × 32: against the areas of triangles, and the exact area of their union.
+CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibility::SceneFloats& floats,
+                                     const visibility::Light& light, const volumes::Casters& casters,
+                                     volumes::ValidationReport& report);
+
+}  // namespace penumbra::app

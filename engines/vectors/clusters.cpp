@@ -1,0 +1,81 @@
+#include "engines/vectors/clusters.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::native {
+namespace {
+
+float size1(const glm::vec3& x) {
+  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
+}
+
+constexpr std::size_t kMostClusters = 4;
+
+/// In the middle of the box's longest side, if a gap of more than a third of it is there; else the end.
+std::size_t split(std::span<Placed> samples) {
+  glm::vec3 lower(samples.front().p), upper(lower);
+  for (const Placed& at : samples) {
+    lower = glm::min(lower, at.p);
+    upper = glm::max(upper, at.p);
+  }
+  const glm::vec3 size = upper - lower;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const float cut = 0.5F * lower[axis] + 0.5F * upper[axis];
+  float below = lower[axis], above = upper[axis];
+  for (const Placed& at : samples) {
+    const float x = at.p[axis];
+    below = x < cut ? std::max(below, x) : below;
+    above = x < cut ? above : std::min(above, x);
+  }
+  if (!(above - below > 0.34F * size[axis])) return samples.size();
+  const auto middle =
+      std::stable_partition(samples.begin(), samples.end(), [&](const Placed& at) { return at.p[axis] < cut; });
+  return static_cast<std::size_t>(middle - samples.begin());
+}
+
+}  // namespace
+
+Outlook look(const ViewInput& view, std::uint32_t pixel, Placed& at) {
+  const auto& [scene, samples, light, frame, normal_is_known, scale] = view;
+  const std::int32_t carrier = samples.triangle[pixel];
+  if (carrier == visibility::ViewSamples::kBackground) return Outlook::all;
+  const auto triangle = static_cast<std::uint32_t>(carrier);
+  if (scene.receives_shadow[triangle] == 0) return Outlook::all;
+  at.p = samples.p[pixel] * scale;
+  const glm::vec3 from = at.p - frame.center;
+  at.pixel = pixel;
+  at.plane = scene.plane[triangle];
+  at.height = glm::dot(frame.axis, from);
+  // (bound level)
+  const float error_level = 16 * kRound * frame.skew * (size1(from) + size1(at.p)) + frame.deviation;
+  if (std::abs(at.height) <= error_level) return Outlook::open;
+  if (at.height < 0) return Outlook::elsewhere;
+  at.foot = glm::vec2(glm::dot(frame.across, from), glm::dot(frame.along, from)) + frame.first_cell;
+  // (bound horizon)
+  const glm::vec3 normal = normal_is_known[triangle] != 0 ? samples.n[pixel] : glm::vec3(0);
+  at.above = {glm::dot(normal, light.u), glm::dot(normal, light.v), -glm::dot(normal, from)};
+  at.above_error = 16 * kRound * (size1(from) + size1(light.u) + size1(light.v) + size1(at.p)) + frame.deviation;
+  const float span = std::abs(at.above.x) + std::abs(at.above.y);
+  if (at.above.z + span < -at.above_error) return Outlook::none;
+  at.straddles = at.above.z - span <= at.above_error;
+  return Outlook::scattered;
+}
+
+std::vector<std::size_t> split_at_gaps(std::span<Placed> samples) {
+  std::vector<std::size_t> ends{samples.size()};
+  for (std::size_t part = 0, begin = 0; part < ends.size() && ends.size() < kMostClusters;) {
+    const std::size_t end = begin + split(samples.subspan(begin, ends[part] - begin));
+    if (end > begin && end < ends[part]) {
+      ends.insert(ends.begin() + static_cast<std::ptrdiff_t>(part), end);
+    } else {
+      begin = ends[part++];
+    }
+  }
+  return ends;
+}
+
+}  // namespace penumbra::native

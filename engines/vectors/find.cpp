@@ -1,0 +1,402 @@
+// First stage of methods on a processor: the walk of find_edges.comp, eight children, edges or triangles at a time.
+
+#include "engines/vectors/find.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <bit>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engines/vectors/find.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::native::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, kWide>;
+using V = hn::Vec<D>;
+constexpr std::uint32_t kLeafBit = visibility::TriangleTree::kLeafBit;
+
+struct Point {
+  V x, y, z;
+};
+/// What the walks look from.
+struct From {
+  const Frame& frame;
+  const Cluster& cluster;
+};
+
+Point load(const WidePoints& points, std::size_t lane) {
+  const D d;
+  return {hn::Load(d, &points[0][lane]), hn::Load(d, &points[1][lane]), hn::Load(d, &points[2][lane])};
+}
+Point minus(const Point& p, const glm::vec3& q) {
+  const D d;
+  return {hn::Sub(p.x, hn::Set(d, q.x)), hn::Sub(p.y, hn::Set(d, q.y)), hn::Sub(p.z, hn::Set(d, q.z))};
+}
+/// In one fixed order, without fused multiplications: what later stages compute of the same floats must be the same.
+V dot(const Point& p, const glm::vec3& q) {
+  const D d;
+  return hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, q.x)), hn::Mul(p.y, hn::Set(d, q.y))), hn::Mul(p.z, hn::Set(d, q.z)));
+}
+V dot(const Point& p, const Point& q) {
+  return hn::Add(hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)), hn::Mul(p.z, q.z));
+}
+Point absolute(const Point& p) {
+  return {hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
+}
+V length(const Point& p) {
+  return hn::Sqrt(dot(p, p));
+}
+V scaled(V v, float factor) {
+  return hn::Mul(v, hn::Set(D(), factor));
+}
+
+/// first, first + 1, … as the bits of floats (numbers_from of vectors-inl.hpp)
+V numbers_from(std::size_t first) {
+  const hn::RebindToSigned<D> d;
+  return hn::BitCast(D(), hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first))));
+}
+
+std::uint32_t bits_of(hn::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D(), mask, bytes);
+  return bytes[0];
+}
+hn::Mask<D> used_lanes(std::uint32_t used, std::size_t lane) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(used >> lane)};
+  return hn::LoadMaskBits(D(), bytes);
+}
+
+/// Does something whose corners are all in n·x ≥ `least` for each of the four planes, between `low` and `high` along
+/// the axis, meet the shaft?
+struct ShaftTest {
+  const Shaft& shaft;
+
+  template <typename Least>
+  hn::Mask<D> operator()(V low, V high, Least least) const {
+    const D d;
+    hn::Mask<D> met = hn::And(hn::Le(low, hn::Set(d, shaft.highest)), hn::Ge(high, hn::Set(d, shaft.lowest)));
+    for (std::size_t i = 0; i < 4; ++i) {
+      met = hn::And(met, hn::Le(least(shaft.n[i]), hn::Set(d, shaft.beyond[i])));
+    }
+    return met;
+  }
+};
+
+/// What of a box is least and most in a direction. Fused: the bounds of what meets a shaft do not mind.
+struct Extent {
+  V low, high;
+};
+HWY_INLINE Extent extent(const Point& middle, const Point& half, const glm::vec3& n, const glm::vec3& size) {
+  const D d;
+  const V at =
+      hn::MulAdd(middle.x, hn::Set(d, n.x), hn::MulAdd(middle.y, hn::Set(d, n.y), hn::Mul(middle.z, hn::Set(d, n.z))));
+  const V spread = hn::MulAdd(half.x, hn::Set(d, size.x),
+                              hn::MulAdd(half.y, hn::Set(d, size.y), hn::Mul(half.z, hn::Set(d, size.z))));
+  return {hn::Sub(at, spread), hn::Add(at, spread)};
+}
+
+HWY_INLINE hn::Mask<D> box_meets(const From& in, const Shaft& shaft, const Point& middle, const Point& half) {
+  const D d;
+  const Extent level = extent(middle, half, in.frame.axis, in.frame.axis_size);
+  hn::Mask<D> met = hn::And(hn::Le(level.low, hn::Set(d, shaft.highest)), hn::Ge(level.high, hn::Set(d, shaft.lowest)));
+  for (std::size_t i = 0; i < 4; ++i) {
+    met = hn::And(met, hn::Le(extent(middle, half, shaft.n[i], shaft.size[i]).low, hn::Set(d, shaft.beyond[i])));
+  }
+  return met;
+}
+
+/// (bound cone)
+hn::Mask<D> same_side(const From& in, const WideNode& node, std::size_t lane, const Point& middle, const Point& half) {
+  const D d;
+  const glm::vec3& box = in.cluster.half_size;
+  const Point axis{hn::Load(d, &node.cone[0][lane]), hn::Load(d, &node.cone[1][lane]),
+                   hn::Load(d, &node.cone[2][lane])};
+  const V cosine = hn::Load(d, &node.cone[3][lane]);
+  const Point to = minus(middle, in.cluster.middle);
+  const Point e{hn::Add(half.x, hn::Set(d, box.x)), hn::Add(half.y, hn::Set(d, box.y)),
+                hn::Add(half.z, hn::Set(d, box.z))};
+  const V straight = hn::Abs(dot(axis, to)), squared = dot(to, to), zero = hn::Zero(d);
+  const V aside = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(straight, straight)), zero));
+  const V sine = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Mul(cosine, cosine)), zero));
+  const V spread = hn::Add(hn::Mul(dot(absolute(axis), e), cosine), hn::Mul(length(e), sine));
+  const V least = hn::Sub(hn::Mul(straight, cosine), hn::Mul(aside, sine));
+  const V slack = hn::Add(scaled(hn::Sqrt(squared), 0.0001F), hn::Set(d, 64 * kRound * in.frame.reach));
+  return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
+}
+
+/// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
+template <bool kCones>
+std::uint32_t children_met(const From& in, const Shaft& shaft, const WideNode& node) {
+  const D d;
+  std::uint32_t hits = 0;
+  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+    const Point middle = load(node.middle, lane), half = load(node.half, lane);
+    hn::Mask<D> met = box_meets(in, shaft, middle, half);
+    if (kCones && !hn::AllFalse(d, met)) met = hn::AndNot(same_side(in, node, lane, middle, half), met);
+    hits |= bits_of(met) << lane;
+  }
+  return hits & node.used;
+}
+
+/// Calls `leaf` for each leaf whose box meets the shaft.
+template <bool kCones, typename Leaf>
+void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+          const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
+  stack = roots;
+  while (!stack.empty()) {
+    const std::uint32_t next = stack.back();
+    stack.pop_back();
+    if ((next & kLeafBit) != 0) {
+      leaf(next & ~kLeafBit);
+      continue;
+    }
+    const WideNode& node = nodes[next];
+    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
+      stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
+    }
+  }
+}
+
+/// Goes down level by level until there are enough.
+template <bool kCones, typename Tree>
+void descend(const From& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
+  constexpr std::size_t kEnough = 24;
+  roots = tree.roots;
+  for (std::size_t i = 0; i < roots.size() && roots.size() < kEnough;) {
+    if ((roots[i] & kLeafBit) != 0) {
+      ++i;
+      continue;
+    }
+    const WideNode& node = tree.nodes[roots[i]];
+    roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(i));
+    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
+      roots.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
+    }
+  }
+}
+
+/// One of an edge's triangles, relative to the cluster: n · p − at > error in front of it, < −error behind.
+struct EdgeSideWide {
+  Point n;
+  V at, error;
+  hn::Mask<D> none, positive, negative;  // positive: all of the cluster's p are in front
+  hn::Mask<D> nothing;                   // none, or in the cluster's own plane
+};
+
+hn::Mask<D> equals(const WideWords& numbers, std::size_t lane, std::uint32_t number) {
+  const hn::RebindToUnsigned<D> words;
+  const auto equal = hn::Eq(hn::LoadU(words, &numbers[lane]), hn::Set(words, number));
+  return hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(words, equal)));
+}
+
+EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
+  const D d;
+  const glm::vec3& box = in.cluster.half_size;
+  EdgeSideWide s;
+  s.n = load(leaf.n[side], lane);
+  const Point anchor = minus(load(leaf.anchor[side], lane), in.cluster.middle);
+  const Point size = absolute(s.n);
+  s.at = dot(s.n, anchor);
+  const V lengths = dot(size, absolute(anchor)), over_box = dot(size, box);
+  const V ones = dot(size, glm::vec3(1));
+  s.none = hn::Eq(ones, hn::Zero(d));
+  const hn::Mask<D> own = equals(leaf.plane[side], lane, in.cluster.plane);
+  s.error = hn::IfThenElse(s.none, hn::Set(d, -1.0F), scaled(hn::Add(lengths, over_box), 10 * kRound));
+  const V spread = hn::Add(scaled(over_box, 1.001F), hn::Add(scaled(hn::Add(lengths, over_box), 32 * kRound),
+                                                             scaled(ones, 4 * kRound * in.frame.reach)));
+  const V f = hn::Neg(s.at);
+  s.nothing = hn::Or(s.none, own);
+  s.positive = hn::AndNot(s.none, hn::Gt(f, spread));
+  s.negative = hn::AndNot(s.none, hn::Lt(f, hn::Neg(spread)));
+  return s;
+}
+
+/// Are k_e's two parts opposite for all of the cluster, or both nothing? (bound side)
+hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
+  return hn::Or(hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive)),
+                hn::And(s.nothing, t.nothing));
+}
+
+void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
+  const D d;
+  const WideEdges& leaf = in.tree.leaves[number];
+  out.reserve(out.count + kWide);
+  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+    const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
+    const V level_a = dot(a, in.frame.axis), level_b = dot(b, in.frame.axis);
+    const hn::Mask<D> met =
+        hn::And(used_lanes(leaf.used, lane),
+                ShaftTest{in.cluster.whole}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
+                                            [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
+    if (hn::AllFalse(d, met)) continue;
+    const EdgeSideWide s = side_of(in, leaf, 0, lane), t = side_of(in, leaf, 1, lane);
+    const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) continue;
+    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
+    put(kAx, dot(from_a, in.frame.across));
+    put(kAy, dot(from_a, in.frame.along));
+    put(kAh, dot(from_a, in.frame.axis));
+    put(kBx, dot(from_b, in.frame.across));
+    put(kBy, dot(from_b, in.frame.along));
+    put(kBh, dot(from_b, in.frame.axis));
+    for (std::size_t side = 0; side < 2; ++side) {
+      const EdgeSideWide& its = side == 0 ? s : t;
+      const std::size_t first = side == 0 ? kN1x : kN2x;
+      put(first, its.n.x);
+      put(first + 1, its.n.y);
+      put(first + 2, its.n.z);
+      put(first + kD1 - kN1x, its.at);
+      put(first + kE1 - kN1x, its.error);
+      const hn::RebindToUnsigned<D> words;
+      put(first + kPlane1 - kN1x, hn::BitCast(d, hn::LoadU(words, &leaf.plane[side][lane])));
+    }
+    put(kFar, hn::Max(length(from_a), length(from_b)));
+    put(kEdgeSlot, numbers_from(number * kWide + lane));
+    out.count += more;
+  }
+}
+
+/// All of the cluster's p are outside of the closed part that a triangle is of, and behind it (wound inward): another
+/// of the part then hides what it hides. (docs/view-sample.md, Closed casters)
+hn::Mask<D> seen_from_outside(const TriangleInput& in, const WideTriangles& leaf, std::size_t lane) {
+  const D d;
+  const hn::RebindToUnsigned<D> words;
+  const Point a = load(leaf.corner[0], lane), b = load(leaf.corner[1], lane), c = load(leaf.corner[2], lane);
+  const Point e1{hn::Sub(b.x, a.x), hn::Sub(b.y, a.y), hn::Sub(b.z, a.z)};
+  const Point e2{hn::Sub(c.x, a.x), hn::Sub(c.y, a.y), hn::Sub(c.z, a.z)};
+  const auto minor = [](V p, V q, V r, V s) { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+  const Point n{minor(e1.y, e2.z, e1.z, e2.y), minor(e1.z, e2.x, e1.x, e2.z), minor(e1.x, e2.y, e1.y, e2.x)};
+  const V sizes = hn::Mul(dot(absolute(e1), glm::vec3(1)), dot(absolute(e2), glm::vec3(1)));
+  const V least = hn::Sub(dot(n, minus(a, in.cluster.middle)), dot(absolute(n), in.cluster.half_size));
+  const auto bits = hn::And(hn::LoadU(words, &leaf.closed[lane]), hn::Set(words, in.outside_of));
+  const auto other = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, hn::Eq(bits, hn::Zero(words)))));
+  return hn::AndNot(other, hn::Gt(least, scaled(sizes, 64 * kRound * in.frame.reach)));
+}
+
+void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable& out) {
+  const D d;
+  const WideTriangles& leaf = in.tree.leaves[number];
+  out.reserve(out.count + kWide);
+  const hn::RebindToUnsigned<D> words;
+  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
+    const Point a = load(leaf.corner[0], lane), b = load(leaf.corner[1], lane), c = load(leaf.corner[2], lane);
+    const V la = dot(a, in.frame.axis), lb = dot(b, in.frame.axis), lc = dot(c, in.frame.axis);
+    const hn::Mask<D> met =
+        ShaftTest{in.shaft}(hn::Min(la, hn::Min(lb, lc)), hn::Max(la, hn::Max(lb, lc)),
+                            [&](const glm::vec3& n) { return hn::Min(dot(a, n), hn::Min(dot(b, n), dot(c, n))); });
+    const hn::Mask<D> never =
+        hn::Or(equals(leaf.emits, lane, in.frame.light), equals(leaf.plane, lane, in.cluster.plane));
+    hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane), hn::AndNot(never, met));
+    if (in.outside_of != 0 && !hn::AllFalse(d, kept)) kept = hn::AndNot(seen_from_outside(in, leaf, lane), kept);
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) continue;
+    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    V far = hn::Zero(d);
+    std::size_t field = kCornerA;
+    for (const Point& corner : {a, b, c}) {
+      const Point from = minus(corner, in.cluster.middle);
+      put(field, dot(from, in.frame.across));
+      put(field + 1, dot(from, in.frame.along));
+      put(field + 2, dot(from, in.frame.axis));
+      far = hn::Max(far, length(from));
+      field += 3;
+    }
+    put(kTrianglePlane, hn::BitCast(d, hn::LoadU(words, &leaf.plane[lane])));
+    put(kTriangleFar, far);
+    put(kTriangleSlot, numbers_from(number * kWide + lane));
+    out.count += more;
+  }
+}
+
+/// Leaves among the roots of which `add` puts nothing into the table.
+template <typename Out, typename Add>
+void drop_idle_leaves(std::vector<std::uint32_t>& roots, Out& table, Add add) {
+  std::erase_if(roots, [&](std::uint32_t root) {
+    if ((root & kLeafBit) == 0) return false;
+    table.count = 0;
+    add(root & ~kLeafBit, table);
+    return table.count == 0;
+  });
+}
+
+void find_edge_roots_here(const EdgeInput& in, EdgeTable& table, std::vector<std::uint32_t>& roots) {
+  const From from{in.frame, in.cluster};
+  descend<true>(from, in.cluster.whole, in.tree, roots);
+  drop_idle_leaves(roots, table, [&](std::uint32_t leaf, EdgeTable& out) { add_edges(in, leaf, out); });
+}
+
+void find_edges_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
+                     EdgeTable& edges) {
+  edges.count = 0;
+  walk<true>({in.frame, in.cluster}, in.cluster.whole, in.tree.nodes, roots, stack,
+             [&](std::uint32_t leaf) { add_edges(in, leaf, edges); });
+}
+
+void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std::vector<std::uint32_t>& roots) {
+  descend<false>({in.frame, in.cluster}, in.shaft, in.tree, roots);
+  drop_idle_leaves(roots, table, [&](std::uint32_t leaf, TriangleTable& out) { add_triangles(in, leaf, out); });
+}
+
+std::size_t count_leaves_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
+                              std::vector<std::uint32_t>& stack, std::size_t most) {
+  std::size_t leaves = 0;
+  walk<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots, stack, [&](std::uint32_t) {
+    if (++leaves == most) stack.clear();
+  });
+  return leaves;
+}
+
+void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
+                         std::vector<std::uint32_t>& stack, TriangleTable& triangles) {
+  triangles.count = 0;
+  walk<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots, stack,
+              [&](std::uint32_t leaf) { add_triangles(in, leaf, triangles); });
+}
+
+}  // namespace
+}  // namespace penumbra::native::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::native {
+
+HWY_EXPORT(find_edge_roots_here);
+HWY_EXPORT(find_edges_here);
+HWY_EXPORT(find_triangle_roots_here);
+HWY_EXPORT(count_leaves_here);
+HWY_EXPORT(find_triangles_here);
+
+void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(find_edge_roots_here)(input, edges, roots);
+}
+
+void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
+                EdgeTable& edges) {
+  HWY_DYNAMIC_DISPATCH(find_edges_here)(input, roots, stack, edges);
+}
+
+void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(find_triangle_roots_here)(input, triangles, roots);
+}
+
+std::size_t count_leaves(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
+                         std::vector<std::uint32_t>& stack, std::size_t most) {
+  return HWY_DYNAMIC_DISPATCH(count_leaves_here)(input, roots, stack, most);
+}
+
+void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
+                    std::vector<std::uint32_t>& stack, TriangleTable& triangles) {
+  HWY_DYNAMIC_DISPATCH(find_triangles_here)(input, roots, stack, triangles);
+}
+
+}  // namespace penumbra::native
+#endif

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "visibility/light_frame.hpp"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Methods on the processor's own vector units: what they share. The rows of a rectangle light, as seen from view
+/// samples that lie together. Bounds are derived in docs/edge-scatter.md; names are those of the device's passes
+/// (volumes/edges/edge_scatter.glsl). Lengths are scene floats times visibility::device_scale.
+namespace penumbra::native {
+
+constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
+
+/// The light as a frame for (X, Y), in cells, as seen from one of its sides.
+struct Frame {
+  glm::vec3 center{0}, axis{0}, axis_size{0}, across{0}, along{0};
+  glm::vec2 half_cells{0}, first_cell{0};
+  glm::dvec3 corner{0};              ///< of the light, in the plane of its stored points: where rows and columns begin
+  float radius = 0;                  ///< no light sample is farther from the centre
+  std::array<glm::dvec3, 3> axes{};  ///< across, along, axis in double, of the light's stored points
+  float per_length = 0, skew = 1, deviation = 0, reach = 0, cut_reach = 0;
+  float side = 1;
+  std::uint32_t rows = 0, columns = 0, light = 0;
+  std::uint32_t padded_rows = 0;  ///< to a multiple of 16
+  std::vector<float> shift;       ///< of each (padded) row, in cells
+  std::vector<glm::vec3> points;  ///< the light samples as stored, scaled
+};
+struct FrameInput {
+  const visibility::LightFrame& light;
+  std::array<glm::dvec3, 3> plane;  ///< the light's stored points: centre, centre + halfU, centre + halfV, scaled
+  std::uint32_t rows, columns, light_index;
+  float side, reach, cut_reach, scale;
+  std::span<const glm::vec3> points;  ///< light samples
+};
+Frame make_frame(const FrameInput& input);
+
+/// A view sample that the light is, or may be, before.
+struct Placed {
+  glm::vec3 p{0};  ///< scaled
+  std::uint32_t pixel = 0, plane = 0;
+  float height = 0;  ///< over the light's plane
+  glm::vec2 foot{0};
+  /// Light samples with above · (s, t, 1) > above_error are above the carrier's plane; < −above_error: below it.
+  /// (bound horizon)
+  glm::vec3 above{0};
+  float above_error = 0;
+  bool straddles = false;  ///< not all of the light is certainly above it
+};
+
+/// With what is needed once something may be before the light: p relative to its cluster's middle, in world axes and in
+/// the frame's (across, along, axis).
+struct Sample : Placed {
+  glm::vec3 local{0}, seen{0};
+  float away = 0;  ///< bounds |p − the light's centre|
+  float far = 0;   ///< bounds |local|
+  /// The error of a projected point at height w over p, `far_x` from the cluster's middle, that appears F from the
+  /// foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
+  float per_way = 0, per_foot = 0, fixed = 0;
+  glm::vec2 lean{0};  ///< the way to the light's corner, in cells for a unit of height
+  /// An edge within (far_x + far) · per_lift of p's height may be where p is, but for rounding. (bound window)
+  float per_lift = 0;
+  float per_lean = 0;  ///< the error of a corner's place beside that way is (far_x + far) per_lean (bound corner)
+};
+constexpr float kPerReach = 8 * kRound;
+
+/// The hull of view samples and a rectangle of the light's plane. (bound shaft)
+struct Shaft {
+  float lowest = 0, highest = 0;
+  std::array<glm::vec3, 4> n{}, size{};  ///< |n|
+  std::array<float, 4> beyond{};
+};
+
+/// View samples whose lists are found together: their box, and the shafts to the light and to its lower left corner.
+struct Cluster {
+  static constexpr std::uint32_t kSeveral = 0xfffffffeU;  ///< the number of no triangle
+
+  glm::vec3 middle{0}, half_size{0};
+  Shaft whole, corner;
+  std::uint32_t plane = kSeveral;  ///< that all of their carriers are in: nothing in it hides a light sample
+};
+Cluster make_cluster(const Frame& frame, std::span<const Placed> samples);
+Sample complete(const Frame& frame, const Cluster& cluster, const Placed& at);
+
+/// The hull of some of a cluster's view samples and the light, in the frame's axes relative to the cluster's middle:
+/// between two heights and within four planes ±across (or ±along) − slope · height ≤ beyond. (bound shaft)
+struct Hull {
+  std::array<float, 4> slope{}, beyond{};
+  float lowest = 0, highest = 0;
+};
+Hull hull_of(const Frame& frame, const Cluster& cluster, std::span<const Sample> samples);
+
+}  // namespace penumbra::native

@@ -1,0 +1,51 @@
+// What may meet the hull of view samples and the light. Inside engines/vectors/ only, but for methods' own stages.
+
+#if defined(PENUMBRA_NATIVE_HULL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_NATIVE_HULL_INL_HPP
+#undef PENUMBRA_NATIVE_HULL_INL_HPP
+#else
+#define PENUMBRA_NATIVE_HULL_INL_HPP
+#endif
+
+#include "engines/vectors/frame.hpp"
+#include "engines/vectors/vectors-inl.hpp"
+
+#include <array>
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::native::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One corner of a vectorful of edges or triangles, in the frame's axes relative to the cluster's middle.
+struct Corners {
+  V across, along, height;
+};
+
+/// Edges or triangles whose corners are not all beyond one of the hull's faces.
+template <std::size_t kCount>
+M meets(const Hull& hull, const std::array<Corners, kCount>& corners) {
+  V low = corners[0].height, high = low;
+  for (std::size_t i = 1; i < kCount; ++i) {
+    low = hn::Min(low, corners[i].height);
+    high = hn::Max(high, corners[i].height);
+  }
+  M met = hn::And(hn::Le(low, set(hull.highest)), hn::Ge(high, set(hull.lowest)));
+  for (std::size_t face = 0; face < 4; ++face) {
+    V least = set(3e38F);
+    for (const Corners& corner : corners) {
+      const V x = face < 2 ? corner.across : corner.along;
+      least = hn::Min(least, hn::NegMulAdd(set(hull.slope[face]), corner.height, face % 2 == 0 ? x : hn::Neg(x)));
+    }
+    met = hn::And(met, hn::Le(least, set(hull.beyond[face])));
+  }
+  return met;
+}
+
+}  // namespace
+}  // namespace penumbra::native::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // once a target

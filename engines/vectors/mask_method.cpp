@@ -1,0 +1,225 @@
+#include "engines/vectors/mask_method.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "engines/vectors/open_judge.hpp"
+#include "visibility/visible_share.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace penumbra::native {
+namespace {
+
+constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels, whose clusters have lists
+constexpr std::uint32_t kRegion = 16;                 // pixels, whose blocks begin their walks at the same roots
+constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
+
+/// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
+struct Spot {
+  std::uint32_t x = 0, y = 0;
+};
+constexpr auto kSpots = [] {
+  std::array<Spot, kRegion * kRegion> spots;
+  for (std::uint32_t i = 0; i < spots.size(); ++i) {
+    for (std::uint32_t bit = 0; 1U << 2 * bit < spots.size(); ++bit) {
+      spots[i].x |= (i >> 2 * bit & 1) << bit;
+      spots[i].y |= (i >> (2 * bit + 1) & 1) << bit;
+    }
+  }
+  return spots;
+}();
+
+/// Buffers of one thread.
+struct Buffers {
+  std::vector<Placed> placed;
+  std::vector<Seen> seen;
+};
+Buffers& buffers() {
+  static tbb::enumerable_thread_specific<Buffers> all;
+  return all.local();
+}
+
+}  // namespace
+
+MaskMethod::MaskMethod(visibility::MethodDescription description, std::string pass)
+    : description_(std::move(description)), pass_(std::move(pass)) {}
+
+void MaskMethod::prepare_mesh(const visibility::SceneFloats& scene) {
+  scene_ = &scene;
+  scale_ = visibility::device_scale(scene);
+  tree_ = visibility::make_triangle_tree(scene);
+  triangles_ = wide_triangle_tree(scene, tree_, scale_);
+  normal_is_known_.resize(scene.triangles.size());
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene.triangles.size()), [&](std::uint32_t i) {
+    normal_is_known_[i] = visibility::normal_is_known(scene.corners(i)) ? 1 : 0;
+  });
+}
+
+void MaskMethod::prepare_light(const visibility::Light& light) {
+  visibility::check_light(description_, light);
+  PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
+  light_ = &light;
+  counters_.clear();
+  light_frame_ = visibility::make_light_frame(light, scale_);
+  PENUMBRA_ASSERT(light_frame_.rows, "light {} has no rows that a step describes", light.name);
+  visibility::check_size(light, light_frame_, description_.name);
+  const bool cut = prepare_casters();
+  const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale_); };
+  const float reach = visibility::reach_of(*scene_, light_frame_, scale_);
+  frames_.clear();
+  for (const float side : {1.0F, -1.0F}) {
+    if (side < 0 && !light.two_sided) continue;
+    frames_.push_back(make_frame({light_frame_,
+                                  {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                  light.rows,
+                                  light.columns,
+                                  static_cast<std::uint32_t>(light.index),
+                                  side,
+                                  reach,
+                                  cut ? 4 * reach : 0,
+                                  scale_,
+                                  light.points}));
+  }
+}
+
+std::uint32_t MaskMethod::max_tile_rows() const {
+  PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
+  const std::size_t fit = kMostMaskBytes / (mask_words(frames_[0]) * 2 * samples_->width);
+  const std::size_t rows = fit >= kRegion ? fit / kRegion * kRegion : fit;
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(rows, 1, samples_->height));
+}
+
+void MaskMethod::evaluate(const visibility::Tile& tile) {
+  tile_ = tile;
+  const std::size_t pixels = std::size_t{tile.row_count} * samples_->width;
+  masks_.resize(std::max(masks_.size(), pixels * mask_words(frames_[0])));
+  visible_.assign(pixels, 0);
+  const auto start = std::chrono::steady_clock::now();
+  do_tile();
+  milliseconds_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  counters_["openPixels"] += open_pixels_.exchange(0);
+  counters_["openPairs"] += open_pairs_.exchange(0);
+  count(counters_);
+}
+
+void MaskMethod::repeat() {
+  do_tile();
+  open_pixels_ = 0;
+  open_pairs_ = 0;
+  std::map<std::string, std::uint64_t> nobody;
+  count(nobody);
+}
+
+void MaskMethod::do_tile() {
+  const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
+                      down = (tile_.row_count + kRegion - 1) / kRegion;
+  tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
+    for (const Frame& frame : frames_) do_region(frame, region % across * kRegion, region / across * kRegion);
+  });
+}
+
+void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t top) {
+  const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
+  OpenJudge judge(pairs, frame);
+  const ViewInput view{*scene_, *samples_, light_frame_, frame, normal_is_known_, scale_};
+  std::vector<Placed>& placed = buffers().placed;
+  std::array<std::size_t, kRegion * kRegion / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
+  placed.resize(kRegion * kRegion);
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
+    const std::uint32_t x = left + kSpots[i].x, y = top + kSpots[i].y;
+    if (x < samples_->width && y < tile_.row_count) {
+      const std::size_t pixel = std::size_t{y} * samples_->width + x;
+      Placed& at = placed[count];
+      const Outlook outlook = look(view, static_cast<std::uint32_t>(first_pixel() + pixel), at);
+      if (outlook == Outlook::scattered) ++count;
+      if (outlook == Outlook::all) visible_[pixel] = light_->sample_count();
+      if (outlook == Outlook::open && frame.side > 0 && !do_open(at)) decide_all(at, judge);  // one of two sides asks
+    }
+    ends[i / (kSmallBlock * kSmallBlock)] = count;
+  }
+  placed.resize(count);
+  if (count > 0) {
+    const Blocks blocks = begin_region(frame, make_cluster(frame, placed));
+    const std::size_t step = blocks == Blocks::small ? 1 : kBlock * kBlock / (kSmallBlock * kSmallBlock);
+    std::size_t begin = 0;
+    for (std::size_t i = step; i <= ends.size(); i += step) {
+      do_block(frame, std::span(placed).subspan(begin, ends[i - 1] - begin), judge);
+      begin = ends[i - 1];
+    }
+  }
+  open_pixels_ += judge.pixels();
+  open_pairs_ += judge.pairs();
+}
+
+void MaskMethod::do_block(const Frame& frame, std::span<Placed> block, Judge& judge) {
+  if (block.empty()) return;
+  std::vector<Seen>& seen = buffers().seen;
+  std::size_t begin = 0;
+  for (const std::size_t end : split_at_gaps(block)) {
+    const auto cluster = block.subspan(begin, end - begin);
+    seen.clear();
+    for (const Placed& at : cluster) seen.push_back({mask_of(at), 0});
+    do_cluster(frame, cluster, judge, seen);
+    for (std::size_t i = 0; i < cluster.size(); ++i) visible_[tile_pixel(cluster[i])] = seen[i].visible;
+    begin = end;
+  }
+}
+
+void MaskMethod::decide_all(const Placed& sample, Judge& judge) {
+  Open open;
+  open.pixel = true;
+  Seen seen{mask_of(sample), 0};
+  std::fill_n(seen.mask, mask_words(frames_[0]), std::uint16_t{0});
+  judge.decide(sample, open, seen);
+  visible_[tile_pixel(sample)] = seen.visible;
+}
+
+void MaskMethod::read_masks(std::span<std::uint32_t> masks) {
+  const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count(), columns = light_->columns;
+  const std::size_t own = mask_words(frames_[0]), padded = frames_[0].padded_rows;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible_.size(), 256), [&](const auto& range) {
+    for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      const auto mask = masks.subspan(pixel * words, words);
+      std::fill(mask.begin(), mask.end(), 0U);
+      if (visible_[pixel] == 0) continue;
+      const std::uint16_t* from = &masks_[pixel * own];
+      for (std::uint32_t j = 0; j < count; ++j) {
+        const std::size_t bit = j % columns * padded + j / columns;
+        const bool visible = visible_[pixel] == count || (from[bit / 16] >> bit % 16 & 1) != 0;
+        mask[j / 32] |= (visible ? 1U : 0U) << (j % 32);
+      }
+    }
+  });
+}
+
+void MaskMethod::read_visibility(std::span<float> visibility) {
+  if (!light_->weights.empty()) {
+    std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
+    read_masks(masks);
+    visibility::visible_shares(*light_, masks, visibility);
+    return;
+  }
+  const auto all = static_cast<double>(light_->sample_count());
+  std::transform(visible_.begin(), visible_.end(), visibility.begin(),
+                 [&](std::uint32_t count) { return static_cast<float>(count / all); });
+}
+
+std::vector<visibility::PassTime> MaskMethod::take_pass_times() {
+  return {{pass_, std::exchange(milliseconds_, 0)}};
+}
+
+std::uint64_t MaskMethod::memory_bytes() const {
+  return bytes_of(triangles_) + bytes_of(tree_) + normal_is_known_.size() + masks_.size() * sizeof(masks_[0]) +
+         visible_.size() * sizeof(visible_[0]);
+}
+
+}  // namespace penumbra::native

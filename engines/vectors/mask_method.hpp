@@ -1,0 +1,98 @@
+#pragma once
+
+#include "engines/vectors/clusters.hpp"
+#include "engines/vectors/frame.hpp"
+#include "engines/vectors/masks.hpp"
+#include "engines/vectors/trees.hpp"
+#include "visibility/method.hpp"
+#include "visibility/triangle_tree.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::native {
+
+/// How large the blocks of pixels are whose clusters have lists.
+enum class Blocks : std::uint8_t {
+  usual,
+  small,  ///< where casters are so dense that neighbours see other edges
+};
+
+/// A method on all of the processor's cores, one region of pixels after the other, each from its lists to its bits in
+/// one go: for rectangle lights with light samples in rows. What comes before and after the lists is the same for all.
+class MaskMethod : public visibility::Method {
+ public:
+  /// `pass`: the name of its one stage in the pass times.
+  MaskMethod(visibility::MethodDescription description, std::string pass);
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void prepare_mesh(const visibility::SceneFloats& scene) override;
+  void prepare_light(const visibility::Light& light) override;
+  void prepare_view(const visibility::ViewSamples& samples) override { samples_ = &samples; }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override;
+  void evaluate(const visibility::Tile& tile) override;
+  void read_masks(std::span<std::uint32_t> masks) override;
+  void read_visibility(std::span<float> visibility) override;
+  std::vector<visibility::PassTime> take_pass_times() override;
+  /// openPixels, openPairs (left to exact predicates) and what count() was told.
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ protected:
+  /// Of a region, before its clusters, on the same thread. Returns what blocks it is done in.
+  virtual Blocks begin_region(const Frame& frame, const Cluster& all) = 0;
+  /// All view samples of a cluster. Sets how many light samples they see and, unless that is none or all, their masks.
+  virtual void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
+  /// A view sample within rounding of the light's plane. False: exact predicates decide its light samples.
+  virtual bool do_open(const Placed&) { return false; }
+  /// Something cuts what casts shadow at the light's plane: errors grow by that.
+  virtual bool prepare_casters() = 0;
+  /// Does the clusters of the tile last evaluated again, for what was not asked for then; counts nothing.
+  void repeat();
+  /// Adds to the counters after a tile.
+  virtual void count(std::map<std::string, std::uint64_t>& counters) = 0;
+
+  [[nodiscard]] const visibility::SceneFloats& scene() const { return *scene_; }
+  [[nodiscard]] const visibility::Light& light() const { return *light_; }
+  [[nodiscard]] const visibility::LightFrame& light_frame() const { return light_frame_; }
+  [[nodiscard]] const visibility::TriangleTree& tree() const { return tree_; }
+  [[nodiscard]] WideTriangleTree& triangles() { return triangles_; }
+  [[nodiscard]] const WideTriangleTree& triangles() const { return triangles_; }
+  [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
+  [[nodiscard]] float scale() const { return scale_; }
+  /// Of the tile.
+  [[nodiscard]] std::size_t first_pixel() const { return std::size_t{tile_.first_row} * samples_->width; }
+  [[nodiscard]] std::size_t tile_pixel(const Placed& at) const { return at.pixel - first_pixel(); }
+
+ private:
+  void do_tile();
+  void do_region(const Frame& frame, std::uint32_t left, std::uint32_t top);
+  void do_block(const Frame& frame, std::span<Placed> block, Judge& judge);
+  void decide_all(const Placed& sample, Judge& judge);
+  [[nodiscard]] std::uint16_t* mask_of(const Placed& at) { return &masks_[tile_pixel(at) * mask_words(frames_[0])]; }
+
+  visibility::MethodDescription description_;
+  std::string pass_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  float scale_ = 1;
+  visibility::TriangleTree tree_;
+  WideTriangleTree triangles_;
+  std::vector<std::uint8_t> normal_is_known_;  // of each triangle
+  const visibility::Light* light_ = nullptr;
+  visibility::LightFrame light_frame_;
+  std::vector<Frame> frames_;  // one a side that it emits to
+  const visibility::ViewSamples* samples_ = nullptr;
+  visibility::Tile tile_;
+  std::vector<std::uint16_t> masks_;  // of the tile
+  std::vector<std::uint32_t> visible_;
+  std::atomic<std::uint64_t> open_pixels_ = 0, open_pairs_ = 0;
+  double milliseconds_ = 0;
+  std::map<std::string, std::uint64_t> counters_;
+};
+
+}  // namespace penumbra::native

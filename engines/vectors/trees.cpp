@@ -1,0 +1,92 @@
+#include "engines/vectors/trees.hpp"
+
+#include <bit>
+
+namespace penumbra::native {
+namespace {
+
+using visibility::Texel;
+using visibility::TriangleTree;
+
+void put(WidePoints& points, std::size_t lane, const glm::vec3& x) {
+  for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
+}
+
+/// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine).
+std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stride) {
+  std::vector<WideNode> nodes(texels.size() / stride / kWide);
+  for (std::size_t child = 0; child < nodes.size() * kWide; ++child) {
+    WideNode& node = nodes[child / kWide];
+    const std::size_t lane = child % kWide;
+    const auto at = texels.subspan(child * stride, stride);
+    put(node.middle, lane, at[0].value);
+    put(node.half, lane, at[1].value);
+    node.reference[lane] = at[0].number;
+    if (at[0].number != TriangleTree::kNoChild) node.used |= 1U << lane;
+    if (stride < 3) continue;
+    for (int i = 0; i < 3; ++i) node.cone[static_cast<std::size_t>(i)][lane] = at[2].value[i];
+    node.cone[3][lane] = std::bit_cast<float>(at[2].number);
+  }
+  return nodes;
+}
+
+}  // namespace
+
+WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::vector<Texel>, 6>& slots) {
+  WideEdgeTree tree;
+  if (nodes.empty()) return tree;
+  tree.roots = {0};
+  tree.nodes = wide_nodes(nodes, 3);
+  tree.leaves.resize(slots[0].size() / kWide);
+  for (std::size_t slot = 0; slot < tree.leaves.size() * kWide; ++slot) {
+    WideEdges& leaf = tree.leaves[slot / kWide];
+    const std::size_t lane = slot % kWide;
+    put(leaf.a, lane, slots[0][slot].value);
+    put(leaf.b, lane, slots[1][slot].value);
+    for (std::size_t side = 0; side < 2; ++side) {
+      leaf.plane[side][lane] = slots[side][slot].number;
+      put(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
+      put(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
+    }
+    leaf.cut[lane] = slots[5][slot].number == 0 ? 0 : slots[5][slot].number - 1;
+    if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
+  }
+  return tree;
+}
+
+void append(WideEdgeTree& tree, const WideEdgeTree& more) {
+  const auto first_node = static_cast<std::uint32_t>(tree.nodes.size());
+  const auto first_leaf = static_cast<std::uint32_t>(tree.leaves.size());
+  for (const std::uint32_t root : more.roots) tree.roots.push_back(first_node + root);
+  for (WideNode node : more.nodes) {
+    for (std::uint32_t& reference : node.reference) {
+      if (reference != TriangleTree::kNoChild)
+        reference += (reference & TriangleTree::kLeafBit) != 0 ? first_leaf : first_node;
+    }
+    tree.nodes.push_back(node);
+  }
+  tree.leaves.insert(tree.leaves.end(), more.leaves.begin(), more.leaves.end());
+}
+
+WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
+  WideTriangleTree wide;
+  const std::vector<Texel> texels = visibility::node_texels(tree, scale);
+  wide.nodes = wide_nodes(texels, 2);
+  if (!wide.nodes.empty()) wide.roots = {0};
+  wide.leaves.resize(tree.leaves.size());
+  for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
+    WideTriangles& leaf = wide.leaves[i];
+    for (std::size_t lane = 0; lane < kWide; ++lane) {
+      const std::uint32_t triangle = tree.leaves[i][lane];
+      if (triangle == TriangleTree::kNoTriangle) continue;
+      const auto corners = scene.corners(triangle);
+      for (std::size_t corner = 0; corner < 3; ++corner) put(leaf.corner[corner], lane, corners[corner] * scale);
+      leaf.plane[lane] = scene.plane[triangle];
+      leaf.emits[lane] = static_cast<std::uint32_t>(scene.emits[triangle]);
+      leaf.used |= 1U << lane;
+    }
+  }
+  return wide;
+}
+
+}  // namespace penumbra::native

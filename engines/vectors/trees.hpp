@@ -1,0 +1,71 @@
+#pragma once
+
+#include "visibility/tree_texels.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/triangle_tree.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Hierarchies as a processor's vector units like them: eight children, edges or triangles side by
+/// side, all numbers scaled like the device's.
+namespace penumbra::native {
+
+constexpr std::size_t kWide = 8;
+using WideFloats = std::array<float, kWide>;
+using WideWords = std::array<std::uint32_t, kWide>;
+using WidePoints = std::array<WideFloats, 3>;  ///< x, y, z
+
+struct alignas(64) WideNode {
+  WidePoints middle, half;
+  std::array<WideFloats, 4> cone;  ///< of normals: axis, cosine
+  WideWords reference;             ///< TriangleTree::Child::reference
+  std::uint32_t used = 0;          ///< a bit a child
+};
+
+/// Edges, each with the planes of two of its triangles. Unused ones have used = 0.
+struct alignas(64) WideEdges {
+  WidePoints a, b;
+  std::array<WidePoints, 2> n, anchor;
+  std::array<WideWords, 2> plane;
+  WideWords cut;  ///< 0, or the number, from 1, of what a method knows of an edge's ends beside a and b
+  std::uint32_t used = 0;
+};
+
+struct alignas(64) WideTriangles {
+  std::array<WidePoints, 3> corner;
+  WideWords plane, emits;  ///< the light that it is the body of
+  WideWords closed{};      ///< a bit for the closed part that it is of, its corners then wound so that normals point
+                           ///< inward; or 0 (vsm/closed_parts.hpp)
+  std::uint32_t used = 0;
+};
+
+struct WideEdgeTree {
+  std::vector<std::uint32_t> roots;  ///< none, or 0 and those of trees that were appended
+  std::vector<WideNode> nodes;
+  std::vector<WideEdges> leaves;
+};
+struct WideTriangleTree {
+  std::vector<std::uint32_t> roots;  ///< none or 0
+  std::vector<WideNode> nodes;
+  std::vector<WideTriangles> leaves;
+};
+
+/// `nodes`: three texels a child; `slots`: an edge's six (volumes/edges/edge_set.hpp, EdgeTexels). Without nodes:
+/// empty.
+WideEdgeTree wide_edge_tree(std::span<const visibility::Texel> nodes,
+                            const std::array<std::vector<visibility::Texel>, 6>& slots);
+/// One more root.
+void append(WideEdgeTree& tree, const WideEdgeTree& more);
+WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
+                                    float scale);
+
+template <typename Tree>
+std::uint64_t bytes_of(const Tree& tree) {
+  return tree.nodes.size() * sizeof(tree.nodes[0]) + tree.leaves.size() * sizeof(tree.leaves[0]);
+}
+
+}  // namespace penumbra::native

@@ -1,0 +1,165 @@
+#include "import/3mf.hpp"
+
+#include "import/assembly.hpp"
+#include "import/text.hpp"
+#include "import/xml.hpp"
+#include "import/zip_archive.hpp"
+
+#include <array>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace penumbra::mesh {
+namespace {
+
+/// Names in a package begin with a slash where they are paths, and without where they are entries of the archive.
+std::string entry_of(std::string_view path) {
+  return std::string(path.substr(path.starts_with('/') ? 1 : 0));
+}
+
+/// The part with which the package begins.
+std::string find_start(const ZipArchive& archive, const std::string& file) {
+  constexpr std::string_view kRelationships = "_rels/.rels";
+  if (archive.contains(kRelationships)) {
+    const std::string text = archive.read(kRelationships);
+    const XmlText xml(text, fmt::format("{}: {}", file, kRelationships));
+    for (const pugi::xml_node& relationship : children_named(xml.document().document_element(), "Relationship")) {
+      if (std::string_view(relationship.attribute("Type").value()).ends_with("/3dmodel"))
+        return entry_of(relationship.attribute("Target").value());
+    }
+  }
+  for (const std::string& name : archive.names()) {
+    if (name.ends_with(".model")) return name;
+  }
+  throw InputError("{}: a zip archive without a 3D model in it; this is no 3MF package", file);
+}
+
+class PackageReader {
+ public:
+  PackageReader(const ZipArchive& archive, const std::string& file) : archive_(archive), file_(file) {}
+
+  ImportedMesh read() {
+    const std::string start = find_start(archive_, file_);
+    want(start);
+    while (!wanted_.empty()) {
+      const std::string entry = wanted_.back();
+      wanted_.pop_back();
+      const std::string text = archive_.read(entry);
+      read_model(XmlText(text, file_ + ": " + entry), entry, entry == start);
+    }
+    for (const Reference& reference : references_) {
+      const auto target = numbers_.find(reference.target);
+      if (target == numbers_.end()) {
+        throw InputError("{}: {}: there is no object with the id '{}'", file_, reference.target.first,
+                         reference.target.second);
+      }
+      auto& list = reference.part ? parts_[*reference.part].children : roots_;
+      list.push_back({target->second, reference.placement});
+    }
+    ImportedMesh mesh = assemble(parts_, roots_, file_);
+    if (lattices_ > 0) mesh.notes.push_back(fmt::format("{} beam lattices skipped", lattices_));
+    return mesh;
+  }
+
+ private:
+  using Target = std::pair<std::string, std::string>;  ///< the entry and the id
+  struct Reference {
+    std::optional<std::size_t> part;  ///< that is made of the target; none if the build lists it
+    Target target;
+    glm::dmat4 placement;
+  };
+
+  void want(const std::string& entry) {
+    if (known_.insert(entry).second) wanted_.push_back(entry);
+  }
+
+  void read_model(const XmlText& xml, const std::string& entry, bool is_start) {
+    const pugi::xml_node model = xml.document().document_element();
+    if (local_name(model) != "model") xml.fail(model, "the outermost element is <{}>; expected <model>", model.name());
+    for (const pugi::xml_node& resources : children_named(model, "resources")) {
+      for (const pugi::xml_node& object : children_named(resources, "object")) read_object(xml, object, entry);
+    }
+    if (!is_start) return;  // other models have a build of their own, which is not this package's
+    for (const pugi::xml_node& build : children_named(model, "build")) {
+      for (const pugi::xml_node& item : children_named(build, "item")) refer(xml, item, entry, std::nullopt);
+    }
+  }
+
+  void read_object(const XmlText& xml, const pugi::xml_node& object, const std::string& entry) {
+    const std::string id = object.attribute("id").value();
+    const std::size_t number = parts_.size();
+    if (!numbers_.emplace(Target{entry, id}, number).second) xml.fail(object, "the id '{}' stands twice", id);
+    parts_.push_back({fmt::format("object '{}'", id), {}, {}, {}});
+    for (const pugi::xml_node& mesh : children_named(object, "mesh")) read_mesh(xml, mesh, parts_[number]);
+    for (const pugi::xml_node& components : children_named(object, "components")) {
+      for (const pugi::xml_node& component : children_named(components, "component"))
+        refer(xml, component, entry, number);
+    }
+  }
+
+  void read_mesh(const XmlText& xml, const pugi::xml_node& mesh, AssemblyPart& part) {
+    const std::size_t first = part.positions.size();
+    for (const pugi::xml_node& vertices : children_named(mesh, "vertices")) {
+      for (const pugi::xml_node& vertex : children_named(vertices, "vertex")) {
+        const auto at = [&](const char* name) { return xml.real(vertex, vertex.attribute(name).value(), name); };
+        part.positions.emplace_back(at("x"), at("y"), at("z"));
+      }
+    }
+    if (part.positions.size() > std::numeric_limits<std::uint32_t>::max()) xml.fail(mesh, "too many vertices");
+    const std::size_t count = part.positions.size() - first;
+    for (const pugi::xml_node& triangles : children_named(mesh, "triangles")) {
+      for (const pugi::xml_node& triangle : children_named(triangles, "triangle")) {
+        const auto at = [&](const char* name) {
+          return static_cast<std::uint32_t>(first) + xml.index(triangle, triangle.attribute(name).value(), count);
+        };
+        part.triangles.push_back({at("v1"), at("v2"), at("v3")});
+      }
+    }
+    lattices_ += children_named(mesh, "beamlattice").size();
+  }
+
+  void refer(const XmlText& xml, const pugi::xml_node& node, const std::string& entry,
+             std::optional<std::size_t> from) {
+    const pugi::xml_attribute path = attribute_named(node, "path");  // of the production extension
+    const std::string target = path ? entry_of(path.value()) : entry;
+    want(target);
+    references_.push_back({from, {target, node.attribute("objectid").value()}, read_transform(xml, node)});
+  }
+
+  /// Four rows of three numbers, for points as rows: just what glm calls columns.
+  static glm::dmat4 read_transform(const XmlText& xml, const pugi::xml_node& node) {
+    glm::dmat4 matrix(1);
+    const pugi::xml_attribute transform = node.attribute("transform");
+    if (!transform) return matrix;
+    std::string_view rest = transform.value();
+    for (glm::length_t i = 0; i < 12; ++i) {
+      const std::string word(take_word(rest));
+      matrix[i / 3][i % 3] = xml.real(node, word.c_str(), fmt::format("number {} of the transform", i + 1));
+    }
+    if (!take_word(rest).empty()) xml.fail(node, "the transform has more than 12 numbers");
+    return matrix;
+  }
+
+  const ZipArchive& archive_;
+  const std::string& file_;
+  std::set<std::string> known_;  ///< entries that were wanted once
+  std::vector<std::string> wanted_;
+  std::vector<AssemblyPart> parts_;
+  std::map<Target, std::size_t> numbers_;
+  std::vector<Reference> references_;
+  std::vector<PlacedPart> roots_;
+  std::uint64_t lattices_ = 0;
+};
+
+}  // namespace
+
+ImportedMesh read_3mf(std::string_view content, const std::string& file) {
+  if (!ZipArchive::is_one(content)) throw InputError("{}: it is no zip archive, as 3MF packages are", file);
+  const ZipArchive archive(content, file);
+  return PackageReader(archive, file).read();
+}
+
+}  // namespace penumbra::mesh

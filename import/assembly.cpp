@@ -1,0 +1,111 @@
+#include "import/assembly.hpp"
+
+#include "base/error.hpp"
+#include "import/faces.hpp"
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace penumbra::mesh {
+namespace {
+
+class Assembly {
+ public:
+  Assembly(std::span<const AssemblyPart> parts, const std::string& file)
+      : parts_(parts), file_(file), faces_(mesh_.soup), placed_(parts.size(), false) {}
+
+  ImportedMesh run(std::span<const PlacedPart> roots) {
+    refuse_cycles();
+    std::vector<PlacedPart> stack(roots.rbegin(), roots.rend());
+    while (!stack.empty()) {  // no recursion: a file may nest a million parts
+      const PlacedPart next = stack.back();
+      stack.pop_back();
+      add(parts_[next.part], next.placement);
+      placed_[next.part] = true;
+      const auto& children = parts_[next.part].children;
+      for (std::size_t i = children.size(); i-- > 0;) {  // last first, so that they come off in the file's order
+        stack.push_back({children[i].part, next.placement * children[i].placement});
+      }
+    }
+    if (mesh_.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file_);
+    mesh_.notes = faces_.notes();
+    std::uint64_t unplaced = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) unplaced += !placed_[i] && !parts_[i].triangles.empty() ? 1 : 0;
+    if (unplaced > 0) {
+      mesh_.notes.push_back(fmt::format("{} of {} objects skipped: nothing places them", unplaced, parts_.size()));
+    }
+    if (mirrored_ > 0) {
+      mesh_.notes.push_back(fmt::format(
+          "{} objects mirrored by their transforms: windings reversed, so that the outside stays outside", mirrored_));
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  /// Takes parts away whose children are all gone; what is left in the end is made of itself.
+  void refuse_cycles() const {
+    std::vector<std::size_t> waiting(parts_.size()), ready;
+    std::vector<std::vector<std::size_t>> parents(parts_.size());
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      waiting[i] = parts_[i].children.size();
+      if (waiting[i] == 0) ready.push_back(i);
+      for (const PlacedPart& child : parts_[i].children) parents[child.part].push_back(i);
+    }
+    std::size_t gone = 0;
+    while (!ready.empty()) {
+      const std::size_t part = ready.back();
+      ready.pop_back();
+      ++gone;
+      for (const std::size_t parent : parents[part]) {
+        if (--waiting[parent] == 0) ready.push_back(parent);
+      }
+    }
+    if (gone == parts_.size()) return;
+    const auto left = std::ranges::find_if(waiting, [](std::size_t count) { return count > 0; });
+    throw InputError("{}: {} is made of itself", file_, parts_[static_cast<std::size_t>(left - waiting.begin())].name);
+  }
+
+  void add(const AssemblyPart& part, const glm::dmat4& placement) {
+    if (part.triangles.empty()) return;
+    auto& positions = mesh_.soup.positions;
+    const std::size_t first = positions.size();
+    if (first + part.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
+      throw InputError("{}: more than 4,294,967,295 vertices, counting every copy of an object", file_);
+    }
+    for (std::size_t i = 0; i < part.positions.size(); ++i) {
+      const glm::dvec3 p(placement * glm::dvec4(part.positions[i], 1));
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+        throw InputError("{}: {}: vertex {} is not finite where it is placed", file_, part.name, i);
+      }
+      positions.push_back(p);
+    }
+    const bool mirrored = glm::determinant(glm::dmat3(placement)) < 0;
+    mirrored_ += mirrored ? 1 : 0;
+    for (const Triangle& triangle : part.triangles) {
+      std::array<std::uint32_t, 3> corners{};
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = static_cast<std::uint32_t>(first) + triangle[i];
+      if (mirrored) std::swap(corners[1], corners[2]);
+      faces_.add(corners);
+    }
+  }
+
+  std::span<const AssemblyPart> parts_;
+  const std::string& file_;
+  ImportedMesh mesh_;
+  FaceCollector faces_;
+  std::vector<bool> placed_;
+  std::uint64_t mirrored_ = 0;
+};
+
+}  // namespace
+
+ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file) {
+  return Assembly(parts, file).run(roots);
+}
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,64 @@
+#include "import/faces.hpp"
+
+#include "base/error.hpp"
+#include "import/polygon.hpp"
+
+#include <limits>
+
+namespace penumbra::mesh {
+
+void FaceCollector::add(std::span<const std::uint32_t> corners) {
+  if (next_face_ == std::numeric_limits<std::uint32_t>::max()) throw InputError("more than 4,294,967,294 faces");
+  const std::uint32_t face = next_face_++;
+  if (corners.empty()) {
+    ++empty_;
+    return;
+  }
+  if (corners.size() < 3) {
+    ++(corners.size() == 1 ? points_ : lines_);
+    return;
+  }
+  const std::size_t first = soup_.triangles.size();
+  if (corners.size() == 3) {
+    soup_.triangles.push_back({corners[0], corners[1], corners[2]});
+  } else {
+    std::vector<glm::dvec3> outline;
+    for (const std::uint32_t corner : corners) outline.push_back(soup_.positions[corner]);
+    const PolygonKind kind = triangulate_polygon(outline, soup_.triangles);
+    ++(kind == PolygonKind::convex ? convex_ : kind == PolygonKind::concave ? concave_ : tangled_);
+    for (std::size_t i = first; i < soup_.triangles.size(); ++i) {
+      for (std::uint32_t& index : soup_.triangles[i]) index = corners[index];
+    }
+    polygon_triangles_ += soup_.triangles.size() - first;
+  }
+  for (std::size_t i = first; i < soup_.triangles.size(); ++i) {
+    const auto& [a, b, c] = soup_.triangles[i];
+    const auto at = [&](std::uint32_t index) -> const glm::dvec3& { return soup_.positions[index]; };
+    if (at(a) == at(b) || at(b) == at(c) || at(c) == at(a)) ++collapsed_;
+    soup_.object.push_back(0);
+    soup_.source_face.push_back(face);
+  }
+}
+
+std::vector<std::string> FaceCollector::notes() const {
+  std::vector<std::string> notes;
+  if (polygon_triangles_ > 0) {
+    std::string note = fmt::format("{} polygons became {} triangles ({} convex by a fan, {} concave by ear clipping",
+                                   convex_ + concave_ + tangled_, polygon_triangles_, convex_, concave_);
+    if (tangled_ > 0)
+      note += fmt::format(", {} that cross themselves or have no area by a fan where no ear was left", tangled_);
+    notes.push_back(note + ")");
+  }
+  if (points_ > 0) notes.push_back(fmt::format("{} points skipped: faces with one corner", points_));
+  if (lines_ > 0) notes.push_back(fmt::format("{} lines skipped: faces with two corners", lines_));
+  if (empty_ > 0) notes.push_back(fmt::format("{} faces without corners skipped", empty_));
+  if (collapsed_ > 0)
+    notes.push_back(fmt::format("{} triangles with two equal corners kept: they have no area", collapsed_));
+  return notes;
+}
+
+std::string FaceCollector::instead_of_surfaces() const {
+  return fmt::format("{} points, {} lines, {} faces without corners", points_, lines_, empty_);
+}
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,201 @@
+#include "import/gltf/gltf_accessor.hpp"
+
+#include "base/error.hpp"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string>
+
+// tinygltf checks almost nothing that an accessor says about its buffer; all of it is checked here, in 64 bits.
+
+namespace penumbra::scenes {
+namespace {
+
+/// Elements at regular distances inside a buffer, all of them in range.
+struct ElementView {
+  const unsigned char* first = nullptr;
+  std::size_t stride = 0;
+  [[nodiscard]] const unsigned char* at(std::size_t i) const { return first + i * stride; }
+};
+
+struct ElementLayout {
+  std::size_t count = 0, bytes = 0;
+};
+
+/// `count` elements from `offset` on in buffer view number `view`; `place` says whose view it is.
+ElementView view_elements(const tinygltf::Model& model, const std::string& place, int view, std::size_t offset,
+                          ElementLayout layout) {
+  if (view < 0 || static_cast<std::size_t>(view) >= model.bufferViews.size()) {
+    throw InputError("{}: bufferView {} does not exist; there are {}", place, view, model.bufferViews.size());
+  }
+  const tinygltf::BufferView& window = model.bufferViews[static_cast<std::size_t>(view)];
+  if (window.buffer < 0 || static_cast<std::size_t>(window.buffer) >= model.buffers.size()) {
+    throw InputError("/bufferViews/{}: buffer {} does not exist; there are {}", view, window.buffer,
+                     model.buffers.size());
+  }
+  const auto& data = model.buffers[static_cast<std::size_t>(window.buffer)].data;
+  if (window.byteOffset > data.size() || window.byteLength > data.size() - window.byteOffset) {
+    throw InputError("/bufferViews/{}: bytes {} to {} lie outside its buffer of {} bytes", view, window.byteOffset,
+                     window.byteOffset + window.byteLength, data.size());
+  }
+  const std::size_t stride = window.byteStride == 0 ? layout.bytes : window.byteStride;
+  if (stride < layout.bytes) {
+    throw InputError("/bufferViews/{}: byteStride {} is less than an element's {} bytes", view, stride, layout.bytes);
+  }
+  const bool fits = layout.count == 0 || (offset <= window.byteLength && layout.bytes <= window.byteLength - offset &&
+                                          layout.count - 1 <= (window.byteLength - offset - layout.bytes) / stride);
+  if (!fits) {
+    throw InputError("{}: {} elements of {} bytes from byte {} on do not fit into bufferView {} of {} bytes", place,
+                     layout.count, layout.bytes, offset, view, window.byteLength);
+  }
+  return {layout.count == 0 ? nullptr : data.data() + window.byteOffset + offset, stride};
+}
+
+template <typename T>
+double load(const unsigned char* from, bool normalized) {
+  T value;
+  std::memcpy(&value, from, sizeof(T));
+  if constexpr (std::is_integral_v<T>) {
+    // glTF 2.0, "Accessor data types": c / 127 and the like, and never below −1.
+    if (normalized)
+      return std::max(static_cast<double>(value) / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
+  }
+  return static_cast<double>(value);
+}
+
+double load_component(const unsigned char* from, int type, bool normalized) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return load<std::int8_t>(from, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(from, normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return load<std::int16_t>(from, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(from, normalized);
+    case TINYGLTF_COMPONENT_TYPE_INT:
+      return load<std::int32_t>(from, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return load<std::uint32_t>(from, normalized);
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return load<float>(from, normalized);
+    default:
+      return load<double>(from, normalized);
+  }
+}
+
+std::size_t component_bytes(const std::string& place, int type) {
+  const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type));
+  if (bytes <= 0) throw InputError("{}: componentType {} is unknown", place, type);
+  return static_cast<std::size_t>(bytes);
+}
+
+bool is_index_type(int type) {
+  return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+std::uint32_t load_index(const unsigned char* from, int type) {  // exact: a double holds every 32-bit integer
+  return static_cast<std::uint32_t>(load_component(from, type, false));
+}
+
+/// Overwrites the elements that a sparse accessor lists. `store(i, bytes)` puts one into place i.
+template <typename Store>
+void apply_sparse(const tinygltf::Model& model, const std::string& place, const tinygltf::Accessor& accessor,
+                  std::size_t element_bytes, Store store) {
+  const auto& sparse = accessor.sparse;
+  if (!sparse.isSparse) return;
+  if (sparse.count < 0 || static_cast<std::size_t>(sparse.count) > accessor.count || sparse.indices.byteOffset < 0 ||
+      sparse.values.byteOffset < 0) {
+    throw InputError("{}/sparse: a count or offset is out of range (count {} of {})", place, sparse.count,
+                     accessor.count);
+  }
+  if (!is_index_type(sparse.indices.componentType)) {
+    throw InputError("{}/sparse/indices: componentType {}; expected 5121, 5123 or 5125", place,
+                     sparse.indices.componentType);
+  }
+  const auto count = static_cast<std::size_t>(sparse.count);
+  const ElementView places = view_elements(model, place + "/sparse/indices", sparse.indices.bufferView,
+                                           static_cast<std::size_t>(sparse.indices.byteOffset),
+                                           {count, component_bytes(place, sparse.indices.componentType)});
+  const ElementView values = view_elements(model, place + "/sparse/values", sparse.values.bufferView,
+                                           static_cast<std::size_t>(sparse.values.byteOffset), {count, element_bytes});
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t target = load_index(places.at(i), sparse.indices.componentType);
+    if (target >= accessor.count) {
+      throw InputError("{}/sparse/indices: it names element {} of {}", place, target, accessor.count);
+    }
+    store(target, values.at(i));
+  }
+}
+
+const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int number) {
+  if (number < 0 || static_cast<std::size_t>(number) >= model.accessors.size()) {
+    throw InputError("/accessors/{}: it does not exist; there are {}", number, model.accessors.size());
+  }
+  return model.accessors[static_cast<std::size_t>(number)];
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> read_positions(const tinygltf::Model& model, int number) {
+  const tinygltf::Accessor& accessor = find_accessor(model, number);
+  const std::string place = fmt::format("/accessors/{}", number);
+  if (accessor.type != TINYGLTF_TYPE_VEC3) throw InputError("{}: positions must be of type VEC3", place);
+  const std::size_t bytes = component_bytes(place, accessor.componentType);
+  const auto load_vector = [&](const unsigned char* from) {
+    const auto component = [&](std::size_t i) {
+      return load_component(from + i * bytes, accessor.componentType, accessor.normalized);
+    };
+    return glm::dvec3(component(0), component(1), component(2));
+  };
+  std::vector<glm::dvec3> positions;
+  if (accessor.bufferView < 0) {
+    positions.resize(accessor.count, glm::dvec3(0));
+  } else {
+    // In this order: only a count that the buffer holds may be allocated.
+    const ElementView view =
+        view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, 3 * bytes});
+    positions.resize(accessor.count);
+    for (std::size_t i = 0; i < accessor.count; ++i) positions[i] = load_vector(view.at(i));
+  }
+  apply_sparse(model, place, accessor, 3 * bytes,
+               [&](std::size_t i, const unsigned char* from) { positions[i] = load_vector(from); });
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const glm::dvec3& p = positions[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      throw InputError("{}: vertex {} is not finite: ({}, {}, {})", place, i, p.x, p.y, p.z);
+    }
+  }
+  return positions;
+}
+
+std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int number) {
+  const tinygltf::Accessor& accessor = find_accessor(model, number);
+  const std::string place = fmt::format("/accessors/{}", number);
+  if (accessor.type != TINYGLTF_TYPE_SCALAR) throw InputError("{}: indices must be of type SCALAR", place);
+  if (!is_index_type(accessor.componentType)) {
+    throw InputError("{}: indices have componentType {}; expected 5121, 5123 or 5125", place, accessor.componentType);
+  }
+  const std::size_t bytes = component_bytes(place, accessor.componentType);
+  std::vector<std::uint32_t> indices;
+  if (accessor.bufferView < 0) {
+    indices.resize(accessor.count);
+  } else {
+    const ElementView view =
+        view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, bytes});
+    indices.resize(accessor.count);
+    for (std::size_t i = 0; i < accessor.count; ++i) indices[i] = load_index(view.at(i), accessor.componentType);
+  }
+  apply_sparse(model, place, accessor, bytes, [&](std::size_t i, const unsigned char* from) {
+    indices[i] = load_index(from, accessor.componentType);
+  });
+  return indices;
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "mesh/import.hpp"
+#include "scenes/formats/reader.hpp"
+#include "scenes/scene.hpp"
+
+namespace penumbra::scenes {
+
+/// Reads a glTF scene in this very process: what the import helper does under its limits; everybody else calls
+/// read_gltf. Throws InputError; std::bad_alloc.
+Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options);
+
+/// The same for its triangles alone, as one mesh: the one reader of glTF, whoever names the file.
+mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside);
+
+/// Whether the file's name says that it is glTF.
+bool is_gltf(const std::filesystem::path& file);
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,95 @@
+#include "import/gltf/gltf_numbers.hpp"
+
+#include "base/error.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace penumbra::scenes {
+namespace {
+
+using nlohmann::json;
+
+/// Where whole numbers from 0 up stand; a star is any index or name. tinygltf keeps them in an int.
+constexpr std::array kNumbers = {
+    "/scene",
+    "/scenes/*/nodes/*",
+    "/nodes/*/mesh",
+    "/nodes/*/camera",
+    "/nodes/*/skin",
+    "/nodes/*/children/*",
+    "/meshes/*/primitives/*/indices",
+    "/meshes/*/primitives/*/material",
+    "/meshes/*/primitives/*/mode",
+    "/meshes/*/primitives/*/attributes/*",
+    "/accessors/*/bufferView",
+    "/accessors/*/componentType",
+    "/accessors/*/sparse/count",
+    "/accessors/*/sparse/indices/bufferView",
+    "/accessors/*/sparse/indices/byteOffset",
+    "/accessors/*/sparse/indices/componentType",
+    "/accessors/*/sparse/values/bufferView",
+    "/accessors/*/sparse/values/byteOffset",
+    "/bufferViews/*/buffer",
+};
+/// The same for those that it keeps in 64 bits.
+constexpr std::array kSizes = {
+    "/accessors/*/byteOffset",   "/accessors/*/count",        "/bufferViews/*/byteOffset",
+    "/bufferViews/*/byteLength", "/bufferViews/*/byteStride", "/buffers/*/byteLength",
+};
+
+struct Expected {
+  const std::string& file;
+  std::uint64_t most;
+};
+
+void check_number(const json& value, const std::string& pointer, const Expected& expected) {
+  if (value.is_number_unsigned() && value.get<std::uint64_t>() <= expected.most) return;
+  throw InputError("{}: {}: {}; expected a whole number from 0 to {}", expected.file, pointer,
+                   value.dump(-1, ' ', true, json::error_handler_t::replace).substr(0, 60), expected.most);
+}
+
+/// Looks at what `rest` of a place leads to from `value`, which stands at `pointer`.
+void check_place(const json& value, std::string_view rest, const std::string& pointer, const Expected& expected) {
+  if (rest.empty()) return check_number(value, pointer, expected);
+  rest.remove_prefix(1);
+  const std::string_view name = rest.substr(0, rest.find('/'));
+  rest.remove_prefix(name.size());
+  if (name != "*") {
+    const auto found = value.is_object() ? value.find(name) : value.end();
+    if (found != value.end()) check_place(*found, rest, fmt::format("{}/{}", pointer, name), expected);
+  } else if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i)
+      check_place(value[i], rest, fmt::format("{}/{}", pointer, i), expected);
+  } else if (value.is_object()) {
+    for (const auto& [key, member] : value.items())
+      check_place(member, rest, fmt::format("{}/{}", pointer, key), expected);
+  }
+}
+
+}  // namespace
+
+void check_gltf_numbers(std::string_view text, const std::string& file) {
+  const json document = json::parse(text, nullptr, false);
+  if (!document.is_object()) return;
+  // glTF 1.0 has names where 2.0 has numbers: that it is of 1.0 is what helps to know.
+  const auto asset = document.find("asset");
+  const bool known = asset != document.end() && asset->is_object() && asset->contains("version");
+  if (!known) {
+    throw InputError("{}: /asset/version is missing; this is no glTF 2.0 file (glTF 1.0 is not supported)", file);
+  }
+  const json& version = (*asset)["version"];
+  if (!version.is_string() || !version.get<std::string>().starts_with("2.")) {
+    throw InputError("{}: /asset/version: glTF {} is not supported; export it again as glTF 2.0", file,
+                     version.is_string() ? version.get<std::string>() : "of no version");
+  }
+  constexpr std::uint64_t kInt = std::numeric_limits<std::int32_t>::max();
+  for (const std::string_view place : kNumbers) check_place(document, place, "", {file, kInt});
+  constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
+  for (const std::string_view place : kSizes) check_place(document, place, "", {file, kAny});
+}
+
+}  // namespace penumbra::scenes

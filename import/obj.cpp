@@ -1,0 +1,188 @@
+#include "import/obj.hpp"
+
+#include "import/faces.hpp"
+#include "import/text.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace penumbra::mesh {
+namespace {
+
+/// Statements that say nothing of where surfaces are.
+constexpr std::array<std::string_view, 21> kSilent = {
+    "g",   "o",          "s",         "mg", "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp", "d_interp",
+    "lod", "shadow_obj", "trace_obj", "vp", "vn",     "vt",     "cstype", "deg",    "end",   "call"};
+/// Parts of free-form curves and surfaces, which are not read.
+constexpr std::array<std::string_view, 13> kFreeForm = {"curv", "curv2", "surf", "parm", "trim",  "hole", "scrv",
+                                                        "sp",   "con",   "bmat", "step", "ctech", "stech"};
+
+class ObjReader {
+ public:
+  explicit ObjReader(const std::string& file) : file_(file), faces_(mesh_.soup) {}
+
+  ImportedMesh read(std::string_view text) {
+    std::string_view line;
+    std::string joined;  // of lines that end in a backslash
+    while (take_line(text, line)) {
+      ++line_number_;
+      if (line.ends_with('\\')) {
+        joined.append(line.substr(0, line.size() - 1)).append(" ");
+      } else if (joined.empty()) {
+        statement(line);
+      } else {
+        statement(joined.append(line));
+        joined.clear();
+      }
+    }
+    if (!joined.empty()) statement(joined);
+    if (highest_named_ > vertices()) {
+      throw InputError("{}: line {}: the face names vertex {}, but there are only {} (numbered from 1)", file_,
+                       highest_line_, highest_named_, vertices());
+    }
+    add_faces();
+    if (mesh_.soup.triangles.empty()) {
+      throw InputError("{}: there are no triangles in it ({})", file_, faces_.instead_of_surfaces());
+    }
+    write_notes();
+    return std::move(mesh_);
+  }
+
+ private:
+  template <typename... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
+    throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  [[nodiscard]] std::uint64_t vertices() const { return mesh_.soup.positions.size(); }
+
+  void statement(std::string_view line) {
+    std::string_view rest = line;
+    const std::string_view keyword = take_word(rest);
+    if (keyword.empty() || keyword.front() == '#') return;
+    rest = rest.substr(0, rest.find('#'));
+    if (keyword == "v") return vertex(rest);
+    if (keyword == "f" || keyword == "fo") return face(rest);
+    if (keyword == "p" || keyword == "l") return skip(keyword == "p", rest);
+    normals_ += keyword == "vn" ? 1 : 0;
+    uvs_ += keyword == "vt" ? 1 : 0;
+    if (std::ranges::find(kSilent, keyword) != kSilent.end()) return;
+    if (std::ranges::find(kFreeForm, keyword) != kFreeForm.end()) {
+      ++free_form_;
+      return;
+    }
+    if (unknown_++ == 0) first_unknown_ = fmt::format("line {}: '{}'", line_number_, keyword.substr(0, 40));
+  }
+
+  void vertex(std::string_view line) {
+    const std::uint64_t number = vertices() + 1;
+    if (number > std::numeric_limits<std::uint32_t>::max()) fail("more than 4,294,967,295 vertices");
+    // x y z, x y z w, or a position and a colour. What colours say is no matter, and may be no number at all.
+    std::array<double, 4> numbers{0, 0, 0, 1};
+    std::array<std::string_view, 8> words;
+    std::size_t count = 0;
+    while (count < words.size() && !(words[count] = take_word(line)).empty()) ++count;
+    if (count != 3 && count != 4 && count != 6 && count != 7) {
+      fail("vertex {} has {}{} numbers; expected x y z, x y z w, or x y z and a colour of 3 or 4", number, count,
+           count == words.size() ? " or more" : "");
+    }
+    for (std::size_t i = 0; i < (count == 4 ? 4 : 3); ++i) {
+      const auto value = parse_number<double>(words[i]);
+      if (!value) fail("vertex {}: '{}' is not a number", number, words[i]);
+      if (!std::isfinite(*value)) fail("vertex {} is not finite: '{}'", number, words[i]);
+      numbers[i] = *value;
+    }
+    colors_ += count >= 6 ? 1 : 0;
+    if (numbers[3] == 0) fail("vertex {} has the weight 0, so it lies at infinity", number);
+    const glm::dvec3 position = glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
+      fail("vertex {} is not finite: its weight is {}", number, numbers[3]);
+    }
+    mesh_.soup.positions.push_back(position);
+  }
+
+  /// The corner's vertex, numbered from 0; texture coordinates and normals after a slash are not looked at.
+  std::uint32_t corner(std::string_view word) {
+    const auto index = parse_number<std::int64_t>(word.substr(0, word.find('/')));
+    if (!index) fail("'{}' is not a vertex number", word);
+    if (*index == 0) fail("vertex numbers start at 1, but the face names vertex 0");
+    if (*index < 0) {
+      if (*index < -static_cast<std::int64_t>(vertices())) {
+        fail("the face names vertex {} from the end, but only {} come before it", *index, vertices());
+      }
+      return static_cast<std::uint32_t>(static_cast<std::int64_t>(vertices()) + *index);
+    }
+    // A positive number may name a vertex that only follows: the highest is judged at the end.
+    const auto named = static_cast<std::uint64_t>(*index);
+    if (named > vertices() && named > highest_named_) {
+      highest_named_ = named;
+      highest_line_ = line_number_;
+    }
+    return static_cast<std::uint32_t>(named - 1);  // one that is too high for its type is refused at the end
+  }
+
+  void face(std::string_view line) {
+    const std::size_t first = corners_.size();
+    for (std::string_view word; !(word = take_word(line)).empty();) corners_.push_back(corner(word));
+    face_ends_.push_back(corners_.size());
+    if (corners_.size() - first > std::numeric_limits<std::uint32_t>::max()) fail("too many corners");
+  }
+
+  void skip(bool points, std::string_view line) {
+    std::uint64_t corners = 0;
+    while (!take_word(line).empty()) ++corners;
+    if (points)
+      faces_.skip_points(corners);
+    else
+      faces_.skip_lines(std::max<std::uint64_t>(corners, 1) - 1);
+  }
+
+  /// Only now, because faces may name vertices that follow them.
+  void add_faces() {
+    std::size_t first = 0;
+    mesh_.soup.triangles.reserve(face_ends_.size());
+    for (const std::size_t end : face_ends_) {
+      faces_.add(std::span(corners_).subspan(first, end - first));
+      first = end;
+    }
+  }
+
+  void write_notes() {
+    mesh_.notes = faces_.notes();
+    std::string ignored;
+    const auto mention = [&](std::uint64_t count, std::string_view what) {
+      if (count > 0) ignored += fmt::format("{}{} {}", ignored.empty() ? "" : ", ", count, what);
+    };
+    mention(normals_, "vertex normals");
+    mention(uvs_, "texture coordinates");
+    mention(colors_, "vertex colours");
+    if (!ignored.empty()) mesh_.notes.push_back("ignored: " + ignored);
+    if (free_form_ > 0) {
+      mesh_.notes.push_back(fmt::format("{} free-form statements (curves, surfaces) skipped", free_form_));
+    }
+    if (unknown_ > 0) {
+      mesh_.notes.push_back(fmt::format("{} unknown statements skipped, the first in {}", unknown_, first_unknown_));
+    }
+  }
+
+  const std::string& file_;
+  ImportedMesh mesh_;
+  FaceCollector faces_;
+  std::vector<std::uint32_t> corners_;  ///< of all faces, one after the other
+  std::vector<std::size_t> face_ends_;  ///< into `corners_`
+  std::size_t line_number_ = 0, highest_line_ = 0;
+  std::uint64_t highest_named_ = 0;  ///< vertex, from 1, that a face before it names; 0 if there is none
+  std::uint64_t normals_ = 0, uvs_ = 0, colors_ = 0, free_form_ = 0, unknown_ = 0;
+  std::string first_unknown_;
+};
+
+}  // namespace
+
+ImportedMesh read_obj_text(std::string_view text, const std::string& file) {
+  return ObjReader(file).read(text);
+}
+
+}  // namespace penumbra::mesh

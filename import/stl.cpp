@@ -1,0 +1,172 @@
+#include "import/stl.hpp"
+
+#include "import/faces.hpp"
+#include "import/text.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+namespace penumbra::mesh {
+namespace {
+
+constexpr std::size_t kHeader = 84, kTriangle = 50;
+
+/// `keyword` is given in lower case; writers differ in the case of theirs.
+bool same_keyword(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword,
+                            [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+std::uint32_t count_of_binary(std::string_view content) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, content.data() + kHeader - sizeof(count), sizeof(count));
+  return count;
+}
+
+/// What stands first in an ASCII file. Binary ones may begin with "solid" as well, which says nothing then.
+bool begins_with_solid(std::string_view content) {
+  const std::string_view word = take_word(content);
+  return word.size() >= 5 && same_keyword(word.substr(0, 5), "solid");
+}
+
+/// A binary file has zeros in its count at least, unless that is above sixteen million.
+bool begins_with_text(std::string_view content) {
+  return content.substr(0, kHeader).find('\0') == std::string_view::npos;
+}
+
+void add_corners(TriangleSoup& soup, FaceCollector& faces, std::uint32_t count) {
+  std::vector<std::uint32_t> corners(count);
+  std::iota(corners.begin(), corners.end(), static_cast<std::uint32_t>(soup.positions.size()) - count);
+  faces.add(corners);
+}
+
+ImportedMesh read_binary(std::string_view content, const std::string& file) {
+  const std::size_t count = count_of_binary(content);
+  const std::size_t wanted = kHeader + kTriangle * count;
+  if (content.size() < wanted) {
+    throw InputError("{}: a binary STL file of {} triangles takes {} bytes, but it has {}; it is truncated", file,
+                     count, wanted, content.size());
+  }
+  if (count > std::numeric_limits<std::uint32_t>::max() / 3) {
+    throw InputError("{}: {} triangles; expected at most 1,431,655,765", file, count);
+  }
+  ImportedMesh mesh;
+  FaceCollector faces(mesh.soup);
+  mesh.soup.positions.reserve(3 * count);
+  mesh.soup.triangles.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<float, 12> numbers{};  // a normal, which is not looked at, and three corners
+    std::memcpy(numbers.data(), content.data() + kHeader + kTriangle * i, sizeof(numbers));
+    for (std::size_t c = 3; c < 12; c += 3) {
+      const glm::dvec3 p(numbers[c], numbers[c + 1], numbers[c + 2]);
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+        throw InputError("{}: vertex {} of triangle {} is not finite: ({}, {}, {}) (numbered from 0)", file, c / 3 - 1,
+                         i, p.x, p.y, p.z);
+      }
+      mesh.soup.positions.push_back(p);
+    }
+    add_corners(mesh.soup, faces, 3);
+  }
+  mesh.notes = faces.notes();
+  if (content.size() > wanted) {
+    mesh.notes.push_back(fmt::format("{} bytes after the last triangle ignored", content.size() - wanted));
+  }
+  return mesh;
+}
+
+class AsciiStl {
+ public:
+  explicit AsciiStl(const std::string& file) : file_(file), faces_(mesh_.soup) {}
+
+  ImportedMesh read(std::string_view text) {
+    std::string_view line;
+    while (take_line(text, line)) {
+      ++line_number_;
+      for (std::string_view word; !(word = take_word(line)).empty();) {
+        if (same_keyword(word, "solid") || same_keyword(word, "endsolid")) break;  // a name follows
+        statement(word, line);
+      }
+    }
+    if (facet_line_ > 0) {
+      throw InputError("{}: line {}: the facet that begins here has no end; the file is truncated", file_, facet_line_);
+    }
+    mesh_.notes = faces_.notes();
+    if (unknown_ > 0) {
+      mesh_.notes.push_back(fmt::format("{} unknown statements skipped, the first in {}", unknown_, first_unknown_));
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  template <typename... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
+    throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  void statement(std::string_view word, std::string_view& line) {
+    if (same_keyword(word, "facet")) {
+      if (facet_line_ > 0) fail("a facet begins, but that of line {} has no end", facet_line_);
+      facet_line_ = line_number_;
+      corners_ = 0;
+    } else if (same_keyword(word, "normal")) {
+      for (int i = 0; i < 3; ++i) take_word(line);  // which are not looked at
+    } else if (same_keyword(word, "vertex")) {
+      vertex(line);
+    } else if (same_keyword(word, "endfacet")) {
+      if (facet_line_ == 0) fail("a facet ends that has not begun");
+      facet_line_ = 0;
+      add_corners(mesh_.soup, faces_, corners_);
+    } else if (!same_keyword(word, "outer") && !same_keyword(word, "loop") && !same_keyword(word, "endloop")) {
+      if (unknown_++ == 0) first_unknown_ = fmt::format("line {}: '{}'", line_number_, word.substr(0, 40));
+      line = {};
+    }
+  }
+
+  void vertex(std::string_view& line) {
+    if (facet_line_ == 0) fail("a vertex outside of a facet");
+    glm::dvec3 position;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+      const std::string_view word = take_word(line);
+      const auto value = parse_number<double>(word);
+      if (!value) fail("'{}' is not a coordinate", word);
+      if (!std::isfinite(*value)) fail("a vertex is not finite: '{}'", word);
+      position[axis] = *value;
+    }
+    if (mesh_.soup.positions.size() == std::numeric_limits<std::uint32_t>::max())
+      fail("more than 4,294,967,295 vertices");
+    mesh_.soup.positions.push_back(position);
+    ++corners_;
+  }
+
+  const std::string& file_;
+  ImportedMesh mesh_;
+  FaceCollector faces_;
+  std::size_t line_number_ = 0, facet_line_ = 0;  ///< where the open facet begins; 0 if none is open
+  std::uint32_t corners_ = 0;
+  std::uint64_t unknown_ = 0;
+  std::string first_unknown_;
+};
+
+}  // namespace
+
+ImportedMesh read_stl(std::string_view content, const std::string& file) {
+  const bool solid = begins_with_solid(content);
+  const bool long_enough = content.size() >= kHeader;
+  if (!solid && !long_enough) {
+    throw InputError("{}: neither ASCII STL ('solid …') nor long enough for binary STL", file);
+  }
+  // A length that fits to the byte decides, and then whether the header is text.
+  const bool fits = long_enough && content.size() == kHeader + kTriangle * std::size_t{count_of_binary(content)};
+  const bool ascii = solid && !fits && begins_with_text(content);
+  ImportedMesh mesh = ascii ? AsciiStl(file).read(content) : read_binary(content, file);
+  if (mesh.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file);
+  return mesh;
+}
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,83 @@
+#include "import/texture_file.hpp"
+
+#include "base/error.hpp"
+#include "base/exr.hpp"
+#include "base/png.hpp"
+
+#include <sys/stat.h>
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::scenes {
+namespace {
+
+constexpr std::array kPngMark = {std::byte{0x89}, std::byte{'P'}, std::byte{'N'}, std::byte{'G'}};
+constexpr std::array kExrMark = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
+/// The largest picture that is read, uncompressed, with four 32-bit channels, and room for what else a file holds.
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{128} << 20;
+
+std::string read_bytes(const mesh::InputFile& input) {
+  struct stat info {};
+  const bool known = ::fstat(input.content.get(), &info) == 0;
+  if (known && static_cast<std::uintmax_t>(info.st_size) > kMostBytes) {
+    throw InputError("{} bytes; a texture's file has at most {}", info.st_size, kMostBytes);
+  }
+  return mesh::read_content(input.content.get(), input.name.string());
+}
+
+template <std::size_t kSize>
+bool begins_with(std::span<const std::byte> bytes, const std::array<std::byte, kSize>& mark) {
+  return bytes.size() >= kSize && std::ranges::equal(bytes.first(kSize), mark);
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 16;
+  const std::span<const std::string> first = std::span(names).first(std::min(names.size(), kMost));
+  return fmt::format("{}{}", fmt::join(first, ", "), names.size() > kMost ? ", and others" : "");
+}
+
+LinearImage read_exr_picture(const std::filesystem::path& file) {
+  // No more than is used: a file may have thousands of channels, and 16 MiB each in memory.
+  const ExrFile exr = read_exr(file, {.largest_side = kLargestTextureSide, .channels = {"R", "G", "B", "Y"}});
+  const std::array<const char*, 3> names =
+      exr.floats.contains("Y") && !exr.floats.contains("R") ? std::array{"Y", "Y", "Y"} : std::array{"R", "G", "B"};
+  std::array<const std::vector<float>*, 3> channels{};
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const auto found = exr.floats.find(names[c]);
+    if (found == exr.floats.end()) {
+      throw InputError("no channel {} of floats; a texture has R, G and B, or Y alone; this file has: {}", names[c],
+                       list_of(exr.channel_names));
+    }
+    channels[c] = &found->second;
+  }
+  LinearImage image{exr.width, exr.height, {}};
+  image.pixels.resize(std::size_t{exr.width} * exr.height);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = {(*channels[0])[i], (*channels[1])[i], (*channels[2])[i]};
+  }
+  return image;
+}
+
+}  // namespace
+
+Texture read_texture_file(const mesh::InputFile& input) {
+  const std::string content = read_bytes(input);
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(content));
+  const bool is_png = begins_with(bytes, kPngMark);
+  if (!is_png && !begins_with(bytes, kExrMark)) {
+    throw InputError("it is neither a PNG nor an OpenEXR picture; a texture is one of the two");
+  }
+  // OpenEXR opens files by name: this is the one that is open already.
+  const std::filesystem::path opened = fmt::format("/proc/self/fd/{}", input.content.get());
+  LinearImage image = is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(opened);
+  return {{}, image.width, image.height, std::move(image.pixels)};
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "mesh/diagnosis/diagnosis.hpp"
+#include "mesh/edge_graph.hpp"
+#include "base/progress.hpp"
+
+namespace penumbra::mesh {
+
+/// Every (vertex, edge) where the vertex, any triangle's corner, lies exactly inside the open edge. A place's points
+/// are the vertex and the edge's two ends; its triangles are the edge's.
+Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit, const Progress& progress);
+
+}  // namespace penumbra::mesh

@@ -1,0 +1,147 @@
+#include "mesh/repair/repair.hpp"
+
+#include "base/error.hpp"
+#include "mesh/repair/steps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <new>
+#include <string_view>
+#include <utility>
+
+namespace penumbra::mesh {
+
+#ifndef PENUMBRA_WITH_CGAL_GPL
+
+bool can_repair() {
+  return false;
+}
+
+Repaired repair(const TriangleSoup&, const RepairOptions&) {
+  throw UsageError(
+      "this build cannot repair meshes: it was made without CGAL's GPL packages; build it with "
+      "-DPENUMBRA_WITH_CGAL_GPL=ON");
+}
+
+#else
+
+namespace {
+
+constexpr int kMostPasses = 8;  // two suffice but for tangles; each costs a sort of all edges
+
+/// The sentences, in the order of the steps. {} is the count.
+constexpr std::array<std::pair<Mend, std::string_view>, static_cast<std::size_t>(Mend::kinds)> kSentences = {{
+    {Mend::repeated, "removed {} triangles with two corners at one point"},
+    {Mend::collinear, "removed {} triangles whose corners lie on a line"},
+    {Mend::split_face, "split {} triangles at vertices on their edges, which triangles without area had joined there"},
+    {Mend::duplicate, "removed {} triangles that others repeat"},
+    {Mend::moved, "moved {} positions onto others within the welding distance"},
+    {Mend::merged, "merged {} repeated positions"},
+    {Mend::stitched, "stitched {} edges along which triangles met without sharing their vertices"},
+    {Mend::split_edge, "split {} edges that joined more triangles than a surface has there"},
+    {Mend::split_vertex, "split {} vertices in which surfaces only touched"},
+    {Mend::turned, "turned {} triangles to agree with their neighbours"},
+    {Mend::outward, "turned {} closed parts inside out, to face outward (or, in others, inward)"},
+    {Mend::hole, "filled {} holes"},
+    {Mend::hole_face, "added {} triangles in holes"},
+    {Mend::intersection, "resolved {} intersecting pairs of triangles by remeshing around them"},
+    {Mend::unused, "dropped {} positions that no triangle used"},
+}};
+
+/// One after another; a step of CGAL's that fails leaves the soup as it was.
+class Pass {
+ public:
+  Pass(const TriangleSoup& soup, const RepairOptions& options) : soup_(soup), options_(options) {}
+
+  void run() {
+    soup_ = remove_empty_triangles(soup_, options_.weld, mending_);
+    soup_ = remove_duplicates(soup_, options_.weld, mending_);
+    soup_ = join(soup_, options_.weld, mending_);
+    if (soup_.triangles.empty()) return;
+    attempt("orienting closed parts", [&](Mending& mending) { return turn_outward(soup_, mending); });
+    if (options_.fill_holes_up_to > 0) {
+      attempt("filling holes", [&](Mending& mending) { return fill_holes(soup_, options_.fill_holes_up_to, mending); });
+    }
+    if (options_.resolve_self_intersections) {
+      attempt("resolving intersections", [&](Mending& mending) { return resolve_intersections(soup_, mending); });
+    }
+  }
+
+  [[nodiscard]] bool changed() const {
+    return std::ranges::any_of(mending_.done, [](std::uint64_t count) { return count > 0; });
+  }
+  [[nodiscard]] const Mending& mending() const { return mending_; }
+  [[nodiscard]] const TriangleSoup& soup() const { return soup_; }
+
+ private:
+  template <typename Step>
+  void attempt(std::string_view what, Step step) {
+    Mending tried = mending_;
+    try {
+      soup_ = step(tried);
+      mending_ = std::move(tried);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      std::string message = error.what();
+      std::ranges::replace(message, '\n', ' ');
+      mending_.left.push_back(fmt::format("{} failed in CGAL ({})", what, message));
+    }
+  }
+
+  TriangleSoup soup_;
+  const RepairOptions& options_;
+  Mending mending_;
+};
+
+/// Rims of the joined soup: edges of one triangle, by indices.
+std::uint64_t count_open_edges(const TriangleSoup& soup) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> triangles;
+  for (const Triangle& t : soup.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) ++triangles[std::minmax(t[i], t[(i + 1) % 3])];
+  }
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(triangles, [](const auto& entry) { return entry.second == 1; }));
+}
+
+}  // namespace
+
+bool can_repair() {
+  return true;
+}
+
+Repaired repair(const TriangleSoup& soup, const RepairOptions& options) {
+  if (!(options.weld >= 0) || !std::isfinite(options.weld)) {
+    throw UsageError("a welding distance of {} cannot be; give a length of 0 or more", options.weld);
+  }
+  Repaired repaired{soup, {}, {}};
+  std::array<std::uint64_t, static_cast<std::size_t>(Mend::kinds)> total{};
+  bool settled = false;
+  for (int i = 0; i < kMostPasses && !settled; ++i) {
+    Pass pass(repaired.soup, options);
+    pass.run();
+    settled = !pass.changed();
+    repaired.left = pass.mending().left;
+    if (settled) break;
+    repaired.soup = pass.soup();
+    for (std::size_t kind = 0; kind < total.size(); ++kind) total[kind] += pass.mending().done[kind];
+  }
+  for (const auto& [kind, sentence] : kSentences) {
+    const std::uint64_t count = total[static_cast<std::size_t>(kind)];
+    if (count > 0) repaired.done.push_back({fmt::format(fmt::runtime(sentence), count), count});
+  }
+  if (!settled) {
+    repaired.left.push_back(fmt::format("it still changed after {} passes: repair the result again", kMostPasses));
+  }
+  if (const std::uint64_t open = count_open_edges(repaired.soup); open > 0) {
+    repaired.left.push_back(fmt::format("{} edges are open: holes, rims of sheets, cracks", open));
+  }
+  return repaired;
+}
+
+#endif
+
+}  // namespace penumbra::mesh

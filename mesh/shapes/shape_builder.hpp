@@ -1,0 +1,54 @@
+#pragma once
+
+#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "mesh/soup_memory.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+/// What the shape generators share; no header of the room's interface.
+namespace penumbra::mesh::builder {
+
+inline constexpr double kTau = 2 * std::numbers::pi;
+
+/// Says no before the memory is asked for. Most shapes have a vertex for two triangles; lone triangles have three each.
+inline void check_count(std::uint64_t triangles, double vertices_per_triangle = 0.5) {
+  if (triangles > kMaxShapeTriangles) {
+    throw InputError("the shape would have {} triangles; at most {} are generated", triangles, kMaxShapeTriangles);
+  }
+  const auto vertices = static_cast<std::uint64_t>(vertices_per_triangle * static_cast<double>(triangles));
+  require_memory(soup_bytes(triangles, vertices), fmt::format("a shape of {} triangles", triangles), "make it smaller");
+}
+
+inline std::uint32_t add_vertex(TriangleSoup& soup, const glm::dvec3& position) {
+  soup.positions.push_back(position);
+  return static_cast<std::uint32_t>(soup.positions.size() - 1);
+}
+
+inline void add_quad(TriangleSoup& soup, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  soup.triangles.push_back({a, b, c});
+  soup.triangles.push_back({a, c, d});
+}
+
+/// The corners of a box's six sides, counter-clockwise from outside; bit 0, 1, 2 of a corner: at the upper end of
+/// x, y, z. The side at −Z comes last.
+inline constexpr std::array<std::array<std::uint32_t, 4>, 6> kBoxSides{
+    {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
+
+/// Eight corners in the numbering of kBoxSides; returns the first.
+std::uint32_t add_box_corners(TriangleSoup& soup, const glm::dvec3& low, const glm::dvec3& high);
+void add_box(TriangleSoup& soup, const glm::dvec3& low, const glm::dvec3& high);
+void append(TriangleSoup& soup, const TriangleSoup& other);
+
+/// A tube closed in both directions: vertex (i, j) is first + i · sides + j. Normals are outward if going round the
+/// sides turns counter-clockwise about the direction of growing i.
+void add_ring_faces(TriangleSoup& soup, std::uint32_t segments, std::uint32_t sides);
+
+/// Fills object and source_face: each triangle is a face of its own.
+TriangleSoup finish(TriangleSoup soup);
+
+}  // namespace penumbra::mesh::builder

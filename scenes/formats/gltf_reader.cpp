@@ -1,0 +1,30 @@
+#include "scenes/formats/gltf_reader.hpp"
+
+#include "base/error.hpp"
+#include "mesh/import_helper.hpp"
+#include "mesh/import_wire.hpp"
+#include "scenes/scene_wire.hpp"
+
+#include <utility>
+
+namespace penumbra::scenes {
+
+Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
+  const mesh::InputFile input = mesh::open_input(file);
+  mesh::HelperJob job{"gltf", input, {}};
+  if (options.allow_outside) job.flags.emplace_back("--allow-outside");
+  if (!options.needs_light) job.flags.emplace_back("--without-light");
+  mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
+  try {
+    mesh::WireReader from(answer.payload);
+    Scene scene = get_scene(from);
+    scene.sources = std::move(answer.sources);
+    from.expect_end();
+    return scene;
+  } catch (const mesh::WireError& error) {
+    throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file.string(),
+                     error.what());
+  }
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,165 @@
+#include "scenes/formats/checks.hpp"
+#include "scenes/formats/glb_model.hpp"
+#include "scenes/light_texture.hpp"
+#include "scenes/formats/writers.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+#include <variant>
+
+namespace penumbra::scenes {
+namespace {
+
+constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
+constexpr unsigned kDiskSides = 64;
+
+class GlbBuilder {
+ public:
+  int add_material(const std::string& name, const glm::dvec3& color, const AreaLight* light) {
+    tinygltf::Material material;
+    material.name = name;
+    material.pbrMetallicRoughness.baseColorFactor = {color.x, color.y, color.z, 1};
+    material.pbrMetallicRoughness.metallicFactor = 0;
+    material.pbrMetallicRoughness.roughnessFactor = 1;
+    if (light != nullptr) {
+      // The factor is at most 1; the strength carries the rest.
+      const glm::dvec3 radiance = light->radiance * (light->texture ? mean_color(*light->texture) : glm::dvec3(1));
+      const double strength = std::max({radiance.x, radiance.y, radiance.z});
+      const glm::dvec3 factor = strength > 0 ? radiance / strength : glm::dvec3(0);
+      material.emissiveFactor = {factor.x, factor.y, factor.z};
+      material.extensions[kEmissiveStrength] =
+          tinygltf::Value(tinygltf::Value::Object{{"emissiveStrength", tinygltf::Value(strength)}});
+      material.doubleSided = light->two_sided;
+      uses_emissive_strength_ = true;
+    }
+    return glb_.add_material(std::move(material));
+  }
+
+  /// A node with a mesh of its own.
+  void add_mesh(const std::string& name, const std::vector<glm::vec3>& positions,
+                const std::vector<std::uint32_t>& indices, int material) {
+    PENUMBRA_ASSERT(!positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
+    tinygltf::Mesh mesh;
+    mesh.name = name;
+    mesh.primitives.push_back(
+        glb_.primitive(TINYGLTF_MODE_TRIANGLES, glb_.add_positions(positions), indices, material));
+    glb_.add_root(glb_.add_mesh_node(std::move(mesh)));
+  }
+
+  void add_camera(const Camera& camera, double aspect) {
+    tinygltf::Camera gltf;
+    gltf.name = camera.name;
+    gltf.type = "perspective";
+    gltf.perspective.yfov = camera.vertical_fov * std::numbers::pi / 180;
+    gltf.perspective.aspectRatio = aspect;
+    gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
+    gltf.perspective.zfar = 0;  // none
+    // A glTF camera looks along its −Z with +Y up.
+    const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
+    const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back)), up = glm::cross(back, right);
+    tinygltf::Node node;
+    node.name = camera.name;
+    node.camera = glb_.add_camera(std::move(gltf));
+    node.matrix = {right.x, right.y, right.z, 0, up.x,         up.y,         up.z,         0,
+                   back.x,  back.y,  back.z,  0, camera.eye.x, camera.eye.y, camera.eye.z, 1};
+    glb_.add_root(glb_.add_node(std::move(node)));
+  }
+
+  std::string finish() {
+    if (uses_emissive_strength_) glb_.uses_extension(kEmissiveStrength);
+    return glb_.encoded();
+  }
+
+ private:
+  GlbModel glb_;
+  bool uses_emissive_strength_ = false;
+};
+
+void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
+  const Object& object = scene.objects[range.object];
+  std::vector<glm::vec3> positions;
+  std::vector<std::uint32_t> indices;
+  std::unordered_map<std::uint32_t, std::uint32_t> local;  // the scene's vertex → this mesh's
+  for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+    for (const std::uint32_t vertex : scene.soup.triangles[i]) {
+      const auto [entry, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(positions.size()));
+      if (is_new) positions.emplace_back(scene.soup.positions[vertex]);
+      indices.push_back(entry->second);
+    }
+  }
+  const AreaLight* light = object.emits ? &scene.lights[*object.emits] : nullptr;
+  glb.add_mesh(object.name, positions, indices, glb.add_material(object.name, object.color, light));
+}
+
+/// The light's outline, counter-clockwise seen from where it emits to; empty for a sphere.
+std::vector<glm::dvec3> outline(const AreaLight& light) {
+  if (const auto* r = std::get_if<Rectangle>(&light.shape)) {
+    return {r->center - r->half_u - r->half_v, r->center + r->half_u - r->half_v, r->center + r->half_u + r->half_v,
+            r->center - r->half_u + r->half_v};
+  }
+  if (const auto* polygon = std::get_if<Polygon>(&light.shape)) return polygon->vertices;
+  std::vector<glm::dvec3> points;
+  if (const auto* disk = std::get_if<Disk>(&light.shape)) {
+    const glm::dvec3 aside = std::abs(disk->normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 v = glm::normalize(glm::cross(disk->normal, aside)), u = glm::cross(v, disk->normal);
+    for (unsigned i = 0; i < kDiskSides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kDiskSides;
+      points.push_back(disk->center + disk->radius * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+  }
+  return points;
+}
+
+void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
+  const std::vector<glm::dvec3> points = outline(light);
+  if (points.empty()) {
+    notes.push_back(fmt::format("light \"{}\": glTF has no sphere lights; left out", light.name));
+    return;
+  }
+  if (std::holds_alternative<Disk>(light.shape)) {
+    notes.push_back(
+        fmt::format("light \"{}\": glTF has no disk lights; written with {} sides", light.name, kDiskSides));
+  }
+  const std::vector<glm::vec3> positions(points.begin(), points.end());
+  std::vector<std::uint32_t> fan;
+  for (std::uint32_t i = 1; i + 1 < points.size(); ++i) fan.insert(fan.end(), {0, i, i + 1});
+  glb.add_mesh(light.name, positions, fan, glb.add_material(light.name, glm::dvec3(0.8), &light));
+}
+
+}  // namespace
+
+void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
+  GlbBuilder glb;
+  std::vector<bool> has_body(scene.lights.size(), false);
+  for (const ObjectRange& range : object_ranges(scene.soup)) {
+    add_object(scene, range, glb);
+    if (const auto light = scene.objects[range.object].emits) has_body[*light] = true;
+  }
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (!has_body[i]) add_light(scene.lights[i], glb, notes);
+  }
+  for (const AreaLight& light : scene.lights) {
+    if (!light.texture) continue;
+    notes.push_back(
+        fmt::format("light \"{}\": its texture is left out; its mean colour stands in its place", light.name));
+  }
+  for (const Camera& camera : scene.cameras) {
+    glb.add_camera(camera, static_cast<double>(scene.width) / scene.height);
+  }
+  for (const Object& object : scene.objects) {
+    if (object.casts_shadow && object.receives_shadow) continue;
+    notes.push_back(fmt::format("mesh \"{}\": glTF has no shadow flags; left out", object.name));
+  }
+  file.write(glb.finish());
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,191 @@
+#include "scenes/formats/json_document.hpp"
+
+#include "base/error.hpp"
+#include "base/memory.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace penumbra::scenes {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kDeepestNesting = 64;
+
+/// "[json.exception.parse_error.101] parse error at line 3, column 7: …" without what only the library's users know.
+std::string without_library_prefix(std::string message) {
+  if (message.starts_with('[')) message.erase(0, std::min(message.size(), message.find("] ") + 2));
+  constexpr std::string_view kNoise = "parse error at ";
+  if (message.starts_with(kNoise)) message.erase(0, kNoise.size());
+  return message;
+}
+
+/// Builds the document event by event, so that every complaint can name its place.
+class DocumentBuilder : public nlohmann::json_sax<json> {
+ public:
+  DocumentBuilder(json& root, const std::string& file) : root_(root), file_(file) {}
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }  // not in JSON text
+
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool start_array(std::size_t) override { return open(json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    if (open_.back().container->contains(name)) {
+      throw InputError("{}: the key \"{}\" stands twice; remove one", place_under(open_.size() - 1).str(), name);
+    }
+    open_.back().key = std::move(name);
+    return true;
+  }
+
+  bool parse_error(std::size_t, const std::string& token, const json::exception& error) override {
+    if (error.id == 406) {
+      throw InputError("{}: the number {} is beyond the range of double precision", place_under(open_.size()).str(),
+                       token);
+    }
+    throw InputError("{}: {}", file_, without_library_prefix(error.what()));
+  }
+
+ private:
+  struct Open {
+    json* container;
+    std::string key;  ///< of the value that comes next, in an object
+  };
+
+  json* place_value(json value) {
+    if (open_.empty()) {
+      root_ = std::move(value);
+      return &root_;
+    }
+    json& container = *open_.back().container;
+    if (container.is_array()) return &container.emplace_back(std::move(value));
+    return &(container[open_.back().key] = std::move(value));
+  }
+
+  bool add(json value) {
+    place_value(std::move(value));
+    return true;
+  }
+
+  bool open(json value) {
+    if (open_.size() >= kDeepestNesting) {
+      throw InputError("{}: nested more than {} deep; no scene is", place_under(open_.size()).str(), kDeepestNesting);
+    }
+    // A parent does not grow while its child is open, so the pointer holds until the child is closed.
+    json* container = place_value(std::move(value));
+    open_.push_back({container, {}});
+    return true;
+  }
+
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  /// The place that the outermost `levels` open containers lead to: with all of them, that of the value that is about
+  /// to be added; with one less, that of the innermost container.
+  [[nodiscard]] Place place_under(std::size_t levels) const {
+    Place place{file_, {}};
+    for (std::size_t i = 0; i < levels; ++i) {
+      const json& container = *open_[i].container;
+      if (container.is_object()) {
+        place = place / open_[i].key;
+      } else {  // an open child stands in its parent already
+        place = place / (container.size() - (i + 1 < open_.size() ? 1 : 0));
+      }
+    }
+    return place;
+  }
+
+  json& root_;
+  const std::string& file_;
+  std::vector<Open> open_;
+};
+
+}  // namespace
+
+Place Place::operator/(std::string_view key) const {
+  Place place{file, pointer + "/"};
+  for (const char c : key) {  // RFC 6901, section 3
+    if (c == '~') {
+      place.pointer += "~0";
+    } else if (c == '/') {
+      place.pointer += "~1";
+    } else {
+      place.pointer += c;
+    }
+  }
+  return place;
+}
+
+Place Place::operator/(std::size_t index) const {
+  return {file, fmt::format("{}/{}", pointer, index)};
+}
+
+std::string Place::str() const {
+  return pointer.empty() ? file : fmt::format("{}: {}", file, pointer);
+}
+
+json parse_json(std::string_view text, const std::string& file) {
+  json document;
+  DocumentBuilder builder(document, file);
+  json::sax_parse(text.begin(), text.end(), &builder);
+  return document;
+}
+
+std::string read_text_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw InputError("{}: no such file", file.string());
+  if (std::filesystem::is_directory(status)) throw InputError("{}: this is a folder; expected a file", file.string());
+  // A pipe or a device might never end.
+  if (!std::filesystem::is_regular_file(status)) throw InputError("{}: not a regular file", file.string());
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError("{}: cannot be read: {}", file.string(), std::generic_category().message(errno));
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  // The text, its values (a number of eight characters takes sixteen bytes), and what is made of them.
+  require_memory(3 * size, fmt::format("{}: a text of {}", file.string(), in_bytes(size)),
+                 "name mesh files in place of listing triangles");
+  std::string text(size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) throw InputError("{}: reading failed after {} bytes", file.string(), stream.gcount());
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+std::string describe_value(const json& value) {
+  switch (value.type()) {
+    case json::value_t::null:
+      return "null";
+    case json::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
+    case json::value_t::object:
+      return "an object";
+    case json::value_t::array:
+      return fmt::format("an array of {} value{}", value.size(), value.size() == 1 ? "" : "s");
+    case json::value_t::string: {
+      constexpr std::size_t kLongest = 60;
+      const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+      return text.size() <= kLongest ? "a string " + text : fmt::format("a string of {} characters", text.size() - 2);
+    }
+    default:
+      return "the number " + value.dump();
+  }
+}
+
+}  // namespace penumbra::scenes

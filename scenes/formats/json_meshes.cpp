@@ -1,0 +1,234 @@
+#include "scenes/formats/json_meshes.hpp"
+
+#include "base/error.hpp"
+#include "mesh/import.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "scenes/formats/package_files.hpp"
+
+#include <fcntl.h>
+
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <system_error>
+#include <utility>
+
+namespace penumbra::scenes {
+namespace {
+
+using nlohmann::json;
+
+mesh::TriangleSoup import_file(const SceneFile& file, const std::string& shown, const Place& place,
+                               const ReadOptions& options, Scene& scene) {
+  return at_place(place, [&] {
+    mesh::ImportedMesh imported = mesh::import_mesh(file.input, {}, options.allow_outside);
+    scene.sources.push_back(file.path);
+    std::ranges::copy_if(imported.sources, std::back_inserter(scene.sources),
+                         [&](const std::filesystem::path& source) { return source != file.path; });
+    for (const std::string& note : imported.notes) scene.warnings.push_back(fmt::format("{}: {}", shown, note));
+    return std::move(imported.soup);
+  });
+}
+
+mesh::TriangleSoup read_triangles(const json& triangles) {
+  mesh::TriangleSoup soup;
+  for (const json& corners : triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.positions.size());
+    for (std::size_t i = 0; i < 9; i += 3) {
+      soup.positions.emplace_back(corners[i].get<double>(), corners[i + 1].get<double>(), corners[i + 2].get<double>());
+    }
+    soup.source_face.push_back(static_cast<std::uint32_t>(soup.triangles.size()));
+    soup.triangles.push_back({first, first + 1, first + 2});
+    soup.object.push_back(0);
+  }
+  return soup;
+}
+
+mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
+  if (mesh.contains("triangles")) return read_triangles(mesh["triangles"]);
+  if (mesh.contains("shape")) return at_place(place / "shape", [&] { return read_shape(mesh["shape"]); });
+  if (mesh.contains("quad")) {
+    const json& quad = mesh["quad"];
+    return mesh::make_quad(read_vector(quad["center"]), read_vector(quad["halfU"]), read_vector(quad["halfV"]));
+  }
+  if (mesh.contains("package")) {
+    const std::string package = mesh["package"]["name"].get<std::string>();
+    const std::string name = mesh["package"]["file"].get<std::string>();
+    const SceneFile file = at_place(place / "package", [&] {
+      mesh::InputFile opened = open_package_file(package, name);
+      std::filesystem::path path = opened.name;
+      return SceneFile{std::move(opened), std::move(path)};
+    });
+    return import_file(file, file.path.string(), place / "package", options, scene);
+  }
+  const std::string name = mesh["file"].get<std::string>();
+  return import_file(open_scene_file(name, place / "file", options), name, place / "file", options, scene);
+}
+
+/// Vertices that no triangle uses are no part of the scene: they would move its origin without being seen.
+void drop_unused_vertices(mesh::TriangleSoup& soup, const Place& place, std::vector<std::string>& warnings) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> new_index(soup.positions.size(), kUnused);
+  for (const mesh::Triangle& triangle : soup.triangles) {
+    for (const std::uint32_t vertex : triangle) new_index[vertex] = 0;
+  }
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < new_index.size(); ++i) {
+    if (new_index[i] == kUnused) continue;
+    soup.positions[kept] = soup.positions[i];
+    new_index[i] = kept++;
+  }
+  if (kept == soup.positions.size()) return;
+  warnings.push_back(
+      fmt::format("{}: left out {} vertices that no triangle uses", place.str(), soup.positions.size() - kept));
+  soup.positions.resize(kept);
+  for (mesh::Triangle& triangle : soup.triangles) {
+    for (std::uint32_t& vertex : triangle) vertex = new_index[vertex];
+  }
+}
+
+/// Sine and cosine of degrees; exact for multiples of 90, so that a quarter turn leaves round numbers round.
+std::pair<double, double> sine_cosine(double degrees) {
+  const double turn = std::remainder(degrees, 360.0);
+  if (turn == 0) return {0, 1};
+  if (turn == 90) return {1, 0};
+  if (turn == -90) return {-1, 0};
+  if (std::abs(turn) == 180) return {0, -1};
+  const double radians = turn * std::numbers::pi / 180;
+  return {std::sin(radians), std::cos(radians)};
+}
+
+/// x' = linear · x + offset.
+struct Affine {
+  glm::dmat3 linear{1};
+  glm::dvec3 offset{0};
+};
+
+Affine read_matrix(const json& numbers, const Place& place) {
+  const auto at = [&](std::size_t row, std::size_t column) { return numbers[4 * row + column].get<double>(); };
+  if (at(3, 0) != 0 || at(3, 1) != 0 || at(3, 2) != 0 || at(3, 3) != 1) {
+    throw InputError("{}: the last row is {} {} {} {}; expected 0 0 0 1 (row-major, column vectors)", place.str(),
+                     at(3, 0), at(3, 1), at(3, 2), at(3, 3));
+  }
+  Affine affine;
+  for (int row = 0; row < 3; ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    for (int column = 0; column < 3; ++column) affine.linear[column][row] = at(r, static_cast<std::size_t>(column));
+    affine.offset[row] = at(r, 3);
+  }
+  return affine;
+}
+
+Affine read_affine(const json& transform, const Place& place) {
+  if (transform.is_array()) return read_matrix(transform, place);
+  Affine affine;
+  if (transform.contains("scale")) {
+    const json& value = transform["scale"];
+    const glm::dvec3 scale = value.is_array() ? read_vector(value) : glm::dvec3(value.get<double>());
+    for (int axis = 0; axis < 3; ++axis) {
+      if (scale[axis] == 0) throw InputError("{}: a scale of 0 would flatten the mesh", (place / "scale").str());
+      affine.linear[axis][axis] = scale[axis];
+    }
+  }
+  if (transform.contains("rotate")) {
+    const glm::dvec3 degrees = read_vector(transform["rotate"]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [sine, cosine] = sine_cosine(degrees[axis]);
+      const int next = (axis + 1) % 3, last = (axis + 2) % 3;  // turns `next` toward `last`
+      glm::dmat3 rotation(1);
+      rotation[next][next] = rotation[last][last] = cosine;
+      rotation[next][last] = sine;
+      rotation[last][next] = -sine;
+      affine.linear = rotation * affine.linear;
+    }
+  }
+  if (transform.contains("translate")) affine.offset = read_vector(transform["translate"]);
+  return affine;
+}
+
+}  // namespace
+
+SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options) {
+  const std::filesystem::path folder = std::filesystem::path(place.file).parent_path();
+  const std::filesystem::path path = folder / name;  // an absolute name stands for itself
+  const auto missing = [&] {
+    return InputError("{}: no such file \"{}\" (paths are relative to the scene file)", place.str(), name);
+  };
+  if (options.allow_outside) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) throw missing();
+    return at_place(place, [&] { return SceneFile{mesh::open_input(path), path}; });
+  }
+  const std::filesystem::path home = folder.empty() ? "." : folder;
+  const Descriptor opened(::open(home.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!opened.is_open()) throw InputError("{}: the scene's folder cannot be opened", place.str());
+  mesh::InputBeneath file = at_place(place, [&] { return mesh::open_input_beneath(opened.get(), name, path); });
+  if (file.error == EXDEV) {
+    throw InputError("{}: \"{}\" leads outside the scene's folder; move it there or pass --allow-outside", place.str(),
+                     name);
+  }
+  if (file.error == ENOENT) throw missing();
+  if (file.error != 0) {
+    throw InputError("{}: \"{}\": {}", place.str(), name, std::generic_category().message(file.error));
+  }
+  return {std::move(file.input), home / file.path};
+}
+
+glm::dvec3 read_vector(const json& value) {
+  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+void apply_transform(const json& transform, const Place& place, mesh::TriangleSoup& soup) {
+  const Affine affine = read_affine(transform, place);
+  const double determinant = glm::determinant(affine.linear);
+  if (determinant == 0 || !std::isfinite(determinant)) {
+    throw InputError("{}: the transform's determinant is {}; it would flatten the mesh or send it to infinity",
+                     place.str(), determinant);
+  }
+  for (glm::dvec3& position : soup.positions) position = affine.linear * position + affine.offset;
+  if (determinant < 0) {  // a mirror turns meshes inside out; as glTF does, winding is reversed to make up for it
+    for (mesh::Triangle& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+  }
+}
+
+void apply_fit(const json& fit, const Place& place, mesh::TriangleSoup& soup) {
+  glm::dvec3 low = soup.positions.front(), high = low;
+  for (const glm::dvec3& position : soup.positions) {
+    low = glm::min(low, position);
+    high = glm::max(high, position);
+  }
+  if (!(high.y > low.y)) {
+    throw InputError("{}: the mesh is flat along Y and cannot be made {} tall; use \"transform\"", place.str(),
+                     fit["height"].dump());
+  }
+  const double scale = fit["height"].get<double>() / (high.y - low.y);
+  const glm::dvec3 bottom((low.x + high.x) / 2, low.y, (low.z + high.z) / 2);
+  const glm::dvec3 base = fit.contains("base") ? read_vector(fit["base"]) : glm::dvec3(0);
+  for (glm::dvec3& position : soup.positions) position = (position - bottom) * scale + base;
+}
+
+mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOptions& options, Scene& scene) {
+  mesh::TriangleSoup soup = read_source(mesh, place, options, scene);
+  drop_unused_vertices(soup, place, scene.warnings);
+  if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
+  if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
+  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : soup.triangles[i]) {
+      const glm::dvec3& p = soup.positions[vertex];
+      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+      throw InputError("{}: a vertex of face {} is ({}, {}, {}) in world space; expected finite numbers", place.str(),
+                       soup.source_face[i], p.x, p.y, p.z);
+    }
+  }
+  return soup;
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,196 @@
+#include "scenes/formats/json_reader.hpp"
+
+#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "mesh/soup_memory.hpp"
+#include "scenes/formats/checks.hpp"
+#include "scenes/formats/json_document.hpp"
+#include "scenes/formats/json_meshes.hpp"
+#include "scenes/formats/json_schema.hpp"
+#include "scenes/light_texture.hpp"
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace penumbra::scenes {
+namespace {
+
+using nlohmann::json;
+
+/// Names go into file formats line by line and into channel names.
+void check_name(const std::string& name, const Place& place) {
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 127; };
+  if (std::any_of(name.begin(), name.end(), is_control)) {
+    throw InputError("{}: the name holds a control character; expected printable text", place.str());
+  }
+}
+
+std::string read_name(const json& value, const Place& place, std::string fallback) {
+  std::string name = value.value("name", std::move(fallback));
+  check_name(name, place / "name");
+  return name;
+}
+
+Camera read_camera(const json& value, const Place& place, std::string fallback_name) {
+  Camera camera;
+  camera.name = read_name(value, place, std::move(fallback_name));
+  camera.eye = read_vector(value["eye"]);
+  camera.target = read_vector(value["target"]);
+  if (value.contains("up")) camera.up = read_vector(value["up"]);
+  camera.vertical_fov = value.value("verticalFov", camera.vertical_fov);
+  check_camera(camera, place.str());
+  return camera;
+}
+
+std::vector<Camera> read_cameras(const json& document, const Place& root) {
+  if (document.contains("camera")) return {read_camera(document["camera"], root / "camera", "camera")};
+  std::vector<Camera> cameras;
+  for (const json& value : document["cameras"]) {
+    cameras.push_back(read_camera(value, root / "cameras" / cameras.size(), fmt::format("camera{}", cameras.size())));
+  }
+  return cameras;
+}
+
+/// Unit length; what already is, to rounding, stays as it is, so that writing and reading change nothing.
+glm::dvec3 unit(const glm::dvec3& direction) {
+  const double length = glm::length(direction);
+  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
+  return length == 0 || std::abs(length - 1) <= kRounding ? direction : direction / length;
+}
+
+Texture read_light_texture(const json& value, const Place& place, const ReadOptions& options, Scene& scene) {
+  if (!value.contains("rectangle")) {
+    throw InputError("{}: only a \"rectangle\" light can have a texture; take it away or make the light a rectangle",
+                     place.str());
+  }
+  const std::string name = value["texture"].get<std::string>();
+  const SceneFile file = open_scene_file(name, place, options);
+  Texture texture = at_place(place, [&] { return read_texture(file.input, name); });
+  scene.sources.push_back(file.path);
+  return texture;
+}
+
+AreaLight read_light(const json& value, const Place& place, std::string fallback_name, const ReadOptions& options,
+                     Scene& scene) {
+  AreaLight light;
+  light.name = read_name(value, place, std::move(fallback_name));
+  if (value.contains("radiance")) light.radiance = read_vector(value["radiance"]);
+  light.two_sided = value.value("twoSided", false);
+  const auto check = [&](const char* kind) { check_light(light, (place / kind).str()); };
+  if (value.contains("rectangle")) {
+    const json& shape = value["rectangle"];
+    const Rectangle rectangle{read_vector(shape["center"]), read_vector(shape["halfU"]), read_vector(shape["halfV"])};
+    light.shape = rectangle;
+    check("rectangle");
+    const double cosine = glm::dot(glm::normalize(rectangle.half_u), glm::normalize(rectangle.half_v));
+    if (std::abs(cosine) > 1e-3) {  // only a hint: what decimals leave of a right angle is no reason to speak
+      scene.warnings.push_back(fmt::format("{}: halfU and halfV are not at right angles; the light is a parallelogram",
+                                           (place / "rectangle").str()));
+    }
+  } else if (value.contains("disk")) {
+    const json& shape = value["disk"];
+    light.shape = Disk{read_vector(shape["center"]), unit(read_vector(shape["normal"])), shape["radius"].get<double>()};
+    check("disk");
+  } else if (value.contains("polygon")) {
+    Polygon polygon;
+    for (const json& vertex : value["polygon"]) polygon.vertices.push_back(read_vector(vertex));
+    light.shape = std::move(polygon);
+    check("polygon");
+  } else {
+    const json& shape = value["sphere"];
+    light.shape = Sphere{read_vector(shape["center"]), shape["radius"].get<double>()};
+    check("sphere");
+  }
+  if (value.contains("texture")) light.texture = read_light_texture(value, place / "texture", options, scene);
+  return light;
+}
+
+std::vector<AreaLight> read_lights(const json& document, const Place& root, const ReadOptions& options, Scene& scene) {
+  std::vector<AreaLight> lights;
+  for (const json& value : document["lights"]) {
+    const Place place = root / "lights" / lights.size();
+    AreaLight light = read_light(value, place, fmt::format("light{}", lights.size()), options, scene);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      if (lights[i].name != light.name) continue;
+      throw InputError("{}: the name \"{}\" is that of light {} already; names of lights must differ", place.str(),
+                       light.name, i);
+    }
+    lights.push_back(std::move(light));
+  }
+  return lights;
+}
+
+Object read_object(const json& value, const Place& place, const std::vector<AreaLight>& lights,
+                   std::string fallback_name) {
+  Object object;
+  object.name = read_name(value, place, std::move(fallback_name));
+  if (value.contains("color")) object.color = read_vector(value["color"]);
+  object.casts_shadow = value.value("castsShadow", true);
+  object.receives_shadow = value.value("receivesShadow", true);
+  if (value.contains("emits")) {
+    const std::string name = value["emits"].get<std::string>();
+    const auto light = std::find_if(lights.begin(), lights.end(), [&](const AreaLight& l) { return l.name == name; });
+    if (light == lights.end()) throw InputError("{}: no light is named \"{}\"", (place / "emits").str(), name);
+    object.emits = static_cast<std::uint32_t>(light - lights.begin());
+  }
+  return object;
+}
+
+/// Adds the mesh to the scene as the object of that number.
+void append(mesh::TriangleSoup& soup, mesh::TriangleSoup mesh, std::uint32_t object, const Place& place) {
+  const std::size_t positions = soup.positions.size() + mesh.positions.size();
+  const std::size_t triangles = soup.triangles.size() + mesh.triangles.size();
+  if (positions > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError("{}: the scene has more than 2^32 vertices", place.str());
+  }
+  if (soup.triangles.empty()) {  // most often the largest, and the only one
+    soup = std::move(mesh);
+    soup.object.assign(soup.triangles.size(), object);
+    return;
+  }
+  // Each array grows into a new one, and the old one goes: the largest decides.
+  at_place(place, [&] {
+    require_memory(positions * sizeof(glm::dvec3) + mesh::soup_bytes(mesh.triangles.size(), 0),
+                   fmt::format("a scene of {} triangles", triangles), "make its meshes smaller");
+  });
+  const auto first = static_cast<std::uint32_t>(soup.positions.size());
+  soup.positions.insert(soup.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  for (const mesh::Triangle& t : mesh.triangles) soup.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  soup.object.insert(soup.object.end(), mesh.triangles.size(), object);
+  soup.source_face.insert(soup.source_face.end(), mesh.source_face.begin(), mesh.source_face.end());
+}
+
+}  // namespace
+
+Scene read_json(const std::filesystem::path& file, const ReadOptions& options) {
+  return read_json_text(read_text_file(file), file, options);
+}
+
+Scene read_json_text(std::string_view text, const std::filesystem::path& file, const ReadOptions& options) {
+  json document = parse_json(text, file.string());
+  enforce_schema(document, file.string());
+
+  const Place root{file.string(), {}};
+  Scene scene;
+  scene.name = file.filename().string();
+  if (document.contains("size")) {
+    scene.width = document["size"][0].get<std::uint32_t>();
+    scene.height = document["size"][1].get<std::uint32_t>();
+  }
+  scene.cameras = read_cameras(document, root);
+  scene.lights = read_lights(document, root, options, scene);
+  for (const json& value : document["meshes"]) {
+    const std::size_t index = scene.objects.size();
+    const Place place = root / "meshes" / index;
+    scene.objects.push_back(read_object(value, place, scene.lights, fmt::format("mesh{}", index)));
+    append(scene.soup, read_mesh(value, place, options, scene), static_cast<std::uint32_t>(index), place);
+  }
+  return scene;
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,107 @@
+#include "scenes/formats/writers.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <variant>
+
+namespace penumbra::scenes {
+namespace {
+
+std::string quoted(const std::string& text) {
+  using nlohmann::json;
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+void write_camera(const Camera& camera, TextStream& text) {
+  text.print(R"({{"name": {}, "eye": )", quoted(camera.name)).array(camera.eye);
+  text.print(R"(, "target": )").array(camera.target);
+  text.print(R"(, "up": )").array(camera.up);
+  text.print(R"(, "verticalFov": )").number(camera.vertical_fov).print("}}");
+}
+
+void write_shape(const Rectangle& rectangle, TextStream& text) {
+  text.print(R"("rectangle": {{"center": )").array(rectangle.center);
+  text.print(R"(, "halfU": )").array(rectangle.half_u);
+  text.print(R"(, "halfV": )").array(rectangle.half_v).print("}}");
+}
+
+void write_shape(const Disk& disk, TextStream& text) {
+  text.print(R"("disk": {{"center": )").array(disk.center);
+  text.print(R"(, "normal": )").array(disk.normal);
+  text.print(R"(, "radius": )").number(disk.radius).print("}}");
+}
+
+void write_shape(const Polygon& polygon, TextStream& text) {
+  text.print(R"("polygon": [)");
+  for (std::size_t i = 0; i < polygon.vertices.size(); ++i)
+    text.print("{}", i > 0 ? ", " : "").array(polygon.vertices[i]);
+  text.print("]");
+}
+
+void write_shape(const Sphere& sphere, TextStream& text) {
+  text.print(R"("sphere": {{"center": )").array(sphere.center);
+  text.print(R"(, "radius": )").number(sphere.radius).print("}}");
+}
+
+void write_light(const AreaLight& light, const std::string& texture_file, TextStream& text) {
+  text.print(R"({{"name": {}, )", quoted(light.name));
+  std::visit([&](const auto& shape) { write_shape(shape, text); }, light.shape);
+  text.print(R"(, "radiance": )").array(light.radiance);
+  text.print(R"(, "twoSided": {})", light.two_sided);
+  if (light.texture) text.print(R"(, "texture": {})", quoted(texture_file));
+  text.print("}}");
+}
+
+void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) {
+  const Object& object = scene.objects[range.object];
+  text.print(R"({{"name": {}, "color": )", quoted(object.name)).array(object.color);
+  if (!object.casts_shadow) text.print(R"(, "castsShadow": false)");
+  if (!object.receives_shadow) text.print(R"(, "receivesShadow": false)");
+  if (object.emits) text.print(R"(, "emits": {})", quoted(scene.lights[*object.emits].name));
+  text.print(R"(, "triangles": [)");
+  for (std::size_t i = 0; i < range.count; ++i) {
+    const auto& [a, b, c] = scene.soup.triangles[range.first + i];
+    text.print("{}\n      [", i > 0 ? "," : "").numbers(scene.soup.positions[a], ",");
+    text.print(", ").numbers(scene.soup.positions[b], ",");
+    text.print(", ").numbers(scene.soup.positions[c], ",").print("]");
+  }
+  text.print("]}}");
+}
+
+}  // namespace
+
+void write_json(const Scene& scene, AtomicFile& file, Notes& notes) {
+  TextStream text(file);
+  text.print("{{\n  \"format\": \"penumbra-scene/1\",\n  \"size\": [{}, {}],\n", scene.width, scene.height);
+  if (scene.cameras.size() == 1) {
+    text.print("  \"camera\": ");
+    write_camera(scene.cameras[0], text);
+  } else {
+    text.print("  \"cameras\": [");
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+      text.print("{}\n    ", i > 0 ? "," : "");
+      write_camera(scene.cameras[i], text);
+    }
+    text.print("\n  ]");
+  }
+  text.print(",\n  \"meshes\": [");
+  const std::vector<ObjectRange> ranges = object_ranges(scene.soup);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    text.print("{}\n    ", i > 0 ? "," : "");
+    write_mesh(scene, ranges[i], text);
+  }
+  text.print("\n  ],\n  \"lights\": [");
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    text.print("{}\n    ", i > 0 ? "," : "");
+    write_light(scene.lights[i], texture_file(file.path(), i).filename().string(), text);
+  }
+  text.print("\n  ]\n}}\n");
+  text.flush();
+  if (ranges.size() > scene.objects.size()) {
+    notes.push_back(fmt::format("{} objects became {} meshes, because their triangles do not stand together",
+                                scene.objects.size(), ranges.size()));
+  }
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,99 @@
+#include "scenes/formats/package_files.hpp"
+
+#include "base/error.hpp"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace penumbra::scenes {
+namespace {
+
+/// Debian policy 5.6.1. Also keeps slashes out of the path that the name becomes part of.
+bool is_package_name(std::string_view name) {
+  const auto is_lower_or_digit = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+  return name.size() >= 2 && is_lower_or_digit(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+           return is_lower_or_digit(c) || c == '+' || c == '-' || c == '.';
+         });
+}
+
+/// <package>.list, or <package>:<architecture>.list for packages that may be installed for several.
+std::vector<std::filesystem::path> package_lists(std::string_view package, const std::filesystem::path& dpkg_info) {
+  std::vector<std::filesystem::path> lists;
+  const std::string prefix = std::string(package) + ":";
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(dpkg_info, error)) {
+    const std::filesystem::path& path = entry.path();
+    if (path.extension() != ".list") continue;
+    const std::string stem = path.stem().string();
+    if (stem == package || stem.starts_with(prefix)) lists.push_back(path);
+  }
+  std::sort(lists.begin(), lists.end());
+  return lists;
+}
+
+/// All paths that the lists name.
+std::set<std::string> listed_files(const std::vector<std::filesystem::path>& lists) {
+  std::set<std::string> files;
+  for (const std::filesystem::path& list : lists) {
+    std::ifstream lines(list);
+    for (std::string line; std::getline(lines, line);) files.insert(line);
+  }
+  return files;
+}
+
+/// Packages may name /lib what lies in /usr/lib: the links at the root are the system's own.
+bool is_listed(const std::set<std::string>& files, const std::string& path) {
+  constexpr std::string_view kUsr = "/usr";
+  return files.contains(path) || (path.starts_with("/usr/") && files.contains(path.substr(kUsr.size())));
+}
+
+}  // namespace
+
+mesh::InputFile open_package_file(std::string_view package, std::string_view file,
+                                  const std::filesystem::path& dpkg_info) {
+  const std::filesystem::path path = find_package_file(package, file, dpkg_info);
+  const Descriptor root(::open("/", O_PATH | O_DIRECTORY | O_CLOEXEC));
+  mesh::InputBeneath opened = mesh::open_input_beneath(root.get(), path.string(), path);
+  if (opened.error != 0) {
+    throw InputError("{}: {}; the package \"{}\" lists it", path.string(),
+                     std::generic_category().message(opened.error), package);
+  }
+  if (!is_listed(listed_files(package_lists(package, dpkg_info)), "/" + opened.path)) {
+    throw InputError("{}: a link leads to /{}, which is no file of the package \"{}\"", path.string(), opened.path,
+                     package);
+  }
+  return std::move(opened.input);
+}
+
+std::filesystem::path find_package_file(std::string_view package, std::string_view file,
+                                        const std::filesystem::path& dpkg_info) {
+  if (!is_package_name(package)) {
+    throw InputError("\"{}\" is not the name of a Debian package; expected lower-case letters, digits, +, - and .",
+                     package);
+  }
+  const std::vector<std::filesystem::path> lists = package_lists(package, dpkg_info);
+  if (lists.empty()) {
+    throw InputError("the Debian package \"{0}\" is not installed; install it with: apt-get install {0}", package);
+  }
+  const std::string ending = "/" + std::string(file);
+  std::vector<std::string> found;
+  for (const std::string& line : listed_files(lists)) {
+    if (line.ends_with(ending)) found.push_back(line);
+  }
+  if (found.empty()) {
+    throw InputError("the package \"{0}\" has no file that ends with \"{1}\"; see: dpkg -L {0}", package, ending);
+  }
+  if (found.size() > 1) {
+    throw InputError("the package \"{}\" has several files that end with \"{}\" ({}, {}); give more of the path",
+                     package, ending, found[0], found[1]);
+  }
+  return found[0];
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,390 @@
+// Meshes small enough to count their defects by hand.
+
+#include "mesh/diagnosis/diagnosis.hpp"
+#include "mesh/shapes/shapes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace penumbra::mesh {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+Diagnosis diagnosis_of(const TriangleSoup& soup, const DiagnosisOptions& options = {}) {
+  return diagnose({soup.positions, soup.triangles}, options);
+}
+
+TriangleSoup soup(std::vector<glm::dvec3> positions, std::vector<Triangle> triangles) {
+  return {std::move(positions), std::move(triangles), {}, {}};
+}
+
+TriangleSoup unit_box() {
+  return make_box({0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
+}
+
+void append(TriangleSoup& soup, TriangleSoup other) {
+  const auto offset = static_cast<std::uint32_t>(soup.positions.size());
+  soup.positions.insert(soup.positions.end(), other.positions.begin(), other.positions.end());
+  for (const Triangle& t : other.triangles) soup.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+}
+
+TriangleSoup moved(TriangleSoup soup, const glm::dvec3& by) {
+  for (glm::dvec3& p : soup.positions) p += by;
+  return soup;
+}
+
+std::uint64_t all_defects(const Diagnosis& d) {
+  return d.boundary_edges.count + d.boundary_loops + d.non_manifold_edges.count + d.non_manifold_vertices.count +
+         d.inconsistent_windings.count + d.duplicate_faces.count + d.opposite_faces.count +
+         d.zero_area_triangles.count + d.needles.count + d.t_junctions.count + d.self_intersections.value().count;
+}
+
+TEST(Diagnosis, Nothing) {
+  const Diagnosis d = diagnosis_of({});
+  EXPECT_EQ(d.triangles + d.vertices + d.components + all_defects(d), 0);
+  EXPECT_TRUE(d.closed && d.closed_as_wound);  // the winding number is 0 everywhere
+  EXPECT_EQ(d.volume, 0);
+}
+
+TEST(Diagnosis, Box) {
+  const Diagnosis d = diagnosis_of(unit_box());
+  EXPECT_EQ(d.triangles, 12);
+  EXPECT_EQ(d.vertices, 8);
+  EXPECT_EQ(d.components, 1);
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_EQ(all_defects(d), 0);
+  EXPECT_EQ(d.volume, 1);
+  EXPECT_EQ(d.lower, glm::dvec3(0));
+  EXPECT_EQ(d.upper, glm::dvec3(1));
+  EXPECT_EQ(d.largest_coordinate, 1);
+  EXPECT_EQ(d.shortest_edge, 1);
+  EXPECT_EQ(d.float_spacing, 0x1p-24);  // of floats from 0.5 to 1
+  EXPECT_EQ(d.vertices_lost + d.triangles_lost, 0);
+}
+
+TEST(Diagnosis, BoxOfSeparateTriangles) {
+  const TriangleSoup box = unit_box();
+  TriangleSoup apart;
+  for (const Triangle& t : box.triangles) {
+    append(apart, soup({box.positions[t[0]], box.positions[t[1]], box.positions[t[2]]}, {{0, 1, 2}}));
+  }
+  const Diagnosis d = diagnosis_of(apart);
+  EXPECT_EQ(d.vertices, 8);
+  EXPECT_TRUE(d.closed_as_wound);
+  EXPECT_EQ(all_defects(d), 0);
+}
+
+TEST(Diagnosis, BoxWithATurnedTriangle) {
+  TriangleSoup box = unit_box();
+  std::swap(box.triangles[5][1], box.triangles[5][2]);
+  const Diagnosis d = diagnosis_of(box);
+  EXPECT_TRUE(d.closed);
+  EXPECT_FALSE(d.closed_as_wound);
+  EXPECT_EQ(d.inconsistent_windings.count, 3);
+  EXPECT_EQ(all_defects(d), 3);
+  for (const DefectPlace& place : d.inconsistent_windings.first) EXPECT_THAT(place.triangles, testing::Contains(5u));
+}
+
+TEST(Diagnosis, BoxInsideOut) {
+  TriangleSoup box = unit_box();
+  for (Triangle& t : box.triangles) std::swap(t[1], t[2]);
+  const Diagnosis d = diagnosis_of(box);
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_EQ(all_defects(d), 0);
+  EXPECT_EQ(d.volume, -1);
+}
+
+TEST(Diagnosis, BoxWithoutATriangle) {
+  TriangleSoup box = unit_box();
+  box.triangles.pop_back();
+  const Diagnosis d = diagnosis_of(box);
+  EXPECT_FALSE(d.closed || d.closed_as_wound);
+  EXPECT_EQ(d.boundary_edges.count, 3);
+  EXPECT_EQ(d.boundary_loops, 1);
+  EXPECT_EQ(all_defects(d), 4);
+}
+
+TEST(Diagnosis, OpenSheet) {
+  const Diagnosis d = diagnosis_of(make_grid({.half_u = {4, 0, 0}, .half_v = {0, 0, 4}, .cells_u = 4, .cells_v = 4}));
+  EXPECT_FALSE(d.closed || d.closed_as_wound);
+  EXPECT_EQ(d.boundary_edges.count, 16);
+  EXPECT_EQ(d.boundary_loops, 1);
+  EXPECT_EQ(all_defects(d), 17);
+  EXPECT_EQ(d.volume, 0);
+}
+
+TEST(Diagnosis, TubeHasTwoLoops) {
+  const Diagnosis d = diagnosis_of(make_cylinder({.segments = 8, .capped = false}));
+  EXPECT_FALSE(d.closed);  // though the loops' areas cancel
+  EXPECT_EQ(d.boundary_edges.count, 16);
+  EXPECT_EQ(d.boundary_loops, 2);
+}
+
+TEST(Diagnosis, DoubledSheetIsNotClosed) {
+  TriangleSoup sheet = make_grid({.half_u = {2, 0, 0}, .half_v = {0, 0, 2}, .cells_u = 2, .cells_v = 2});
+  append(sheet, sheet);
+  const Diagnosis same = diagnosis_of(sheet);
+  EXPECT_FALSE(same.closed || same.closed_as_wound);
+  EXPECT_EQ(same.duplicate_faces.count, 8);
+  EXPECT_EQ(same.opposite_faces.count, 0);
+  EXPECT_EQ(same.boundary_edges.count, 0);
+  EXPECT_EQ(same.non_manifold_edges.count, 8);     // inside
+  EXPECT_EQ(same.inconsistent_windings.count, 8);  // along the rim
+  // Each of the 8 with its own copy; with the others' copies it shares an edge or a vertex, and no more.
+  EXPECT_EQ(same.self_intersections->count, 8);
+
+  for (std::size_t i = 8; i < 16; ++i) std::swap(sheet.triangles[i][1], sheet.triangles[i][2]);
+  const Diagnosis opposite = diagnosis_of(sheet);
+  EXPECT_TRUE(opposite.closed && opposite.closed_as_wound);
+  EXPECT_EQ(opposite.duplicate_faces.count, 0);
+  EXPECT_EQ(opposite.opposite_faces.count, 8);
+  EXPECT_EQ(opposite.inconsistent_windings.count, 0);
+  EXPECT_THAT(opposite.opposite_faces.first[3].triangles, ElementsAre(3, 11));
+}
+
+TEST(Diagnosis, ThreeOfOneWindingAndTwoOfTheOther) {
+  const Diagnosis d =
+      diagnosis_of(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}}));
+  EXPECT_EQ(d.duplicate_faces.count, 3);
+  EXPECT_EQ(d.opposite_faces.count, 2);
+  EXPECT_EQ(d.self_intersections->count, 10);  // every pair
+  EXPECT_EQ(d.components, 1);
+}
+
+TEST(Diagnosis, MoebiusStrip) {
+  TriangleSoup strip;
+  constexpr std::uint32_t kCells = 12;
+  for (std::uint32_t i = 0; i < kCells; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCells;
+    for (const double side : {-0.4, 0.4}) {
+      const double r = 2 + side * std::cos(angle / 2);
+      strip.positions.emplace_back(r * std::cos(angle), side * std::sin(angle / 2), r * std::sin(angle));
+    }
+    const std::uint32_t a = 2 * i, b = 2 * i + 1;
+    const bool last = i + 1 == kCells;  // where the two sides change places
+    const std::uint32_t c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+    strip.triangles.push_back({a, b, c});
+    strip.triangles.push_back({c, b, d});
+  }
+  const Diagnosis d = diagnosis_of(strip);
+  EXPECT_EQ(d.boundary_edges.count, 2 * kCells);
+  EXPECT_EQ(d.boundary_loops, 1);
+  EXPECT_EQ(d.inconsistent_windings.count, 1);
+  EXPECT_EQ(d.components, 1);
+  EXPECT_FALSE(d.closed);
+  EXPECT_EQ(all_defects(d), 2 * kCells + 2);
+}
+
+TEST(Diagnosis, ProjectivePlaneHasNoBoundaryYetIsNotClosed) {
+  // Six vertices, and two triangles at each edge, but no winding makes them agree. In space it must cross itself.
+  const std::vector<glm::dvec3> p = {{0, 0, 8}, {1, 5, 2}, {5, 1, 3}, {4, -4, 1}, {-3, -5, 4}, {-6, 2, 0}};
+  const Diagnosis d = diagnosis_of(soup(
+      p,
+      {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}}));
+  EXPECT_EQ(d.boundary_edges.count + d.non_manifold_edges.count + d.non_manifold_vertices.count, 0);
+  EXPECT_GT(d.inconsistent_windings.count, 0);
+  EXPECT_GT(d.self_intersections->count, 0);
+  EXPECT_FALSE(d.closed || d.closed_as_wound);
+}
+
+TEST(Diagnosis, Bowtie) {
+  const Diagnosis d =
+      diagnosis_of(soup({{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}));
+  EXPECT_EQ(d.non_manifold_vertices.count, 1);
+  EXPECT_THAT(d.non_manifold_vertices.first[0].points, ElementsAre(glm::dvec3(0)));
+  EXPECT_THAT(d.non_manifold_vertices.first[0].triangles, ElementsAre(0, 1));
+  EXPECT_EQ(d.components, 2);
+  EXPECT_EQ(d.boundary_loops, 2);  // they only touch
+  EXPECT_EQ(d.self_intersections->count, 0);
+}
+
+TEST(Diagnosis, ThreePages) {
+  const Diagnosis d =
+      diagnosis_of(soup({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}));
+  EXPECT_EQ(d.non_manifold_edges.count, 1);
+  EXPECT_THAT(d.non_manifold_edges.first[0].triangles, ElementsAre(0, 1, 2));
+  EXPECT_EQ(d.non_manifold_vertices.count, 0);  // one fan: linked through the common edge
+  EXPECT_EQ(d.boundary_edges.count, 6);
+  EXPECT_EQ(d.boundary_loops, 1);
+  EXPECT_EQ(d.self_intersections->count, 0);
+}
+
+TEST(Diagnosis, FinOnABox) {
+  TriangleSoup box = unit_box();
+  append(box, soup({{0, 1, 0}, {1, 1, 0}, {0.5, 2, 0}}, {{0, 1, 2}}));  // stands on a vertical edge of the top
+  const Diagnosis d = diagnosis_of(box);
+  EXPECT_EQ(d.non_manifold_edges.count, 1);
+  EXPECT_EQ(d.boundary_edges.count, 2);
+  EXPECT_EQ(d.boundary_loops, 1);
+  EXPECT_FALSE(d.closed || d.closed_as_wound);
+  EXPECT_EQ(d.components, 1);
+  EXPECT_EQ(d.self_intersections->count, 0);
+}
+
+TEST(Diagnosis, TwoBoxesThatShareAnEdge) {
+  TriangleSoup boxes = unit_box();
+  append(boxes, moved(unit_box(), {1, 1, 0}));
+  const Diagnosis d = diagnosis_of(boxes);
+  EXPECT_EQ(d.vertices, 14);
+  EXPECT_EQ(d.components, 1);
+  EXPECT_EQ(d.non_manifold_edges.count, 1);
+  EXPECT_EQ(d.non_manifold_vertices.count, 0);  // one fan at each end of the edge: its four triangles are linked
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_EQ(all_defects(d), 1);
+  EXPECT_EQ(d.volume, 2);
+}
+
+TEST(Diagnosis, TwoBoxesThatShareACorner) {
+  TriangleSoup boxes = unit_box();
+  append(boxes, moved(unit_box(), {1, 1, 1}));
+  const Diagnosis d = diagnosis_of(boxes);
+  EXPECT_EQ(d.vertices, 15);
+  EXPECT_EQ(d.components, 2);
+  EXPECT_EQ(d.non_manifold_vertices.count, 1);
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_EQ(all_defects(d), 1);
+}
+
+/// A tetrahedron over (0,0,0), (4,0,0), (0,4,0) whose base is cut in two at `cut` on the edge of y = 0; its side is
+/// not.
+TriangleSoup cut_tetrahedron(const glm::dvec3& cut) {
+  return soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, cut},
+              {{0, 2, 4}, {4, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+}
+
+TEST(Diagnosis, AcrossATJunctionItIsClosed) {
+  const Diagnosis d = diagnosis_of(cut_tetrahedron({1, 0, 0}));
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_EQ(d.t_junctions.count, 1);
+  EXPECT_THAT(d.t_junctions.first[0].points, ElementsAre(glm::dvec3(1, 0, 0), glm::dvec3(0), glm::dvec3(4, 0, 0)));
+  EXPECT_THAT(d.t_junctions.first[0].triangles, ElementsAre(2));
+  EXPECT_EQ(d.boundary_edges.count, 3);
+  EXPECT_EQ(d.boundary_loops, 1);
+  EXPECT_DOUBLE_EQ(d.volume, 64.0 / 6);
+}
+
+TEST(Diagnosis, ACrackOfOneUlpIsNotClosed) {
+  for (const glm::dvec3 crack : {glm::dvec3(1, 0x1p-1060, 0), glm::dvec3(1, 0, 0x1p-1060)}) {
+    const Diagnosis d = diagnosis_of(cut_tetrahedron(crack));
+    EXPECT_FALSE(d.closed || d.closed_as_wound);
+    EXPECT_EQ(d.t_junctions.count, 0);
+  }
+}
+
+TEST(Diagnosis, ACollinearTriangleBridgesATJunction) {
+  TriangleSoup mended = cut_tetrahedron({1, 0, 0});
+  mended.triangles.push_back({0, 4, 1});
+  const Diagnosis d = diagnosis_of(mended);
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_EQ(d.boundary_edges.count, 0);
+  EXPECT_EQ(d.zero_area_triangles.count, 1);
+  EXPECT_EQ(d.t_junctions.count, 1);  // the edge is still there
+  EXPECT_EQ(d.components, 1);
+}
+
+TEST(Diagnosis, PatchesThatOnlyCoincideInSpaceCloseOneAnother) {
+  // Six sides of a box, each a grid of its own fineness: boundaries meet in T-junctions or not at all.
+  const auto side = [](const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, std::uint32_t cells) {
+    return make_grid({.center = centre, .half_u = u, .half_v = v, .cells_u = cells, .cells_v = cells});
+  };
+  const glm::dvec3 x(60, 0, 0), y(0, 60, 0), z(0, 0, 60);
+  TriangleSoup box = side(x, y, z, 1);
+  append(box, side(-x, z, y, 2));
+  append(box, side(y, z, x, 3));
+  append(box, side(-y, x, z, 4));
+  append(box, side(z, x, y, 5));
+  append(box, side(-z, y, x, 6));
+  const Diagnosis d = diagnosis_of(box);
+  EXPECT_TRUE(d.closed && d.closed_as_wound);
+  EXPECT_GT(d.t_junctions.count, 0);
+  EXPECT_NEAR(d.volume, 120.0 * 120 * 120, 1e-6);
+  std::swap(box.triangles[4][0], box.triangles[4][1]);  // turned back: most of its patch are wound the other way
+  EXPECT_TRUE(diagnosis_of(box).closed);
+  EXPECT_FALSE(diagnosis_of(box).closed_as_wound);
+}
+
+TEST(Diagnosis, ZeroAreaAndNeedles) {
+  const Diagnosis d = diagnosis_of(soup({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {1, 0.0029, 0}, {1, 0.0031, 0}, {-0.0, 0, 0}},
+                                        {{0, 1, 2}, {0, 2, 3}, {0, 2, 4}, {0, 5, 1}, {1, 1, 1}}));
+  EXPECT_EQ(d.zero_area_triangles.count, 3);
+  EXPECT_EQ(d.needles.count, 1);  // altitude 0.0029 on an edge of 3
+  EXPECT_THAT(d.needles.first[0].triangles, ElementsAre(1));
+  EXPECT_EQ(d.vertices, 5);
+  EXPECT_EQ(d.components, 1);  // the three that have edges share the one from 0 to 2
+  EXPECT_EQ(d.t_junctions.count, 1);
+  EXPECT_EQ(d.shortest_edge, 1);  // from 0 to 1: what repeats a vertex has no edges
+}
+
+TEST(Diagnosis, SelfIntersections) {
+  const TriangleSoup crossing =
+      soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 0}}, {{0, 1, 2}, {3, 4, 5}});
+  EXPECT_EQ(diagnosis_of(crossing).self_intersections->count, 1);
+  EXPECT_EQ(diagnosis_of(crossing).self_intersections->first[0].points.size(), 6);
+  EXPECT_FALSE(diagnosis_of(crossing, {.search_intersections = false}).self_intersections.has_value());
+
+  // Neighbours that fold onto one another; and that only lie in one plane.
+  EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 3, 0}}, {{0, 1, 2}, {0, 1, 3}}))
+                .self_intersections->count,
+            1);
+  EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -3, 0}}, {{0, 1, 2}, {0, 1, 3}}))
+                .self_intersections->count,
+            0);
+  // A vertex that touches the inside of another triangle or edge is a meeting elsewhere, too.
+  EXPECT_EQ(
+      diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}))
+          .self_intersections->count,
+      1);
+  // From the common vertex through the other's inside.
+  EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {2, 2, -1}, {2, 2, 1}}, {{0, 1, 2}, {0, 3, 4}}))
+                .self_intersections->count,
+            1);
+}
+
+TEST(Diagnosis, FarFromTheOriginAndTinyDetailsAreLostInFloat) {
+  // Around 2²⁵ with a spread of 2: relative to the centre nothing is lost.
+  const glm::dvec3 far(0x1p25, 0, 0);
+  const Diagnosis moved_far = diagnosis_of(moved(unit_box(), far));
+  EXPECT_EQ(moved_far.largest_coordinate, 0x1p25 + 1);
+  EXPECT_EQ(moved_far.vertices_lost + moved_far.triangles_lost, 0);
+  EXPECT_EQ(moved_far.float_spacing, 0x1p-24);
+  EXPECT_EQ(moved_far.volume, 1);
+
+  // Two boxes 2²⁵ apart and 1/4 thick: at ±2²⁴ floats are 1 or 2 apart.
+  TriangleSoup two = make_box({-0x1p24, 0, 0}, {0.125, 0x1p22, 0x1p22});
+  append(two, make_box({0x1p24, 0, 0}, {0.125, 0x1p22, 0x1p22}));
+  const Diagnosis flat = diagnosis_of(two);
+  EXPECT_EQ(flat.float_spacing, 2);
+  EXPECT_EQ(flat.vertices_lost, 8);    // of each pair across the thickness one
+  EXPECT_EQ(flat.triangles_lost, 16);  // all but the two large sides of each
+}
+
+TEST(Diagnosis, WeldClosesACrack) {
+  const TriangleSoup cracked = [] {
+    TriangleSoup box = unit_box();
+    box.positions.push_back(box.positions[box.triangles[0][0]] + glm::dvec3(1e-9, 0, 0));
+    box.triangles[0][0] = static_cast<std::uint32_t>(box.positions.size() - 1);
+    return box;
+  }();
+  EXPECT_FALSE(diagnosis_of(cracked).closed);
+  const Diagnosis welded = diagnosis_of(cracked, {.weld = 1e-6});
+  EXPECT_TRUE(welded.closed_as_wound);
+  EXPECT_EQ(welded.vertices, 8);
+}
+
+TEST(Diagnosis, ProgressRisesToOne) {
+  std::vector<double> shares;
+  diagnosis_of(make_icosphere({0, 0, 0}, 1, 5), {.progress = [&](double share) { shares.push_back(share); }});
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GT(shares.size(), 100);
+  EXPECT_GT(shares.front(), 0);
+  EXPECT_EQ(shares.back(), 1);
+}
+
+}  // namespace
+}  // namespace penumbra::mesh

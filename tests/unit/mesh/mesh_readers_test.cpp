@@ -1,0 +1,412 @@
+// What Assimp reads wrongly, or not at all, and our own readers read.
+#include "mesh/import.hpp"
+
+#include "tests/unit/mesh/import_files.hpp"
+
+#include <gmock/gmock.h>
+#include <minizip/zip.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace penumbra::mesh {
+namespace {
+
+using test::bytes_of;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class MeshReaders : public test::FileTest {
+ protected:
+  [[nodiscard]] ImportedMesh read(const std::string& name, std::string_view content) const {
+    return import_mesh(write(name, content));
+  }
+  void expect_refused(const std::string& name, std::string_view content,
+                      std::initializer_list<std::string> words) const {
+    SCOPED_TRACE(name);
+    const auto path = write(name, content);
+    const std::string message = test::input_error([&] { import_mesh(path); });
+    EXPECT_THAT(message, HasSubstr(path.string()));
+    for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word));
+  }
+  /// A zip archive of the given entries.
+  [[nodiscard]] std::filesystem::path write_zip(const std::string& name,
+                                                const std::map<std::string, std::string>& entries) const {
+    const auto path = folder_ / name;
+    const zipFile archive = zipOpen64(path.c_str(), APPEND_STATUS_CREATE);
+    for (const auto& [entry, content] : entries) {
+      const zip_fileinfo info{};
+      EXPECT_EQ(zipOpenNewFileInZip(archive, entry.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, 6), 0);
+      EXPECT_EQ(zipWriteInFileInZip(archive, content.data(), static_cast<unsigned>(content.size())), 0);
+      EXPECT_EQ(zipCloseFileInZip(archive), 0);
+    }
+    EXPECT_EQ(zipClose(archive, nullptr), 0);
+    return path;
+  }
+};
+
+/// The position of a corner of the soup's triangle.
+glm::dvec3 corner(const TriangleSoup& soup, std::size_t triangle, std::size_t i) {
+  return soup.positions[soup.triangles[triangle][i]];
+}
+
+double distance(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+// -------------------------------------------------------------------------------------------------------------- OBJ
+
+constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST_F(MeshReaders, ObjFacesWithTextureCoordinatesThatDoNotExistAreWhole) {
+  const std::string square = kSquare;
+  for (const std::string face :
+       {"f 1/1/1 2/1/1 3/1/1\n", "f 1/9 2/9 3/9\n", "f 1//7 2//7 3//7\n", "f 1/-5 2/-5 3/-5\n"}) {
+    const ImportedMesh mesh = read("missing.obj", square + face + "f 1 3 4\nl 1 2\nl 2 3\np 4\n");
+    EXPECT_EQ(mesh.soup.triangles.size(), 2u) << face;
+    EXPECT_EQ(mesh.soup.source_face, (std::vector<std::uint32_t>{0, 1})) << face;
+    EXPECT_THAT(mesh.notes, Contains("2 lines skipped: faces with two corners"));
+    EXPECT_THAT(mesh.notes, Contains("1 points skipped: faces with one corner"));
+  }
+  // Lines do not stand in for faces that are gone.
+  const ImportedMesh mesh = read("lines.obj", square + "vt 0 0\nf 1/1 2/1 3/2\nf 1/1 3/1 4/1\nl 1 2 3 4 1\n");
+  EXPECT_EQ(mesh.soup.triangles.size(), 2u);
+}
+
+TEST_F(MeshReaders, ObjColoursAreNoMatter) {
+  const ImportedMesh mesh = read("colours.obj", "v 0 0 0 nan 0 0\nv 1 0 0 1 inf 0\nv 0 1 0 1 1 1 0.5\nf 1 2 3\n");
+  ASSERT_EQ(mesh.soup.triangles.size(), 1u);
+  EXPECT_EQ(mesh.soup.positions[1], glm::dvec3(1, 0, 0));
+  EXPECT_THAT(mesh.notes, Contains("ignored: 3 vertex colours"));
+}
+
+TEST_F(MeshReaders, ObjInDoubleWithWeightsAndForwardReferences) {
+  const ImportedMesh mesh =
+      read("double.obj", "f 1 2 3 # before its vertices\nv 0.1 0.2 0.3\nv 2 4 6 2\nv 1e300 0 0\n");
+  EXPECT_EQ(mesh.soup.positions[0], glm::dvec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(mesh.soup.positions[1], glm::dvec3(1, 2, 3));
+  EXPECT_EQ(mesh.soup.positions[2], glm::dvec3(1e300, 0, 0));
+  expect_refused("weight.obj", "v 0 0 0\nv 1 0 0 0\nv 0 1 0\nf 1 2 3\n", {"line 2", "weight 0"});
+  expect_refused("weight2.obj", "v 0 0 0\nv 1e300 0 0 1e-300\nv 0 1 0\nf 1 2 3\n", {"line 2", "not finite"});
+  expect_refused("five.obj", "v 0 0 0 0 0\n", {"line 1", "5 numbers"});
+  expect_refused("far.obj", "v 0 0 0\nf 1 1 4294967297\n", {"line 2", "vertex 4294967297", "only 1"});
+  expect_refused("none.obj", "f 1 1 1\n", {"line 1", "vertex 1", "only 0"});
+}
+
+TEST_F(MeshReaders, ObjOfManyGroups) {
+  std::string text = kSquare;
+  for (int i = 0; i < 100000; ++i) text += fmt::format("o part{}\ng group{}\nusemtl m{}\nf 1 2 3\n", i, i, i);
+  EXPECT_EQ(read("groups.obj", text).soup.triangles.size(), 100000u);
+}
+
+TEST_F(MeshReaders, ObjSaysWhatItSkips) {
+  const ImportedMesh mesh =
+      read("skips.obj", std::string(kSquare) + "f 1 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2 3\nwhat 1\nwhat 2\n");
+  EXPECT_THAT(mesh.notes, Contains(HasSubstr("2 free-form statements")));
+  EXPECT_THAT(mesh.notes, Contains("2 unknown statements skipped, the first in line 8: 'what'"));
+}
+
+// -------------------------------------------------------------------------------------------------------------- STL
+
+std::string binary_stl(std::string header, std::uint32_t count, const std::string& after) {
+  header.resize(80, ' ');
+  std::string stl = header + bytes_of(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    stl += bytes_of(0.f, 0.f, 1.f, 0.f, 0.f, static_cast<float>(i), 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, std::uint16_t{0});
+  }
+  return stl + after;
+}
+
+TEST_F(MeshReaders, StlInCapitals) {
+  const ImportedMesh mesh =
+      read("capitals.stl",
+           "SOLID BOX\r\n  FACET NORMAL 0 0 1\r\n    OUTER LOOP\r\n      VERTEX 0 0 0\r\n      VERTEX 1 0 0\r\n"
+           "      VERTEX 0 1 0\r\n    ENDLOOP\r\n  ENDFACET\r\nENDSOLID BOX\r\n");
+  ASSERT_EQ(mesh.soup.triangles.size(), 1u);
+  EXPECT_EQ(corner(mesh.soup, 0, 2), glm::dvec3(0, 1, 0));
+  EXPECT_THAT(mesh.notes, IsEmpty());
+}
+
+TEST_F(MeshReaders, StlBinaryWithMoreThanItSays) {
+  for (const std::string header : {"solid thing", "made by hand", "SOLID"}) {
+    const ImportedMesh mesh = read("trailing.stl", binary_stl(header, 3, "more"));
+    EXPECT_EQ(mesh.soup.triangles.size(), 3u) << header;
+    EXPECT_EQ(corner(mesh.soup, 2, 0), glm::dvec3(0, 0, 2)) << header;
+    EXPECT_THAT(mesh.notes, Contains("4 bytes after the last triangle ignored")) << header;
+  }
+  expect_refused("short.stl", binary_stl("solid", 3, "").substr(0, 200), {"3 triangles", "truncated"});
+}
+
+TEST_F(MeshReaders, StlFacetsThatAreNone) {
+  const std::string facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n";
+  EXPECT_EQ(read("lines.stl", "solid a\n" + facet + facet + "endsolid\nsolid b\n" + facet).soup.triangles.size(), 3u);
+  expect_refused("open.stl", "solid a\n" + facet + "facet normal 0 0 1\nvertex 0 0 0\n", {"line 3", "no end"});
+  expect_refused("twice.stl", "solid a\nfacet\nfacet\n", {"line 3", "that of line 2 has no end"});
+  expect_refused("loose.stl", "solid a\nvertex 0 0 0\n", {"line 2", "outside of a facet"});
+  expect_refused("word.stl", "solid a\nfacet\nvertex 0 zero 0\n", {"line 3", "'zero'"});
+  expect_refused("nothing.stl", "solid a\nendsolid a\n", {"no triangles"});
+}
+
+// -------------------------------------------------------------------------------------------------------------- PLY
+
+std::string ply_header(const std::string& format, const std::string& faces) {
+  return "ply\nformat " + format +
+         " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement " + faces +
+         "\nend_header\n";
+}
+
+TEST_F(MeshReaders, PlyListsThatPromiseMoreThanThereIs) {
+  const std::string faces = "face 1\nproperty list uint int vertex_indices";
+  const std::string positions = bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f);
+  for (const std::uint32_t length : {4294967295u, 3000u, 4u}) {
+    expect_refused("list.ply", ply_header("binary_little_endian", faces) + positions + bytes_of(length, 0, 1, 2),
+                   {fmt::format("a list 'vertex_indices' of {} numbers, but only 12 bytes follow", length)});
+  }
+  expect_refused("ascii.ply", ply_header("ascii", faces) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4294967295 0 1 2\n",
+                 {"line 14", "a list 'vertex_indices' of 4294967295 numbers"});
+  expect_refused(
+      "negative.ply",
+      ply_header("ascii", "face 1\nproperty list int int vertex_index") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 0 1 2\n",
+      {"line 14", "of -1 numbers"});
+}
+
+TEST_F(MeshReaders, PlyWithWhatIsNotOurs) {
+  // Lists before and between, faces before vertices, a column too many, an element of another kind.
+  const ImportedMesh mesh =
+      read("odd.ply",
+           "ply\nformat ascii 1.0\ncomment faces first\nelement face 2\nproperty list uchar float weights\n"
+           "property list uchar uint vertex_index\nproperty uchar red\nelement edge 1\nproperty int a\n"
+           "property int b\nelement vertex 4\nproperty double z\nproperty double y\nproperty list char "
+           "int more\nproperty double x\nend_header\n2 0.5 0.5 4 0 1 2 3 255\n0 3 0 2\n3 9\n0 1\n"
+           "0 0 0 0.1\n0 0 2 7 8 1\n0 1 0 1 99\n0 1 0 0\n");
+  ASSERT_EQ(mesh.soup.triangles.size(), 3u);
+  EXPECT_EQ(mesh.soup.positions[0], glm::dvec3(0.1, 0, 0)) << "in double";
+  EXPECT_EQ(mesh.soup.positions[1], glm::dvec3(1, 0, 0));
+  EXPECT_EQ(mesh.soup.source_face, (std::vector<std::uint32_t>{0, 0, 1}));
+  EXPECT_THAT(mesh.notes, Contains("1 elements 'edge' skipped"));
+  EXPECT_THAT(mesh.notes, Contains("ignored properties of 'face': weights red"));
+  EXPECT_THAT(mesh.notes, Contains("1 lines have more numbers than the header declares"));
+}
+
+TEST_F(MeshReaders, PlyStripsHaveOneWinding) {
+  const ImportedMesh mesh =
+      read("strips.ply", ply_header("ascii", "tristrips 1\nproperty list int int vertex_indices") +
+                             "0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 1 3 2\n");
+  ASSERT_EQ(mesh.soup.triangles.size(), 3u);
+  for (std::size_t t = 0; t < 3; ++t) {
+    const glm::dvec3 a = corner(mesh.soup, t, 0), b = corner(mesh.soup, t, 1), c = corner(mesh.soup, t, 2);
+    EXPECT_GT((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), 0) << t;
+  }
+}
+
+TEST_F(MeshReaders, PlyHeadersThatDoNotSay) {
+  expect_refused("format.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n",
+                 {"line 2", "binary_middle_endian"});
+  expect_refused("none.ply", "ply\nelement vertex 0\nend_header\n", {"no format"});
+  expect_refused("type.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n",
+                 {"line 4", "'half'"});
+  expect_refused("flat.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+                 {"'vertex' needs one property z"});
+  expect_refused("index.ply",
+                 ply_header("ascii", "face 1\nproperty list uchar float vertex_indices") +
+                     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 1.5\n",
+                 {"line 14", "vertex 1.5"});
+}
+
+// -------------------------------------------------------------------------------------------------------------- AMF
+
+std::string amf_object(const std::string& id, int volumes) {
+  std::string object = "<object id=\"" + id + "\"><mesh><vertices>";
+  for (const char* p : {"<x>0</x><y>0</y><z>0</z>", "<x>1</x><y>0</y><z>0</z>", "<x>0</x><y>1</y><z>0</z>"}) {
+    object += std::string("<vertex><coordinates>") + p + "</coordinates></vertex>";
+  }
+  object += "</vertices>";
+  for (int i = 0; i < volumes; ++i) object += "<volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume>";
+  return object + "</mesh></object>";
+}
+
+TEST_F(MeshReaders, AmfWithEveryVolume) {
+  EXPECT_EQ(read("volumes.amf", "<?xml version=\"1.0\"?><amf>" + amf_object("1", 3) + "</amf>").soup.triangles.size(),
+            3u);
+  const auto zipped = write_zip("zipped.amf", {{"model.amf", "<amf>" + amf_object("1", 2) + "</amf>"}});
+  EXPECT_EQ(import_mesh(zipped).soup.triangles.size(), 2u);
+}
+
+TEST_F(MeshReaders, AmfConstellationsTurnAndMove) {
+  const ImportedMesh mesh =
+      read("constellation.amf",
+           "<amf>" + amf_object("a", 1) + amf_object("alone", 1) +
+               "<constellation id=\"c\"><instance objectid=\"a\"><deltax>10</deltax><rx>90</rx><rz>90</rz>"
+               "</instance><instance objectid=\"a\"/></constellation></amf>");
+  ASSERT_EQ(mesh.soup.triangles.size(), 3u);  // what nobody places is where it is, then both copies
+  // (0 1 0): around x by 90° it is (0 0 1), around z still; then moved.
+  EXPECT_LT(distance(corner(mesh.soup, 1, 2), {10, 0, 1}), 1e-15);
+  EXPECT_LT(distance(corner(mesh.soup, 1, 1), {10, 1, 0}), 1e-15);
+  EXPECT_EQ(corner(mesh.soup, 2, 2), glm::dvec3(0, 1, 0));
+}
+
+TEST_F(MeshReaders, AmfRefusalsSayTheLine) {
+  const std::string object = amf_object("1", 1);
+  expect_refused("syntax.amf", "<amf>\n<object>\n</amf>", {"line 3", "malformed XML"});
+  expect_refused("other.amf", "<html/>", {"<html>", "expected <amf>"});
+  std::string high = object;
+  high.replace(high.find("<v3>2"), 5, "<v3>3");
+  expect_refused("high.amf", "<amf>\n" + high + "</amf>", {"line 2", "vertex 3", "only 3"});
+  std::string wrong = object;
+  wrong.replace(wrong.find("<x>1"), 4, "<x>one");
+  expect_refused("number.amf", "<amf>\n\n" + wrong + "</amf>", {"line 3", "x is 'one'"});
+  expect_refused("unknown.amf",
+                 "<amf>" + object + "<constellation id=\"2\"><instance objectid=\"7\"/></constellation></amf>",
+                 {"id '7'"});
+  expect_refused("circle.amf",
+                 "<amf><constellation id=\"1\"><instance objectid=\"2\"/></constellation>"
+                 "<constellation id=\"2\"><instance objectid=\"1\"/></constellation></amf>",
+                 {"made of itself"});
+}
+
+// -------------------------------------------------------------------------------------------------------------- 3MF
+
+std::string model(const std::string& objects, const std::string& items) {
+  return "<?xml version=\"1.0\"?>\n<model unit=\"millimeter\" "
+         "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/"
+         "2015/02\" xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"><resources>" +
+         objects + "</resources><build>" + items + "</build></model>";
+}
+
+std::string object(const std::string& id) {
+  return "<object id=\"" + id +
+         "\" name=\"same name\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
+         "<vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" "
+         "v3=\"2\"/></triangles></mesh></object>";
+}
+
+TEST_F(MeshReaders, ThreeMfComponentsInSeveralModels) {
+  const std::string relationships =
+      "<Relationships><Relationship Target=\"/3D/start.model\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  const std::string start =
+      model(object("1") + object("2") +
+                "<object id=\"3\"><components><component objectid=\"1\"/><component objectid=\"2\" "
+                "transform=\"0 1 0 -1 0 0 0 0 1 5 6 7\"/><component p:path=\"/3D/other.model\" "
+                "objectid=\"1\"/></components></object>",
+            "<item objectid=\"3\" transform=\"2 0 0 0 2 0 0 0 2 0 0 0\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 "
+            "0 0 -1 0 0 0\"/>");
+  const ImportedMesh mesh = import_mesh(write_zip("parts.3mf", {{"_rels/.rels", relationships},
+                                                                {"3D/a.model", "not this one"},
+                                                                {"3D/start.model", start},
+                                                                {"3D/other.model", model(object("1"), "")}}));
+  ASSERT_EQ(mesh.soup.triangles.size(), 4u);
+  // (1 0 0) by the rows of the transform: (0 1 0) + (5 6 7), then twice that.
+  EXPECT_EQ(corner(mesh.soup, 1, 1), glm::dvec3(10, 14, 14));
+  EXPECT_EQ(corner(mesh.soup, 3, 1), glm::dvec3(0, 1, 0)) << "mirrored, so wound the other way";
+  EXPECT_THAT(mesh.notes, Contains(HasSubstr("1 objects mirrored")));
+}
+
+TEST_F(MeshReaders, ThreeMfSaysWhatItDoesNotShow) {
+  const ImportedMesh mesh = import_mesh(
+      write_zip("one.3mf", {{"3D/3dmodel.model", model(object("1") + object("2"), "<item objectid=\"2\"/>")}}));
+  EXPECT_EQ(mesh.soup.triangles.size(), 1u);
+  EXPECT_THAT(mesh.notes, Contains("1 of 2 objects skipped: nothing places them"));
+}
+
+TEST_F(MeshReaders, ThreeMfRefusals) {
+  const auto refusal = [&](const std::string& content) {
+    const auto path = write_zip("bad.3mf", {{"3D/3dmodel.model", content}});
+    return test::input_error([&] { import_mesh(path); });
+  };
+  EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"9\"/>")), HasSubstr("no object with the id '9'"));
+  EXPECT_THAT(refusal(model(object("1") + object("1"), "")), HasSubstr("line 2: the id '1' stands twice"));
+  EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"1\" transform=\"1 2 3\"/>")),
+              HasSubstr("number 4 of the transform"));
+  EXPECT_THAT(refusal(model("", "<item p:path=\"/x.model\" objectid=\"1\"/>")), HasSubstr("x.model: no such entry"));
+  EXPECT_THAT(refusal(model("<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
+                            "<item objectid=\"1\"/>")),
+              HasSubstr("object '1' is made of itself"));
+  expect_refused("plain.3mf", "<model/>", {"no zip archive"});
+  expect_refused("cut.3mf", "PK\x03\x04 and no more", {"truncated or damaged"});
+  // Doubling forty times would be a thousand billion triangles: an end, and a message that says what is too much.
+  std::string doubled = object("0");
+  for (int i = 1; i <= 40; ++i) {
+    doubled += fmt::format(
+        "<object id=\"{0}\"><components><component objectid=\"{1}\"/><component "
+        "objectid=\"{1}\"/></components></object>",
+        i, i - 1);
+  }
+  const auto bomb = write_zip("bomb.3mf", {{"3D/3dmodel.model", model(doubled, "<item objectid=\"40\"/>")}});
+  ImportLimits limits;
+  limits.memory_bytes = std::uint64_t{256} << 20;
+  EXPECT_THAT(test::input_error([&] { import_mesh(bomb, limits); }), HasSubstr("repeats what it holds too often"));
+}
+
+// ------------------------------------------------------------------------------------------------------- other texts
+
+std::string utf16(std::string_view text, bool big_endian) {
+  std::string wide = big_endian ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : text) {
+    if (big_endian) wide += '\0';
+    wide += c;
+    if (!big_endian) wide += '\0';
+  }
+  return wide;
+}
+
+TEST_F(MeshReaders, TextOfAnyUnicode) {
+  const std::string obj = std::string("# \x41\n") + kSquare + "f 1 2 3\n";
+  const std::string ac =
+      "AC3Db\nMATERIAL \"\" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0.5 0.5 0.5  shi 10  trans 0\nOBJECT "
+      "world\nkids "
+      "1\nOBJECT poly\nnumvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids "
+      "0\n";
+  for (const auto& [name, text] :
+       {std::pair{"text.obj", obj}, {"text.ac", ac}, {"text.amf", "<amf>" + amf_object("1", 1) + "</amf>"}}) {
+    for (const bool big_endian : {false, true})
+      EXPECT_EQ(read(name, utf16(text, big_endian)).soup.triangles.size(), 1u) << name;
+    EXPECT_EQ(read(name, "\xEF\xBB\xBF" + text).soup.triangles.size(), 1u) << name;
+  }
+  expect_refused("odd.obj", utf16(obj, false) + "x", {"byte order mark says UTF-16"});
+  expect_refused("half.obj", std::string("\xFF\xFE\x00\xDC", 4), {"byte order mark says UTF-16", "byte 2"});
+}
+
+std::string chunk_3ds(std::uint16_t number, const std::string& content) {
+  return bytes_of(number, static_cast<std::uint32_t>(content.size() + 6)) + content;
+}
+
+TEST_F(MeshReaders, ThreeDsChunksThatPromiseMoreThanThereIs) {
+  const auto file = [](std::uint16_t vertices, std::uint32_t more) {
+    const std::string positions = bytes_of(vertices, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
+    const std::string faces =
+        bytes_of(std::uint16_t{1}, std::uint16_t{0}, std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{0});
+    std::string mesh = chunk_3ds(0x4110, positions) + chunk_3ds(0x4120, faces);
+    mesh.replace(2, 4, bytes_of(static_cast<std::uint32_t>(6 + positions.size()) + more));
+    return chunk_3ds(0x4D4D, chunk_3ds(0x3D3D, chunk_3ds(0x4000, std::string("a\0", 2) + chunk_3ds(0x4100, mesh))));
+  };
+  EXPECT_EQ(read("whole.3ds", file(3, 0)).soup.triangles.size(), 1u);
+  expect_refused("count.3ds", file(60000, 0), {"chunk 0x4110 at byte 26", "60000 entries"});
+  expect_refused("length.3ds", file(3, 4000000000u), {"chunk 0x4110 at byte 26", "says that it has 4000000044 bytes"});
+}
+
+TEST_F(MeshReaders, LightWaveOfOldIsRefusedByName) {
+  expect_refused("old.lwo", std::string("FORM\0\0\0\x04LWOB", 12), {"LWOB", "not supported"});
+}
+
+TEST_F(MeshReaders, GltfNumbersThatLibrariesDrop) {
+  const auto gltf = [](const std::string& view, const std::string& accessor) {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3")" +
+           accessor + R"(}],"bufferViews":[{"buffer":0,"byteLength":36)" + view +
+           R"(}],"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+  };
+  EXPECT_EQ(read("good.gltf", gltf("", "")).soup.triangles.size(), 1u);
+  expect_refused("offset.gltf", gltf(R"(,"byteOffset":-8)", ""), {"/bufferViews/0/byteOffset: -8"});
+  expect_refused("stride.gltf", gltf(R"(,"byteStride":-12)", ""), {"/bufferViews/0/byteStride: -12"});
+  expect_refused("half.gltf", gltf(R"(,"byteOffset":0.5)", ""), {"/bufferViews/0/byteOffset: 0.5"});
+  expect_refused("accessor.gltf", gltf("", R"(,"byteOffset":"4")"), {"/accessors/0/byteOffset: \"4\""});
+  expect_refused("old.gltf", R"({"scene":"first"})", {"/asset/version"});
+}
+
+}  // namespace
+}  // namespace penumbra::mesh

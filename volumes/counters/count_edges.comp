@@ -1,0 +1,383 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "volumes/edges/edge_scatter.glsl"
+#include "volumes/counters/depth_complexity.shared.h"
+
+// Second pass of depth complexity, a workgroup a view sample: one counter a light sample. D, the number of triangles before
+// a light point, is counted triangle by triangle at the corner c0 of the light's frame. On the straight way from c0 to a
+// light sample it changes by k_e(p) wherever the way crosses a projected edge. One lane an edge while edges are projected,
+// one lane a light sample while they are counted. Light samples as near to an edge as rounding reaches are asked about.
+// What is right about this, and every bound: docs/depth-complexity.md.
+
+layout(constant_id = 2) const uint kSamples = 256;        // light samples
+layout(constant_id = 3) const uint kWords = 8;            // of a mask
+layout(constant_id = 4) const uint kHalves = 0;           // 1: a silhouette counts ±1 and no D at c0 is known (variant=laine)
+layout(constant_id = 5) const uint kKeepsDepths = 0;      // 1: write the counters too
+
+// An edge record (EdgeTexels), a texel buffer each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor 2).
+layout(binding = 3) uniform usamplerBuffer record_a;
+layout(binding = 4) uniform usamplerBuffer record_b;
+layout(binding = 5) uniform usamplerBuffer record_n1;
+layout(binding = 6) uniform usamplerBuffer record_anchor1;
+layout(binding = 7) uniform usamplerBuffer record_n2;
+layout(binding = 8) uniform usamplerBuffer record_anchor2;
+// A triangle: (a, triangle), (b, plane), (c, light that it is the body of).
+layout(binding = 9) uniform usamplerBuffer corner_a;
+layout(binding = 10) uniform usamplerBuffer corner_b;
+layout(binding = 11) uniform usamplerBuffer corner_c;
+layout(scalar, binding = 12) readonly buffer Places { vec2 places[]; };   // light samples in the frame, from c0: [0, 2]²
+layout(scalar, binding = 13) writeonly buffer Masks { uint masks[]; };    // visible: bit j mod 32 of word j / 32
+layout(scalar, binding = 14) writeonly buffer Counts { uint counts[]; };  // visible light samples of a pixel
+layout(scalar, binding = 15) writeonly buffer Questions { DepthQuestion questions[]; };
+layout(scalar, binding = 16) writeonly buffer Depths { int depths[]; };
+
+const uint kQueue = 64;
+const uint kEach = 8;                                     // light samples of a lane at a time
+
+shared int counters[kSamples];
+shared uint open_words[kWords], visible_words[kWords];
+shared vec4 queue_ends[kQueue];                           // (a, b) from c0
+shared vec2 queue_more[kQueue];                           // (error, k)
+
+ViewSample at;
+vec3 from_center;
+bool open_pixel, cut_off;                                 // everything is for the host; a loop did not run to its end
+
+// The passes below run with cells of the frame's half-sizes: (X, Y) from the middle is (s, t).
+
+// Where p + d appears on the light, from c0, and its height over p.
+precise vec3 project(vec3 d) {
+  precise const float w = -dot(axis, d);
+  precise const float q = at.height / w;
+  precise const vec2 seen = at.foot + q * vec2(dot(across, d), dot(along, d)) - (first_cell - half_cells);
+  return vec3(seen, w);
+}
+
+// The error of a projected point's coordinates. (bound X)
+float error_of(float far, float w, float from_foot, float away) {
+  const float q = at.height / w, along_normal = (4.0 + 4.0 * skew) * (far / w + away / at.height);
+  return kRound * (8.0 * per_length * far * q + from_foot * (along_normal + 8.0) + per_length * (4.0 * away + push.cut_reach) +
+                   16.0 * (half_cells.x + half_cells.y)) +
+         (per_length + from_foot / at.height) * push.deviation;
+}
+
+// sgn(n · (p − anchor)); `open` if that is within its error.
+int side_seen(vec3 n, vec3 anchor, inout bool open) {
+  precise const vec3 d = at.p - anchor;
+  precise const float f = dot(n, d);
+  open = open || (abs(f) <= 8.0 * kRound * dot(abs(n), abs(d)) && n != vec3(0.0));
+  return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
+}
+
+// What a triangle adds to k_e. That of the carrier's plane: nothing; where silhouettes of closed meshes must stay closed,
+// what it adds as seen from a little above p.
+int side_of(vec3 n, vec3 anchor, uint plane, inout bool open) {
+  const bool own = plane == at.plane && n != vec3(0.0);
+  if (own && kHalves == 0) return 0;
+  const float above = dot(n, at.normal);
+  const int side = own ? (above > 0.0 ? 1 : above < 0.0 ? -1 : 0) : side_seen(n, anchor, open);
+  if (kHalves != 0 && side == 0 && n != vec3(0.0)) open_pixel = true;  // no silhouette closes around it
+  return side;
+}
+
+struct Edge {
+  vec2 a, b;                                              // from c0
+  float error;
+  int k;
+  bool matters;
+};
+
+// This lane's edge. Its part that appears beyond a window of twice the light is cut away, so that ends near p's height, or
+// behind p, do not spoil what is in it; an uncut end is the same for all edges that meet in it.
+Edge see(uint slot, bool used) {
+  const int texel = int(slot);
+  const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
+  const uvec4 t3 = texelFetch(record_anchor1, texel), t4 = texelFetch(record_n2, texel), t5 = texelFetch(record_anchor2, texel);
+  const vec3 anchor1 = uintBitsToFloat(t3.xyz), anchor2 = uintBitsToFloat(t5.xyz);
+  bool open = false;
+  const int both = side_of(uintBitsToFloat(t2.xyz), anchor1, t0.w, open) + side_of(uintBitsToFloat(t4.xyz), anchor2, t1.w, open);
+
+  precise const vec3 da = uintBitsToFloat(t0.xyz) - at.p, db = uintBitsToFloat(t1.xyz) - at.p;
+  const vec2 window = 4.0 * half_cells;
+  const float wa = -dot(axis, da), wb = -dot(axis, db);
+  const vec2 xa = vec2(dot(across, da), dot(along, da)) * at.height + (at.foot - first_cell) * wa;
+  const vec2 xb = vec2(dot(across, db), dot(along, db)) * at.height + (at.foot - first_cell) * wb;
+  const vec4 inside_a = vec4(window * wa - xa, window * wa + xa), inside_b = vec4(window * wb - xb, window * wb + xb);
+  const vec4 t = inside_a / (inside_a - inside_b);
+  float from = 0.0, to = 1.0;
+  for (int i = 0; i < 4; ++i) {
+    if (inside_a[i] < 0.0) from = max(from, inside_b[i] < 0.0 ? 2.0 : t[i]);
+    if (inside_a[i] >= 0.0 && inside_b[i] < 0.0) to = min(to, t[i]);
+  }
+  const bool cut = from > 0.0 || to < 1.0;
+  const vec3 start = from > 0.0 ? mix(da, db, from) : da, end = to < 1.0 ? mix(da, db, to) : db;
+  const vec3 seen_a = project(start), seen_b = project(end);
+
+  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b), away = length(from_center);
+  const vec2 foot = at.foot - (first_cell - half_cells);
+  const float foot_a = length(seen_a.xy - foot), foot_b = length(seen_b.xy - foot);
+  // p within rounding of a triangle's plane: seen from it that is a sliver. (bound sliver)
+  const float sliver = open ? 16.0 * kRound * max(length(anchor1 - at.p), length(anchor2 - at.p)) : 0.0;
+  const float error_a = error_of(cut ? far : far_a, seen_a.z, foot_a, away) + (at.height * per_length + foot_a) / seen_a.z * sliver;
+  const float error_b = error_of(cut ? far : far_b, seen_b.z, foot_b, away) + (at.height * per_length + foot_b) / seen_b.z * sliver;
+
+  const bool seen = used && (both != 0 || open) && from <= to;
+  const bool through_p = seen && min(seen_a.z, seen_b.z) < 64.0 * kRound * far;
+  open_pixel = open_pixel || through_p;                   // it passes through p, but for rounding
+  Edge edge;
+  edge.a = seen_a.xy;
+  edge.b = seen_b.xy;
+  edge.error = 1.5 * max(error_a, error_b) + 128.0 * kRound * skew;  // (bound near)
+  const int k = push.side < 0.0 ? -both : both;           // seen from behind, counter-clockwise is clockwise in (X, Y)
+  edge.k = kHalves == 0 ? k : clamp(k, -1, 1);
+  const vec2 low = min(edge.a, edge.b) - edge.error, high = max(edge.a, edge.b) + edge.error, size = 2.0 * half_cells;
+  const bool beside = any(greaterThan(low, size)) || any(lessThan(high, vec2(0.0)));
+  edge.matters = seen && !through_p && !beside;
+  return edge;
+}
+
+// Is x as near to the edge from a to b as `error`? `direction` is of unit length.
+bool is_near(vec2 x, vec2 a, vec2 direction, float size, float error) {
+  const vec2 d = x - a;
+  const float forward = dot(d, direction), aside = direction.x * d.y - direction.y * d.x;
+  return abs(aside) < error && forward > -error && forward < size + error;
+}
+
+// Which side of the way from c0 to x a point is on: one decision for all edges that meet in it.
+precise float beside_way(vec2 x, vec2 point) {
+  precise const float left = x.x * point.y;
+  precise const float right = x.y * point.x;
+  precise const float difference = left - right;
+  return difference;
+}
+
+// Adds the queued edges to all counters.
+void drain(uint queued) {
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
+  for (uint first = gl_SubgroupInvocationID; first < kSamples; first += kEach * kLanes) {
+    vec2 x[kEach];
+    int change[kEach];
+    bool open[kEach];
+    for (uint i = 0; i < kEach; ++i) {
+      x[i] = places[min(first + i * kLanes, kSamples - 1)];
+      change[i] = 0;
+      open[i] = false;
+    }
+    for (uint e = 0; e < queued; ++e) {
+      const vec4 ends = queue_ends[e];
+      const vec2 more = queue_more[e], a = ends.xy, b = ends.zw, d = b - a;
+      const float size = sqrt(dot(d, d));
+      const vec2 direction = size > 1e-12 ? d / size : vec2(1.0, 0.0);
+      const int k = int(more.y);
+      for (uint i = 0; i < kEach; ++i) {
+        const float side_a = beside_way(x[i], a), side_b = beside_way(x[i], b);
+        const float along_a = dot(x[i], a), along_b = dot(x[i], b);
+        const float crossing = clamp((along_a * side_b - along_b * side_a) / (side_b - side_a), min(along_a, along_b), max(along_a, along_b));
+        const bool crosses = (side_a > 0.0) != (side_b > 0.0) && crossing > 0.0 && crossing < dot(x[i], x[i]);
+        change[i] += crosses ? (side_a > 0.0 ? k : -k) : 0;
+        open[i] = open[i] || is_near(x[i], a, direction, size, more.x);
+      }
+    }
+    for (uint i = 0; i < kEach; ++i) {
+      const uint j = first + i * kLanes;
+      if (j < kSamples) {
+        counters[j] += change[i];
+        if (open[i]) atomicOr(open_words[j / 32], 1u << (j % 32));
+      }
+    }
+  }
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
+}
+
+// Some devices run what a branch leaves out: `drain` is called once for many edges, not in the loop that collects them.
+void count_list(uint head) {
+  uint queued = 0, piece = head, i = 0;
+  uint count = piece == kNone ? 0 : lists[piece + 1];
+  while (piece != kNone) {
+    for (; i < count && queued + kLanes <= kQueue; i += kLanes) {
+      const bool used = i + gl_SubgroupInvocationID < count;
+      const Edge edge = see(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)], used);
+      // c0 as near to it: D at c0 is not that of the edges as projected.
+      const vec2 d = edge.b - edge.a;
+      const float size = sqrt(dot(d, d));
+      open_pixel = open_pixel || (edge.matters && is_near(vec2(0.0), edge.a, size > 1e-12 ? d / size : vec2(1.0, 0.0), size, edge.error));
+      const uvec4 all = subgroupBallot(edge.matters);
+      const uint place = queued + subgroupBallotExclusiveBitCount(all);
+      if (edge.matters) {
+        queue_ends[place] = vec4(edge.a, edge.b);
+        queue_more[place] = vec2(edge.error, float(edge.k));
+      }
+      queued += subgroupBallotBitCount(all);
+    }
+    const bool room = queued + kLanes <= kQueue;
+    if (i >= count) {
+      piece = lists[piece];
+      i = 0;
+      count = piece == kNone ? 0 : lists[piece + 1];
+    } else if (room) {
+      cut_off = true;                                     // the loop above was
+      break;
+    }
+    if (!room || piece == kNone) {
+      drain(queued);
+      queued = 0;
+    }
+  }
+  cut_off = cut_off || piece != kNone;
+}
+
+// How many triangles the segment from p to c0 meets, one lane a triangle (Woop et al. 2013: in coordinates with the ray as
+// third axis, what decides is three products in two dimensions). (bound corner)
+uint count_to_corner(uint head) {
+  const vec2 lean = (first_cell - half_cells - at.foot) / at.height;  // the ray's way for one unit of height
+  uint met = 0, piece = head;
+  for (; piece != kNone; piece = lists[piece]) {
+    const uint count = lists[piece + 1];
+    uint i = 0;
+    for (; i < count; i += kLanes) {
+      const bool used = i + gl_SubgroupInvocationID < count;
+      const int texel = int(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)]);
+      const uvec4 t0 = texelFetch(corner_a, texel), t1 = texelFetch(corner_b, texel), t2 = texelFetch(corner_c, texel);
+      const vec3 da = uintBitsToFloat(t0.xyz) - at.p, db = uintBitsToFloat(t1.xyz) - at.p, dc = uintBitsToFloat(t2.xyz) - at.p;
+      const bool occludes = used && t0.w != kNone && t2.w != push.light && t1.w != at.plane;
+      const vec3 w = -vec3(dot(axis, da), dot(axis, db), dot(axis, dc));
+      const vec2 xa = vec2(dot(across, da), dot(along, da)) - lean * w.x;
+      const vec2 xb = vec2(dot(across, db), dot(along, db)) - lean * w.y;
+      const vec2 xc = vec2(dot(across, dc), dot(along, dc)) - lean * w.z;
+      const vec3 f = vec3(xa.x * xb.y - xa.y * xb.x, xb.x * xc.y - xb.y * xc.x, xc.x * xa.y - xc.y * xa.x);
+      const float far = max(length(da), max(length(db), length(dc))), away = length(from_center) / at.height;
+      const float error_x = kRound * far * (5.0 * per_length * (1.0 + away) + (8.0 + 5.0 * away) * length(lean));
+      const float size = max(max(size1(vec3(xa, 0.0)), size1(vec3(xb, 0.0))), size1(vec3(xc, 0.0)));
+      const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
+      const bool one_sign = all(greaterThan(f, vec3(error))) || all(lessThan(f, vec3(-error)));
+      const bool passes = any(greaterThan(f, vec3(error))) && any(lessThan(f, vec3(-error)));
+      // The height over p at which the line meets the triangle's plane: a mean of the corners', with weights f.
+      const float total = f.x + f.y + f.z, meeting = (f.y * w.x + f.z * w.y + f.x * w.z) / total;
+      const float slack = 16.0 * kRound * (far + push.reach), error_w = slack + 6.0 * error * far / max(abs(total), 1e-30);
+      const float lowest = min(w.x, min(w.y, w.z)), highest = max(w.x, max(w.y, w.z));
+      const bool within = (meeting > error_w && meeting < at.height - error_w) || (lowest > 16.0 * kRound * far && highest < at.height - slack);
+      const bool without = passes || highest < -16.0 * kRound * far || lowest > at.height + slack ||
+                           (one_sign && (meeting < -error_w || meeting > at.height + error_w));
+      const bool hit = occludes && !without && one_sign && within;
+      open_pixel = open_pixel || (occludes && !without && !hit);
+      met += subgroupBallotBitCount(subgroupBallot(hit));
+    }
+    cut_off = cut_off || i < count;
+  }
+  cut_off = cut_off || piece != kNone;
+  return met;
+}
+
+uint bits_of_word(uint word) {
+  const uint left = kSamples - word * 32;
+  return left >= 32 ? 0xffffffffu : (1u << left) - 1;
+}
+
+void ask(uint pixel, uint word, uint bits) {
+  const uint question = atomicAdd(question_count, 1);
+  if (question < push.question_capacity) questions[question] = DepthQuestion(pixel, word, bits);
+}
+
+// The whole mask is one answer: all visible, none, or all open.
+void settle_whole(uint pixel, bool visible, bool open) {
+  for (uint word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
+    masks[pixel * kWords + word] = visible ? bits_of_word(word) : 0;
+    if (open) ask(pixel, word, bits_of_word(word));
+  }
+  if (gl_SubgroupInvocationID == 0) counts[pixel] = visible ? kSamples : 0;
+}
+
+// Takes light samples not strictly above the carrier's plane away: `dark` for counters. (bound horizon)
+const int kDark = 0x40000000;
+void cut_at_horizon(vec3 above, float error) {
+  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+    const vec2 light_point = places[j] - half_cells;
+    const float value = above.x * light_point.x + above.y * light_point.y + above.z;
+    if (value <= error) counters[j] = kDark;
+    if (abs(value) <= error) atomicOr(open_words[j / 32], 1u << (j % 32));
+  }
+}
+
+bool is_open(uint j) { return (open_words[j / 32] >> (j % 32) & 1) != 0; }
+
+// (counter, light sample) of the light sample with the least counter of those that are not open; kNone if there is none.
+uvec2 least() {
+  int low = kDark;
+  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+    if (!is_open(j)) low = min(low, counters[j]);
+  }
+  low = subgroupMin(low);
+  uint who = kNone;
+  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+    if (!is_open(j) && counters[j] == low && low != kDark) who = min(who, j);
+  }
+  return uvec2(uint(low), subgroupMin(who));
+}
+
+void main() {
+  make_frame();
+  const uint pixel = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  if (pixel >= push.width * push.row_count) return;
+  const uint block = pixel / push.width / kBlock * ((push.width + kBlock - 1) / kBlock) + pixel % push.width / kBlock;
+  at = fetch_view_sample(pixel);
+  from_center = at.p - push.center;
+  open_pixel = false;
+  cut_off = false;
+
+  const bool receives = at.carrier != kNone;
+  // (2) p strictly on an emitting side of the light's plane. (bound level)
+  const float error_level = level_error(at.p);
+  const bool this_side = receives && at.height > error_level, other_side = receives && at.height < -error_level;
+  if (!this_side) {
+    if (push.side > 0.0 && !(other_side && push.keeps_rest != 0)) settle_whole(pixel, !receives, receives && !other_side);
+    return;
+  }
+  // (1) The light sample strictly above the carrier's plane: one half-plane of the light. (bound horizon)
+  const vec3 towards = -from_center;
+  const vec3 above = vec3(dot(at.normal, push.u), dot(at.normal, push.v), dot(at.normal, towards));
+  const float error_above = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(at.p)) + push.deviation;
+  const float span = abs(above.x) + abs(above.y);
+  const bool below = above.z + span < -error_above, straddles = above.z - span <= error_above;
+
+  const uint list = 2 * (block * kClusters + (below ? 0 : heads[2 * kClusters * push.block_count + pixel]));
+  const uint edges = below ? kNone : heads[list], triangles = below || kHalves != 0 ? kNone : heads[list + 1];
+  const int depth = triangles != kNone ? int(count_to_corner(triangles)) : 0;
+  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) counters[j] = depth;
+  for (uint word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
+    open_words[word] = 0;
+    visible_words[word] = 0;
+  }
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
+  if (edges != kNone) count_list(edges);
+  if (kKeepsDepths != 0 && !below) {
+    for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
+  }
+  const bool touched = (push.touched_low | push.touched_high) != 0 || sees_flat(length(from_center), at.height);
+  if (subgroupAny(open_pixel || cut_off) || touched || below) {
+    settle_whole(pixel, false, !below);
+    return;
+  }
+  if (straddles) cut_at_horizon(above, error_above);
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
+  const uvec2 reference = kHalves != 0 ? least() : uvec2(0);
+  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+    if (counters[j] == int(reference.x) && reference.y != kNone && !is_open(j)) atomicOr(visible_words[j / 32], 1u << (j % 32));
+  }
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
+  uint visible = 0;
+  for (uint word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
+    masks[pixel * kWords + word] = visible_words[word];
+    visible += bitCount(visible_words[word]);
+    if (open_words[word] != 0) ask(pixel, word, open_words[word]);
+  }
+  visible = subgroupAdd(visible);
+  if (gl_SubgroupInvocationID == 0) {
+    counts[pixel] = visible;
+    if (kHalves != 0 && reference.y != kNone) ask(pixel, kReference | reference.y, 0);
+  }
+}

@@ -1,0 +1,342 @@
+// V. Forest, L. Barthe, M. Paulin, Accurate shadows by depth complexity sampling, Computer Graphics Forum 27 (2), 2008:
+// a counter of each light sample in a few packed words a view sample, changed by the silhouettes of the light's centre
+// where their wedges are on the screen; shadow volumes of the centre give the constant. Departures: integers in 64 bits
+// in place of floats that blend; any soup, by signed multiplicity; five certified signs in place of look-up tables of
+// ±1; what rounding or overflow leaves open is decided exactly (docs/depth-complexity.md).
+
+#include "volumes/counters/packed_counters.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "mesh/predicates.hpp"
+#include "visibility/pair_truth.hpp"
+#include "visibility/triangle_tree.hpp"
+#include "visibility/visible_share.hpp"
+#include "volumes/raster/carrier_horizon.hpp"
+#include "volumes/counters/depth_judge.hpp"
+#include "volumes/wedges/light_hull.hpp"
+#include "volumes/counters/packed_counters.frag.spv.hpp"
+#include "volumes/counters/packed_counters.shared.h"
+#include "volumes/raster/volume_count.hpp"
+#include "volumes/raster/wedge_raster.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+namespace penumbra::volumes {
+namespace {
+
+using visibility::Light;
+using visibility::SceneFloats;
+using visibility::Tile;
+using visibility::ViewSamples;
+
+/// All that a crossing has to do with: the light's hull, its centre and its samples. Where rounding to float32 has
+/// moved some of these out of the hull, they are corners, too.
+LightHull hull_of(const Light& light) {
+  constexpr std::uint32_t kSides = 8;  // of a disk: loose, but quick
+  LightHull hull = light_hull(light, kSides);
+  const auto on_plane = [&](const glm::dvec3& x) {
+    return mesh::side_of_plane(hull.corners[0], hull.corners[1], hull.corners[2], x) == mesh::Side::on;
+  };
+  const auto within = [](const glm::dvec2& x) { return std::max(std::abs(x.x), std::abs(x.y)) < 1 - 0x1p-10; };
+  const glm::dvec3 center(visibility::center_of(light));
+  const bool inside = light.kind == visibility::LightKind::rectangle && on_plane(center) &&
+                      std::ranges::all_of(hull.corners, on_plane) &&
+                      std::ranges::all_of(light.points, [&](const glm::vec3& l) { return on_plane(glm::dvec3(l)); }) &&
+                      std::ranges::all_of(light.coordinates, within);
+  if (inside) return hull;
+  hull.corners.push_back(center);
+  for (const glm::vec3& l : light.points) hull.corners.emplace_back(l);
+  return hull;
+}
+
+/// What packed_counters.frag reads of the light.
+std::vector<double> table_of(const Light& light) {
+  const gpu::WedgePush frame = frame_of(light);
+  const auto vector = [](const double(&x)[3]) { return glm::dvec3(x[0], x[1], x[2]); };
+  glm::dvec2 lower(0), upper(0);  // the centre
+  double off = 0;
+  for (const glm::vec3& l : light.points) {
+    const glm::dvec3 from_center = glm::dvec3(l) - vector(frame.c);
+    const glm::dvec2 at(glm::dot(vector(frame.u_dual), from_center), glm::dot(vector(frame.v_dual), from_center));
+    lower = glm::min(lower, at);
+    upper = glm::max(upper, at);
+    off = std::max(off, std::abs(glm::dot(vector(frame.n), from_center)));
+  }
+  const glm::dvec2 room = 0x1p-10 * (upper - lower);
+  const double least = 0.5 * std::min(room.x, room.y);
+  std::vector<double> table{lower.x - room.x, lower.y - room.y, upper.x + room.x, upper.y + room.y, least, off};
+  for (const glm::vec3& l : light.points) table.insert(table.end(), {l.x, l.y, l.z});
+  return table;
+}
+
+/// Does the triangle touch the way from the light's centre to this sample? Not if its plane holds the centre: then it
+/// has no silhouette.
+bool touches(const std::array<glm::vec3, 3>& corners, const glm::vec3& center, const glm::vec3& l) {
+  const auto& [a, b, c] = corners;
+  const mesh::Side side = mesh::side_of_plane(a, b, c, center);
+  if (side == mesh::Side::on || side == mesh::side_of_plane(a, b, c, l)) return false;
+  bool front = false, back = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const mesh::Side passes = mesh::side_of_plane(center, l, corners[i], corners[(i + 1) % 3]);
+    front = front || passes == mesh::Side::front;
+    back = back || passes == mesh::Side::back;
+  }
+  return !(front && back);
+}
+
+class PackedCounters final : public DepthCounters {
+ public:
+  PackedCounters(const render::Device& device, std::uint32_t bits)
+      : description_(depth_complexity_description()),
+        device_(&device),
+        bits_(bits),
+        count_(device, CountVariant::z_fail) {}
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void prepare_mesh(const SceneFloats& scene) override {
+    scene_ = &scene;
+    count_.prepare_mesh(scene);
+    tree_ = visibility::make_triangle_tree(scene);
+    on_plane_.assign(scene.triangles.size(), 0);
+    for (const std::uint32_t plane : scene.plane) {
+      if (plane != SceneFloats::kNoPlane) ++on_plane_[plane];
+    }
+  }
+  void prepare_light(const Light& light) override;
+  void prepare_view(const ViewSamples& samples) override {
+    samples_ = &samples;
+    count_.prepare_view(samples);
+    faces_.reset();
+  }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override {
+    return std::min(count_.max_tile_rows(), raster_->max_tile_rows(*samples_));
+  }
+  void evaluate(const Tile& tile) override;
+
+  void read_masks(std::span<std::uint32_t> masks) override {
+    PENUMBRA_ASSERT(masks.size() == masks_.size(), "{} words for {} pixels", masks.size(), masks_.size());
+    std::ranges::copy(masks_, masks.begin());
+  }
+  void read_visibility(std::span<float> visibility) override {
+    visibility::visible_shares(*light_, masks_, visibility);
+  }
+  void read_counters(std::span<std::int32_t> counters) override;
+
+  std::vector<visibility::PassTime> take_pass_times() override {
+    visibility::PassTimes all;
+    all.add(count_.take_pass_times());
+    if (raster_) all.add(raster_->take_pass_times());
+    all.add(host_times_.take());
+    return all.take();
+  }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    return count_.memory_bytes() + (raster_ ? raster_->memory_bytes() : 0);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t per_word() const { return 64 / bits_; }
+  [[nodiscard]] std::uint32_t words() const { return (light_->sample_count() + per_word() - 1) / per_word(); }
+  [[nodiscard]] std::uint32_t all_samples() const { return (1U << light_->sample_count()) - 1; }
+  void refuse_what_reaches_through() const;
+  [[nodiscard]] std::vector<gpu::WedgeReceiver> classify();
+  [[nodiscard]] std::int64_t change_of(std::size_t pixel, std::uint32_t sample) const;
+  [[nodiscard]] bool may_have_overflowed(std::size_t pixel) const;
+  void resolve(std::size_t pixel);
+  void answer();
+
+  visibility::MethodDescription description_;
+  const render::Device* device_;
+  std::uint32_t bits_;
+  VolumeCount count_;
+  visibility::TriangleTree tree_;
+  std::vector<std::uint32_t> on_plane_;  // how many triangles are on each SceneFloats::plane
+  std::unique_ptr<WedgeRaster> raster_;
+  std::vector<std::uint32_t> constants_;  // of raster_
+  LightWedges wedges_;
+  std::optional<std::vector<gpu::WedgeFace>> faces_;  // for this view
+  const SceneFloats* scene_ = nullptr;
+  const Light* light_ = nullptr;
+  const ViewSamples* samples_ = nullptr;
+
+  Tile tile_;
+  std::vector<std::uint32_t> above_;  // of each pixel, the light samples over its carrier
+  std::vector<std::uint32_t> open_;   // those left to exact predicates
+  std::vector<std::uint32_t> masks_;
+  std::map<std::string, std::uint64_t> totals_;
+  visibility::PassTimes host_times_;
+};
+
+void PackedCounters::prepare_light(const Light& light) {
+  visibility::check_light(description_, light);
+  if (light.sample_count() > gpu::kMostPacked) {
+    throw UsageError(
+        "depth-complexity: variant=forest packs the counters of at most {} light samples; light \"{}\" has {}; take "
+        "--light-samples {}, or variant=soup, which has no such limit",
+        gpu::kMostPacked, light.name, light.sample_count(), gpu::kMostPacked);
+  }
+  light_ = &light;
+  refuse_what_reaches_through();
+  const std::vector<std::uint32_t> constants{light.sample_count(), bits_};
+  if (!raster_ || constants != constants_) {
+    raster_ = std::make_unique<WedgeRaster>(
+        *device_,
+        WedgeShader{
+            .name = "wedges", .fragment = shaders::kPackedCountersFrag, .constants = constants, .words = words() + 1});
+    constants_ = constants;
+  }
+  raster_->set_table(table_of(light));
+  count_.prepare_light(light);
+  wedges_.edges = count_.volumes().edges;
+  std::vector<WedgeEdge> edges;
+  for (const VolumeEdge& edge : wedges_.edges) edges.push_back({edge.a, edge.b, {}});
+  wedges_.wedges = build_wedges(edges, hull_of(light), Construction::original);
+  faces_.reset();
+  totals_.clear();
+}
+
+/// Between the light's centre and a light sample D would change where no edge is.
+void PackedCounters::refuse_what_reaches_through() const {
+  const glm::vec3 center = visibility::center_of(*light_);
+  for (const glm::vec3& l : light_->points) {
+    static_cast<void>(tree_.any_along(center, l, [&](std::uint32_t triangle) {
+      if (scene_->emits[triangle] == light_->index || !touches(scene_->corners(triangle), center, l)) return false;
+      throw InputError(
+          "light \"{}\": triangle {} reaches through it, which depth-complexity variant=forest cannot count; take "
+          "variant=soup, or move the light clear of it",
+          light_->name, triangle);
+    }));
+  }
+}
+
+/// What the wedges are to look at. Leaves masks at what is known without them.
+std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
+  using Kind = VolumeCount::Kind;
+  const std::span<const Kind> kinds = count_.kinds();
+  const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
+  std::vector<gpu::WedgeReceiver> receivers(kinds.size());
+  above_.assign(kinds.size(), 0);
+  open_.assign(kinds.size(), 0);
+  masks_.assign(kinds.size(), all_samples());
+  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+    if (kinds[i] == Kind::lit) return;
+    masks_[i] = 0;
+    const glm::vec3& p = samples_->p[first + i];
+    if (!visibility::in_front_of_light(*light_, p)) return;
+    const auto carrier = static_cast<std::uint32_t>(samples_->triangle[first + i]);
+    const Horizon horizon =
+        CarrierHorizon(*scene_, tree_, carrier, samples_->facing[first + i], on_plane_[scene_->plane[carrier]] == 1)
+            .at(p, count_.center(), *light_);
+    above_[i] = horizon.above;
+    // On a triangle: it is crossed where p→l leaves it, but not met.
+    const bool doubtful = count_.doubts()[i] != 0 || !appears_in_place(samples_->camera, p, first + i);
+    if (kinds[i] == Kind::dark || doubtful) {
+      open_[i] = horizon.above;
+    } else {
+      open_[i] = horizon.open;
+      receivers[i] = {p, 1};
+    }
+  });
+  return receivers;
+}
+
+/// By how much the edges have changed a counter: its digit.
+std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) const {
+  const std::uint64_t half = std::uint64_t{1} << (bits_ - 1);
+  std::uint64_t word = static_cast<std::uint64_t>(raster_->sums()[pixel * (words() + 1) + sample / per_word()]);
+  for (std::uint32_t i = 0; i < per_word(); ++i) word += half << (bits_ * i);
+  const std::uint64_t digit = word >> (bits_ * (sample % per_word())) & (2 * half - 1);
+  return static_cast<std::int64_t>(digit) - static_cast<std::int64_t>(half);
+}
+
+/// No counter has changed by more than the last word says.
+bool PackedCounters::may_have_overflowed(std::size_t pixel) const {
+  const std::int64_t most = (std::int64_t{1} << (bits_ - 1)) - 1;
+  return raster_->sums()[pixel * (words() + 1) + words()] > most;
+}
+
+/// A counted pixel's mask.
+void PackedCounters::resolve(std::size_t pixel) {
+  open_[pixel] |= may_have_overflowed(pixel) ? above_[pixel] : raster_->doubts()[pixel] & above_[pixel];
+  for (std::uint32_t j = 0; j < light_->sample_count(); ++j) {
+    const bool visible = count_.counts()[pixel] + change_of(pixel, j) == 0;
+    masks_[pixel] |= visible ? above_[pixel] & ~open_[pixel] & 1U << j : 0;
+  }
+}
+
+void PackedCounters::evaluate(const Tile& tile) {
+  tile_ = tile;
+  if (!faces_) faces_ = faces_of(wedges_, *samples_, WedgeTests::both, glm::dvec3(count_.center()));
+  count_.count(tile);
+  const std::vector<gpu::WedgeReceiver> receivers = classify();
+  raster_->add(*faces_, receivers, frame_of(*light_), tile, samples_->width);
+  mesh::for_each_index(receivers.size(), [&](std::size_t i) {
+    if (receivers[i].counted != 0) resolve(i);
+  });
+  std::uint64_t overflows = 0, at_horizon = 0, open = 0;
+  for (std::size_t i = 0; i < receivers.size(); ++i) {
+    overflows += receivers[i].counted != 0 && may_have_overflowed(i) ? 1U : 0U;
+    const bool dark = count_.kinds()[i] == VolumeCount::Kind::dark;
+    (dark ? at_horizon : open) += static_cast<std::uint64_t>(std::popcount(open_[i]));
+  }
+  totals_["overflowPixels"] += overflows;
+  totals_["horizonPairs"] += at_horizon;
+  totals_["openPairs"] += open;
+  answer();
+}
+
+/// Exactly.
+void PackedCounters::answer() {
+  std::vector<gpu::DepthQuestion> questions;
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    if (open_[i] != 0) questions.push_back({static_cast<std::uint32_t>(i), 0, open_[i]});
+  }
+  if (questions.empty()) return;
+  const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
+  const DepthAnswers depths = host_times_.add("exact predicates", [&] {
+    return judge_depths({*scene_, tree_, *samples_, *light_, first}, questions);
+  });
+  for (const gpu::MaskWord& word : depths.decided) {
+    masks_[word.word] = (masks_[word.word] & ~word.decided) | word.bits;
+  }
+}
+
+void PackedCounters::read_counters(std::span<std::int32_t> counters) {
+  const std::uint32_t n = light_->sample_count();
+  PENUMBRA_ASSERT(counters.size() == masks_.size() * n, "{} counters for {} pixels", counters.size(), masks_.size());
+  for (std::size_t i = 0; i < masks_.size(); ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const bool known = ((above_[i] & ~open_[i]) >> j & 1U) != 0;
+      counters[i * n + j] =
+          known ? static_cast<std::int32_t>(count_.counts()[i] + change_of(i, j)) : DepthCounters::kNoCounter;
+    }
+  }
+}
+
+std::map<std::string, std::uint64_t> PackedCounters::counters() const {
+  std::map<std::string, std::uint64_t> result = totals_;
+  const VolumeCount::Totals& totals = count_.totals();
+  result["silhouetteEdges"] = totals.silhouette_edges;
+  result["pixelsCountedOnHost"] = totals.doubtful_pixels;
+  result["largestCount"] = totals.largest_count;
+  result["wedgesOnScreen"] = faces_ ? faces_->size() : 0;
+  result["fragments"] = faces_ ? fragments_of(*faces_) : 0;
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<DepthCounters> make_packed_counters(const render::Device& device, std::uint32_t counter_bits) {
+  PENUMBRA_ASSERT(counter_bits == 6 || counter_bits == 8 || counter_bits == 16, "{} bits", counter_bits);
+  return std::make_unique<PackedCounters>(device, counter_bits);
+}
+
+}  // namespace penumbra::volumes

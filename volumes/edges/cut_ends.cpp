@@ -1,0 +1,127 @@
+#include "volumes/edges/cut_ends.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+using Rationals = std::array<mpq_class, 3>;
+
+Rationals difference(const glm::dvec3& to, const glm::dvec3& from) {
+  Rationals d;
+  for (int i = 0; i < 3; ++i) d[static_cast<std::size_t>(i)] = mpq_class(to[i]) - mpq_class(from[i]);
+  return d;
+}
+
+Rationals cross(const Rationals& a, const Rationals& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+mpq_class dot(const Rationals& a, const Rationals& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace
+
+/// x = centre + s u + t v + h n: s is (x − centre) · (v × n) / n · n, t is (x − centre) · (n × u) / n · n.
+struct CutEnds::Plane {
+  glm::dvec3 center;
+  Rationals n, to_s, to_t;
+  mpq_class squared;
+
+  explicit Plane(const LightSide& side) : center(side.plane[0]) {
+    const Rationals u = difference(side.plane[1], center), v = difference(side.plane[2], center);
+    n = cross(u, v);
+    to_s = cross(v, n);
+    to_t = cross(n, u);
+    squared = dot(n, n);
+  }
+
+  [[nodiscard]] glm::dvec2 place(const glm::dvec3& a, const glm::dvec3& b) const {
+    const Rationals from = difference(a, center), to = difference(b, center);
+    mpq_class ha = abs(dot(n, from)), hb = abs(dot(n, to));
+    if (ha == 0 && hb == 0) ha = hb = 1;  // a and b are one point of the plane
+    // The mean of both, weighted with the other's height; in shares from −1 … 1 to 0 … 1.
+    const auto share = [&](const Rationals& along) {
+      const mpq_class at = (dot(along, from) * hb + dot(along, to) * ha) / ((ha + hb) * squared);
+      return mpq_class((at + 1) / 2).get_d();
+    };
+    return {share(to_s), share(to_t)};
+  }
+};
+
+CutEnds::CutEnds(const LightSide& side) : side_(side), plane_(std::make_unique<Plane>(side)) {}
+CutEnds::~CutEnds() = default;
+CutEnds::CutEnds(CutEnds&&) noexcept = default;
+CutEnds& CutEnds::operator=(CutEnds&&) noexcept = default;
+
+glm::vec3 CutEnds::rounded(const CutEnd& end) const {
+  const glm::dvec2 st = 2.0 * *end.place - 1.0;
+  return glm::vec3(side_.plane[0] + st.x * (side_.plane[1] - side_.plane[0]) +
+                   st.y * (side_.plane[2] - side_.plane[0]));
+}
+
+std::optional<glm::dvec3> CutEnds::far_crossing(const glm::dvec3& a, const glm::dvec3& b) const {
+  const glm::dvec3 u = side_.plane[1] - side_.plane[0], v = side_.plane[2] - side_.plane[0], n = glm::cross(u, v);
+  const glm::dvec3 from = a - side_.plane[0], to = b - side_.plane[0];
+  const double ha = glm::dot(n, from), hb = glm::dot(n, to), between = std::abs(ha - hb);
+  // A determinant of three differences (certain_meeting.cpp), and the share of the way that it makes uncertain.
+  const double error = 0x1p-46 * glm::length(u) * glm::length(v) * (glm::length(from) + glm::length(to));
+  if (!(between > 16 * error)) return std::nullopt;
+  const glm::dvec3 x = from + (ha / (ha - hb)) * (to - from);
+  const double moved = 4 * error / between * glm::length(to - from);
+  const glm::dvec2 st = glm::dvec2(glm::dot(glm::cross(v, n), x), glm::dot(glm::cross(n, u), x)) / glm::dot(n, n);
+  const double per_length = std::max(glm::length(u), glm::length(v)) / glm::length(n);
+  // Beside the light by an eighth of its half, of which the uncertainty is no more than a quarter.
+  const bool beside = std::max(std::abs(st.x), std::abs(st.y)) > 1.125;
+  return beside && moved * per_length < 1.0 / 32 ? std::optional(side_.plane[0] + x) : std::nullopt;
+}
+
+std::uint32_t CutEnds::of_edge(const glm::vec3& a, const glm::vec3& b, bool at_a) {
+  const double scale = side_.scale;
+  const glm::dvec3 from = stored(a), to = stored(b);
+  Edge edge{{from * scale}, {to * scale}};
+  CutEnd& end = at_a ? edge.a : edge.b;
+  if (const std::optional<glm::dvec3> far = far_crossing(from, to)) {
+    end.point = *far * scale;
+  } else {
+    end.place = plane_->place(from, to);
+  }
+  edges_.push_back(std::move(edge));
+  return static_cast<std::uint32_t>(edges_.size());
+}
+
+std::uint32_t CutEnds::in_plane(const Crossing& from, const Crossing& to) {
+  const auto far = [&](const Crossing& at) {
+    return at.a == at.b ? std::optional<glm::dvec3>() : far_crossing(stored(at.a), stored(at.b));
+  };
+  // Both certainly on one outer side of the light? Then the edge is, too.
+  const glm::dvec3 u = side_.plane[1] - side_.plane[0], v = side_.plane[2] - side_.plane[0], n = glm::cross(u, v);
+  const std::optional<glm::dvec3> one = far(from), other = far(to);
+  if (one && other) {
+    const auto st = [&](const glm::dvec3& x) {
+      const glm::dvec3 d = x - side_.plane[0];
+      return glm::dvec2(glm::dot(glm::cross(v, n), d), glm::dot(glm::cross(n, u), d)) / glm::dot(n, n);
+    };
+    const glm::dvec2 a = st(*one), b = st(*other);
+    for (int axis = 0; axis < 2; ++axis) {
+      if (std::min(a[axis], b[axis]) > 1.0625 || std::max(a[axis], b[axis]) < -1.0625) return 0;
+    }
+  }
+  const glm::dvec2 a = plane_->place(stored(from.a), stored(from.b)), b = plane_->place(stored(to.a), stored(to.b));
+  if (a == b) return 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (std::min(a[axis], b[axis]) > 1 || std::max(a[axis], b[axis]) < 0) return 0;
+  }
+  edges_.push_back({{glm::dvec3(0), a}, {glm::dvec3(0), b}});
+  return static_cast<std::uint32_t>(edges_.size());
+}
+
+}  // namespace penumbra::volumes

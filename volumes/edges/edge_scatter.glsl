@@ -1,0 +1,122 @@
+// What the passes of edge scatter share: a workgroup is one subgroup. Derivations of every bound: docs/edge-scatter.md.
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_vote : require
+#include "volumes/edges/edge_scatter.shared.h"
+
+layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const uint kLanes = 8;            // the workgroup's size, one subgroup
+
+layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (p, carrying triangle), (normal, plane)
+// 2 a cluster, kClusters clusters a block: its lists of edges and of triangles; then 1 a pixel: its cluster.
+layout(scalar, binding = 1) buffer Heads { uint heads[]; };
+// A list is pieces: where the next one is, how many items, the items (slots of the hierarchy's leaves).
+layout(scalar, binding = 2) buffer Lists {
+  uint list_words, question_count, unfinished;
+  uint lists[];
+};
+layout(scalar, push_constant) uniform Push { ScatterPush push; };
+
+const uint kTeam = 8;                                     // children of a node, records of a leaf
+const uint kBlock = 8;                                    // a block is kBlock × kBlock pixels
+const uint kClusters = 4;                                 // of view samples, at most, in a block
+const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u;
+const float kRound = 1.0 / 16777216.0;                    // 2⁻²⁴: half a unit in the last place of 1
+
+float size1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
+
+// The light as a frame for (X, Y), in cells: X = 0 is the middle of the first column, Y = 0 the first row. A point x is
+// at height axis · (x − center) over the light's plane, and above (across · (x − center), along · (x − center)) of it.
+vec3 axis, across, along;
+vec2 half_cells;                                          // from the light's middle to its sides
+vec2 first_cell;                                          // (X, Y) of the light's middle
+float per_length;                                         // bounds |across|, |along|
+float skew;                                               // at least 1: 1 / sine of the angle of u and v
+
+void make_frame() {
+  const vec3 n = cross(push.u, push.v);
+  const float squared = dot(n, n);
+  half_cells = 0.5 * vec2(float(push.columns), float(push.rows));
+  axis = push.side * normalize(n);
+  across = cross(push.v, n) / squared * half_cells.x;
+  along = cross(n, push.u) / squared * half_cells.y;
+  first_cell = half_cells - 0.5;
+  per_length = max(length(across), length(along));
+  skew = size1(push.u) * size1(push.v) / sqrt(squared);
+}
+
+// A view sample: p and what depends on it alone.
+struct ViewSample {
+  vec3 p;
+  uint carrier, plane;
+  vec3 normal;
+  float height;                                           // over the light's plane (bound level)
+  vec2 foot;                                              // (X, Y) straight above p
+};
+
+ViewSample view_sample_at(vec3 p) {
+  const vec3 from = p - push.center;
+  return ViewSample(p, kNone, kNone, vec3(0.0), dot(axis, from), vec2(dot(across, from), dot(along, from)) + first_cell);
+}
+
+ViewSample fetch_view_sample(uint pixel) {
+  const int texel = int(2 * (push.first_row * push.width + pixel));
+  const uvec4 first = texelFetch(view, texel), second = texelFetch(view, texel + 1);
+  ViewSample at = view_sample_at(uintBitsToFloat(first.xyz));
+  at.carrier = first.w;
+  at.normal = uintBitsToFloat(second.xyz);
+  at.plane = second.w;
+  return at;
+}
+
+float level_error(vec3 p) { return 16.0 * kRound * skew * (size1(push.center - p) + size1(p)) + push.deviation; }
+
+// Something is near the light's plane, and a way to a light sample may rise by less than 1 / 256. `away`: |p − center|.
+// (visibility/light_touch)
+bool sees_flat(float away, float height) {
+  const float farthest = away + 1.0001 * (length(push.u) + length(push.v)) + push.deviation;
+  return push.near_plane != 0 && height < farthest / 256.0;
+}
+
+// The hull of view samples and a rectangle of the light's plane, `low` to `high` in cells from the light's middle: between
+// two parallel planes, and in n·x ≤ beyond for four planes, one a component of nx, ny, nz. (bound shaft)
+struct Shaft {
+  float lowest, highest;                                  // along the axis
+  vec4 nx, ny, nz, beyond;
+};
+
+// `slopes`: the largest (foot − high) / height, (low − foot) / height, feet in cells from the light's middle.
+Shaft make_shaft(vec2 low, vec2 high, vec4 slopes, float height) {
+  Shaft shaft;
+  const vec4 signs = vec4(1.0, -1.0, 1.0, -1.0);
+  shaft.nx = vec4(across.xx, along.xx) * signs - slopes * axis.x;
+  shaft.ny = vec4(across.yy, along.yy) * signs - slopes * axis.y;
+  shaft.nz = vec4(across.zz, along.zz) * signs - slopes * axis.z;
+  const vec4 sizes = abs(shaft.nx) + abs(shaft.ny) + abs(shaft.nz) + vec4(vec2(size1(across)), vec2(size1(along)));
+  const float widest = max(half_cells.x, half_cells.y);
+  shaft.beyond = shaft.nx * push.center.x + shaft.ny * push.center.y + shaft.nz * push.center.z +
+                 vec4(high.x, -low.x, high.y, -low.y) + 64.0 * kRound * (2.0 * push.reach * sizes + skew * widest) +
+                 sizes * push.deviation;
+  const float slack = 128.0 * kRound * push.reach + push.deviation, light_level = dot(axis, push.center);
+  shaft.highest = light_level + height + slack;
+  shaft.lowest = light_level - slack;
+  return shaft;
+}
+
+vec4 slopes_of(vec2 low, vec2 high, vec2 foot, float height) {
+  const vec2 from_middle = foot - first_cell;
+  const vec4 over = vec4(from_middle.x - high.x, low.x - from_middle.x, from_middle.y - high.y, low.y - from_middle.y);
+  return over / height;
+}
+
+// What one triangle adds to k_e for all view samples in the box middle ± half_size: −1, 0, 1; or 2: not the same for all, or
+// not certain, or one of them may lie on it: p is off its carrier's plane by its own rounding. (bound side)
+int side_for_all(vec3 n, vec3 anchor, vec3 middle, vec3 half_size) {
+  const vec3 d = middle - anchor;
+  const float f = dot(n, d);
+  const float spread = dot(abs(n), half_size) * 1.001 + kRound * (32.0 * dot(abs(n), abs(d) + half_size) + 4.0 * size1(n) * push.reach);
+  return n == vec3(0.0) ? 0 : f > spread ? 1 : f < -spread ? -1 : 2;
+}

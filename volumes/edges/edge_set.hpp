@@ -1,0 +1,68 @@
+#pragma once
+
+#include "mesh/edge_graph.hpp"
+#include "visibility/tree_texels.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/triangle_tree.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// The edges of everything that casts shadow, as device passes take them: each with the planes that its signed
+/// multiplicity k_e(p) is made of, in a hierarchy that knows where k_e cannot be anything but 0.
+namespace penumbra::volumes {
+
+/// One of an edge's triangles: sgn(n · (p − anchor)) is what it adds to k_e(p). All three edges of a triangle have the
+/// same `anchor` and the same n up to its sign, so that p is on one side of it for all three, however the device
+/// rounds.
+struct EdgeSide {
+  glm::vec3 n{0};  ///< not of unit length; 0: no triangle
+  glm::vec3 anchor{0};
+  std::uint32_t plane = visibility::SceneFloats::kNoPlane;  ///< SceneFloats::plane: the carrier's own adds nothing
+};
+
+/// An edge with two of its triangles; an edge of n triangles is ⌈n / 2⌉ records: k_e is their sum.
+struct EdgeRecord {
+  glm::vec3 a{0}, b{0};
+  std::array<EdgeSide, 2> sides;
+  std::uint32_t cut = 0;  ///< CutEnds: the number of its ends as they are before rounding; 0: a and b are not rounded
+};
+
+/// The triangles that may shade a light, and their edges.
+struct EdgeCasters {
+  std::vector<glm::dvec3> positions;
+  std::vector<std::uint32_t> triangle;    ///< into the scene's
+  std::vector<mesh::Triangle> triangles;  ///< their corners
+  mesh::EdgeGraph graph;
+  std::vector<std::uint32_t> largest_in_plane;  ///< for each SceneFloats::plane: of the scene's triangles, the largest
+};
+/// `light_index`: what is this light's own body is left out; −1: nothing is.
+EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t light_index);
+
+/// The plane of one of the casters, in front where its sorted corners run counter-clockwise. Exactly coplanar triangles
+/// take n and anchor from one of them, the largest: the edges between them are not among the records, so p must be on
+/// one side of all of them, however the device rounds.
+EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle);
+
+/// All records with k_e not 0 everywhere.
+std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const EdgeCasters& casters);
+
+/// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
+/// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
+/// (anchor 2), the numbers of the last four 0 for an empty slot and else 1, of the very last 1 + EdgeRecord::cut.
+///
+/// A cone holds, up to sign, the two normals of each record below such that k_e(p) = 0 where p is in front of both, or
+/// behind both. Cosine 0: at least one record below that has none, or normals that point all over.
+struct EdgeTexels {
+  std::vector<visibility::Texel> nodes;
+  std::array<std::vector<visibility::Texel>, 6> slots;
+  std::uint32_t depth = 0;
+  std::uint32_t records = 0;
+};
+EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale);
+
+}  // namespace penumbra::volumes

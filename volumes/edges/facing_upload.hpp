@@ -1,0 +1,29 @@
+#pragma once
+
+#include "mesh/triangle_soup.hpp"
+#include "volumes/edges/facing.shared.h"
+
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// Triangles and points as facing.comp reads them, with the error bounds of README.md (Bounds) beside them.
+class FacingUpload {
+ public:
+  /// `positions`: of the mesh; fixes the power of two that brings their largest coordinate into [1, 2).
+  explicit FacingUpload(std::span<const glm::vec3> positions);
+
+  /// The triangles, and ones without area up to a whole number of words of 32.
+  [[nodiscard]] std::vector<gpu::FacingTriangle> triangles(std::span<const mesh::Triangle> triangles) const;
+  [[nodiscard]] std::vector<gpu::FacingPoint> points(std::span<const glm::vec3> points) const;
+
+ private:
+  std::span<const glm::vec3> positions_;
+  int exponent_ = 0;     // of the scale
+  bool coarse_ = false;  // nothing underflows (bound underflow)
+};
+
+}  // namespace penumbra::volumes

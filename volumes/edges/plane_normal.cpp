@@ -1,0 +1,32 @@
+#include "volumes/edges/plane_normal.hpp"
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::volumes {
+namespace {
+
+/// x₁ y₂ − x₂ y₁ with x, y differences to the first corner; off by no more than a float's rounding of itself.
+double minor(const std::array<glm::vec3, 3>& corners, int x, int y) {
+  const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
+  const double left = e1[x] * e2[y], right = e2[x] * e1[y], value = left - right;
+  // Two roundings of factors and one each of products and difference: 4 · 2⁻⁵³ of the products. Where that is below
+  // 2⁻²⁶ of the value, the rounding to float is three quarters of what is allowed.
+  if (std::abs(value) >= 0x1p-25 * (std::abs(left) + std::abs(right))) return value;
+  const auto difference = [&](std::size_t corner, int axis) {
+    return mpq_class(mpq_class(static_cast<double>(corners[corner][axis])) - mpq_class(a[axis]));
+  };
+  return mpq_class(difference(1, x) * difference(2, y) - difference(2, x) * difference(1, y)).get_d();
+}
+
+}  // namespace
+
+glm::vec3 rounded_normal(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 n(minor(corners, 1, 2), minor(corners, 2, 0), minor(corners, 0, 1));
+  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+  return largest == 0 ? glm::vec3(0) : glm::vec3(n * std::ldexp(1.0, -std::ilogb(largest)));
+}
+
+}  // namespace penumbra::volumes

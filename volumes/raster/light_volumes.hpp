@@ -1,0 +1,83 @@
+#pragma once
+
+#include "mesh/edge_graph.hpp"
+#include "mesh/silhouettes.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/closed_casters.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// A silhouette edge as seen from the light's centre l: its side face runs from a b away from l to infinity.
+struct VolumeEdge {
+  glm::vec3 a, b;
+  std::int32_t multiplicity = 0;  ///< k_e(l), never 0: how many volumes end here, with sign (mesh/silhouettes.hpp)
+};
+
+/// A triangle that bounds its own volume toward the light.
+struct VolumeCap {
+  std::array<glm::vec3, 3> corners;  ///< counter-clockwise as seen from l
+  std::uint32_t plane = 0;           ///< SceneFloats::plane
+};
+
+/// The boundary of all shadow volumes of one point, the far end left out. Each triangle has a volume of its own, all
+/// that it hides from l; between two triangles that l sees side by side no face is left.
+struct LightVolumes {
+  glm::vec3 l{0};
+  std::vector<VolumeEdge> edges;
+  std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not hold l
+  std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: by Layers::one_a_solid, beside the
+                                       ///< light's own body; empty: none
+};
+
+/// Which triangles have a volume.
+enum class Layers {
+  every_triangle,
+  one_a_solid,  ///< of closed parts only what makes one layer of them: closed_casters.hpp
+};
+
+/// Everything that casts shadow, with its edges. `scene` must outlive it.
+class ShadowCasters {
+ public:
+  explicit ShadowCasters(const visibility::SceneFloats& scene, Layers layers = Layers::every_triangle);
+
+  /// Seen from `l`, without the body of that light. Exact.
+  [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
+
+  /// What of that needs no facing: for each caster, the sides on which l must be for it to count (bit 0: front, bit 1:
+  /// back).
+  [[nodiscard]] std::vector<std::uint32_t> counted_sides(const glm::vec3& l, const visibility::Light& light) const;
+  /// The rest, given for each caster the side that l is on in bits 0 and 1, those of them that count in bits 2 and 3,
+  /// and the edges with k_e(l) ≠ 0 of what counts.
+  [[nodiscard]] LightVolumes assembled(const glm::vec3& l, std::span<const std::uint32_t> sides,
+                                       std::span<const mesh::SilhouetteEdge> edges) const;
+
+  [[nodiscard]] std::size_t size() const { return casters_.size(); }
+  [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
+  [[nodiscard]] const mesh::EdgeGraph& graph() const { return graph_; }
+
+ private:
+  const visibility::SceneFloats* scene_;
+  std::vector<glm::dvec3> positions_;
+  std::vector<std::uint32_t> casters_;     // into the scene's triangles
+  std::vector<mesh::Triangle> triangles_;  // the same, corners
+  mesh::EdgeGraph graph_;
+  Layers layers_;
+  visibility::ClosedCasters parts_;  // for one_a_solid
+};
+
+/// How many triangles the ray from l in this direction meets; nothing if double cannot tell.
+std::optional<std::int32_t> count_along(const LightVolumes& volumes, const glm::dvec3& direction);
+
+/// In how many volumes x is; nothing if double cannot tell.
+std::optional<std::int32_t> count_at(const LightVolumes& volumes, const glm::dvec3& x);
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,384 @@
+// Shadow volumes: F. Crow, Shadow algorithms for computer graphics, 1977; counted per pixel, T. Heidmann, Real shadows,
+// real time, 1991; beyond the pixel's surface (B. Bilodeau, M. Songy 1999; J. Carmack 2000) and out to infinity
+// (C. Everitt, M. Kilgard, Practical and robust stenciled shadow volumes, 2002). Departures: integers in a buffer in
+// place of a stencil, which wraps; any soup, by signed multiplicity; the far end is a fan a silhouette edge, not a cap
+// a triangle; the rasteriser proposes, and signs in double decide (README.md, Counting).
+
+#include "volumes/raster/volume_count.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "render/buffer.hpp"
+#include "render/commands.hpp"
+#include "render/raster_pass.hpp"
+#include "visibility/pair_truth.hpp"
+#include "visibility/triangle_tree.hpp"
+#include "volumes/raster/light_volumes.hpp"
+#include "volumes/raster/screen_box.hpp"
+#include "volumes/raster/volume_count.frag.spv.hpp"
+#include "volumes/raster/volume_count.shared.h"
+#include "volumes/raster/volume_face.vert.spv.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+using visibility::SceneFloats;
+using visibility::Tile;
+using visibility::ViewSamples;
+
+constexpr double kMostOffset = 1.0 / 16;  // pixels along either axis; screen boxes have room for an eighth
+
+enum FaceKind : std::uint32_t { kSide = 0, kFan = 1, kCap = 2 };
+
+render::RasterPass make_pass(const render::Device& device, const char* name, FaceKind kind, CountVariant variant) {
+  return render::RasterPass(device, {.name = name,
+                                     .vertex = shaders::kVolumeFaceVert,
+                                     .fragment = shaders::kVolumeCountFrag,
+                                     .push_bytes = sizeof(gpu::VolumePush),
+                                     .constants = {kind, variant == CountVariant::z_pass ? 1u : 0u},
+                                     .triangle_strip = true});
+}
+
+/// Its side, or its fan; no box yet.
+gpu::VolumeFace face_of(const VolumeEdge& edge) {
+  return {edge.a, edge.b, edge.a, edge.multiplicity, 0, {}};
+}
+
+void store(double (&to)[3], const glm::dvec3& from) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+/// Does p appear where its pixel is, and does the place where the line from p to l meets the carrier's plane? Rounding
+/// p moved it off both; next to the camera, or under grazing light, that can be pixels.
+bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& carrier, const glm::vec3& p,
+                      const glm::vec3& l, const glm::dvec2& center) {
+  const auto near = [&](const glm::dvec3& x) {
+    const glm::dvec2 offset = glm::abs(boxes.project(x) - center);
+    return offset.x <= kMostOffset && offset.y <= kMostOffset;  // not for NaN
+  };
+  const glm::dvec3 a = carrier[0], to_light = glm::dvec3(l) - glm::dvec3(p);
+  const glm::dvec3 normal = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
+  const double s = glm::dot(normal, glm::dvec3(p) - a) / glm::dot(normal, to_light);
+  return near(p) && near(glm::dvec3(p) - to_light * s);
+}
+
+}  // namespace
+
+struct VolumeCount::State {
+  State(const render::Device& on, CountVariant which, Layers of)
+      : device(&on),
+        variant(which),
+        layers(of),
+        sides(make_pass(on, "volume sides", kSide, which)),
+        fans(make_pass(on, "volume far ends", kFan, which)),
+        caps(make_pass(on, "volume caps", kCap, which)) {}
+
+  const render::Device* device;
+  CountVariant variant;
+  Layers layers;
+  render::RasterPass sides, fans, caps;
+
+  const SceneFloats* scene = nullptr;
+  const visibility::Light* light = nullptr;
+  const ViewSamples* samples = nullptr;
+  std::optional<ShadowCasters> casters;
+  std::optional<visibility::TriangleTree> tree;  // made for the first doubtful pixel
+  LightVolumes volumes;
+
+  /// The faces of one kind that are on the screen.
+  struct Faces {
+    FaceKind kind;
+    std::vector<gpu::VolumeFace> faces;
+  };
+  std::vector<Faces> on_screen;
+  bool boxes_found = false;   // for this light and view
+  glm::dvec3 apex{0};         // where all fans meet
+  std::int32_t at_start = 0;  // what every pixel's count starts from
+  std::int32_t at_eye = 0;    // what z-pass leaves out
+
+  std::unique_ptr<render::Buffer> face_buffer, receiver_buffer, count_buffer, doubt_buffer;
+  std::vector<gpu::VolumeReceiver> receivers;
+  std::vector<std::uint32_t> doubts;
+  std::vector<std::int32_t> counts;
+  std::vector<Kind> kinds;
+  Totals totals;
+  visibility::PassTimes times;
+
+  void find_boxes();
+  template <typename Item, typename Make>
+  void add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make);
+  void choose_apex();
+  void classify(const Tile& tile);
+  void rasterise(const Tile& tile);
+  void count_doubtful(const Tile& tile);
+  [[nodiscard]] std::int32_t count_exactly(std::size_t pixel) const;
+};
+
+VolumeCount::VolumeCount(const render::Device& device, CountVariant variant, Layers layers)
+    : state_(std::make_unique<State>(device, variant, layers)) {}
+VolumeCount::~VolumeCount() = default;
+VolumeCount::VolumeCount(VolumeCount&&) noexcept = default;
+VolumeCount& VolumeCount::operator=(VolumeCount&&) noexcept = default;
+
+void VolumeCount::prepare_mesh(const SceneFloats& scene) {
+  prepare_scene(scene);
+  state_->casters.emplace(scene, state_->layers);
+}
+
+void VolumeCount::prepare_scene(const SceneFloats& scene) {
+  State& s = *state_;
+  s.scene = &scene;
+  s.light = nullptr;
+  s.samples = nullptr;
+  s.tree.reset();
+  s.casters.reset();
+}
+
+void VolumeCount::prepare_light(const visibility::Light& light) {
+  PENUMBRA_ASSERT(state_->casters.has_value(), "prepare_light before prepare_mesh");
+  prepare_light(light, state_->casters->seen_from(center_of(light), light));
+}
+
+void VolumeCount::prepare_light(const visibility::Light& light, LightVolumes volumes) {
+  State& s = *state_;
+  // Counts are sums of at most three faces a triangle and edge; far from what 32 bits hold.
+  PENUMBRA_ASSERT(s.scene != nullptr && volumes.caps.size() < (1u << 28), "{} triangles", volumes.caps.size());
+  s.light = &light;
+  s.volumes = std::move(volumes);
+  s.boxes_found = false;
+  s.totals = {.silhouette_edges = s.volumes.edges.size(), .caps = s.volumes.caps.size()};
+}
+
+void VolumeCount::prepare_view(const ViewSamples& samples) {
+  State& s = *state_;
+  PENUMBRA_ASSERT(samples.camera.width == samples.width && samples.camera.height == samples.height,
+                  "view samples of {}×{} from a camera of {}×{}", samples.width, samples.height, samples.camera.width,
+                  samples.camera.height);
+  if (samples.width > s.device->limits().max_image_size) {
+    throw ResourceError("--size {}x{}: this device draws at most {} pixels in a row", samples.width, samples.height,
+                        s.device->limits().max_image_size);
+  }
+  s.samples = &samples;
+  s.boxes_found = false;
+}
+
+std::uint32_t VolumeCount::max_tile_rows() const {
+  const State& s = *state_;
+  const std::uint64_t rows = s.device->limits().max_storage_buffer_range /
+                             (std::max<std::uint64_t>(s.samples->width, 1) * sizeof(gpu::VolumeReceiver));
+  const std::uint64_t most = std::min(std::max(s.samples->height, 1u), s.device->limits().max_image_size);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows, 1, most));
+}
+
+/// Adds to on_screen what `make` makes of each item and a screen box can be found for.
+template <typename Item, typename Make>
+void VolumeCount::State::add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make) {
+  const BoxFinder boxes(samples->camera);
+  std::vector<gpu::VolumeFace> faces(items.size());
+  mesh::for_each_index(items.size(), [&](std::size_t i) {
+    gpu::VolumeFace& face = faces[i];
+    const auto [corners, size] = make(items[i], face);
+    const std::optional<ScreenBox> box = boxes.around(std::span(corners).first(size));
+    if (!box) face.weight = 0;
+    for (std::size_t j = 0; box && j < 4; ++j) face.corners[j] = box->corners[j];
+  });
+  std::erase_if(faces, [](const gpu::VolumeFace& face) { return face.weight == 0; });
+  totals.faces_on_screen += faces.size();
+  if (kind == kFan) totals.far_ends_on_screen = faces.size();
+  on_screen.push_back({kind, std::move(faces)});
+}
+
+/// Behind the camera, where fans hardly ever come onto the screen; a little aside if rounding cannot tell what is
+/// there.
+void VolumeCount::State::choose_apex() {
+  constexpr int kTries = 64;
+  const visibility::PinholeCamera& camera = samples->camera;
+  for (int i = 0; i < kTries; ++i) {
+    apex = -camera.forward + 0x1p-10 * i * (camera.right + 0.618 * camera.up);
+    if (const std::optional<std::int32_t> count = count_along(volumes, -apex)) {
+      at_start = *count;
+      return;
+    }
+  }
+  PENUMBRA_ASSERT(false, "no apex for {} volumes", volumes.caps.size());
+}
+
+void VolumeCount::State::find_boxes() {
+  if (boxes_found) return;
+  using Corners = std::pair<std::array<FaceCorner, 4>, std::size_t>;
+  const glm::dvec3 l = volumes.l;
+  totals.faces_on_screen = 0;
+  on_screen.clear();
+  add_faces(kSide, volumes.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
+    face = face_of(edge);
+    const glm::dvec3 a = edge.a, b = edge.b;
+    return {{{{a}, {b}, {b - l, true}, {a - l, true}}}, 4};
+  });
+  add_faces(kCap, volumes.caps, [&](const VolumeCap& cap, gpu::VolumeFace& face) -> Corners {
+    const auto& [a, b, c] = cap.corners;
+    face = {a, b, c, 1, cap.plane, {}};
+    return {{{{a}, {b}, {c}}}, 3};
+  });
+  at_start = 0;
+  at_eye = 0;
+  if (variant == CountVariant::z_fail) {
+    choose_apex();
+    add_faces(kFan, volumes.edges, [&](const VolumeEdge& edge, gpu::VolumeFace& face) -> Corners {
+      face = face_of(edge);
+      return {{{{apex, true}, {glm::dvec3(edge.a) - l, true}, {glm::dvec3(edge.b) - l, true}}}, 3};
+    });
+  } else {
+    at_eye = count_at(volumes, samples->camera.eye).value_or(0);
+  }
+  boxes_found = true;
+}
+
+void VolumeCount::State::classify(const Tile& tile) {
+  const std::size_t first = std::size_t{tile.first_row} * samples->width;
+  const std::size_t pixels = std::size_t{tile.row_count} * samples->width;
+  receivers.assign(pixels, {glm::vec3(0), gpu::kNotCounted});
+  kinds.assign(pixels, Kind::lit);
+  doubts.assign(pixels, 0);
+  const BoxFinder boxes(samples->camera);
+  mesh::for_each_index(pixels, [&](std::size_t i) {
+    const std::size_t pixel = first + i;
+    if (samples->triangle[pixel] == ViewSamples::kBackground) return;
+    const auto carrier = static_cast<std::uint32_t>(samples->triangle[pixel]);
+    if (scene->emits[carrier] >= 0 || scene->receives_shadow[carrier] == 0) return;
+    const std::array<glm::vec3, 3> corners = scene->corners(carrier);
+    const glm::vec3& p = samples->p[pixel];
+    const bool faces_light = visibility::above_horizon(corners, samples->facing[pixel], volumes.l) &&
+                             visibility::in_front_of_light(*light, p);
+    kinds[i] = faces_light ? Kind::counted : Kind::dark;
+    if (!faces_light) return;
+    const glm::dvec2 center(static_cast<double>(pixel % samples->width) + 0.5,
+                            static_cast<double>(pixel / samples->width) + 0.5);
+    if (appears_in_place(boxes, corners, p, volumes.l, center)) {
+      receivers[i] = {p, scene->plane[carrier]};
+    } else {
+      doubts[i] = 1;
+    }
+  });
+}
+
+void VolumeCount::State::rasterise(const Tile& tile) {
+  const std::size_t pixels = receivers.size();
+  render::grow(*device, receiver_buffer, "volume receivers", pixels * sizeof(gpu::VolumeReceiver));
+  render::grow(*device, count_buffer, "volume counts", pixels * sizeof(std::int32_t));
+  render::grow(*device, doubt_buffer, "volume doubts", pixels * sizeof(std::uint32_t));
+  receiver_buffer->write<gpu::VolumeReceiver>(receivers);
+  doubt_buffer->write<std::uint32_t>(doubts);
+
+  gpu::VolumePush push{};
+  store(push.eye, samples->camera.eye);
+  store(push.apex, apex);
+  push.l = volumes.l;
+  push.width = samples->width;
+  push.first_row = tile.first_row;
+  push.row_count = tile.row_count;
+  render::Commands commands(*device);
+  commands.fill(*count_buffer, static_cast<std::uint32_t>(at_start));
+  const std::size_t most = device->limits().max_storage_buffer_range / sizeof(gpu::VolumeFace);
+  for (const Faces& kind : on_screen) {
+    const render::RasterPass& pass = kind.kind == kSide ? sides : kind.kind == kFan ? fans : caps;
+    for (std::size_t first = 0; first < kind.faces.size(); first += most) {
+      const std::size_t batch = std::min(most, kind.faces.size() - first);
+      render::grow(*device, face_buffer, "volume faces", batch * sizeof(gpu::VolumeFace));
+      face_buffer->write<gpu::VolumeFace>(std::span(kind.faces).subspan(first, batch));
+      pass.record(commands, push, {*face_buffer, *receiver_buffer, *count_buffer, *doubt_buffer},
+                  {.width = samples->width,
+                   .height = tile.row_count,
+                   .vertices = 4,
+                   .instances = static_cast<std::uint32_t>(batch)});
+      times.add(commands.submit());
+    }
+  }
+  commands.submit();  // the fill, where there was no face
+  counts.resize(pixels);
+  count_buffer->read<std::int32_t>(counts);
+  doubt_buffer->read<std::uint32_t>(doubts);
+}
+
+std::int32_t VolumeCount::State::count_exactly(std::size_t pixel) const {
+  const auto carrier = static_cast<std::uint32_t>(samples->triangle[pixel]);
+  const glm::vec3 &p = samples->p[pixel], &l = volumes.l;
+  std::int32_t count = 0;
+  tree->for_each_near(glm::min(p, l), glm::max(p, l), [&](std::uint32_t triangle) {
+    if (!volumes.left_out.empty() && volumes.left_out[triangle] != 0) return;
+    if (!visibility::may_occlude(*scene, *light, carrier, triangle)) return;
+    count += visibility::segment_meets_triangle(p, l, scene->corners(triangle), *light).meets ? 1 : 0;
+  });
+  return count - at_eye;
+}
+
+void VolumeCount::State::count_doubtful(const Tile& tile) {
+  std::vector<std::size_t> doubtful;
+  for (std::size_t i = 0; i < doubts.size(); ++i) {
+    if (doubts[i] != 0) doubtful.push_back(i);
+    if (kinds[i] != Kind::counted) counts[i] = 0;
+  }
+  totals.doubtful_pixels += doubtful.size();
+  if (doubtful.empty()) return;
+  if (!tree) tree = visibility::make_triangle_tree(*scene);
+  const std::size_t first = std::size_t{tile.first_row} * samples->width;
+  tbb::parallel_for(std::size_t{0}, doubtful.size(),
+                    [&](std::size_t i) { counts[doubtful[i]] = count_exactly(first + doubtful[i]); });
+}
+
+void VolumeCount::count(const Tile& tile) {
+  State& s = *state_;
+  PENUMBRA_ASSERT(s.light != nullptr && s.samples != nullptr, "count before prepare_light and prepare_view");
+  PENUMBRA_ASSERT(tile.first_row + tile.row_count <= s.samples->height, "tile of rows {} + {} in a picture of {}",
+                  tile.first_row, tile.row_count, s.samples->height);
+  s.counts.clear();
+  s.kinds.clear();
+  if (tile.row_count == 0 || s.samples->width == 0) return;
+  s.find_boxes();
+  s.classify(tile);
+  s.rasterise(tile);
+  s.count_doubtful(tile);
+  for (const std::int32_t count : s.counts) {
+    s.totals.largest_count = std::max(s.totals.largest_count, static_cast<std::uint64_t>(std::max(count, 0)));
+  }
+}
+
+std::span<const std::int32_t> VolumeCount::counts() const {
+  return state_->counts;
+}
+std::span<const VolumeCount::Kind> VolumeCount::kinds() const {
+  return state_->kinds;
+}
+std::span<const std::uint32_t> VolumeCount::doubts() const {
+  return state_->doubts;
+}
+glm::vec3 VolumeCount::center() const {
+  return state_->volumes.l;
+}
+const LightVolumes& VolumeCount::volumes() const {
+  return state_->volumes;
+}
+const VolumeCount::Totals& VolumeCount::totals() const {
+  return state_->totals;
+}
+std::vector<visibility::PassTime> VolumeCount::take_pass_times() {
+  return state_->times.take();
+}
+std::uint64_t VolumeCount::memory_bytes() const {
+  const State& s = *state_;
+  std::uint64_t bytes = 0;
+  for (const auto* buffer : {&s.face_buffer, &s.receiver_buffer, &s.count_buffer, &s.doubt_buffer}) {
+    if (*buffer) bytes += (*buffer)->bytes();
+  }
+  return bytes;
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/method.hpp"
+#include "visibility/scene_floats.hpp"
+#include "volumes/raster/light_volumes.hpp"
+#include "volumes/wedges/penumbra_wedge.hpp"
+#include "volumes/raster/wedge_raster.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace penumbra::volumes {
+
+enum class WedgesOn { device, host };
+
+/// What a method's option "wedges" says: the device unless "host". Throws UsageError.
+WedgesOn wedges_on(const visibility::MethodDescription& method, const visibility::MethodOptions& options);
+
+/// The silhouettes of a light's centre and their wedges, anew for every light: what a moving light needs each frame.
+///
+/// Silhouettes of device and host are the same edges in the same order. Wedges are not the same numbers, but either way
+/// every plane satisfies bounds_penumbra, exactly. The device builds `original` wedges of four planes; where it cannot
+/// prove one, or there are fewer, it is the host's (build_wedges), as are all wedges of `tight`. A mesh too large for
+/// the device's buffers (SilhouettePass::most_triangles) is the host's, whole.
+class WedgeBuilder {
+ public:
+  struct Options {
+    WedgesOn on = WedgesOn::device;
+    Construction construction = Construction::original;
+    Layers layers = Layers::one_a_solid;
+    std::uint64_t most_bytes = 0;  ///< of any buffer; 0: the device's limit. Tests make it small
+  };
+  WedgeBuilder(const render::Device& device, const Options& options);
+  ~WedgeBuilder();
+  WedgeBuilder(WedgeBuilder&&) noexcept;
+  WedgeBuilder& operator=(WedgeBuilder&&) noexcept;
+
+  /// Borrows the scene until the next call.
+  void prepare_mesh(const visibility::SceneFloats& scene);
+
+  struct Built {
+    LightVolumes volumes;
+    LightWedges wedges;
+    std::uint64_t facings_on_host = 0;  ///< triangles whose side floats left open, or all
+    std::uint64_t edges_on_host = 0;    ///< whose wedges the host built, perhaps all
+  };
+  /// Planar lights.
+  [[nodiscard]] Built build(const visibility::Light& light);
+
+  std::vector<visibility::PassTime> take_pass_times();
+  [[nodiscard]] std::uint64_t memory_bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace penumbra::volumes

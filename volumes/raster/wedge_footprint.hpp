@@ -1,0 +1,92 @@
+#pragma once
+
+#include "visibility/view_samples.hpp"
+#include "volumes/wedges/penumbra_wedge.hpp"
+#include "volumes/wedges/wedge_plane.hpp"
+
+#include <glm/common.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// A convex polygon on the screen, in pixels from the picture's upper left; its corners in order.
+struct Footprint {
+  static constexpr std::size_t kMost = 8;
+  std::array<glm::vec2, kMost> corners;
+  std::size_t size = 0;
+};
+
+/// Which receivers footprints are to hold (E. Lengyel, Advanced stencil shadow and penumbral wedge rendering, GDC 2005,
+/// leaves out fragments by depth and by orientation; here whole parts of footprints are).
+enum class WedgeTests {
+  none,  ///< wedges are cut by the box of all receivers
+  z,     ///< and footprints by the hull of the blocks of pixels whose receivers' box is not beyond a plane of the wedge
+  both,  ///< and receivers that face away from the light's centre, which are dark, do not count
+};
+const char* name_of(WedgeTests tests);
+
+/// Where receivers lie, by square blocks of pixels: what wedges, which have no caps, are cut by.
+class Receivers {
+ public:
+  /// Of all pixels that are not background, or of those that do not face away from `center`.
+  explicit Receivers(const visibility::ViewSamples& samples, const std::optional<glm::dvec3>& center = {});
+
+  [[nodiscard]] bool empty() const { return !(nearest_ > 0); }
+  /// Of all.
+  [[nodiscard]] const Box& bounds() const { return bounds_; }
+  /// body(lower, upper, bounds) for each block that has one and meets these pixels: its pixels' corners and its box.
+  template <typename Body>
+  void for_each_block(const glm::dvec2& lower, const glm::dvec2& upper, const Body& body) const {
+    const auto block = [](double at, std::uint32_t count) {
+      return static_cast<std::uint32_t>(glm::clamp(at / kBlock, 0.0, static_cast<double>(count - 1)));
+    };
+    for (std::uint32_t y = block(lower.y, rows_); y <= block(upper.y, rows_); ++y) {
+      for (std::uint32_t x = block(lower.x, columns_); x <= block(upper.x, columns_); ++x) {
+        const Box& box = blocks_[std::size_t{y} * columns_ + x];
+        const glm::dvec2 corner(x * kBlock, y * kBlock);
+        if (box.lower.x <= box.upper.x) body(corner, corner + static_cast<double>(kBlock), box);
+      }
+    }
+  }
+  /// Along the view axis: half of the nearest one's, so that nothing that is seen is cut off or projects to infinity.
+  [[nodiscard]] double nearest() const { return nearest_; }
+  /// The largest coordinate.
+  [[nodiscard]] double reach() const { return reach_; }
+
+ private:
+  static constexpr std::uint32_t kBlock = 8;  // pixels a side
+  std::uint32_t columns_ = 0, rows_ = 0;
+  std::vector<Box> blocks_;  // lower > upper where there is none
+  Box bounds_;
+  double nearest_ = 0, reach_ = 0;
+};
+
+/// Where on the screen the receivers in a wedge may be. It only proposes: shaders decide.
+class FootprintFinder {
+ public:
+  /// Borrows the receivers.
+  FootprintFinder(const visibility::PinholeCamera& camera, const Receivers& receivers, WedgeTests tests);
+
+  /// Holds every pixel whose centre is within an eighth of a pixel of where a receiver in one of the wedges appears
+  /// (pieces of one edge; `split` ones are passed over). Nothing: no pixel. The eye may be inside.
+  [[nodiscard]] std::optional<Footprint> around(std::span<const Wedge> pieces) const;
+
+ private:
+  using Points = std::vector<glm::dvec2>;
+  void add_projection(const Wedge& wedge, Points& points) const;
+  [[nodiscard]] Points blocks_in(std::span<const Wedge> pieces, const Points& polygon) const;
+
+  visibility::PinholeCamera camera_;
+  const Receivers* receivers_;
+  WedgeTests tests_;
+};
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/method.hpp"
+#include "visibility/view_samples.hpp"
+#include "volumes/raster/light_volumes.hpp"
+#include "volumes/wedges/penumbra_wedge.hpp"
+#include "volumes/raster/wedge_footprint.hpp"
+#include "volumes/raster/wedge_raster.shared.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::volumes {
+
+/// The silhouette edges of one light with their wedges.
+struct LightWedges {
+  std::vector<VolumeEdge> edges;
+  std::vector<Wedge> wedges;  ///< of edge i: those whose source is i, in order (build_wedges)
+};
+LightWedges wedges_of(const LightVolumes& volumes, const visibility::Light& light, Construction construction);
+
+/// Their faces that may have a receiver on the screen. `center` is the light's.
+std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const visibility::ViewSamples& samples,
+                                     WedgeTests tests, const glm::dvec3& center);
+
+/// How many pixels the faces propose, about: the areas of their footprints.
+std::uint64_t fragments_of(std::span<const gpu::WedgeFace> faces);
+
+/// The frame of a planar light, its centre where center_of says.
+gpu::WedgePush frame_of(const visibility::Light& light);
+
+/// Does p appear within a sixteenth of a pixel of its pixel's centre? Else footprints may miss it: rounding moved p,
+/// which next to the camera can be pixels.
+bool appears_in_place(const visibility::PinholeCamera& camera, const glm::vec3& p, std::size_t pixel);
+
+struct WedgeShader {
+  std::string name;
+  std::span<const std::uint32_t> fragment;
+  std::vector<std::uint32_t> constants{};
+  std::uint32_t words = 1;  ///< of sums, for each receiver
+  bool table = true;        ///< does it read one?
+};
+
+/// Rasterises wedges and adds up what a fragment shader makes of each at each receiver: in integers, so in any order.
+class WedgeRaster {
+ public:
+  WedgeRaster(const render::Device& device, const WedgeShader& shader);
+  ~WedgeRaster();
+  WedgeRaster(WedgeRaster&&) noexcept;
+  WedgeRaster& operator=(WedgeRaster&&) noexcept;
+
+  /// What the shader reads at its last binding; one 0 until then.
+  void set_table(std::span<const double> table);
+
+  /// The tile's receivers, row by row; `push.width` and the tile's rows are filled
+  /// in.
+  void add(std::span<const gpu::WedgeFace> faces, std::span<const gpu::WedgeReceiver> receivers, gpu::WedgePush push,
+           const visibility::Tile& tile, std::uint32_t width);
+
+  /// For each receiver of the last add: its sums, mostly in units of gpu::kSumUnit, and whether the host must see to
+  /// it.
+  [[nodiscard]] std::span<const std::int64_t> sums() const;
+  [[nodiscard]] std::span<const std::uint32_t> doubts() const;
+
+  [[nodiscard]] std::uint32_t max_tile_rows(const visibility::ViewSamples& samples) const;
+  std::vector<visibility::PassTime> take_pass_times();
+  [[nodiscard]] std::uint64_t memory_bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,33 @@
+#include "volumes/scatter/vectors/areas_on_demand.hpp"
+
+#include "base/assert.hpp"
+
+namespace penumbra::volumes {
+
+void AreasOnDemand::prepare_mesh(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree) {
+  scene_ = &scene;
+  tree_ = &tree;
+  area_.reset();
+  is_ready_ = false;
+}
+
+void AreasOnDemand::prepare_light(const visibility::Light& light) {
+  light_ = &light;
+  is_ready_ = false;
+}
+
+areas::ExactView AreasOnDemand::view(const visibility::ViewSamples& samples, std::size_t pixel) {
+  PENUMBRA_ASSERT(scene_ != nullptr && light_ != nullptr, "prepare_mesh and prepare_light come first: pixel {}", pixel);
+  if (!is_ready_) {
+    const std::lock_guard lock(mutex_);
+    if (!is_ready_) {
+      if (!area_) area_.emplace(*scene_, *tree_);
+      area_->set_light(*light_);
+      is_ready_ = true;
+    }
+  }
+  return area_->view(
+      {samples.p[pixel], static_cast<std::uint32_t>(samples.triangle[pixel]), samples.facing[pixel], samples.n[pixel]});
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "engines/vectors/frame.hpp"
+#include "engines/vectors/trees.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/triangle_tree.hpp"
+#include "volumes/edges/cut_ends.hpp"
+#include "volumes/edges/edge_cut.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+/// Edge scatter on a processor: edges for lights whose plane cuts them. Inside volumes/ only.
+namespace penumbra::volumes {
+
+native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
+
+/// What casts shadow of a light, to be cut at its plane.
+struct CutInput {
+  const visibility::SceneFloats& scene;
+  const visibility::TriangleTree& triangles;  ///< of the scene
+  const EdgeCasters& casters;
+  std::int32_t without;  ///< the light whose body is not among them, or −1
+  LightSide side;
+  bool exact_ends = false;  ///< keep where edges pass through the plane as it is before rounding
+};
+
+/// A hierarchy of edges that is cut at a light's plane, and mended for the next light. Only what the plane cuts is made
+/// anew: subtrees behind it are left out, the cut edges are a second tree beside the first.
+class CutEdges {
+ public:
+  CutEdges() = default;
+  explicit CutEdges(native::WideEdgeTree whole) : tree_(std::move(whole)) {}
+
+  [[nodiscard]] const native::WideEdgeTree& tree() const { return tree_; }
+  /// Of edges with a number (WideEdges::cut); null: none has.
+  [[nodiscard]] const CutEnds* ends() const { return ends_ ? &*ends_ : nullptr; }
+  /// The number of the plane (SceneFloats::plane) that the light lies in, if triangles lie in it: nothing of them is
+  /// before the light.
+  [[nodiscard]] std::uint32_t plane_of_light() const { return plane_of_light_; }
+  void cut(const CutInput& input);
+  void mend();
+
+ private:
+  void cut_nodes(const LightSide& side, std::vector<EdgeRecord>& records);
+  void cut_leaf(const LightSide& side, std::uint32_t leaf, std::vector<EdgeRecord>& records);
+
+  /// What a node or a leaf had in use.
+  struct Used {
+    std::uint32_t number, used;
+  };
+  native::WideEdgeTree tree_;
+  std::optional<CutEnds> ends_;
+  std::uint32_t plane_of_light_ = native::Cluster::kSeveral;
+  bool is_cut_ = false;
+  std::size_t roots_ = 0, nodes_count_ = 0, leaves_count_ = 0;  // of the whole
+  std::vector<Used> nodes_, leaves_;                            // that were changed
+};
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,232 @@
+// Edge scatter on a processor: its lists and what becomes of them. The rest is native::MaskMethod.
+
+#include "volumes/scatter/vectors/edge_scatter_native.hpp"
+
+#include "base/assert.hpp"
+#include "engines/vectors/horizon.hpp"
+#include "engines/vectors/mask_method.hpp"
+#include "visibility/seen_light.hpp"
+#include "volumes/edges/edge_sides.hpp"
+#include "volumes/scatter/vectors/cut.hpp"
+#include "volumes/scatter/vectors/rows.hpp"
+#include "volumes/scatter/vectors/scatter.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <optional>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+/// Leaves of triangles between a region and the light's corner from which on neighbouring pixels see other edges.
+constexpr std::size_t kDense = 1024;
+constexpr std::size_t kGroup = 16, kDenseGroup = 8;  // view samples
+
+/// Finds each cluster's edges and triangles.
+class NativeEdges : public native::MaskMethod {
+ public:
+  /// `between_rows`: edges that cross no light row matter, too.
+  NativeEdges(visibility::MethodDescription given, bool between_rows)
+      : MaskMethod(std::move(given), "scatter edges"), between_rows_(between_rows), sides_(description().name) {}
+
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    MaskMethod::prepare_mesh(scene);
+    sides_.prepare_mesh(scene);
+    whole_ = CutEdges(wide_edges(sides_.records(std::nullopt), scale()));
+    without_body_.reset();
+    front_ = &whole_;
+  }
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    return MaskMethod::memory_bytes() + bytes_of(whole_.tree()) + bytes_of(back_.tree()) +
+           (without_body_ ? bytes_of(without_body_->edges.tree()) : 0);
+  }
+
+ private:
+  bool prepare_casters() override {
+    const LightEdges edges = sides_.prepare_light(light(), light_frame(), scale());
+    front_->mend();
+    if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
+      without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
+    }
+    front_ = edges.has_body ? &without_body_->edges : &whole_;
+    back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
+    const std::int32_t without = edges.has_body ? light().index : -1;
+    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, between_rows_});
+    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, between_rows_});
+    touch_ = between_rows_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
+    return edges.front.has_value() && !between_rows_;  // whose edges stay whole
+  }
+  Blocks begin_region(const Frame& frame, const Cluster& all) override {
+    Scratch& scratch = scratch_.local();
+    find_edge_roots({frame, edges_of(frame), all}, scratch.edges, scratch.edge_roots);
+    find_triangle_roots({frame, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
+    scratch.dense =
+        count_leaves({frame, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
+    scratch.dense_regions += scratch.dense ? 1 : 0;
+    return scratch.dense ? Blocks::small : Blocks::usual;
+  }
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) final {
+    Scratch& scratch = scratch_.local();
+    if (scratch.edge_roots.empty() && scratch.triangle_roots.empty()) return do_free(frame, placed, judge, seen);
+    const Cluster cluster = make_cluster(frame, placed);
+    find_triangles({frame, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
+                   scratch.triangles);
+    find_edges({frame, edges_of(frame), cluster}, scratch.edge_roots, scratch.stack, scratch.edges);
+    scratch.listed += scratch.edges.count;
+    if (scratch.edges.count + scratch.triangles.count == 0) return do_free(frame, placed, judge, seen);
+    scratch.samples.clear();
+    for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
+    do_lists({frame, touch_, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
+              scratch.dense ? kDenseGroup : kGroup, between_rows_, cut_edges(frame).ends(), front_->plane_of_light()},
+             judge, seen);
+  }
+
+  [[nodiscard]] const CutEdges& cut_edges(const Frame& frame) const {
+    return frame.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
+  }
+  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const { return cut_edges(frame).tree(); }
+  /// View samples with nothing before the light.
+  virtual void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
+  virtual void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) = 0;
+
+ protected:
+  void count(std::map<std::string, std::uint64_t>& counters) override {
+    if (!touch_.samples.empty()) counters["touchedSamples"] = touch_.samples.size();
+    for (Scratch& scratch : scratch_) {
+      counters["listedEdges"] += std::exchange(scratch.listed, 0);
+      counters["denseRegions"] += std::exchange(scratch.dense_regions, 0);
+    }
+  }
+
+  bool between_rows_;
+  visibility::LightTouch touch_;
+  EdgeSides sides_;
+  CutEdges whole_;
+  struct WithoutBody {
+    std::int32_t light;
+    CutEdges edges;
+  };
+  std::optional<WithoutBody> without_body_;  // what casts shadow of the last light with a body
+  CutEdges* front_ = &whole_;                // one of these
+  CutEdges back_;                            // a copy, where the light's plane cuts and it emits to both sides
+
+ protected:
+  tbb::enumerable_thread_specific<Scratch> scratch_;
+};
+
+/// Light samples.
+class NativeEdgeScatter final : public NativeEdges {
+ public:
+  explicit NativeEdgeScatter(visibility::MethodDescription given) : NativeEdges(std::move(given), false) {}
+
+ private:
+  void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+    Open& open = scratch_.local().open;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      begin(frame, touch_, placed[i], open);
+      see_all(frame, placed[i], open, judge, seen[i]);
+    }
+  }
+  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) override {
+    scatter(input, scratch_.local(), judge, seen);
+  }
+};
+
+/// rows=exact: shares of the light, and their form factors for who asks for them.
+class NativeEdgeRows final : public NativeEdges {
+ public:
+  explicit NativeEdgeRows(visibility::MethodDescription given) : NativeEdges(std::move(given), true) {}
+
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    NativeEdges::prepare_mesh(scene);
+    areas_.prepare_mesh(scene, tree());
+  }
+  void prepare_light(const visibility::Light& light) override {
+    areas_.prepare_light(light);
+    NativeEdges::prepare_light(light);
+  }
+  void evaluate(const visibility::Tile& tile) override {
+    shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
+    NativeEdges::evaluate(tile);
+  }
+  void read_masks(std::span<std::uint32_t>) override {
+    PENUMBRA_ASSERT(false, "{} has no masks with rows=exact", description().name);
+  }
+  void read_visibility(std::span<float> visibility) override {
+    NativeEdges::read_visibility(visibility);
+    for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = shares_[i].value_or(visibility[i]);
+  }
+  /// Looks at the tile once more: whoever wants V alone does not wait for this.
+  void read_form_factors(std::span<glm::dvec3> form_factors) override {
+    std::vector<float> visibility(form_factors.size());
+    read_visibility(visibility);
+    radiance_.assign(form_factors.size(), std::nullopt);
+    repeat();
+    for (std::size_t i = 0; i < form_factors.size(); ++i) {
+      const std::size_t pixel = first_pixel() + i;
+      const bool dark = visibility[i] == 0 || samples().triangle[pixel] == visibility::ViewSamples::kBackground;
+      form_factors[i] = glm::dvec3(dark ? 0 : radiance_[i] ? *radiance_[i] : visibility[i] * unshadowed(pixel));
+    }
+    radiance_.clear();
+  }
+
+ private:
+  [[nodiscard]] double unshadowed(std::size_t pixel) const {
+    return visibility::SeenLight(light(), samples().p[pixel], samples().n[pixel]).whole();
+  }
+
+  void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen>) override {
+    RowSum rows(frame, scene(), scale());
+    for (const Placed& at : placed) {
+      std::optional<double> share = 1;
+      if (at.straddles) {
+        rows.begin(at);
+        rows.add_horizon(judge.horizon(at));
+        share = rows.visible_share(0, nullptr);
+      }
+      if (!share) {
+        do_exactly(at);
+        continue;
+      }
+      shares_[tile_pixel(at)] = static_cast<float>(*share);
+      if (!radiance_.empty()) radiance_[tile_pixel(at)] = unshadowed(at.pixel);
+    }
+  }
+  bool do_open(const Placed& at) override {
+    do_exactly(at);
+    return true;
+  }
+  void do_exactly(const Placed& at) {
+    ++scratch_.local().unproven;
+    const areas::ExactView exact = areas_.view(samples(), at.pixel);
+    shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
+    if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor.x;
+  }
+  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen>) override {
+    std::vector<float> shares(input.samples.size());
+    std::vector<double> radiance(radiance_.empty() ? 0 : input.samples.size());
+    integrate({input, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge, {shares, radiance});
+    for (std::size_t i = 0; i < shares.size(); ++i) shares_[tile_pixel(input.samples[i])] = shares[i];
+    for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(input.samples[i])] = radiance[i];
+  }
+
+  void count(std::map<std::string, std::uint64_t>& counters) override {
+    NativeEdges::count(counters);
+    for (Scratch& scratch : scratch_) counters["unprovenPixels"] += std::exchange(scratch.unproven, 0);
+  }
+
+  AreasOnDemand areas_;
+  std::vector<std::optional<float>> shares_;     // of the tile; none: the light is behind, or below the horizon
+  std::vector<std::optional<double>> radiance_;  // likewise; empty: not wanted
+};
+
+}  // namespace
+
+std::unique_ptr<visibility::Method> make_native_edge_scatter(visibility::MethodDescription description,
+                                                             bool exact_rows) {
+  if (exact_rows) return std::make_unique<NativeEdgeRows>(std::move(description));
+  return std::make_unique<NativeEdgeScatter>(std::move(description));
+}
+
+}  // namespace penumbra::volumes

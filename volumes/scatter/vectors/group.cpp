@@ -1,0 +1,255 @@
+// Edge scatter on a processor: a few neighbouring view samples sort out, together, which of their cluster's edges and
+// triangles matter to them.
+
+#include "volumes/scatter/vectors/scatter.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/group.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "engines/vectors/hull-inl.hpp"
+#include "engines/vectors/vectors-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
+
+struct Box3 {
+  glm::vec3 low{0}, high{0};
+};
+struct GroupBounds {
+  Box3 seen;  // (across, along, axis)
+  glm::vec3 middle{0}, half_size{0};
+  glm::vec2 foot_low{0}, foot_high{0};
+  glm::vec2 lean_low{0}, lean_high{0};
+  float height_low = 0, height_high = 0, far = 0, per_way = 0, per_foot = 0, fixed = 0, per_lean = 0;
+};
+
+GroupBounds bounds_of(std::span<const Sample> samples) {
+  GroupBounds g;
+  const Sample& one = samples.front();
+  g.seen = {one.seen, one.seen};
+  Box3 local{one.local, one.local};
+  g.foot_low = g.foot_high = one.foot;
+  g.height_low = g.height_high = one.height;
+  g.lean_low = g.lean_high = one.lean;
+  for (const Sample& at : samples) {
+    g.seen = {glm::min(g.seen.low, at.seen), glm::max(g.seen.high, at.seen)};
+    local = {glm::min(local.low, at.local), glm::max(local.high, at.local)};
+    g.foot_low = glm::min(g.foot_low, at.foot);
+    g.foot_high = glm::max(g.foot_high, at.foot);
+    g.height_low = std::min(g.height_low, at.height);
+    g.height_high = std::max(g.height_high, at.height);
+    g.far = std::max(g.far, at.far);
+    g.per_way = std::max(g.per_way, at.per_way);
+    g.per_foot = std::max(g.per_foot, at.per_foot);
+    g.fixed = std::max(g.fixed, at.fixed);
+    g.lean_low = glm::min(g.lean_low, at.lean);
+    g.lean_high = glm::max(g.lean_high, at.lean);
+    g.per_lean = std::max(g.per_lean, at.per_lean);
+  }
+  g.middle = 0.5F * (local.low + local.high);
+  g.half_size = 0.5F * (local.high - local.low) * (1 + 8 * kRound);
+  return g;
+}
+
+/// Where an end of an edge appears for any view sample of the group.
+struct Range {
+  V low_x, low_y, high_x, high_y, error;
+  M bounded;
+  V level;  // over the light's plane
+};
+
+class GroupFilter {
+ public:
+  GroupFilter(const ScatterInput& in, const GroupBounds& g, const Hull& hull) : in_(in), g_(g), hull_(hull) {
+    const glm::vec3 from_light = in.cluster.middle - in.frame.center;
+    foot_ =
+        glm::vec2(glm::dot(in.frame.across, from_light), glm::dot(in.frame.along, from_light)) + in.frame.first_cell;
+    height_ = glm::dot(in.frame.axis, from_light);
+  }
+
+  void edges(GroupTable& settled, GroupTable& unsettled) const {
+    settled.count = unsettled.count = 0;
+    settled.reserve(in_.edges.count);
+    unsettled.reserve(in_.edges.count);
+    const Frame& frame = in_.frame;
+    const float columns = static_cast<float>(frame.columns) - 0.5F, rows = static_cast<float>(frame.rows) - 0.5F;
+    for (std::size_t i = 0; i < in_.edges.count; i += hn::Lanes(D())) {
+      M kept = hn::And(first_lanes(in_.edges.count - i), may_be_silhouette(i));
+      if (hn::AllFalse(D(), kept)) continue;
+      const Range a = range_of(kAx, i), b = range_of(kBx, i);
+      const M bounded = hn::And(a.bounded, b.bounded);
+      const V low_x = hn::Min(a.low_x, b.low_x), high_x = hn::Max(a.high_x, b.high_x);
+      const V low_y = hn::Min(a.low_y, b.low_y), high_y = hn::Max(a.high_y, b.high_y);
+      const M before = hn::And(hn::And(hn::Le(low_x, set(columns)), hn::Ge(high_x, set(-0.5F))),
+                               hn::And(hn::Le(low_y, set(rows)), hn::Ge(high_y, set(-0.5F))));
+      const M crosses = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Ge(hn::Floor(high_y), hn::Ceil(low_y)));
+      const M matters = in_.between_rows ? before : hn::And(before, crosses);
+      const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * frame.reach));
+      kept = hn::AndNot(behind, kept);
+      put(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));
+      kept = hn::AndNot(bounded, kept);
+      if (!hn::AllFalse(D(), kept)) put(unsettled, i, hn::And(kept, in_hull(i)), set(0));
+    }
+  }
+
+  /// Triangles that the ways from the group's p to the light's corner may meet.
+  void triangles(TriangleTable& near) const {
+    near.count = 0;
+    near.reserve(in_.triangles.count);
+    for (std::size_t i = 0; i < in_.triangles.count; i += hn::Lanes(D())) {
+      const auto column = [&](std::size_t field) { return hn::Load(D(), in_.triangles[field] + i); };
+      const V error = hn::Mul(set(1.01F * g_.per_lean), hn::Add(column(kTriangleFar), set(g_.far)));
+      M kept = first_lanes(in_.triangles.count - i);
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        V least = set(3e38F), most = set(-3e38F);
+        for (const std::size_t corner : {std::size_t{kCornerA}, std::size_t{kCornerB}, std::size_t{kCornerC}}) {
+          const auto [low, high] = beside_way(column(corner + axis), column(corner + 2), axis);
+          least = hn::Min(least, low);
+          most = hn::Max(most, high);
+        }
+        kept = hn::And(kept, hn::And(hn::Le(least, error), hn::Ge(most, hn::Neg(error))));
+      }
+      const std::size_t more = hn::CountTrue(D(), kept);
+      if (more == 0) continue;
+      for (std::size_t field = 0; field < kTriangleFields; ++field) {
+        hn::CompressStore(column(field), kept, D(), near[field] + near.count);
+      }
+      near.count += more;
+    }
+  }
+
+ private:
+  /// May an edge meet the hull of the group and the light?
+  [[nodiscard]] M in_hull(std::size_t i) const {
+    return meets(hull_, std::array{Corners{column(kAx, i), column(kAy, i), column(kAh, i)},
+                                   Corners{column(kBx, i), column(kBy, i), column(kBh, i)}});
+  }
+
+  [[nodiscard]] V column(std::size_t field, std::size_t i) const { return hn::Load(D(), in_.edges[field] + i); }
+
+  struct Interval {
+    V low, high;
+  };
+  /// How far a point is beside the way from p to the light's corner, along one axis.
+  [[nodiscard]] Interval beside_way(V x, V h, std::size_t axis) const {
+    const auto i = static_cast<glm::length_t>(axis);
+    const V w_low = hn::Sub(set(g_.seen.low.z), h), w_high = hn::Sub(set(g_.seen.high.z), h);
+    const V low = set(g_.lean_low[i]), high = set(g_.lean_high[i]);
+    const V p0 = hn::Mul(low, w_low), p1 = hn::Mul(low, w_high), p2 = hn::Mul(high, w_low), p3 = hn::Mul(high, w_high);
+    return {hn::Sub(hn::Sub(x, set(g_.seen.high[i])), hn::Max(hn::Max(p0, p1), hn::Max(p2, p3))),
+            hn::Sub(hn::Sub(x, set(g_.seen.low[i])), hn::Min(hn::Min(p0, p1), hn::Min(p2, p3)))};
+  }
+
+  struct Sides {
+    M positive, negative, none;
+  };
+  /// What one of the edges' triangles is for all of the group's p. (bound side)
+  [[nodiscard]] Sides sides(std::size_t first, std::size_t i) const {
+    const V x = column(first, i), y = column(first + 1, i), z = column(first + 2, i);
+    const V f = hn::Sub(hn::MulAdd(x, set(g_.middle.x), hn::MulAdd(y, set(g_.middle.y), hn::Mul(z, set(g_.middle.z)))),
+                        column(first + kD1 - kN1x, i));
+    const V error = column(first + kE1 - kN1x, i), ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
+    const V wide =
+        hn::MulAdd(ax, set(g_.half_size.x), hn::MulAdd(ay, set(g_.half_size.y), hn::Mul(az, set(g_.half_size.z))));
+    const V ones = hn::Add(ax, hn::Add(ay, az));
+    const V spread =
+        hn::MulAdd(wide, set(1.001F), hn::MulAdd(error, set(3.2F), hn::Mul(ones, set(4 * kRound * in_.frame.reach))));
+    const M none = hn::Lt(error, set(0));
+    return {hn::AndNot(none, hn::Gt(f, spread)), hn::AndNot(none, hn::Lt(f, hn::Neg(spread))), none};
+  }
+  [[nodiscard]] M may_be_silhouette(std::size_t i) const {
+    const Sides s = sides(kN1x, i), t = sides(kN2x, i);
+    return hn::Not(
+        hn::Or(hn::And(s.none, t.none), hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive))));
+  }
+
+  /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so
+  /// the corners bound it.
+  [[nodiscard]] Range range_of(std::size_t first, std::size_t i) const {
+    const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
+    Range r;
+    r.level = hn::Add(column(first + 2, i), set(height_));
+    const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
+    r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.frame.reach)));
+    const V inverse = hn::Div(set(1), w_low), at_low = hn::Mul(r.level, inverse), at_high = hn::Div(r.level, w_high);
+    const auto span = [&](V from, float low, float high) {
+      const V e0 = hn::Sub(from, set(high)), e1 = hn::Sub(from, set(low));
+      const V p0 = hn::Mul(e0, at_low), p1 = hn::Mul(e0, at_high), p2 = hn::Mul(e1, at_low), p3 = hn::Mul(e1, at_high);
+      return std::pair(hn::Add(from, hn::Min(hn::Min(p0, p1), hn::Min(p2, p3))),
+                       hn::Add(from, hn::Max(hn::Max(p0, p1), hn::Max(p2, p3))));
+    };
+    const auto [low_x, high_x] = span(x, g_.foot_low.x, g_.foot_high.x);
+    const auto [low_y, high_y] = span(y, g_.foot_low.y, g_.foot_high.y);
+    const auto away = [&](V low, V high, float foot_low, float foot_high) {
+      return hn::Add(hn::Max(hn::Abs(hn::Sub(high, set(foot_low))), hn::Abs(hn::Sub(low, set(foot_high)))),
+                     set(foot_high - foot_low));
+    };
+    const V foot =
+        hn::Add(away(low_x, high_x, g_.foot_low.x, g_.foot_high.x), away(low_y, high_y, g_.foot_low.y, g_.foot_high.y));
+    const V way = hn::Mul(hn::Add(column(kFar, i), set(g_.far)), inverse);
+    // (bound X), a tenth more: the differences of height are not computed like the view samples'
+    r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(kPerReach), foot, set(g_.per_way)),
+                                            hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));
+    const V around = hn::Mul(set(4), r.error);
+    r.low_x = hn::Sub(low_x, around);
+    r.low_y = hn::Sub(low_y, around);
+    r.high_x = hn::Add(high_x, around);
+    r.high_y = hn::Add(high_y, around);
+    return r;
+  }
+
+  void put(GroupTable& table, std::size_t i, M kept, V error) const {
+    const std::size_t more = hn::CountTrue(D(), kept);
+    if (more == 0) return;
+    for (std::size_t field = 0; field <= kPlane2; ++field) {
+      hn::CompressStore(column(field, i), kept, D(), table[field] + table.count);
+    }
+    hn::CompressStore(error, kept, D(), table[kGroupError] + table.count);
+    const V numbers = hn::BitCast(D(), numbers_from(i));
+    hn::CompressStore(numbers, kept, D(), table[kGroupEdge] + table.count);
+    table.count += more;
+  }
+
+  const ScatterInput& in_;
+  const GroupBounds& g_;
+  const Hull& hull_;
+  glm::vec2 foot_{0};  // of the cluster's middle
+  float height_ = 0;
+};
+
+void sort_out_here(const ScatterInput& in, std::span<const Sample> group, GroupLists& lists) {
+  const GroupBounds bounds = bounds_of(group);
+  const Hull hull = hull_of(in.frame, in.cluster, group);
+  const GroupFilter filter(in, bounds, hull);
+
+  filter.edges(lists.settled, lists.unsettled);
+  filter.triangles(lists.triangles);
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::volumes {
+
+HWY_EXPORT(sort_out_here);
+
+void sort_out(const ScatterInput& input, std::span<const Sample> group, GroupLists& lists) {
+  HWY_DYNAMIC_DISPATCH(sort_out_here)(input, group, lists);
+}
+
+}  // namespace penumbra::volumes
+#endif

@@ -1,0 +1,138 @@
+// Edge scatter on a processor, rows=exact: from edges as they appear to the visible share of the light, without light
+// samples.
+
+#include "visibility/seen_light.hpp"
+#include "volumes/scatter/vectors/rows.hpp"
+#include "volumes/scatter/vectors/scatter.hpp"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/integrate.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "engines/vectors/vectors-inl.hpp"
+#include "volumes/scatter/vectors/projection-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+/// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
+std::optional<std::int32_t> depth_by_other_place(const Frame& frame, const RowSum& rows, const Placed& at,
+                                                 Judge& judge) {
+  constexpr int kTries = 64;
+  for (int i = 0; i < kTries; ++i) {
+    // Kronecker's sequence with the square roots of 2 and 3: on no lattice.
+    const glm::dvec2 share = glm::fract(glm::dvec2(0.4142135623, 0.7320508075) * (i + 1.0));
+    const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(frame.half_cells));
+    if (!relative) continue;
+    const std::optional<std::uint32_t> depth = judge.depth_in_plane(at, 2.0 * share - 1.0);
+    return depth ? std::optional(static_cast<std::int32_t>(*depth) - *relative) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// `parts`: what is visible, if it is asked for and neither all nor nothing.
+struct Rows {
+  RowSum sum;
+  std::vector<Trapezoid> parts;
+  bool parts_asked = false;
+};
+
+/// Nothing: double cannot prove it.
+std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const Sample& at, Rows& all, Judge& judge) {
+  RowSum& rows = all.sum;
+  all.parts.clear();
+  Open& open = scratch.open;
+  open.clear();
+  std::int32_t depth = 0;
+  if (scratch.lists.triangles.count > 0) {
+    const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
+    depth = static_cast<std::int32_t>(count_to_corner(
+        {in.frame, in.tree, scratch.lists.triangles, at, !edges && !at.straddles, in.light_plane}, open));
+  }
+  CrossingTable& crossing = scratch.crossing;
+  // The vectors only sort out; what they cannot place is looked at as well.
+  const auto special = [&](const SpecialEdges& edges) {
+    for_each_lane(edges.which, [&](std::size_t lane) {
+      crossing[kEdge][crossing.count++] = edges.table[kGroupEdge][edges.first + lane];
+    });
+  };
+  Projection{in, at, scratch.lists, crossing}(special);
+  rows.begin(at);
+  for (std::size_t i = 0; i < crossing.count; ++i) {
+    const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
+    const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
+    rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, in.ends);
+    if (rows.is_open()) return std::nullopt;
+  }
+  if (open.corner || rows.corner_is_open()) {
+    const std::optional<std::int32_t> found = depth_by_other_place(in.frame, rows, at, judge);
+    if (!found) return std::nullopt;
+    depth = *found;
+  }
+  if (at.straddles) {
+    rows.add_horizon(judge.horizon(at));
+  } else if (scratch.crossing.count == 0) {
+    if (rows.is_open()) return std::nullopt;
+    return depth == 0 ? 1 : 0;
+  }
+  return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
+}
+
+double form_factor_of(const IntegralInput& in, const Placed& at, const std::vector<Trapezoid>& parts, double share) {
+  if (share == 0) return 0;
+  const visibility::SeenLight seen(in.light, in.samples.p[at.pixel], in.samples.n[at.pixel]);
+  if (parts.empty() || share == 1) return share * seen.whole();
+  const glm::dvec2 half(in.scatter.frame.half_cells);
+  double sum = 0;
+  for (const auto& [low, high] : parts) {
+    const auto corner = [&](double x, double y) { return glm::dvec2(x, y) / half - 1.0; };
+    sum += seen.part(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
+                                corner(high.left, high.y)});
+  }
+  return std::max(sum, 0.0);
+}
+
+void integrate_here(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out) {
+  const ScatterInput& in = input.scatter;
+  Rows rows{RowSum(in.frame, input.scene, input.scale), {}, !out.radiance.empty()};
+  for (std::size_t first = 0; first < in.samples.size(); first += in.group) {
+    const auto group = in.samples.subspan(first, std::min(in.group, in.samples.size() - first));
+    sort_out(in, group, scratch.lists);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      const std::optional<double> share = share_of(in, scratch, group[i], rows, judge);
+      if (!share) {
+        ++scratch.unproven;
+        const areas::ExactView exact = input.areas.view(input.samples, group[i].pixel);
+        out.shares[first + i] = static_cast<float>(exact.visibility);
+        if (!out.radiance.empty()) out.radiance[first + i] = exact.form_factor.x;
+        continue;
+      }
+      out.shares[first + i] = static_cast<float>(*share);
+      if (!out.radiance.empty()) out.radiance[first + i] = form_factor_of(input, group[i], rows.parts, *share);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::volumes {
+
+HWY_EXPORT(integrate_here);
+
+void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out) {
+  HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, out);
+}
+
+}  // namespace penumbra::volumes
+#endif

@@ -1,0 +1,194 @@
+// Edge scatter on a processor: where a group's edges appear to one of its view samples. Inside volumes/ only.
+
+#if defined(PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP
+#undef PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP
+#else
+#define PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP
+#endif
+
+#include "engines/vectors/vectors-inl.hpp"
+#include "volumes/scatter/vectors/scatter.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
+
+/// k_e at p, and whether rounding leaves it open. In one order, without fused multiplications, as everywhere where the
+/// same sign must come out for all edges of a triangle.
+struct Multiplicity {
+  V k;
+  M open;
+};
+[[maybe_unused]] Multiplicity multiplicity(const GroupTable& table, const Sample& at, std::size_t i) {
+  const D d;
+  Multiplicity m{hn::Zero(d), hn::FirstN(d, 0)};
+  for (const std::size_t first : {std::size_t{kN1x}, std::size_t{kN2x}}) {
+    const auto column = [&](std::size_t offset) { return hn::Load(d, table[first + offset] + i); };
+    const V f = hn::Sub(hn::Add(hn::Add(hn::Mul(column(0), set(at.local.x)), hn::Mul(column(1), set(at.local.y))),
+                                hn::Mul(column(2), set(at.local.z))),
+                        column(kD1 - kN1x));
+    const M counts = hn::AndNot(same_bits(column(kPlane1 - kN1x), bits(at.plane)), hn::Ne(f, set(0)));
+    m.k = hn::Add(m.k, hn::IfThenElseZero(counts, hn::CopySign(set(1), f)));
+    const M open = hn::Le(hn::Abs(f), column(kE1 - kN1x));
+    m.open = hn::Or(m.open, hn::AndNot(same_bits(column(kPlane1 - kN1x), bits(at.plane)), open));
+  }
+  return m;
+}
+
+/// Edges that vectors leave to the caller: `which` of those from `first`.
+struct SpecialEdges {
+  const GroupTable& table;
+  std::size_t first;
+  M which;
+  const Multiplicity& multiplicity;
+  bool settled;
+};
+
+/// Fills the table of crossings of one view sample.
+class Projection {
+ public:
+  Projection(const ScatterInput& in, const Sample& at, const GroupLists& lists, CrossingTable& out)
+      : in_(in), at_(at), lists_(lists), out_(out) {}
+
+  /// `special` gets edges whose multiplicity is open, and those that pass through p but for rounding.
+  template <typename Special>
+  void operator()(Special& special) {
+    out_.count = 0;
+    out_.reserve(lists_.settled.count + lists_.unsettled.count);
+    for (std::size_t i = 0; i < lists_.settled.count; i += hn::Lanes(D())) settled(i, special);
+    for (std::size_t i = 0; i < lists_.unsettled.count; i += hn::Lanes(D())) unsettled(i, special);
+  }
+
+ private:
+  /// Without light samples a sign within rounding moves an outline by no more than rounding.
+  [[nodiscard]] M open_ones(const Multiplicity& m) const { return in_.between_rows ? hn::FirstN(D(), 0) : m.open; }
+
+  struct Ways {
+    V x, y, w;
+  };
+  [[nodiscard]] Ways way_to(const GroupTable& table, std::size_t first, std::size_t i) const {
+    const auto column = [&](std::size_t field) { return hn::Load(D(), table[first + field] + i); };
+    return {hn::Sub(column(0), set(at_.seen.x)), hn::Sub(column(1), set(at_.seen.y)),
+            hn::Sub(set(at_.seen.z), column(2))};
+  }
+  struct Place {
+    V x, y;
+  };
+  [[nodiscard]] Place appears(const Ways& way) const {
+    const V q = hn::Div(set(at_.height), way.w);
+    return {hn::Add(set(at_.foot.x), hn::Mul(q, way.x)), hn::Add(set(at_.foot.y), hn::Mul(q, way.y))};
+  }
+
+  /// Edges well above p.
+  template <typename Special>
+  void settled(std::size_t i, Special& special) {
+    const GroupTable& table = lists_.settled;
+    const Multiplicity m = multiplicity(table, at_, i);
+    const M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
+    if (hn::AllFalse(D(), live)) return;
+    const M open = hn::And(live, open_ones(m));
+    if (!hn::AllFalse(D(), open)) special({table, i, open, m, true});
+    const V error = hn::Load(D(), table[kGroupError] + i);
+    keep_crossing({appears(way_to(table, kAx, i)), appears(way_to(table, kBx, i)), m.k, error,
+                   hn::Load(D(), table[kGroupEdge] + i)},
+                  hn::AndNot(open, live));
+  }
+
+  /// Edges that may come near p's height, or go below: as scatter_precisely cuts them. (bound window)
+  template <typename Special>
+  void unsettled(std::size_t i, Special& special) {
+    const D d;
+    const Frame& frame = in_.frame;
+    const GroupTable& table = lists_.unsettled;
+    const Multiplicity m = multiplicity(table, at_, i);
+    M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
+    if (hn::AllFalse(d, live)) return;
+    const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
+    const glm::vec2 window = 2.0F * frame.half_cells + 2.0F, off = at_.foot - frame.first_cell;
+    // Beyond the table's end there is anything.
+    const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
+    const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(64 * kRound), far);
+    const V lift = hn::Mul(set(at_.per_lift), far);
+    V from = set(0), to = set(1);
+    for (int axis = 0; axis < 2; ++axis) {
+      const V xa = hn::Add(hn::Mul(axis == 0 ? a.x : a.y, set(at_.height)), hn::Mul(set(off[axis]), a.w));
+      const V xb = hn::Add(hn::Mul(axis == 0 ? b.x : b.y, set(at_.height)), hn::Mul(set(off[axis]), b.w));
+      const V wide_a = hn::Mul(set(window[axis]), hn::Add(a.w, lift));
+      const V wide_b = hn::Mul(set(window[axis]), hn::Add(b.w, lift));
+      for (const bool upper : {false, true}) {
+        const V inside_a = upper ? hn::Add(wide_a, xa) : hn::Sub(wide_a, xa);
+        const V inside_b = upper ? hn::Add(wide_b, xb) : hn::Sub(wide_b, xb);
+        const V t = hn::Div(inside_a, hn::Sub(inside_a, inside_b));
+        const M out_a = hn::Lt(inside_a, set(0)), out_b = hn::Lt(inside_b, set(0));
+        from = hn::IfThenElse(out_a, hn::Max(from, hn::IfThenElse(out_b, set(2), t)), from);
+        to = hn::IfThenElse(hn::AndNot(out_a, out_b), hn::Min(to, t), to);
+      }
+    }
+    live = hn::And(live, hn::Le(from, to));
+    if (hn::AllFalse(d, live)) return;
+    const auto at = [&](V t, M cut, V x, V y, V uncut) {
+      return hn::IfThenElse(cut, hn::Add(hn::Mul(x, hn::Sub(set(1), t)), hn::Mul(y, t)), uncut);
+    };
+    const M cut_a = hn::Gt(from, set(0)), cut_b = hn::Lt(to, set(1));
+    const Ways start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y), at(from, cut_a, a.w, b.w, a.w)};
+    const Ways end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
+    const M near_p = hn::Lt(hn::Min(start.w, end.w), through_p);
+    const M other = hn::And(live, hn::Or(open_ones(m), near_p));
+    if (!hn::AllFalse(d, other)) special({table, i, other, m, false});
+    const Place seen_a = appears(start), seen_b = appears(end);
+    const V error = hn::Mul(set(1.01F), hn::Max(error_of(seen_a, start.w, far), error_of(seen_b, end.w, far)));
+    keep_crossing({seen_a, seen_b, m.k, error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(other, live));
+  }
+
+  [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
+  /// (bound X)
+  [[nodiscard]] V error_of(const Place& seen, V w, V far) const {
+    const V foot = hn::Add(hn::Abs(hn::Sub(seen.x, set(at_.foot.x))), hn::Abs(hn::Sub(seen.y, set(at_.foot.y))));
+    return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(kPerReach), foot, set(at_.per_way)),
+                      hn::MulAdd(set(at_.per_foot), foot, set(at_.fixed)));
+  }
+
+  struct SeenEdge {
+    Place a, b;
+    V k, error, number;
+  };
+  /// What crosses light rows or the light's left side, or may.
+  void keep_crossing(const SeenEdge& e, M live) {
+    const D d;
+    const V low_x = hn::Sub(hn::Min(e.a.x, e.b.x), e.error), high_x = hn::Add(hn::Max(e.a.x, e.b.x), e.error);
+    const V low_y = hn::Sub(hn::Min(e.a.y, e.b.y), e.error), high_y = hn::Add(hn::Max(e.a.y, e.b.y), e.error);
+    const V rows = set(static_cast<float>(in_.frame.rows)), columns = set(static_cast<float>(in_.frame.columns));
+    const V first = hn::Max(hn::Ceil(low_y), set(0)), last = hn::Min(hn::Floor(high_y), hn::Sub(rows, set(1)));
+    const M left = hn::And(hn::Lt(low_x, set(-0.5F)), hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows)));
+    const M before = hn::And(hn::Le(low_x, columns), hn::Ge(high_x, set(-0.5F)));
+    const M on_light = hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows));
+    const M matters = in_.between_rows ? on_light : hn::Or(left, hn::Le(first, last));
+    const M kept = hn::And(live, hn::And(before, matters));
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) return;
+    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out_[field] + out_.count); };
+    put(kX0, e.a.x);
+    put(kY0, e.a.y);
+    put(kX1, e.b.x);
+    put(kY1, e.b.y);
+    put(kK, e.k);
+    put(kError, e.error);
+    put(kEdge, e.number);
+    out_.count += more;
+  }
+
+  const ScatterInput& in_;
+  const Sample& at_;
+  const GroupLists& lists_;
+  CrossingTable& out_;
+};
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // once a target

@@ -1,0 +1,300 @@
+#include "volumes/scatter/vectors/rows.hpp"
+
+#include "mesh/predicates.hpp"
+#include "volumes/edges/plane_normal.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+constexpr double kUnit = 0x1p-53;  // half a unit in the last place of 1
+
+double at_height(const RowEdge& edge, double y) {
+  const double t = std::clamp((y - edge.y0) / (edge.y1 - edge.y0), 0.0, 1.0);
+  return edge.x0 + t * (edge.x1 - edge.x0);
+}
+
+glm::dvec3 point(const WidePoints& points, std::size_t lane) {
+  return {points[0][lane], points[1][lane], points[2][lane]};
+}
+
+/// Is the light's corner within `error` of the edge?
+bool passes_corner(const RowEdge& edge, double error) {
+  const auto holds = [&](double a, double b) { return std::min(a, b) <= error && std::max(a, b) >= -error; };
+  if (!holds(edge.x0, edge.x1) || !holds(edge.y0, edge.y1)) return false;
+  const double beside = std::abs(edge.x0 * edge.y1 - edge.x1 * edge.y0);
+  return beside <= error * (std::abs(edge.x1 - edge.x0) + std::abs(edge.y1 - edge.y0));
+}
+
+}  // namespace
+
+RowSum::RowSum(const Frame& frame, const visibility::SceneFloats& scene, float scale)
+    : frame_(frame),
+      scene_(scene),
+      scale_(scale),
+      per_length_(std::max(glm::length(frame.axes[0]), glm::length(frame.axes[1]))),
+      skew_(frame.skew) {}
+
+/// (bound foot)
+void RowSum::begin(const Placed& at) {
+  edges_.clear();
+  left_.clear();
+  at_corner_ = 0;
+  error_ = largest_error_ = 0;
+  corner_is_open_ = is_open_ = false;
+  p_ = glm::dvec3(at.p);
+  plane_ = at.plane;
+  const glm::dvec3 from = p_ - frame_.corner;
+  foot_ = {glm::dot(frame_.axes[0], from), glm::dot(frame_.axes[1], from)};
+  height_ = glm::dot(frame_.axes[2], from);
+  const double away = glm::length(from), off = 8 * kUnit * static_cast<double>(frame_.reach);
+  error_foot_ = per_length_ * (32 * kUnit * skew_ * away + off);
+  error_height_ = 16 * kUnit * skew_ * away + off;
+  steepness_ = height_ / (away + 2 * static_cast<double>(frame_.radius));
+  is_open_ = !(height_ > 8 * error_height_);
+}
+
+/// Which side of one of the edge's triangles is p on? n is the exact normal rounded to float: what that may change (16
+/// · 2⁻²⁴ of each term, bound side) exact predicates say.
+int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const {
+  const glm::dvec3 n = point(leaf.n[side], lane), from = p_ - point(leaf.anchor[side], lane);
+  const double f = glm::dot(n, from), error = 16 * static_cast<double>(kRound) * glm::dot(glm::abs(n), glm::abs(from));
+  if (std::abs(f) > error) return f > 0 ? 1 : -1;
+  const auto corners = scene_.corners(leaf.plane[side][lane]);  // a plane's number is that of a triangle in it
+  const glm::dvec3 unscaled = p_ / static_cast<double>(scale_);
+  const auto at = mesh::side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), unscaled);
+  if (at == mesh::Side::on) return 0;
+  // Both normals have the signs of the exact ones, which are parallel: so have all terms of their product.
+  const bool alike = glm::dot(n, glm::dvec3(rounded_normal(corners))) > 0;
+  return alike == (at == mesh::Side::front) ? 1 : -1;
+}
+
+/// As seen from the light's front.
+int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
+  int k = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (leaf.plane[side][lane] == plane_) continue;  // its own plane hides nothing
+    if (point(leaf.n[side], lane) == glm::dvec3(0)) continue;
+    k += side_of(leaf, side, lane);
+  }
+  return frame_.side < 0 ? -k : k;
+}
+
+/// (bound way)
+RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
+  const glm::dvec3 d = point - p_;
+  const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;
+  return {{glm::dot(frame_.axes[0], d), glm::dot(frame_.axes[1], d), -glm::dot(frame_.axes[2], d)},
+          64 * error * per_length_,
+          32 * error,
+          length};
+}
+
+RowSum::Way RowSum::way_to(const CutEnd& end) const {
+  if (!end.place) {
+    Way way = way_to(end.point);  // computed from points no farther than `reach`
+    const double off = 16 * kUnit * static_cast<double>(frame_.reach);
+    way.error += off * per_length_;
+    way.error_up += off;
+    return way;
+  }
+  const glm::dvec2 place = *end.place * 2.0 * glm::dvec2(frame_.half_cells), to = place - foot_;
+  const double size = std::abs(place.x) + std::abs(place.y);
+  return {{to.x, to.y, height_},
+          error_foot_ + 4 * kUnit * (size + std::abs(foot_.x) + std::abs(foot_.y)),
+          error_height_,
+          height_ / steepness_ * (1 + size)};
+}
+
+RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const {
+  const std::uint32_t cut = leaf.cut[lane];
+  if (cut == 0 || ends == nullptr) return {way_to(point(leaf.a, lane)), way_to(point(leaf.b, lane))};
+  const CutEnds::Edge& edge = (*ends)[cut];
+  return {way_to(edge.a), way_to(edge.b)};
+}
+
+/// What double makes of how far the end of a way is inside a side of the window.
+double RowSum::error_inside(const Way& way, int axis) const {
+  const double middle = static_cast<double>(frame_.half_cells[axis]), window = 2 * middle + 2;
+  return 2 * (height_ * way.error + (window + std::abs(foot_[axis] - middle)) * way.error_up +
+              error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
+}
+
+/// An edge that is outside of one side of the window after the other: it passes by, unless it passes p within rounding.
+/// No nearer than that, whatever of it is on the light is so high over p that no error can have hidden it. (bound apex)
+bool RowSum::may_pass_p(const Ways& ways) const {
+  const auto& [a, b] = ways;
+  const double error = std::max({error_inside(a, 0), error_inside(a, 1), error_inside(b, 0), error_inside(b, 1)});
+  const glm::dvec2 lengths = glm::dvec2(1 / per_length_);
+  const glm::dvec3 near_a(glm::dvec2(a.to) * lengths, a.to.z), near_b(glm::dvec2(b.to) * lengths, b.to.z);
+  const double nearest = glm::length(glm::cross(near_a, near_b)) / std::max(a.length + b.length, 0x1p-300);
+  return !(nearest * steepness_ * static_cast<double>(std::min(frame_.half_cells.x, frame_.half_cells.y)) > 4 * error);
+}
+
+/// The part of an edge that appears in a window of about twice the light, before any division. (bound window) False:
+/// nothing of it is on the light.
+bool RowSum::cut_to_window(Ways& ways) {
+  auto& [a, b] = ways;
+  const glm::dvec2 middle(frame_.half_cells), window = 2.0 * middle + 2.0;
+  double from = 0, to = 1;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double off = foot_[axis] - middle[axis];
+    const double xa = a.to[axis] * height_ + off * a.to.z, xb = b.to[axis] * height_ + off * b.to.z;
+    for (const double sign : {-1.0, 1.0}) {
+      const double inside_a = window[axis] * a.to.z + sign * xa, inside_b = window[axis] * b.to.z + sign * xb;
+      if (inside_a < 0 && inside_b < 0) {
+        is_open_ = is_open_ || inside_a > -error_inside(a, axis) || inside_b > -error_inside(b, axis);
+        return false;
+      }
+      const double t = inside_a / (inside_a - inside_b);
+      if (inside_a < 0) from = std::max(from, t);
+      if (inside_b < 0) to = std::min(to, t);
+    }
+  }
+  if (from > to) {
+    is_open_ = is_open_ || may_pass_p(ways);
+    return false;
+  }
+  if (from == 0 && to == 1) return true;
+  const glm::dvec3 start = from > 0 ? glm::mix(a.to, b.to, from) : a.to, end = to < 1 ? glm::mix(a.to, b.to, to) : b.to;
+  a.to = start;
+  b.to = end;
+  return true;
+}
+
+void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
+  const int k = multiplicity(leaf, lane);
+  if (k == 0 || is_open_) return;
+  Ways ways = ways_of(leaf, lane, ends);
+  if (!cut_to_window(ways)) return;
+  const auto& [a, b] = ways;
+  const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
+               error_up = std::max(a.error_up, b.error_up);
+  if (!(lowest > 8 * error_up)) {  // it passes through p but for rounding
+    is_open_ = true;
+    return;
+  }
+  const glm::dvec2 seen_a = height_ / a.to.z * glm::dvec2(a.to), seen_b = height_ / b.to.z * glm::dvec2(b.to);
+  const double far = std::max(std::abs(seen_a.x) + std::abs(seen_a.y), std::abs(seen_b.x) + std::abs(seen_b.y));
+  // (bound place)
+  const double off = 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
+                          8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
+  const glm::dvec2 from = foot_ + seen_a, to = foot_ + seen_b;
+  add({from.x, from.y, to.x, to.y, k}, off);
+}
+
+/// `error`: of where its ends appear.
+void RowSum::add(RowEdge edge, double error) {
+  if (!(error < 0.5)) {
+    is_open_ = true;
+    return;
+  }
+  error_ += error;
+  largest_error_ = std::max(largest_error_, error);
+  if (passes_corner(edge, 2 * error)) corner_is_open_ = true;
+  const double width = frame_.columns, height = frame_.rows;
+  if (edge.y0 > edge.y1) edge = {edge.x1, edge.y1, edge.x0, edge.y0, -edge.k};
+  if ((edge.x0 < 0) != (edge.x1 < 0)) {
+    const double y = edge.y0 + (0 - edge.x0) / (edge.x1 - edge.x0) * (edge.y1 - edge.y0);
+    // Crossing it upwards, if it runs to the right: +k.
+    if (y > 0 && y < height) left_.push_back({y, edge.x0 < edge.x1 ? edge.k : -edge.k});
+  }
+  // Cut to the light: first its sides, then top and bottom.
+  for (const double side : {0.0, width}) {
+    const bool out0 = side == 0 ? edge.x0 < 0 : edge.x0 > width, out1 = side == 0 ? edge.x1 < 0 : edge.x1 > width;
+    if (out0 && out1) return;
+    if (!out0 && !out1) continue;
+    const double y = edge.y0 + (side - edge.x0) / (edge.x1 - edge.x0) * (edge.y1 - edge.y0);
+    (out0 ? edge.x0 : edge.x1) = side;
+    (out0 ? edge.y0 : edge.y1) = std::clamp(y, edge.y0, edge.y1);
+  }
+  if (edge.y1 <= 0 || edge.y0 >= height) return;
+  const RowEdge whole = edge;
+  if (edge.y0 < 0) {
+    edge.x0 = at_height(whole, 0);
+    edge.y0 = 0;
+  }
+  if (edge.y1 > height) {
+    edge.x1 = at_height(whole, height);
+    edge.y1 = height;
+  }
+  // A lower one has a slope that is more than 2¹³ (columns) times this, and products with it overflow; without it areas
+  // change by less than columns times this.
+  constexpr double kLevel = 0x1p-900;
+  if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
+}
+
+std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
+  const auto [x, y] = std::pair(place.x, place.y);
+  // No true edge is nearer than half of this, nor is the rounding of what follows as large.
+  const double near = 4 * largest_error_ + 64 * kUnit * (frame_.columns + frame_.rows);
+  std::int32_t depth = 0;
+  for (const RowStep& step : left_) {
+    if (std::abs(step.y - y) < near) return std::nullopt;
+    if (step.y < y) depth += step.change;
+  }
+  for (const RowEdge& edge : edges_) {
+    if (edge.y0 > y + near || edge.y1 < y - near) continue;
+    if (std::abs(edge.y0 - y) < near || std::abs(edge.y1 - y) < near) return std::nullopt;
+    const double crossing = at_height(edge, y), slope = std::abs(edge.x1 - edge.x0) / (edge.y1 - edge.y0);
+    if (std::abs(crossing - x) < near * (1 + slope)) return std::nullopt;
+    if (crossing < x) depth -= edge.k;
+  }
+  return depth;
+}
+
+void RowSum::add_horizon(const HorizonLine& line) {
+  const double width = frame_.columns, height = frame_.rows;
+  // above · (s, t, 1) as a X + b Y + c, from the light's corner.
+  const glm::dvec3& above = line.above;
+  const double a = 2 * above.x / width, b = 2 * above.y / height;
+  const double c = above.z - above.x - above.y;
+  const double low = c, high = b * height + c;  // at the ends of the light's left side
+  const double largest = std::abs(above.x) + std::abs(above.y) + std::abs(above.z);
+  const double error = 4 * (line.error.x + line.error.y + line.error.z) + 16 * kUnit * largest;
+  // At the end of the side that is farther from the line, so that a line through the corner is counted once.
+  if (!(std::max(std::abs(low), std::abs(high)) > error)) {
+    is_open_ = true;
+    return;
+  }
+  if (a == 0 && b == 0) {
+    at_corner_ = low > 0 ? 0 : 1;
+    return;
+  }
+  const std::size_t before = left_.size();
+  // Far beyond the light on either side, along the line.
+  const double squared = a * a + b * b, foot = -(c + a * width / 2 + b * height / 2) / squared;
+  const double x = width / 2 + a * foot, y = height / 2 + b * foot, far = 2 * (width + height) / std::sqrt(squared);
+  const double sign = a > 0 ? 1 : -1;  // upward
+  const double off = 2 * error / std::sqrt(squared);
+  if (std::max(std::abs(x), std::abs(y)) < 4 * (width + height) + off) {
+    // To the right of it, where it runs upward, is above the plane if a > 0: one layer less.
+    const bool open = corner_is_open_;
+    add({x + sign * b * far, y - sign * a * far, x - sign * b * far, y + sign * a * far, a > 0 ? 1 : -1},
+        off + 64 * kUnit * (width + height));
+    corner_is_open_ = open;  // the corner's depth is that of triangles
+  }
+  const std::int32_t change = left_.size() > before ? left_.back().change : 0;
+  at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
+}
+
+std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts) {
+  const double width = frame_.columns, height = frame_.rows, all = width * height;
+  if (parts != nullptr) parts->clear();
+  if (is_open_) return std::nullopt;
+  const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * all;
+  const auto [visible, impossible, disorder] =
+      sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts});
+  // (bound share)
+  const double off = error_ * (width + height + 2) + 4 * disorder + rounded;
+  if (!(off <= kProven * all) || !(impossible <= off)) return std::nullopt;
+  return std::clamp(visible / all, 0.0, 1.0);
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/scatter/vectors/row_sweep.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+/// The share of a light that a view sample sees, without light samples: rows=exact of edge scatter. Inside volumes/
+/// only.
+namespace penumbra::volumes {
+
+/// Of a share of the light: what double must prove it to, so that with the rounding to float V is off by less than a
+/// unit in the last place.
+constexpr double kProven = 0x1p-26;
+
+/// Edges as they appear to one view sample, in double, each with the error of where it appears, and the sweep over
+/// them: a share with a proof of how far it may be off, or nothing. docs/edge-scatter.md, "Without light samples" and
+/// "What double proves".
+class RowSum {
+ public:
+  RowSum(const Frame& frame, const visibility::SceneFloats& scene, float scale);
+
+  void begin(const Placed& at);
+  /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
+  /// off by what float rounds.
+  void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
+  /// Rounding hides on which side of an edge the light's corner is.
+  [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
+  /// The depth at a place of the light, in cells from its corner, but for that at the corner; nothing: an edge is near.
+  [[nodiscard]] std::optional<std::int32_t> relative_depth(const glm::dvec2& place) const;
+  /// What lies below the carrier's plane counts as one layer more. After relative_depth.
+  void add_horizon(const HorizonLine& line);
+  /// The share that is visible; nothing if it is not proven. `parts`: gets what is visible, if given.
+  [[nodiscard]] std::optional<double> visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts);
+  /// Something has not been proven.
+  [[nodiscard]] bool is_open() const { return is_open_; }
+
+ private:
+  /// A way from p: across and along, and up to the light; what these are off by; and at least how long it is.
+  struct Way {
+    glm::dvec3 to{0};
+    double error = 0, error_up = 0, length = 0;
+  };
+  struct Ways {
+    Way a, b;
+  };
+  [[nodiscard]] Way way_to(const glm::dvec3& point) const;
+  [[nodiscard]] Way way_to(const CutEnd& end) const;
+  [[nodiscard]] Ways ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const;
+  [[nodiscard]] int multiplicity(const WideEdges& leaf, std::size_t lane) const;
+  [[nodiscard]] int side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const;
+  [[nodiscard]] double error_inside(const Way& way, int axis) const;
+  [[nodiscard]] bool may_pass_p(const Ways& ways) const;
+  [[nodiscard]] bool cut_to_window(Ways& ways);
+  void add(RowEdge edge, double error);
+
+  const Frame& frame_;
+  const visibility::SceneFloats& scene_;
+  float scale_;
+  double per_length_, skew_;  // the axes: cells a length, and what makes them ill-conditioned
+  // Of the view sample: p over the light's plane, and what that is off by.
+  glm::dvec3 p_{0};
+  std::uint32_t plane_ = 0;
+  glm::dvec2 foot_{0};  // from the light's corner, in cells
+  double height_ = 0, error_foot_ = 0, error_height_ = 0, steepness_ = 0;
+
+  RowSweep sweep_;
+  std::vector<RowEdge> edges_;
+  std::vector<RowStep> left_;  // of the depth at the light's left side
+  double error_ = 0, largest_error_ = 0;
+  bool corner_is_open_ = false, is_open_ = false;
+  std::int32_t at_corner_ = 0;  // what add_horizon adds
+};
+
+}  // namespace penumbra::volumes

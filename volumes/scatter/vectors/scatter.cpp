@@ -1,0 +1,325 @@
+// Edge scatter on a processor: what scatter_edges.comp does, with edges side by side instead of view samples.
+
+#include "volumes/scatter/vectors/scatter.hpp"
+
+#include "engines/vectors/horizon.hpp"
+#include "volumes/scatter/vectors/precise.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/scatter.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "engines/vectors/vectors-inl.hpp"
+#include "volumes/scatter/vectors/projection-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
+
+template <typename Counter>
+class SampleScatter {
+ public:
+  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, Judge& judge)
+      : in_(in), s_(scratch), changes_(changes), judge_(judge) {}
+
+  /// Whether the depth changes anywhere on the light, or something is open.
+  bool operator()(const Sample& at) {
+    at_ = &at;
+    const auto special = [&](const SpecialEdges& edges) { precisely(edges); };
+    Projection{in_, at, s_.lists, s_.crossing}(special);
+    std::size_t landed = 0;
+    bool any = false;
+    for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) any |= cross(i, landed);
+    for (std::size_t i = 0; i < landed; ++i) {
+      Counter& cell = changes_.cells[s_.landing[i]];
+      cell = static_cast<Counter>(cell + s_.jump[i]);
+    }
+    return any || landed > 0 || any_precise_ || s_.open.any();
+  }
+
+ private:
+  void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& placed) {
+    const float turned = in_.frame.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
+    scatter_precisely<Counter>({in_, *at_, edge, turned, is_settled, placed}, changes_, s_.open);
+    any_precise_ = true;
+  }
+  /// Edges of the group that are not for vectors.
+  void precisely(const SpecialEdges& edges) {
+    HWY_ALIGN float k[hn::MaxLanes(D())];
+    std::uint8_t open[8] = {};
+    hn::Store(edges.multiplicity.k, D(), k);
+    hn::StoreMaskBits(D(), edges.multiplicity.open, open);
+    for_each_lane(edges.which, [&](std::size_t lane) {
+      const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
+      const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
+      const std::optional<float> sure =
+          is_open ? exact_multiplicity(in_.edges, edge, *at_, judge_) : std::optional(k[lane]);
+      if (sure) {
+        precisely(edge, *sure, edges.settled, std::nullopt);
+      } else {
+        s_.open.pixel = true;
+      }
+    });
+  }
+
+  /// Scatters crossing edges; returns whether the left side changes.
+  bool cross(std::size_t i, std::size_t& landed) {
+    const D d;
+    const I di;
+    const Frame& frame = in_.frame;
+    const CrossingTable& table = s_.crossing;
+    const M used = first_lanes(table.count - i);
+    const auto column_of = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
+    const V x0 = column_of(kX0), y0 = column_of(kY0), x1 = column_of(kX1), y1 = column_of(kY1);
+    const V k = frame.side < 0 ? hn::Neg(column_of(kK)) : column_of(kK), error = column_of(kError);
+    const V to_a =
+        hn::Add(hn::Abs(hn::Sub(x0, set(frame.first_cell.x))), hn::Abs(hn::Sub(y0, set(frame.first_cell.y))));
+    const V to_b =
+        hn::Add(hn::Abs(hn::Sub(x1, set(frame.first_cell.x))), hn::Abs(hn::Sub(y1, set(frame.first_cell.y))));
+    const M turn = hn::Lt(to_b, to_a);
+    const V near_x = hn::IfThenElse(turn, x1, x0), near_y = hn::IfThenElse(turn, y1, y0);
+    const V far_x = hn::IfThenElse(turn, x0, x1), far_y = hn::IfThenElse(turn, y0, y1);
+    const V low_x = hn::Min(x0, x1), high_x = hn::Max(x0, x1), low_y = hn::Min(y0, y1), high_y = hn::Max(y0, y1);
+    const V way_x = hn::Sub(far_x, near_x), way_y = hn::Sub(far_y, near_y);
+    const M flat = hn::Eq(way_y, set(0));
+    const V slope = hn::Div(way_x, way_y), steep = hn::IfThenElse(flat, set(1e30F), hn::Abs(slope));
+    const V jump = hn::IfThenElse(hn::Xor(hn::Lt(near_y, far_y), turn), hn::Neg(k), k);
+    const V rows = set(static_cast<float>(frame.rows)), columns = set(static_cast<float>(frame.columns));
+
+    // Coarse: whatever may be open by the group's bound is looked at again, precisely.
+    M open = hn::Lt(hn::Abs(hn::Sub(near_y, hn::Round(near_y))), error);
+    open = hn::Or(open, hn::Lt(hn::Abs(hn::Sub(far_y, hn::Round(far_y))), error));
+    const V error_x = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), steep),
+                                 hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.x), hn::Abs(near_x))));
+    const auto holds_corner = [&](V low, V high) {
+      return hn::And(hn::Le(hn::Sub(low, error), set(-0.5F)), hn::Ge(hn::Add(high, error), set(-0.5F)));
+    };
+    const V at_corner = hn::MulAdd(hn::Sub(set(-0.5F), near_y), slope, near_x);
+    const M beside_corner =
+        hn::AndNot(flat, hn::Ge(hn::Abs(hn::Sub(hn::Min(hn::Max(at_corner, low_x), high_x), set(-0.5F))), error_x));
+    open = hn::Or(open, hn::AndNot(beside_corner, hn::And(holds_corner(low_x, high_x), holds_corner(low_y, high_y))));
+    V row = hn::Min(hn::Max(hn::Ceil(low_y), set(0)), rows);
+    const V end = hn::Min(hn::Max(hn::Ceil(high_y), set(0)), rows);
+    const V stride = set(static_cast<float>(frame.padded_rows));
+    const M left = hn::And(used, hn::Xor(hn::Lt(x0, set(-0.5F)), hn::Lt(x1, set(-0.5F))));
+    const M upper_right = hn::Ge(hn::IfThenElse(hn::Lt(y0, y1), x1, x0), set(-0.5F));
+    V from = end;  // the first row above where it crosses the light's left side
+    for (;;) {
+      const M crossed = hn::And(used, hn::Lt(row, end));
+      if (hn::AllFalse(d, crossed)) break;
+      const V x = hn::Min(hn::Max(hn::Add(near_x, hn::Mul(hn::Sub(row, near_y), slope)), low_x), high_x);
+      const auto number = hn::ConvertTo(di, hn::IfThenElseZero(crossed, row));
+      const V column = hn::Sub(x, hn::GatherIndex(d, frame.shift.data(), number));
+      const V first = hn::Max(hn::Ceil(column), set(0));
+      const M right = hn::Ge(x, set(-0.5F)), lands = hn::And(crossed, hn::And(right, hn::Lt(first, columns)));
+      from = hn::Min(from, hn::IfThenElse(hn::AndNot(hn::Xor(right, upper_right), crossed), row, end));
+      const auto place = hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::Add(hn::Mul(first, stride), row)));
+      hn::CompressStore(place, hn::RebindMask(di, lands), di, s_.landing.data() + landed);
+      hn::CompressStore(hn::ConvertTo(di, jump), hn::RebindMask(di, lands), di, s_.jump.data() + landed);
+      landed += hn::CountTrue(d, lands);
+      const V on_light = hn::Min(hn::Max(hn::Round(column), set(0)), hn::Sub(columns, set(1)));
+      const M near_column = hn::Lt(hn::Abs(hn::Sub(column, on_light)), error_x);
+      open = hn::Or(open, hn::And(crossed, near_column));
+      row = hn::Add(row, set(1));
+      if (landed + hn::Lanes(d) > s_.landing.size()) grow_landing();
+    }
+
+    const bool any_left = !hn::AllFalse(d, left);
+    if (any_left) {
+      const V inverse = hn::Div(way_y, way_x);
+      const V y = hn::Min(hn::Max(hn::Add(near_y, hn::Mul(hn::Sub(set(-0.5F), near_x), inverse)), low_y), high_y);
+      const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
+                                   hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.y), hn::Abs(near_y))));
+      open = hn::Or(open, hn::And(left, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y)));
+      // Beside light rows they know better than the division: only below the first of them is y asked.
+      const M over_corner = hn::Or(hn::Gt(from, set(0)), hn::Gt(y, set(-0.5F)));
+      const M above = hn::And(left, hn::And(over_corner, hn::Lt(from, rows)));
+      const V up = hn::IfThenElse(hn::Lt(x0, x1), k, hn::Neg(k));
+      change_left(from, up, above);
+    }
+    open = hn::And(open, used);
+    if (!hn::AllFalse(d, open)) look_again(i, open);
+    return any_left;
+  }
+
+  void grow_landing() {
+    s_.landing.resize(2 * s_.landing.size());
+    s_.jump.resize(s_.landing.size());
+  }
+
+  void change_left(V row, V up, M which) {
+    HWY_ALIGN float rows[hn::MaxLanes(D())];
+    HWY_ALIGN float ups[hn::MaxLanes(D())];
+    const std::size_t count = hn::CompressStore(row, which, D(), rows);
+    hn::CompressStore(up, which, D(), ups);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      Counter& cell = changes_.left[static_cast<std::size_t>(rows[lane])];
+      cell = static_cast<Counter>(cell + static_cast<Counter>(ups[lane]));
+    }
+  }
+
+  void look_again(std::size_t first, M which) {
+    const CrossingTable& table = s_.crossing;
+    for_each_lane(which, [&](std::size_t lane) {
+      const std::size_t i = first + lane;
+      const auto number = std::bit_cast<std::uint32_t>(table[kEdge][i]);
+      const std::array placed{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
+      precisely(number & ~kUnsettled, table[kK][i], (number & kUnsettled) == 0, placed);
+    });
+  }
+
+  const ScatterInput& in_;
+  Scratch& s_;
+  const Changes<Counter>& changes_;
+  Judge& judge_;
+  const Sample* at_ = nullptr;
+  bool any_precise_ = false;
+};
+
+// ---- depths to bits ------------------------------------------------------------------------------------------------
+
+template <typename Counter>
+using CounterTag = hn::CappedTag<Counter, 16>;
+
+/// Depths from changes; a light sample is visible where no triangle is before it.
+template <typename Counter>
+void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t depth_at_corner, Seen& seen) {
+  const CounterTag<Counter> d;
+  std::int32_t depth = static_cast<std::int32_t>(depth_at_corner);
+  for (std::uint32_t row = 0; row < frame.padded_rows; ++row) {  // left becomes the depth at the light's left side
+    depth += changes.left[row];
+    changes.left[row] = row < frame.rows ? static_cast<Counter>(depth) : Counter{1};
+  }
+  const std::size_t words = frame.padded_rows / 16;
+  std::size_t visible = 0;
+  for (std::size_t row = 0; row < frame.padded_rows; row += hn::Lanes(d)) {
+    auto depths = hn::LoadU(d, changes.left + row);
+    for (std::size_t column = 0; column < frame.columns; ++column) {
+      depths = hn::Add(depths, hn::LoadU(d, changes.cells + column * frame.padded_rows + row));
+      const auto none = hn::Eq(depths, hn::Zero(d));
+      visible += hn::CountTrue(d, none);
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, none, bytes);
+      std::uint16_t& word = seen.mask[column * words + row / 16];
+      const std::uint32_t found = (bytes[0] | std::uint32_t{bytes[1]} << 8U) << row % 16;
+      word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
+    }
+  }
+  seen.visible = static_cast<std::uint32_t>(visible);
+}
+
+/// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
+template <typename Counter>
+std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& changes, Open& open, const Sample& at,
+                                    Judge& judge) {
+  for (std::uint32_t row = 0, left = 0; row < frame.rows; ++row) {
+    left += static_cast<std::uint32_t>(static_cast<std::int32_t>(changes.left[row]));
+    if (std::find(open.rows.begin(), open.rows.end(), row) != open.rows.end()) continue;
+    std::uint32_t depth = left;  // but for D(corner); modulo 2³²
+    for (std::uint32_t column = 0; column < frame.columns; ++column) {
+      depth += static_cast<std::uint32_t>(
+          static_cast<std::int32_t>(changes.cells[std::size_t{column} * frame.padded_rows + row]));
+      const std::uint32_t sample = row * frame.columns + column;
+      if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
+      return judge.depth(at, sample) - depth;
+    }
+  }
+  open.pixel = true;
+  return 0;
+}
+
+/// The same where no edge changes it: at any light sample that is not open.
+std::uint32_t depth_by_any_sample(const Frame& frame, Open& open, const Sample& at, Judge& judge) {
+  for (std::uint32_t sample = 0; sample < frame.rows * frame.columns; ++sample) {
+    if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
+    return judge.depth(at, sample);
+  }
+  open.pixel = true;
+  return 0;
+}
+
+/// One view sample, its group's edges sorted out.
+template <typename Counter>
+void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& histogram,
+                    std::vector<Counter>& left, const Sample& at, Judge& judge, Seen& seen) {
+  const Frame& frame = in.frame;
+  const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
+  std::uint32_t depth =
+      scratch.lists.triangles.count == 0
+          ? 0
+          : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges, in.light_plane}, scratch.open);
+  bool changes_any = false;
+  if (edges) {
+    histogram.assign(std::size_t{frame.columns} * frame.padded_rows, 0);
+    left.assign(frame.padded_rows, 0);
+    const Changes<Counter> changes{histogram.data(), left.data()};
+    changes_any = SampleScatter<Counter>(in, scratch, changes, judge)(at);
+    if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
+    if (changes_any) sum_up(frame, changes, depth, seen);
+  } else if (scratch.open.corner) {
+    depth = depth_by_any_sample(frame, scratch.open, at, judge);
+  }
+  if (!changes_any) {
+    seen.visible = depth == 0 ? frame.rows * frame.columns : 0;
+    if (at.straddles || scratch.open.any()) fill(frame, depth == 0, seen);
+  }
+  if (at.straddles) cut_at_horizon(frame, at, scratch.open, seen);
+}
+
+void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
+  const std::span<const Sample> samples = in.samples;
+  if (scratch.landing.empty()) {
+    scratch.landing.resize(4096);
+    scratch.jump.resize(4096);
+  }
+  for (std::size_t first = 0; first < samples.size(); first += in.group) {
+    const auto group = samples.subspan(first, std::min(in.group, samples.size() - first));
+    sort_out(in, group, scratch.lists);
+    // Changes of a cell and its depth stay within ±(2 edges + triangles).
+    const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      begin(in.frame, in.touch, group[i], scratch.open);
+      Seen& result = seen[first + i];
+      if (narrow) {
+        scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], judge, result);
+      } else {
+        scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, group[i], judge, result);
+      }
+      if (scratch.open.any()) judge.decide(group[i], scratch.open, result);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::volumes {
+
+void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed& at, Open& open) {
+  open.clear();
+  if (touch.empty()) return;
+  open.samples = touch.samples;
+  const float farthest = glm::length(at.p - frame.center) + frame.radius;
+  open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * farthest;
+}
+
+HWY_EXPORT(scatter_here);
+
+void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
+  HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, seen);
+}
+
+}  // namespace penumbra::volumes
+#endif

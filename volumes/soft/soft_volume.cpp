@@ -1,0 +1,354 @@
+// U. Assarsson, T. Akenine-Möller, A geometry-based soft shadow volume algorithm using graphics hardware, SIGGRAPH
+// 2003: shadow volumes of the light's centre count the layers there; a penumbra wedge an edge finds the pixels where
+// the edge changes that for a part of the light, and adds the part. Departures: any soup, by signed multiplicity; sums
+// of integers in a buffer in place of blending; the edge cut by the light is its own test of being in the wedge; signs
+// in double decide which way round an edge goes, as they decide the count, and where they cannot, the host does.
+
+#include "volumes/soft/soft_volume.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "volumes/soft/coverage_table.hpp"
+#include "volumes/soft/light_parts.hpp"
+#include "volumes/wedges/soft_visibility.hpp"
+#include "volumes/soft/soft_volume.frag.spv.hpp"
+#include "volumes/wedges/texture_weights.hpp"
+#include "volumes/raster/volume_count.hpp"
+#include "volumes/raster/wedge_builder.hpp"
+#include "volumes/wedges/wedge_casters.hpp"
+#include "volumes/raster/wedge_raster.hpp"
+
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+using visibility::Light;
+using visibility::LightKind;
+using visibility::SceneFloats;
+using visibility::Tile;
+using visibility::ViewSamples;
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return {visibility::Verdict::approximate,
+          visibility::reason_with(
+              "the silhouettes of the light's centre stand for all of them, and layers that overlap are added", mesh,
+              {{mesh.boundary_edges.count,
+                "boundary edges: the surface counts triangle by triangle, a solid that is "
+                "not closed twice"},
+               {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+}
+
+visibility::MethodDescription describe() {
+  return {.name = "soft-volume",
+          .family = visibility::Family::geometry,
+          .paper = "Assarsson and Akenine-Möller 2003",
+          .output = visibility::Output::scalar,
+          .exact_for =
+              "occluders that do not overlap as seen from the view sample and whose silhouettes are those that "
+              "the light's centre sees: planar ones, say",
+          .lights = {LightKind::rectangle, LightKind::disk},
+          .options = {{"split", "1|2|3", "1",
+                       "cut a rectangle in split² lights, each with silhouettes and a count of its own"},
+                      {"coverage", "analytic|table", "analytic",
+                       "integrate the light beyond each edge, or look it up between 1024 points of the light"},
+                      {"construction", "original|tight", "original", "of the wedges, which say where to look"},
+                      {"wedges", "device|host", "device",
+                       "where silhouettes and wedges are built for each light (tight ones always on the host)"},
+                      {"tests", "none|z|both", "both",
+                       "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"}},
+          .verdict_on = verdict_on};
+}
+
+std::string option(const visibility::MethodOptions& options, const std::string& key, const std::string& otherwise) {
+  const auto found = options.find(key);
+  return found == options.end() ? otherwise : found->second;
+}
+
+std::uint32_t split_of(const visibility::MethodOptions& options) {
+  const std::string split = option(options, "split", "1");
+  for (const std::uint32_t n : {1u, 2u, 3u}) {
+    if (split == std::to_string(n)) return n;
+  }
+  throw UsageError("method soft-volume: split={} is none of 1, 2, 3", split);
+}
+
+/// Is the option the second of the two values that it has?
+bool second_of(const visibility::MethodOptions& options, const std::string& key,
+               const std::pair<std::string, std::string>& values) {
+  const std::string value = option(options, key, values.first);
+  if (value == values.first || value == values.second) return value == values.second;
+  throw UsageError("method soft-volume: {}={} is neither {} nor {}", key, value, values.first, values.second);
+}
+
+WedgeTests tests_of(const visibility::MethodOptions& options) {
+  const std::string value = option(options, "tests", name_of(WedgeTests::both));
+  for (const WedgeTests tests : {WedgeTests::none, WedgeTests::z, WedgeTests::both}) {
+    if (value == name_of(tests)) return tests;
+  }
+  throw UsageError("method soft-volume: tests={} is none of none, z, both", value);
+}
+
+WedgeBuilder::Options builder_options(const visibility::MethodDescription& method,
+                                      const visibility::MethodOptions& options) {
+  return {.on = wedges_on(method, options),
+          .construction =
+              second_of(options, "construction", {"original", "tight"}) ? Construction::tight : Construction::original,
+          .layers = Layers::one_a_solid};
+}
+
+/// The light, or one of the parts it is cut in.
+struct Part {
+  explicit Part(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
+
+  VolumeCount count;
+  Light light;
+  LightOutline outline;
+  std::optional<TextureWeights> texture;
+  std::vector<double> table;  // what the shader reads of this light
+  double weight = 1;          // of the whole light, which is 1
+  LightWedges wedges;
+  std::uint64_t facings_on_host = 0, edges_on_host = 0;  // WedgeBuilder::Built
+  std::optional<std::vector<gpu::WedgeFace>> faces;      // for this view
+  struct Host {
+    Host(const SceneFloats& scene, const Light& light)
+        : casters(casters_of(scene, light)), visibility(scene, light, casters) {}
+    Casters casters;
+    SoftVisibility visibility;
+  };
+  std::unique_ptr<Host> host;  // made for the first doubtful pixel
+};
+
+class SoftVolume final : public visibility::Method {
+ public:
+  SoftVolume(const render::Device& device, const visibility::MethodOptions& options)
+      : description_(describe()),
+        device_(&device),
+        split_(split_of(options)),
+        table_(second_of(options, "coverage", {"analytic", "table"})),
+        builder_(device, builder_options(description_, options)),
+        tests_(tests_of(options)) {
+    visibility::check_options(description_, options);
+    for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<Part>(device));
+  }
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+
+  void prepare_mesh(const SceneFloats& scene) override {
+    scene_ = &scene;
+    builder_.prepare_mesh(scene);
+    for (const auto& part : parts_) part->count.prepare_scene(scene);
+  }
+
+  void prepare_light(const Light& light) override {
+    visibility::check_light(description_, light);
+    if (split_ > 1 && light.kind != LightKind::rectangle) {
+      throw InputError("light \"{}\" is a {}; method soft-volume cuts only rectangles in parts: take split=1",
+                       light.name, name_of(light.kind));
+    }
+    make_raster(light);
+    const std::vector<Light> lights = light_parts(light, split_);
+    for (std::size_t i = 0; i < parts_.size(); ++i) prepare(*parts_[i], lights[i]);
+    double whole = 0;
+    for (const auto& part : parts_) whole += part->weight;
+    for (const auto& part : parts_) part->weight /= whole;
+    prepared_ = nullptr;
+    doubtful_ = 0;
+  }
+
+  void prepare_view(const ViewSamples& samples) override {
+    samples_ = &samples;
+    for (const auto& part : parts_) {
+      part->count.prepare_view(samples);
+      part->faces.reset();
+    }
+  }
+
+  [[nodiscard]] std::uint32_t max_tile_rows() const override {
+    return std::min(parts_.front()->count.max_tile_rows(), raster_->max_tile_rows(*samples_));
+  }
+
+  void evaluate(const Tile& tile) override {
+    tile_ = tile;
+    sums_.assign(std::size_t{tile.row_count} * samples_->width, 0.0);
+    for (const auto& part : parts_) add(*part);
+  }
+
+  void read_visibility(std::span<float> visibility) override {
+    PENUMBRA_ASSERT(visibility.size() == sums_.size(), "{} values for a tile of {} pixels", visibility.size(),
+                    sums_.size());
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      visibility[i] = static_cast<float>(std::min(sums_[i], 1.0));
+    }
+  }
+
+  std::vector<visibility::PassTime> take_pass_times() override;
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    std::uint64_t bytes = builder_.memory_bytes() + (raster_ ? raster_->memory_bytes() : 0);
+    for (const auto& part : parts_) bytes += part->count.memory_bytes();
+    return bytes;
+  }
+
+ private:
+  void make_raster(const Light& light);
+  void prepare(Part& part, const Light& light);
+  void add(Part& part);
+  void add_doubtful(Part& part, const std::vector<std::size_t>& pixels);
+  [[nodiscard]] double share_above(const Part& part, std::size_t pixel) const;
+
+  visibility::MethodDescription description_;
+  const render::Device* device_;
+  std::uint32_t split_;
+  bool table_;
+  WedgeBuilder builder_;
+  WedgeTests tests_;
+  std::vector<gpu::uint> kind_;     // of raster_: shape and measure
+  const Part* prepared_ = nullptr;  // whose table raster_ has
+  std::unique_ptr<WedgeRaster> raster_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  const SceneFloats* scene_ = nullptr;
+  const ViewSamples* samples_ = nullptr;
+  Tile tile_;
+  std::vector<double> sums_;  // of V over the parts
+  std::uint64_t doubtful_ = 0;
+};
+
+/// What its shader does hangs on the light.
+void SoftVolume::make_raster(const Light& light) {
+  const gpu::uint shape = light.kind == LightKind::disk ? gpu::kDisk : gpu::kRectangle;
+  const gpu::uint measure = table_ ? gpu::kTable : light.texture ? gpu::kTexture : gpu::kArea;
+  const std::vector<gpu::uint> kind{shape, measure};
+  if (raster_ && kind == kind_) return;
+  raster_ = std::make_unique<WedgeRaster>(*device_, WedgeShader{"wedges", shaders::kSoftVolumeFrag, kind});
+  kind_ = kind;
+}
+
+void SoftVolume::prepare(Part& part, const Light& light) {
+  part.light = light;
+  part.outline = light_outline(light);
+  part.texture.reset();
+  part.weight = 1;
+  part.table.assign(1, 0.0);
+  if (light.texture) {
+    part.weight = light.texture->mean_luminance;
+    if (part.weight > 0) part.texture.emplace(*light.texture);  // a part may be black
+    if (part.texture) part.table = part.texture->words();
+  }
+  if (table_ && part.weight > 0) part.table = coverage_table(part.outline, part.texture ? &*part.texture : nullptr);
+  WedgeBuilder::Built built = builder_.build(part.light);
+  part.count.prepare_light(part.light, std::move(built.volumes));
+  part.wedges = std::move(built.wedges);
+  part.facings_on_host = built.facings_on_host;
+  part.edges_on_host = built.edges_on_host;
+  part.faces.reset();
+  part.host.reset();
+}
+
+/// Adds each pixel's V for this part.
+void SoftVolume::add(Part& part) {
+  using Kind = VolumeCount::Kind;
+  if (!(part.weight > 0)) return;
+  if (!part.faces) part.faces = faces_of(part.wedges, *samples_, tests_, glm::dvec3(part.count.center()));
+  part.count.count(tile_);
+  const std::span<const Kind> kinds = part.count.kinds();
+  const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
+  std::vector<gpu::WedgeReceiver> receivers(kinds.size());
+  std::vector<std::uint8_t> away(kinds.size());
+  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+    if (kinds[i] != Kind::counted) return;
+    const glm::vec3& p = samples_->p[first + i];
+    away[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;
+    receivers[i] = {p, away[i] == 0 ? 1u : 0u};
+  });
+  gpu::WedgePush push = frame_of(part.light);
+  if (part.texture) push.texels = part.texture->texels();
+  if (prepared_ != &part) raster_->set_table(part.table);
+  prepared_ = &part;
+  raster_->add(*part.faces, receivers, push, tile_, samples_->width);
+
+  std::vector<std::size_t> doubtful;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (kinds[i] == Kind::counted && (away[i] != 0 || raster_->doubts()[i] != 0)) doubtful.push_back(i);
+  }
+  add_doubtful(part, doubtful);
+  for (const std::size_t i : doubtful) away[i] = 1;
+  mesh::for_each_index(kinds.size(), [&](std::size_t i) {
+    if (kinds[i] == Kind::lit) sums_[i] += part.weight;
+    if (kinds[i] != Kind::counted || away[i] != 0) return;
+    const double blocked = part.count.counts()[i] + gpu::kSumUnit * static_cast<double>(raster_->sums()[i]);
+    sums_[i] += part.weight * std::clamp(1 - blocked, 0.0, share_above(part, first + i));
+  });
+}
+
+/// By exact signs, and from another point of the light where an edge ends at its centre.
+void SoftVolume::add_doubtful(Part& part, const std::vector<std::size_t>& pixels) {
+  if (pixels.empty()) return;
+  doubtful_ += pixels.size();
+  if (!part.host) part.host = std::make_unique<Part::Host>(*scene_, part.light);
+  const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
+  tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
+    const std::size_t pixel = first + pixels[i];
+    const LitPoint point{samples_->p[pixel], static_cast<std::uint32_t>(samples_->triangle[pixel]),
+                         samples_->facing[pixel]};
+    sums_[pixels[i]] += part.weight * part.host->visibility.at(point, Viewer::center).visibility;
+  });
+}
+
+/// Of the part, above the plane of the pixel's carrier.
+double SoftVolume::share_above(const Part& part, std::size_t pixel) const {
+  const auto [a, b, c] = scene_->corners(static_cast<std::uint32_t>(samples_->triangle[pixel]));
+  const glm::dvec3 n = static_cast<double>(samples_->facing[pixel]) *
+                       glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+  const glm::dvec3 o(part.light.center);
+  return volumes::share_above(
+      part.outline, glm::dot(n, o - glm::dvec3(a)),
+      {glm::dot(n, glm::dvec3(part.light.center_u) - o), glm::dot(n, glm::dvec3(part.light.center_v) - o)});
+}
+
+std::vector<visibility::PassTime> SoftVolume::take_pass_times() {
+  visibility::PassTimes all;
+  all.add(builder_.take_pass_times());
+  for (const auto& part : parts_) all.add(part->count.take_pass_times());
+  if (raster_) all.add(raster_->take_pass_times());
+  return all.take();
+}
+
+std::map<std::string, std::uint64_t> SoftVolume::counters() const {
+  std::map<std::string, std::uint64_t> result{{"pixelsOnHost", doubtful_}};
+  for (const auto& part : parts_) {
+    const VolumeCount::Totals& totals = part->count.totals();
+    result["silhouetteEdges"] += totals.silhouette_edges;
+    result["facingsOnHost"] += part->facings_on_host;
+    result["edgesOnHost"] += part->edges_on_host;
+    result["pixelsCountedOnHost"] += totals.doubtful_pixels;
+    result["largestCount"] = std::max(result["largestCount"], totals.largest_count);
+    for (const Wedge& wedge : part->wedges.wedges) {
+      ++result["wedges" + std::string(wedge.outcome == WedgeOutcome::wedge ? "" : ":") +
+               (wedge.outcome == WedgeOutcome::wedge ? "" : name_of(wedge.outcome))];
+    }
+    if (!part->faces) continue;
+    result["wedgesOnScreen"] += part->faces->size();
+    result["fragments"] += fragments_of(*part->faces);
+  }
+  return result;
+}
+
+}  // namespace
+
+visibility::MethodDescription soft_volume_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_soft_volume(const render::Device& device,
+                                                     const visibility::MethodOptions& options) {
+  return std::make_unique<SoftVolume>(device, options);
+}
+
+}  // namespace penumbra::volumes

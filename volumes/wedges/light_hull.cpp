@@ -1,0 +1,62 @@
+#include "volumes/wedges/light_hull.hpp"
+
+#include "base/assert.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace penumbra::volumes {
+namespace {
+
+using visibility::LightKind;
+
+/// By how much of the radius the hull is made larger, for rounding here and for what storage in float32 may have moved
+/// points by: half an ulp of each coordinate of the centre and of a point of the rim, less than 2⁻²² of their size.
+double margin_of(const visibility::Light& light) {
+  const double farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
+  return 0x1p-20 + 0x1p-22 * (farthest + light.radius) / light.radius;
+}
+
+LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
+  const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
+                                         v = glm::dvec3(light.center_v) - center;
+  const double angle = 2 * std::numbers::pi / sides, reach = (1 + margin_of(light)) / std::cos(angle / 2);
+  LightHull hull{{}, center, light.radius * (reach - 1), false};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    hull.corners.push_back(center + reach * (std::cos(i * angle) * u + std::sin(i * angle) * v));
+  }
+  return hull;
+}
+
+/// The icosahedron that the sphere is inscribed in: its faces are 0.7947 of its corners' distance away.
+LightHull sphere_hull(const visibility::Light& light) {
+  const double golden = std::numbers::phi;
+  const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2
+  const double scale = light.radius * (1 + margin_of(light)) / inradius;
+  LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius, true};
+  for (const double one : {-1.0, 1.0}) {
+    for (const double other : {-golden, golden}) {
+      for (const glm::dvec3& corner :
+           {glm::dvec3(0, one, other), glm::dvec3(one, other, 0), glm::dvec3(other, 0, one)}) {
+        hull.corners.push_back(hull.center + scale * corner);
+      }
+    }
+  }
+  return hull;
+}
+
+}  // namespace
+
+LightHull light_hull(const visibility::Light& light, std::uint32_t sides) {
+  PENUMBRA_ASSERT(sides >= 3, "{} sides", sides);
+  if (light.kind == LightKind::disk) return disk_hull(light, sides);
+  if (light.kind == LightKind::sphere) return sphere_hull(light);
+  LightHull hull{{}, glm::dvec3(visibility::center_of(light))};
+  for (const glm::vec3& corner : light.outline) hull.corners.emplace_back(corner);
+  return hull;
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,271 @@
+// U. Assarsson, T. Akenine-Möller 2003, at one view sample and without a raster. Beyond the paper: any soup, by signed
+// multiplicities; exact decisions where a rounded one would cost a whole light; another reference point where an edge
+// ends at the light's centre; silhouettes from the receiver, too.
+
+#include "volumes/wedges/soft_visibility.hpp"
+
+#include "base/assert.hpp"
+#include "mesh/silhouettes.hpp"
+#include "visibility/pair_truth.hpp"
+#include "visibility/closed_casters.hpp"
+#include "volumes/wedges/layer_areas.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace penumbra::volumes {
+namespace {
+
+using mesh::Side;
+using visibility::SceneFloats;
+
+constexpr std::uint32_t kNone = 0xffffffffU;
+
+int sign_of(Side side) {
+  return static_cast<int>(side);
+}
+
+bool box_misses(const std::array<glm::vec3, 3>& corners, const glm::vec3& lower, const glm::vec3& upper) {
+  const auto& [a, b, c] = corners;
+  return glm::any(glm::lessThan(glm::max(a, glm::max(b, c)), lower)) ||
+         glm::any(glm::greaterThan(glm::min(a, glm::min(b, c)), upper));
+}
+
+/// What a triangle seen from `side` gives to k of one of its edges (mesh/silhouettes.hpp).
+int share_of(const mesh::EdgeGraph& graph, std::uint32_t edge, std::uint32_t triangle, Side side) {
+  int sum = 0;
+  for (const mesh::Incidence& incidence : graph.around(edge)) {
+    if (incidence.triangle == triangle) sum += incidence.reversed ? -sign_of(side) : sign_of(side);
+  }
+  return sum;
+}
+
+}  // namespace
+
+SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light& light, const Casters& casters)
+    : scene_(scene),
+      light_(light),
+      casters_(casters),
+      outline_(light_outline(light)),
+      center_(visibility::center_of(light)),
+      tree_(visibility::make_triangle_tree(scene)),
+      caster_of_(scene.triangles.size(), kNone),
+      light_sides_(visibility::light_sides(casters.view(), casters.graph, light, center_)),
+      center_facings_(mesh::facings(casters.view(), casters.graph, center_)) {
+  if (light.texture) texture_.emplace(*light.texture);
+  for (const glm::dvec2& corner : outline_.corners) {
+    lower_ = glm::min(lower_, corner);
+    upper_ = glm::max(upper_, corner);
+  }
+  for (std::uint32_t i = 0; i < casters.triangle.size(); ++i) {
+    caster_of_[casters.triangle[i]] = i;
+    by_plane_.emplace_back(scene.plane[casters.triangle[i]], i);
+  }
+  std::ranges::sort(by_plane_);
+  visibility::keep_one_layer(light_sides_, true, center_facings_);
+  for (std::uint32_t edge = 0; edge < casters.graph.edges.size(); ++edge) {
+    const int k = mesh::signed_multiplicity(casters.graph, edge, center_facings_);
+    if (k != 0) silhouettes_.emplace_back(edge, k);
+  }
+}
+
+/// Coplanar with the carrier; or p is on its plane and in its box: it may touch p, and appears as a line or not at all.
+bool SoftVisibility::is_left_out(std::uint32_t caster, const LitPoint& sample) const {
+  const std::uint32_t triangle = casters_.triangle[caster];
+  if (scene_.plane[triangle] == scene_.plane[sample.carrier]) return true;
+  const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
+  if (box_misses(corners, sample.p, sample.p)) return false;
+  return mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p) == Side::on;
+}
+
+/// As keep_one_layer does, for one triangle.
+bool SoftVisibility::counts_for_receiver(std::uint32_t caster, Side seen) const {
+  return seen != Side::on && (light_sides_[caster] == Side::on || light_sides_[caster] == mesh::opposite(seen));
+}
+
+/// Those of all view samples, less what the triangles left out here gave to them.
+std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const LitPoint& sample) const {
+  std::vector<std::uint32_t> left_out;
+  const std::uint32_t plane = scene_.plane[sample.carrier];
+  for (auto at = std::ranges::lower_bound(by_plane_, std::pair{plane, 0U}); at != by_plane_.end() && at->first == plane;
+       ++at) {
+    left_out.push_back(at->second);
+  }
+  tree_.for_each_near(sample.p, sample.p, [&](std::uint32_t triangle) {
+    const std::uint32_t caster = caster_of_[triangle];
+    if (caster != kNone && scene_.plane[triangle] != plane && is_left_out(caster, sample)) left_out.push_back(caster);
+  });
+  std::vector<Silhouette> changes;
+  for (const std::uint32_t caster : left_out) {
+    if (center_facings_[caster] == Side::on) continue;
+    for (const std::uint32_t edge : casters_.graph.triangle_edges[caster]) {
+      changes.emplace_back(edge, -share_of(casters_.graph, edge, caster, center_facings_[caster]));
+    }
+  }
+  if (changes.empty()) return silhouettes_;
+  std::ranges::sort(changes);
+  std::vector<Silhouette> both, result;
+  both.reserve(changes.size() + silhouettes_.size());
+  std::ranges::merge(changes, silhouettes_, std::back_inserter(both));
+  result.reserve(both.size());
+  for (const Silhouette& change : both) {
+    if (result.empty() || result.back().first != change.first) {
+      result.push_back(change);
+    } else {
+      result.back().second += change.second;
+    }
+  }
+  std::erase_if(result, [](const Silhouette& silhouette) { return silhouette.second == 0; });
+  return result;
+}
+
+std::vector<SoftVisibility::Silhouette> SoftVisibility::receiver_silhouettes(const LitPoint& sample) const {
+  std::vector<Side> sides = mesh::facings(casters_.view(), casters_.graph, sample.p);
+  visibility::keep_one_layer(light_sides_, false, sides);
+  for (std::uint32_t i = 0; i < sides.size(); ++i) {
+    if (sides[i] != Side::on && is_left_out(i, sample)) sides[i] = Side::on;
+  }
+  std::vector<Silhouette> result;
+  for (std::uint32_t edge = 0; edge < casters_.graph.edges.size(); ++edge) {
+    const int k = mesh::signed_multiplicity(casters_.graph, edge, sides);
+    if (k != 0) result.emplace_back(edge, k);
+  }
+  return result;
+}
+
+std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoint& sample, Viewer viewer) const {
+  return viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample);
+}
+
+/// What bounds the light as p sees it: of a sphere, the square around the disk that faces p, in floats.
+std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
+  if (light_.kind != visibility::LightKind::sphere) return light_.outline;
+  const auto [u, v] = visibility::light_axes(light_, p);
+  const glm::dvec3 c = light_.center;
+  return {glm::vec3(c - u - v), glm::vec3(c + u - v), glm::vec3(c + u + v), glm::vec3(c - u + v)};
+}
+
+/// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner. (Of a sphere that
+/// point is an ulp off the disk: it stands for where the line from p through it meets the disk.)
+glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjection& projection,
+                                           std::span<const Candidate> edges) const {
+  const auto clear = [&](const glm::vec3& l) {
+    const Projected at = projection(glm::dvec3(l));
+    const RadialCoverage coverage(outline_, at.point());
+    return std::ranges::all_of(edges, [&](const Candidate& edge) {
+      return coverage.is_clear_of(edge.clipped.from, edge.clipped.from_error + at.error()) &&
+             coverage.is_clear_of(edge.clipped.to, edge.clipped.to_error + at.error());
+    });
+  };
+  if (clear(center_)) return center_;
+  for (const float share : {0.25F, 0.5F, 0.3125F, 0.4375F, 0.375F}) {
+    for (const glm::vec3& corner : corners_from(p)) {
+      const glm::vec3 l = center_ + share * (corner - center_);
+      if (clear(l)) return l;
+    }
+  }
+  return center_;  // vertices at every one of them: then no point is better
+}
+
+/// D at a point of the light: the triangles that p→l meets, each with the sign that its edges have been given.
+std::int32_t SoftVisibility::layers_at(const LitPoint& sample, const glm::vec3& l, Viewer viewer) const {
+  std::int32_t layers = 0;
+  const glm::vec3 lower = glm::min(sample.p, l), upper = glm::max(sample.p, l);
+  tree_.for_each_near(lower, upper, [&](std::uint32_t triangle) {
+    const std::uint32_t caster = caster_of_[triangle];
+    if (caster == kNone || (viewer == Viewer::center && center_facings_[caster] == Side::on)) return;
+    const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
+    if (box_misses(corners, lower, upper) || is_left_out(caster, sample)) return;
+    if (!visibility::segment_meets_triangle(sample.p, l, corners, light_).meets) return;
+    // By the casters' own order of corners, which facings speak of: it is the scene's.
+    const Side seen = mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p);
+    if (viewer == Viewer::center) {
+      layers -= sign_of(center_facings_[caster]) * sign_of(seen);
+    } else if (counts_for_receiver(caster, seen)) {
+      ++layers;
+    }
+  });
+  return layers;
+}
+
+std::vector<std::array<glm::vec3, 3>> SoftVisibility::layers(const LitPoint& sample) const {
+  glm::vec3 lower = sample.p, upper = sample.p;
+  for (const glm::vec3& corner : corners_from(sample.p)) {
+    lower = glm::min(lower, corner);
+    upper = glm::max(upper, corner);
+  }
+  std::vector<std::array<glm::vec3, 3>> result;
+  tree_.for_each_near(lower, upper, [&](std::uint32_t triangle) {
+    const std::uint32_t caster = caster_of_[triangle];
+    if (caster == kNone || is_left_out(caster, sample)) return;
+    const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
+    if (!counts_for_receiver(caster, mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p))) return;
+    result.push_back(corners);
+  });
+  return result;
+}
+
+bool SoftVisibility::something_touches_light() const {
+  return std::ranges::any_of(casters_.triangle,
+                             [&](std::uint32_t triangle) { return touches_light(light_, scene_.corners(triangle)); });
+}
+
+double SoftVisibility::share_above_carrier(const LitPoint& sample) const {
+  const auto [a, b, c] = scene_.corners(sample.carrier);
+  const glm::dvec3 n =
+      static_cast<double>(sample.facing) * glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+  const auto [u, v] = visibility::light_axes(light_, sample.p);
+  return share_above(outline_, glm::dot(n, glm::dvec3(light_.center) - glm::dvec3(a)),
+                     {glm::dot(n, u), glm::dot(n, v)});
+}
+
+/// Of the light, or with a texture of its weight; with the sign of the turn around the reference point.
+double SoftVisibility::area_beyond(const Candidate& edge, int side, const RadialCoverage& coverage,
+                                   const glm::dvec2& reference) const {
+  if (!texture_) return coverage.beyond(edge.clipped, side) / outline_.area;
+  return texture_->weight_beyond({edge.clipped.from, edge.clipped.to, side}, reference);
+}
+
+LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
+  LayerSum result;
+  const bool at_center = light_.kind == visibility::LightKind::sphere && sample.p == light_.center;
+  result.in_front = visibility::in_front_of_light(light_, sample.p) && !at_center;
+  if (!result.in_front) return result;
+  const LightProjection projection(light_, sample.p);
+  std::vector<Candidate> candidates;
+  for (const auto& [edge, k] : silhouettes(sample, viewer)) {
+    const auto [a, b] = casters_.graph.edges[edge];
+    const glm::dvec3 &at_a = casters_.positions[a], &at_b = casters_.positions[b];
+    if (projection.misses(at_a, at_b, lower_, upper_)) continue;
+    const auto clipped = clip_to_light(outline_, projection(at_a), projection(at_b));
+    if (clipped) candidates.push_back({edge, k, *clipped});
+  }
+
+  result.reference = choose_reference(sample.p, projection, candidates);
+  result.reference_at = projection(glm::dvec3(result.reference)).point();
+  result.moved = result.reference != center_;
+  result.constant = layers_at(sample, result.reference, viewer);
+  const RadialCoverage coverage(outline_, result.reference_at);
+  // k counts triangles counter-clockwise as the viewer sees them; between c and p, c sees them the other way around.
+  const int sense = viewer == Viewer::center ? -projection.turn() : projection.turn();
+  for (const Candidate& candidate : candidates) {
+    const auto [a, b] = casters_.graph.edges[candidate.edge];
+    const int side =
+        -projection.turn() * visibility::edge_side(sample.p, result.reference, glm::vec3(casters_.positions[a]),
+                                                   glm::vec3(casters_.positions[b]), light_);
+    const double area = -sense * candidate.multiplicity * area_beyond(candidate, side, coverage, result.reference_at);
+    result.edges.push_back(
+        {candidate.edge, candidate.multiplicity, static_cast<std::int8_t>(side), candidate.clipped, area});
+    result.sum += area;
+  }
+  result.blocked = result.constant + result.sum;
+  result.above = share_above_carrier(sample);
+  result.visibility = std::clamp(1 - result.blocked, 0.0, result.above);
+  return result;
+}
+
+}  // namespace penumbra::volumes

@@ -1,0 +1,114 @@
+#include "volumes/wedges/wedge_export.hpp"
+
+#include "scenes/formats/parts_writer.hpp"
+#include "volumes/wedges/wedge_polyhedron.hpp"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace penumbra::volumes {
+namespace {
+
+using scenes::Part;
+
+constexpr std::size_t kMostNames = 1000;  // of wedges; more share names
+const glm::dvec4 kSound{0.25, 0.5, 0.9, 0.35}, kWrong{0.9, 0.15, 0.1, 0.5};
+const glm::dvec4 kEdge{0.05, 0.05, 0.05, 1}, kLight{1, 0.85, 0.3, 1}, kPoint{1, 0, 0.8, 1};
+
+bool is_finite(const Wedge& wedge) {
+  return std::ranges::all_of(wedge.planes, [](const Plane& p) { return std::isfinite(p.a + p.b + p.c + p.d); });
+}
+
+void add_faces(Part& part, const Polyhedron& polyhedron) {
+  const auto first = static_cast<std::uint32_t>(part.positions.size());
+  for (const ExactPoint& corner : polyhedron.corners) part.positions.push_back(corner.near);
+  for (const PolyhedronFace& face : polyhedron.faces) {
+    for (std::size_t i = 1; i + 1 < face.loop.size(); ++i) {
+      part.triangles.push_back({first + face.loop[0], first + face.loop[i], first + face.loop[i + 1]});
+    }
+  }
+}
+
+void add_edge(Part& part, const Wedge& wedge) {
+  const auto first = static_cast<std::uint32_t>(part.positions.size());
+  part.positions.insert(part.positions.end(), {wedge.a, wedge.b});
+  part.lines.push_back({first, first + 1});
+}
+
+Part octahedron(std::string name, const glm::dvec3& center, double radius) {
+  Part part{std::move(name), kPoint, {}, {}, {}};
+  for (const double way : {-radius, radius}) {
+    for (const glm::dvec3& axis : {glm::dvec3(way, 0, 0), glm::dvec3(0, way, 0), glm::dvec3(0, 0, way)}) {
+      part.positions.push_back(center + axis);
+    }
+  }
+  part.triangles = {{3, 4, 5}, {4, 0, 5}, {0, 1, 5}, {1, 3, 5}, {4, 3, 2}, {0, 4, 2}, {1, 0, 2}, {3, 1, 2}};
+  return part;
+}
+
+/// A flat hull as a fan, a solid one as the polyhedron that its faces bound: tried are all planes through three
+/// corners.
+Part light_part(const LightHull& light) {
+  Part part{"light", kLight, light.corners, {}, {}};
+  const auto count = static_cast<std::uint32_t>(light.corners.size());
+  const auto volume = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
+    const auto& c = light.corners;
+    return glm::dot(glm::cross(c[j] - c[i], c[k] - c[i]), c[l] - c[i]);
+  };
+  for (std::uint32_t i = 0; light.is_solid && i < count; ++i) {
+    for (std::uint32_t j = i + 1; j < count; ++j) {
+      for (std::uint32_t k = i + 1; k < count; ++k) {
+        bool outermost = k != j;
+        for (std::uint32_t l = 0; l < count && outermost; ++l) {
+          outermost = l == i || l == j || l == k || volume(i, j, k, l) < 0;
+        }
+        if (outermost) part.triangles.push_back({i, j, k});
+      }
+    }
+  }
+  for (std::uint32_t i = 1; !light.is_solid && i + 1 < count; ++i) part.triangles.push_back({0, i, i + 1});
+  return part;
+}
+
+/// Both parts of the wedges first … last: their bodies, and their edges.
+void add_wedges(std::vector<Part>& parts, const WedgesToExport& what, const std::set<std::uint32_t>& wrong,
+                std::uint32_t first, std::uint32_t last) {
+  const std::string numbers = first == last ? fmt::format(" {}", first) : fmt::format("s {} to {}", first, last);
+  Part sound{"wedge" + numbers, kSound, {}, {}, {}}, bad{"wrong wedge" + numbers, kWrong, {}, {}, {}},
+      edges{"edge" + numbers, kEdge, {}, {}, {}};
+  for (std::uint32_t i = first; i <= last; ++i) {
+    const Wedge& wedge = what.wedges[i];
+    add_edge(edges, wedge);
+    if (wedge.outcome != WedgeOutcome::wedge || !is_finite(wedge)) continue;
+    add_faces(wrong.contains(i) ? bad : sound, cut_box(what.box, wedge.planes));
+  }
+  for (Part* part : {&sound, &bad, &edges}) parts.push_back(std::move(*part));
+}
+
+}  // namespace
+
+void export_wedges(const std::filesystem::path& file, const WedgesToExport& what) {
+  std::vector<Part> parts{light_part(what.light)};
+  std::set<std::uint32_t> wrong;
+  for (const Violation& violation : what.violations) {
+    if (violation.wedge) wrong.insert(*violation.wedge);
+  }
+  const std::size_t together = (what.wedges.size() + kMostNames - 1) / kMostNames;
+  for (std::size_t i = 0; i < what.wedges.size(); i += together) {
+    const std::size_t last = std::min(i + together, what.wedges.size()) - 1;
+    add_wedges(parts, what, wrong, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(last));
+  }
+  const double radius = glm::length(what.box.upper - what.box.lower) / 200;
+  for (std::size_t i = 0; i < std::min(what.violations.size(), kMostNames); ++i) {
+    const Violation& violation = what.violations[i];
+    const std::string of = violation.wedge ? fmt::format(" of wedge {}", *violation.wedge) : std::string();
+    parts.push_back(octahedron(fmt::format("violation {}{}", i, of), violation.point, radius));
+  }
+  scenes::write_parts(file, parts, what.origin);
+}
+
+}  // namespace penumbra::volumes

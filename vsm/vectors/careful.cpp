@@ -1,0 +1,186 @@
+// View-sample mapping on a processor: one triangle for one view sample in double, wherever it is: at or below p's
+// height, through the light's plane, an edge within float rounding of a light sample. The half-planes of
+// docs/view-sample.md.
+
+#include "vsm/vectors/pairs.hpp"
+
+#include "visibility/certain_meeting.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+namespace penumbra::vsm {
+namespace {
+
+constexpr double kSlack = 0x1p-44;  // of all lengths that enter: hundreds of times double's rounding
+
+double size1(const glm::dvec3& x) {
+  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
+}
+
+/// Of the light's (row, column): at + row · per_row + column · per_column, known to ±error.
+struct HalfPlane {
+  double at = 0, per_row = 0, per_column = 0, error = 0;
+};
+
+/// Along a row: positive beyond zero (rising) or before it (falling), certainly so outside of ±slack. (bound row)
+struct Crossing {
+  double at = 0, per_row = 0, per_shift = -1, slack = 0;  // zero, in columns: at + row · per_row + shift · per_shift
+  bool rising = true;
+};
+Crossing crossing_of(const HalfPlane& f, double columns) {
+  // A slope so small that the value hardly changes along the row may be taken larger.
+  const double slope = std::max({std::abs(f.per_column), f.error / (16 * columns), 1e-300});
+  const bool rising = f.per_column >= 0;
+  const double inverse = (rising ? -1 : 1) / slope;
+  return {f.at * inverse, f.per_row * inverse, f.per_column * inverse, 1.25 * f.error / slope + columns * kSlack,
+          rising};
+}
+
+using Corners = std::array<glm::vec3, 3>;
+Corners corners_of(const CarefulInput& input) {
+  const WideTriangles& leaf = input.in.tree.leaves[input.slot / kWide];
+  Corners corners;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const WidePoints& x = leaf.corner[corner];
+    corners[corner] = {x[0][input.slot % kWide], x[1][input.slot % kWide], x[2][input.slot % kWide]};
+  }
+  return corners;
+}
+
+struct OneTriangle {
+  const PairInput& in;
+  const glm::vec3& p;
+  const Corners& corners;
+};
+/// With the light sample as it is stored.
+void decide(const OneTriangle& one, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
+  if (blocked.test(row, column)) return;
+  const std::uint32_t light_sample = row * one.in.frame.columns + column;
+  const glm::dvec3 l = glm::dvec3(one.in.light.points[light_sample]) * static_cast<double>(one.in.scale);
+  const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(one.p), l, one.corners);
+  if (!meets) open.samples.push_back(light_sample);
+  if (meets.value_or(false)) blocked.add(row, column, column);
+}
+
+class CarefulTest {
+ public:
+  CarefulTest(const CarefulInput& input, Blocked& blocked, Open& open)
+      : in_(input.in), at_(input.at), p_(input.at.p), corners_(corners_of(input)), blocked_(blocked), open_(open) {
+    const visibility::LightFrame& light = in_.light_frame;
+    const glm::dvec3 u(light.u), v(light.v);
+    per_column_ = 2.0 / in_.frame.columns * u;
+    per_row_ = 2.0 / in_.frame.rows * v;
+    first_ = glm::dvec3(light.center) - u - v + 0.5 * per_column_ + 0.5 * per_row_;
+    reach_ = size1(first_ - p_) + 2 * size1(u) + 2 * size1(v);
+  }
+
+  void operator()() {
+    const glm::dvec3 a(corners_[0]), b(corners_[1]), c(corners_[2]);
+    const glm::dvec3 pa = a - p_, pb = b - p_, pc = c - p_, n = glm::cross(b - a, c - a);
+    const std::array<HalfPlane, 3> edges{half_plane(glm::cross(pa, pb), p_, size1(pa) * size1(pb)),
+                                         half_plane(glm::cross(pb, pc), p_, size1(pb) * size1(pc)),
+                                         half_plane(glm::cross(pc, pa), p_, size1(pc) * size1(pa))};
+    const HalfPlane plane = half_plane(n, a, size1(b - a) * size1(c - a));
+    const double side = glm::dot(n, pa), error = kSlack * size1(b - a) * size1(c - a) * size1(pa);
+    // Hidden where all of ±f are positive and the light sample is beyond the plane, with the sign of p's side.
+    for (const double sign : {1.0, -1.0}) {
+      if (sign * side < -error) continue;
+      mark({turned(edges[0], sign), turned(edges[1], sign), turned(edges[2], sign), turned(plane, sign)},
+           sign * side > error);
+    }
+  }
+
+ private:
+  /// n · (l − through) for light samples l; n is known to ± 2⁻⁴⁹ of `sizes`.
+  [[nodiscard]] HalfPlane half_plane(const glm::dvec3& n, const glm::dvec3& through, double sizes) const {
+    return {
+        glm::dot(n, first_ - through), glm::dot(n, per_row_), glm::dot(n, per_column_),
+        static_cast<double>(in_.light_frame.deviation) * size1(n) + kSlack * sizes * (reach_ + size1(through - p_))};
+  }
+  static HalfPlane turned(const HalfPlane& f, double sign) {
+    return {sign * f.at, sign * f.per_row, sign * f.per_column, f.error};
+  }
+
+  void mark(const std::array<HalfPlane, 4>& planes, bool certain) {
+    const double last_row = in_.frame.rows - 1.0, last_column = in_.frame.columns - 1.0;
+    for (const HalfPlane& f : planes) {  // one that has the whole light outside ends it
+      const double most =
+          std::max(f.per_row, 0.0) * last_row + std::abs(f.per_column) + std::max(f.per_column, 0.0) * last_column;
+      if (f.at + most < -f.error) return;
+    }
+    std::array<Crossing, 4> crossings;
+    std::transform(planes.begin(), planes.end(), crossings.begin(),
+                   [&](const HalfPlane& f) { return crossing_of(f, in_.frame.columns); });
+    struct Columns {
+      double from, to;
+    };
+    for (std::uint32_t row = 0; row < in_.frame.rows; ++row) {
+      const auto shift = static_cast<double>(in_.frame.shift[row]);
+      Columns sure{-1, last_column + 1}, possible{-1, last_column + 1};
+      for (const Crossing& c : crossings) {
+        const double x = c.at + row * c.per_row + shift * c.per_shift;
+        if (c.rising) {
+          sure.from = std::max(sure.from, x + c.slack);
+          possible.from = std::max(possible.from, x - c.slack);
+        } else {
+          sure.to = std::min(sure.to, x - c.slack);
+          possible.to = std::min(possible.to, x + c.slack);
+        }
+      }
+      if (!(possible.from <= possible.to)) continue;
+      const auto first = [](double x) { return std::max(static_cast<std::int64_t>(std::ceil(x)), std::int64_t{0}); };
+      const auto last = [&](double x) {
+        return std::min(static_cast<std::int64_t>(std::floor(x)), std::int64_t{in_.frame.columns} - 1);
+      };
+      std::int64_t sure_from = first(sure.from), sure_to = last(sure.to);
+      if (!certain || !(sure.from <= sure.to)) sure_to = sure_from - 1;
+      if (sure_from <= sure_to) {
+        blocked_.add(row, static_cast<std::uint32_t>(sure_from), static_cast<std::uint32_t>(sure_to));
+      }
+      for (std::int64_t k = first(possible.from); k <= last(possible.to); ++k) {
+        if (k == sure_from && sure_from <= sure_to) k = sure_to + 1;
+        if (k <= last(possible.to)) decide({in_, at_.p, corners_}, row, static_cast<std::uint32_t>(k), blocked_, open_);
+      }
+    }
+  }
+
+  const PairInput& in_;
+  const Sample& at_;
+  const glm::dvec3 p_;
+  const Corners corners_;
+  glm::dvec3 first_{0}, per_row_{0}, per_column_{0};  // light samples, without deviation
+  double reach_ = 0;                                  // bounds |l − p|₁
+  Blocked& blocked_;
+  Open& open_;
+};
+
+}  // namespace
+
+void Blocked::reset(std::uint32_t rows, std::uint32_t columns) {
+  words_per_row_ = (columns + 63) / 64;
+  bits_.assign(rows * words_per_row_, 0);
+}
+
+std::uint32_t Blocked::count() const {
+  std::uint32_t count = 0;
+  for (const std::uint64_t word : bits_) count += static_cast<std::uint32_t>(std::popcount(word));
+  return count;
+}
+
+void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open) {
+  CarefulTest(input, blocked, open)();
+}
+
+void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
+  const Corners corners = corners_of(input);
+  decide({input.in, input.at.p, corners}, row, column, blocked, open);
+}
+
+}  // namespace penumbra::vsm

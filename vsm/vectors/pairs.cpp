@@ -1,0 +1,332 @@
+// View-sample mapping on a processor: triangles side by side for one view sample, and their spans of light columns row
+// by row (scan conversion). What float arithmetic cannot settle goes to test_carefully.
+
+#include "vsm/vectors/pairs.hpp"
+
+#include "engines/vectors/horizon.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vsm/vectors/pairs.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "engines/vectors/hull-inl.hpp"
+#include "engines/vectors/vectors-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::vsm::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
+
+constexpr std::size_t kGroup = 16;   // view samples that sort out triangles together
+constexpr std::size_t kChunk = 256;  // triangles between two looks whether anything is left to hide
+
+V column(const TriangleTable& table, std::size_t field, std::size_t i) {
+  return hn::Load(D(), table[field] + i);
+}
+
+/// Triangles that the hull may meet.
+M hull_meets(const Hull& hull, const TriangleTable& table, std::size_t i) {
+  std::array<Corners, 3> corners;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    corners[corner] = {column(table, kCornerA + 3 * corner, i), column(table, kCornerA + 3 * corner + 1, i),
+                       column(table, kCornerA + 3 * corner + 2, i)};
+  }
+  return meets(hull, corners);
+}
+
+/// Triangles of the cluster that the group's hull may meet.
+void sort_out(const PairInput& in, std::span<const Sample> group, TriangleTable& near) {
+  const Hull hull = hull_of(in.frame, in.cluster, group);
+  near.count = 0;
+  near.reserve(in.triangles.count);
+  for (std::size_t i = 0; i < in.triangles.count; i += hn::Lanes(D())) {
+    const M kept = hn::And(first_lanes(in.triangles.count - i), hull_meets(hull, in.triangles, i));
+    const std::size_t more = hn::CountTrue(D(), kept);
+    if (more == 0) continue;
+    for (std::size_t field = 0; field < kTriangleFields; ++field) {
+      hn::CompressStore(column(in.triangles, field, i), kept, D(), near[field] + near.count);
+    }
+    near.count += more;
+  }
+}
+
+class SampleTest {
+ public:
+  SampleTest(const PairInput& in, PairScratch& scratch, const Sample& at) : in_(in), s_(scratch), at_(at) {}
+
+  /// Returns whether anything is hidden or open. Stops where all is hidden.
+  bool operator()() {
+    const std::uint32_t all = in_.frame.rows * in_.frame.columns;
+    bool any = false;
+    s_.survivors.reserve(kChunk + hn::Lanes(D()));
+    for (std::size_t begin = 0; begin < s_.near.count; begin += kChunk) {
+      const std::size_t end = std::min(begin + kChunk, s_.near.count);
+      s_.again.clear();
+      s_.asked.clear();
+      s_.survivors.count = 0;
+      for (std::size_t i = begin; i < end; i += hn::Lanes(D())) project(i, end);
+      std::size_t landed = 0;
+      for (std::size_t i = 0; i < s_.survivors.count; i += hn::Lanes(D())) landed = convert(i, landed);
+      for (std::size_t i = 0; i < landed; ++i) {
+        const auto from = static_cast<std::uint32_t>(s_.row_and_from[i]);
+        s_.blocked.add(from / kRowUnit, from % kRowUnit, static_cast<std::uint32_t>(s_.to[i]));
+      }
+      for (const std::uint32_t i : s_.again) {
+        test_carefully({in_, at_, std::bit_cast<std::uint32_t>(s_.near[kTriangleSlot][i])}, s_.blocked, s_.open);
+      }
+      for (const auto& [i, row, column] : s_.asked) {
+        test_one({in_, at_, std::bit_cast<std::uint32_t>(s_.near[kTriangleSlot][i])}, row, column, s_.blocked, s_.open);
+      }
+      s_.pairs += end - begin;
+      s_.careful += s_.again.size();
+      any |= landed + s_.again.size() + s_.asked.size() > 0;
+      if (landed + s_.again.size() > 0 && s_.blocked.count() == all) break;
+    }
+    return any;
+  }
+
+ private:
+  static constexpr std::uint32_t kRowUnit = 4096;  // more than columns
+
+  void look_again(M which, V triangle) {
+    HWY_ALIGN std::uint32_t numbers[hn::MaxLanes(D())];
+    const hn::RebindToUnsigned<D> words;
+    hn::Store(hn::BitCast(words, triangle), words, numbers);
+    for_each_lane(which, [&](std::size_t lane) { s_.again.push_back(numbers[lane]); });
+  }
+
+  /// Where triangles appear on the light; keeps those that may reach a row.
+  void project(std::size_t i, std::size_t end) {
+    const D d;
+    const Frame& frame = in_.frame;
+    const TriangleTable& near = s_.near;
+    const M live = hn::AndNot(same_bits(column(near, kTrianglePlane, i), bits(at_.plane)), first_lanes(end - i));
+    const V wa = hn::Sub(set(at_.seen.z), column(near, kCornerA + 2, i)),
+            wb = hn::Sub(set(at_.seen.z), column(near, kCornerB + 2, i)),
+            wc = hn::Sub(set(at_.seen.z), column(near, kCornerC + 2, i));
+    const V least = hn::Min(wa, hn::Min(wb, wc)), most = hn::Max(wa, hn::Max(wb, wc));
+    const V far = hn::Add(column(near, kTriangleFar, i), set(at_.far));
+    const V triangle = hn::BitCast(d, numbers_from(i));
+    const M clear = hn::And(hn::Gt(least, hn::Mul(set(256 * kRound), far)),
+                            hn::Lt(most, set(at_.height - 128 * kRound * frame.reach - frame.deviation)));
+    const M unclear = hn::AndNot(clear, live);
+    if (!hn::AllFalse(d, unclear)) {
+      if (!has_hull_) hull_ = hull_of(in_.frame, in_.cluster, std::span(&at_, 1));
+      has_hull_ = true;
+      look_again(hn::And(unclear, hull_meets(hull_, near, i)), triangle);
+    }
+    const V height = set(at_.height), foot_x = set(at_.foot.x), foot_y = set(at_.foot.y);
+    const V qa = hn::Div(height, wa), qb = hn::Div(height, wb), qc = hn::Div(height, wc);
+    const auto x_of = [&](std::size_t corner, V q) {
+      return hn::MulAdd(q, hn::Sub(column(near, corner, i), set(at_.seen.x)), foot_x);
+    };
+    const auto y_of = [&](std::size_t corner, V q) {
+      return hn::MulAdd(q, hn::Sub(column(near, corner + 1, i), set(at_.seen.y)), foot_y);
+    };
+    const V ax = x_of(kCornerA, qa), bx = x_of(kCornerB, qb), cx = x_of(kCornerC, qc);
+    const V ay = y_of(kCornerA, qa), by = y_of(kCornerB, qb), cy = y_of(kCornerC, qc);
+    const V low_x = hn::Min(ax, hn::Min(bx, cx)), high_x = hn::Max(ax, hn::Max(bx, cx));
+    const V low_y = hn::Min(ay, hn::Min(by, cy)), high_y = hn::Max(ay, hn::Max(by, cy));
+    // (bound X)
+    const V from_foot = hn::Add(hn::Max(hn::Sub(high_x, foot_x), hn::Sub(foot_x, low_x)),
+                                hn::Max(hn::Sub(high_y, foot_y), hn::Sub(foot_y, low_y)));
+    const V way = hn::Mul(far, hn::Mul(hn::Max(qa, hn::Max(qb, qc)), set(1.0001F / at_.height)));
+    const V error = hn::MulAdd(way, hn::MulAdd(set(kPerReach), from_foot, set(at_.per_way)),
+                               hn::MulAdd(set(at_.per_foot), from_foot, set(at_.fixed)));
+    const V last_row = set(static_cast<float>(frame.rows) - 1), right = set(static_cast<float>(frame.columns) - 0.5F);
+    const V first = hn::Max(hn::Ceil(hn::Sub(low_y, error)), set(0)),
+            last = hn::Min(hn::Floor(hn::Add(high_y, error)), last_row);
+    const M before = hn::And(hn::Le(hn::Sub(low_x, error), right), hn::Ge(hn::Add(high_x, error), set(-0.5F)));
+    const M kept = hn::And(hn::And(live, clear), hn::And(before, hn::Le(first, last)));
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) return;
+    SurvivorTable& out = s_.survivors;
+    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    put(kX0, ax);
+    put(kY0, ay);
+    put(kX1, bx);
+    put(kY1, by);
+    put(kX2, cx);
+    put(kY2, cy);
+    put(kError, error);
+    put(kTriangle, triangle);
+    out.count += more;
+  }
+
+  struct Place {
+    V x, y;
+  };
+  static void order(Place& a, Place& b) {
+    const M turn = hn::Gt(a.y, b.y);
+    const Place upper{hn::IfThenElse(turn, a.x, b.x), hn::Max(a.y, b.y)};
+    a = {hn::IfThenElse(turn, b.x, a.x), hn::Min(a.y, b.y)};
+    b = upper;
+  }
+
+  /// Light samples within the error of an edge.
+  void ask(M which, std::size_t i, V row, V column) {
+    which = hn::And(which, hn::And(hn::Ge(column, set(0)), hn::Lt(column, set(static_cast<float>(in_.frame.columns)))));
+    HWY_ALIGN float rows[hn::MaxLanes(D())];
+    HWY_ALIGN float columns[hn::MaxLanes(D())];
+    hn::Store(row, D(), rows);
+    hn::Store(column, D(), columns);
+    for_each_lane(which, [&](std::size_t lane) {
+      s_.asked.push_back({std::bit_cast<std::uint32_t>(s_.survivors[kTriangle][i + lane]),
+                          static_cast<std::uint32_t>(rows[lane]), static_cast<std::uint32_t>(columns[lane])});
+    });
+  }
+
+  /// Spans of columns that triangles cover, row by row between the two edges that cross it. (bound span)
+  std::size_t convert(std::size_t i, std::size_t landed) {
+    const D d;
+    const I di;
+    const Frame& frame = in_.frame;
+    const SurvivorTable& table = s_.survivors;
+    const auto column_of = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
+    Place a{column_of(kX0), column_of(kY0)}, b{column_of(kX1), column_of(kY1)}, c{column_of(kX2), column_of(kY2)};
+    order(a, b);
+    order(b, c);
+    order(a, b);
+    const V error = column_of(kError), zero = set(0), columns = set(static_cast<float>(frame.columns)),
+            last_row = set(static_cast<float>(frame.rows) - 1);
+    const auto near_row = [&](V y) {
+      const V row = hn::Round(y);
+      return hn::And(hn::Le(hn::Abs(hn::Sub(y, row)), error), hn::And(hn::Ge(row, zero), hn::Le(row, last_row)));
+    };
+    const M used = first_lanes(table.count - i);
+    M open = hn::Or(hn::Or(near_row(a.y), near_row(b.y)), hn::Or(near_row(c.y), hn::Gt(error, set(0.25F))));
+    const V to_b = hn::Div(hn::Sub(b.x, a.x), hn::Sub(b.y, a.y)), to_c = hn::Div(hn::Sub(c.x, a.x), hn::Sub(c.y, a.y)),
+            b_to_c = hn::Div(hn::Sub(c.x, b.x), hn::Sub(c.y, b.y));
+    const V largest = hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(b.x), hn::Abs(c.x)));
+    const V rounding = hn::MulAdd(set(1.2F), error, hn::Mul(set(16 * kRound), hn::Add(largest, columns)));
+    const V per_slope = hn::Mul(set(1.2F), error);
+    const V slack_long = hn::MulAdd(per_slope, hn::Abs(to_c), rounding);
+    V row = hn::Max(hn::Ceil(a.y), zero);
+    const V end = hn::Min(hn::Floor(c.y), last_row);
+    const M settled = hn::AndNot(open, used);
+    for (;;) {
+      const M active = hn::And(settled, hn::Le(row, end));
+      if (hn::AllFalse(d, active)) break;
+      const M low = hn::Lt(row, b.y);
+      const V slope = hn::IfThenElse(low, to_b, b_to_c), from_x = hn::IfThenElse(low, a.x, c.x),
+              from_y = hn::IfThenElse(low, a.y, c.y);
+      const V shift = hn::GatherIndex(d, frame.shift.data(), hn::ConvertTo(di, hn::IfThenElseZero(active, row)));
+      const V x = hn::Sub(hn::MulAdd(hn::Sub(row, a.y), to_c, a.x), shift),
+              y = hn::Sub(hn::MulAdd(hn::Sub(row, from_y), slope, from_x), shift);
+      const V slack = hn::Max(slack_long, hn::MulAdd(per_slope, hn::Abs(slope), rounding));
+      const V low_x = hn::Min(x, y), high_x = hn::Max(x, y), low_k = hn::Round(low_x), high_k = hn::Round(high_x);
+      const M wide = hn::And(active, hn::Gt(slack, set(0.25F))), narrow = hn::AndNot(wide, active);
+      open = hn::Or(open, wide);
+      const M low_near = hn::Le(hn::Abs(hn::Sub(low_x, low_k)), slack),
+              high_near = hn::Le(hn::Abs(hn::Sub(high_x, high_k)), slack);
+      const M near = hn::And(narrow, hn::Or(low_near, high_near));
+      if (!hn::AllFalse(d, near)) {
+        ask(hn::And(near, low_near), i, row, low_k);
+        ask(hn::And(near, high_near), i, row, high_k);
+      }
+      const V one = set(1), from = hn::Max(hn::IfThenElse(low_near, hn::Add(low_k, one), hn::Ceil(low_x)), zero);
+      const V to = hn::Min(hn::IfThenElse(high_near, hn::Sub(high_k, one), hn::Floor(high_x)), hn::Sub(columns, one));
+      const M lands = hn::And(narrow, hn::Le(from, to));
+      const auto lands_i = hn::RebindMask(di, lands);
+      hn::CompressStore(hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::MulAdd(row, set(kRowUnit), from))), lands_i, di,
+                        s_.row_and_from.data() + landed);
+      hn::CompressStore(hn::ConvertTo(di, hn::IfThenElseZero(lands, to)), lands_i, di, s_.to.data() + landed);
+      landed += hn::CountTrue(d, lands);
+      if (landed + hn::Lanes(d) > s_.to.size()) {
+        s_.to.resize(2 * s_.to.size());
+        s_.row_and_from.resize(s_.to.size());
+      }
+      row = hn::Add(row, set(1));
+    }
+    open = hn::And(open, used);
+    if (!hn::AllFalse(d, open)) look_again(open, column_of(kTriangle));
+    return landed;
+  }
+
+  const PairInput& in_;
+  PairScratch& s_;
+  const Sample& at_;
+  Hull hull_;
+  bool has_hull_ = false;
+};
+
+/// Rows of columns to the mask's columns of rows.
+void write_mask(const Frame& frame, Blocked& blocked, Seen& seen) {
+  const hn::CappedTag<std::uint16_t, 16> d;
+  fill(frame, true, seen);
+  HWY_ALIGN std::uint16_t rows[16];
+  for (std::uint32_t row = 0; row < frame.rows; row += 16) {
+    for (std::uint32_t column = 0; column < frame.columns; column += 16) {
+      for (std::uint32_t i = 0; i < 16; ++i) {
+        const bool there = row + i < frame.rows;
+        rows[i] =
+            there ? static_cast<std::uint16_t>(blocked.row(row + i)[column / 64] >> column % 64) : std::uint16_t{0};
+      }
+      for (std::uint32_t bit = 0; bit < 16 && column + bit < frame.columns; ++bit) {
+        const auto which = hn::Set(d, static_cast<std::uint16_t>(1U << bit));
+        std::uint32_t hidden = 0;
+        for (std::size_t i = 0; i < 16; i += hn::Lanes(d)) {
+          std::uint8_t bytes[8] = {};
+          hn::StoreMaskBits(d, hn::TestBit(hn::Load(d, rows + i), which), bytes);
+          hidden |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << i;
+        }
+        std::uint16_t& word = seen.mask[((column + bit) * frame.padded_rows + row) / 16];
+        word = static_cast<std::uint16_t>(word & ~hidden);
+      }
+    }
+  }
+  seen.visible = frame.rows * frame.columns - blocked.count();
+}
+
+void test_sample(const PairInput& in, PairScratch& scratch, const Sample& at, Judge& judge, Seen& seen) {
+  const Frame& frame = in.frame;
+  scratch.open.clear();
+  scratch.blocked.reset(frame.rows, frame.columns);
+  if (!SampleTest(in, scratch, at)()) {
+    scratch.open.clear();
+    see_all(frame, at, scratch.open, judge, seen);
+    return;
+  }
+  seen.visible = frame.rows * frame.columns - scratch.blocked.count();
+  if (seen.visible == 0) return;
+  std::erase_if(scratch.open.samples, [&](std::uint32_t light_sample) {
+    return scratch.blocked.test(light_sample / frame.columns, light_sample % frame.columns);
+  });
+  write_mask(frame, scratch.blocked, seen);
+  if (at.straddles) cut_at_horizon(frame, at, scratch.open, seen);
+  if (scratch.open.any()) judge.decide(at, scratch.open, seen);
+}
+
+void test_pairs_here(const PairInput& in, PairScratch& scratch, Judge& judge, std::span<Seen> seen) {
+  if (scratch.to.empty()) {
+    scratch.to.resize(4096);
+    scratch.row_and_from.resize(4096);
+  }
+  for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
+    const auto group = in.samples.subspan(first, std::min(kGroup, in.samples.size() - first));
+    sort_out(in, group, scratch.near);
+    for (std::size_t i = 0; i < group.size(); ++i) test_sample(in, scratch, group[i], judge, seen[first + i]);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::vsm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::vsm {
+
+HWY_EXPORT(test_pairs_here);
+
+void test_pairs(const PairInput& input, PairScratch& scratch, Judge& judge, std::span<Seen> seen) {
+  HWY_DYNAMIC_DISPATCH(test_pairs_here)(input, scratch, judge, seen);
+}
+
+}  // namespace penumbra::vsm
+#endif

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "engines/vectors/find.hpp"
+#include "engines/vectors/frame.hpp"
+#include "engines/vectors/masks.hpp"
+#include "engines/vectors/table.hpp"
+#include "engines/vectors/trees.hpp"
+#include "visibility/light_frame.hpp"
+#include "visibility/light_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// View-sample mapping on a processor: what its stages hand to one another. Inside vsm/ only.
+namespace penumbra::vsm {
+
+using namespace native;  // NOLINT(google-build-using-namespace): its fields and tables by the dozen
+
+/// Of a triangle that may appear at a light row: where its corners appear, the bound of that, and its row in the
+/// group's table (bits).
+enum SurvivorField : std::size_t { kX0, kY0, kX1, kY1, kX2, kY2, kError, kTriangle, kSurvivorFields };
+using SurvivorTable = Table<kSurvivorFields>;
+
+struct PairInput {
+  const Frame& frame;
+  const visibility::Light& light;
+  const visibility::LightFrame& light_frame;
+  float scale;
+  const WideTriangleTree& tree;
+  const Cluster& cluster;
+  std::span<const Sample> samples;
+  const TriangleTable& triangles;
+};
+
+/// Which light samples are hidden from one view sample: rows of columns.
+class Blocked {
+ public:
+  void reset(std::uint32_t rows, std::uint32_t columns);
+  [[nodiscard]] std::size_t words_per_row() const { return words_per_row_; }
+  [[nodiscard]] std::uint64_t* row(std::uint32_t row) { return bits_.data() + row * words_per_row_; }
+  [[nodiscard]] bool test(std::uint32_t row, std::uint32_t column) {
+    return (this->row(row)[column / 64] >> column % 64 & 1) != 0;
+  }
+  /// from … to, from ≤ to.
+  void add(std::uint32_t row, std::uint32_t from, std::uint32_t to) {
+    std::uint64_t* const words = this->row(row);
+    for (std::uint32_t word = from / 64; word <= to / 64; ++word) {
+      const std::uint32_t first = word == from / 64 ? from % 64 : 0, last = word == to / 64 ? to % 64 : 63;
+      words[word] |= ~std::uint64_t{0} << first & ~std::uint64_t{0} >> (63 - last);
+    }
+  }
+  [[nodiscard]] std::uint32_t count() const;
+
+ private:
+  std::vector<std::uint64_t> bits_;
+  std::size_t words_per_row_ = 1;
+};
+
+/// Buffers of one thread.
+struct PairScratch {
+  std::vector<Sample> samples;
+  TriangleTable triangles, near;  // of the cluster, of a group
+  SurvivorTable survivors;
+  std::vector<std::uint32_t> roots, stack;
+  std::vector<std::uint32_t> again;  // triangles (rows of `near`) that vectors of floats cannot settle
+  struct Asked {
+    std::uint32_t triangle, row, column;
+  };
+  std::vector<Asked> asked;                    // light samples within the error of an edge of a triangle
+  std::vector<std::int32_t> row_and_from, to;  // spans of columns
+  Blocked blocked;
+  Open open;
+  std::uint64_t pairs = 0, careful = 0;  // of view samples and triangles
+};
+
+/// One triangle for one view sample, in double: any position. Adds what is certainly blocked; what is not certain, and
+/// not blocked yet, is open.
+struct CarefulInput {
+  const PairInput& in;
+  const Sample& at;
+  std::uint32_t slot;  ///< of the tree's leaves
+};
+void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open);
+/// One light sample of it.
+void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open);
+
+/// `seen`: one a view sample; of its mask all or nothing is written.
+void test_pairs(const PairInput& input, PairScratch& scratch, Judge& judge, std::span<Seen> seen);
+
+}  // namespace penumbra::vsm

@@ -1,0 +1,133 @@
+// View-sample mapping on a processor: its lists and what becomes of them. The rest is native::MaskMethod.
+
+#include "vsm/vectors/view_sample_native.hpp"
+
+#include "engines/vectors/horizon.hpp"
+#include "engines/vectors/mask_method.hpp"
+#include "vsm/closed_parts.hpp"
+#include "vsm/vectors/pairs.hpp"
+
+#include <glm/common.hpp>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace penumbra::vsm {
+namespace {
+
+bool is_outside(const Box& box, const glm::vec3& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] < box.lower[axis] || p[axis] > box.upper[axis]) return true;
+  }
+  return false;
+}
+
+/// Outside of the part, or on a face of its box where the part does not reach.
+bool is_outside(const ClosedPart& part, const glm::vec3& p) {
+  if (is_outside(part.box, p)) return true;
+  for (std::size_t face = 0; face < 6; ++face) {
+    const auto axis = static_cast<int>(face % 3);
+    const float bound = face < 3 ? part.box.lower[axis] : part.box.upper[axis];
+    if (p[axis] == bound && is_outside(part.touching[face], p)) return true;
+  }
+  return false;
+}
+
+class NativeViewSample final : public native::MaskMethod {
+ public:
+  explicit NativeViewSample(visibility::MethodDescription given) : MaskMethod(std::move(given), "test pairs") {}
+
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    MaskMethod::prepare_mesh(scene);
+    closed_ = find_closed_parts(scene);
+    if (closed_.parts.empty()) return;
+    for (std::size_t slot = 0; slot < tree().leaves.size() * kWide; ++slot) {
+      const std::uint32_t triangle = tree().leaves[slot / kWide][slot % kWide];
+      if (triangle == visibility::TriangleTree::kNoTriangle || closed_.part[triangle] == 0) continue;
+      WideTriangles& leaf = triangles().leaves[slot / kWide];
+      const std::size_t lane = slot % kWide;
+      leaf.closed[lane] = 1U << closed_.part[triangle];
+      if (closed_.turn[triangle] > 0) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) std::swap(leaf.corner[1][axis][lane], leaf.corner[2][axis][lane]);
+    }
+  }
+
+ private:
+  bool prepare_casters() override {
+    apart_ = parts_apart_from(closed_, light_frame(), scale());
+    return false;
+  }
+
+  Blocks begin_region(const Frame& frame, const Cluster& all) override {
+    PairScratch& scratch = scratch_.local();
+    find_triangle_roots({frame, triangles(), all, all.whole}, scratch.triangles, scratch.roots);
+    return Blocks::usual;
+  }
+
+  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+    PairScratch& scratch = scratch_.local();
+    scratch.triangles.count = 0;
+    Cluster cluster;
+    if (!scratch.roots.empty()) {
+      cluster = make_cluster(frame, placed);
+      find_triangles({frame, triangles(), cluster, cluster.whole, parts_around(placed)}, scratch.roots, scratch.stack,
+                     scratch.triangles);
+    }
+    if (scratch.triangles.count == 0) {
+      for (std::size_t i = 0; i < placed.size(); ++i) {
+        scratch.open.clear();
+        see_all(frame, placed[i], scratch.open, judge, seen[i]);
+      }
+      return;
+    }
+    scratch.samples.clear();
+    for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
+    test_pairs({frame, light(), light_frame(), scale(), triangles(), cluster, scratch.samples, scratch.triangles},
+               scratch, judge, seen);
+  }
+
+  /// Bit k: all these view samples are outside of part k, which does not carry them. On the floats as they are: exact.
+  [[nodiscard]] std::uint32_t parts_around(std::span<const Placed> placed) const {
+    if (apart_ == 0) return 0;
+    std::uint32_t carried = 0;
+    glm::vec3 lower(samples().p[placed.front().pixel]), upper(lower);
+    for (const Placed& at : placed) {
+      carried |= 1U << closed_.part[static_cast<std::size_t>(samples().triangle[at.pixel])];
+      lower = glm::min(lower, samples().p[at.pixel]);
+      upper = glm::max(upper, samples().p[at.pixel]);
+    }
+    std::uint32_t around = 0;
+    for (std::uint32_t k = 1; k <= closed_.parts.size(); ++k) {
+      if ((apart_ & ~carried & 1U << k) == 0) continue;
+      const ClosedPart& part = closed_.parts[k - 1];
+      bool outside = false;  // all of them beyond one face
+      for (int axis = 0; axis < 3; ++axis) {
+        outside = outside || upper[axis] < part.box.lower[axis] || lower[axis] > part.box.upper[axis];
+      }
+      outside = outside || std::all_of(placed.begin(), placed.end(),
+                                       [&](const Placed& at) { return is_outside(part, samples().p[at.pixel]); });
+      if (outside) around |= 1U << k;
+    }
+    return around;
+  }
+
+  void count(std::map<std::string, std::uint64_t>& counters) override {
+    for (PairScratch& scratch : scratch_) {
+      counters["trianglesTested"] += std::exchange(scratch.pairs, 0);
+      counters["trianglesTestedCarefully"] += std::exchange(scratch.careful, 0);
+    }
+  }
+
+  ClosedParts closed_;
+  std::uint32_t apart_ = 0;  // bits: closed parts apart from the light
+  tbb::enumerable_thread_specific<PairScratch> scratch_;
+};
+
+}  // namespace
+
+std::unique_ptr<visibility::Method> make_native_view_sample(visibility::MethodDescription description) {
+  return std::make_unique<NativeViewSample>(std::move(description));
+}
+
+}  // namespace penumbra::vsm
