@@ -2,6 +2,7 @@
 add_executable(faults_test
   faults/child.cpp
   faults/disks.cpp
+  faults/kills.cpp
   faults/limits.cpp
   faults/memory.cpp
   faults/orphans.cpp
