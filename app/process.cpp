@@ -82,11 +82,11 @@ int explain_current_exception() noexcept try {
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::bad_alloc&) {
+    // How much there was cannot be told any more: unwinding has given back what was taken.
     const MemoryRoom room = memory_room();
-    return fail(ExitCode::resource,
-                fmt::format("out of memory ({} is what {}); choose a smaller --size, fewer --light-samples or a "
-                            "smaller scene",
-                            in_bytes(room.bytes), room.limit));
+    return fail(ExitCode::resource, fmt::format("out of memory ({} is all that {}, now that everything is given back); "
+                                                "choose a smaller --size, fewer --light-samples or a smaller scene",
+                                                in_bytes(room.bytes), room.limit));
   } catch (const std::exception& error) {
     return fail(ExitCode::resource, explain(error));
   }

@@ -160,6 +160,8 @@ TriangleSoup make_lattice_soup(const LatticeSoup& soup) {
   std::mt19937 random(soup.seed);
   const auto coordinate = [&] { return static_cast<double>(random() % (std::uint64_t{soup.cells} + 1)); };
   TriangleSoup result;
+  result.positions.reserve(std::size_t{3} * soup.triangles);  // what was checked, and not the next power of two
+  result.triangles.reserve(soup.triangles);
   for (std::uint32_t i = 0; i < soup.triangles; ++i) {
     for (int corner = 0; corner < 3; ++corner) {
       const double x = coordinate(), y = coordinate(), z = coordinate();
