@@ -75,7 +75,7 @@ class CorpusSweep : public ProgramTest {
         {"camera", {{"eye", {2.5, 3.2, 4.5}}, {"target", {0, 0.7, 0}}, {"verticalFov", 40}}},
         {"lights",
          {{{"name", "key"},
-           {"rectangle", {{"center", {0.7, 4.5, 0.9}}, {"halfU", {0.8, 0, 0}}, {"halfV", {0, 0, 0.8}}}}}}},
+           {"rectangle", {{"center", {0.713, 4.5, 0.907}}, {"halfU", {0.807, 0, 0}}, {"halfV", {0, 0, 0.811}}}}}}},
         {"meshes",
          {{{"name", "floor"}, {"quad", {{"center", {0, 0, 0}}, {"halfU", {0, 0, 4}}, {"halfV", {4, 0, 0}}}}},
           {{"name", "mesh"}, {"file", file.string()}, {"transform", {{"scale", scale}, {"translate", move}}}}}}};
