@@ -58,7 +58,7 @@ class CorpusSweep : public ProgramTest {
   }
 
   /// The mesh, two units large, just above a floor (not on it: rays are no judge of surfaces in one plane) under a
-  /// lamp. False if it is too small or too large to be put there.
+  /// lamp, whose odd numbers keep its samples out of the planes of a box's sides. False if it cannot be put there.
   bool write_scene(const std::filesystem::path& file, const json& bounds) {
     double extent = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
