@@ -163,7 +163,7 @@ ImportedMesh read_stl(std::string_view content, const std::string& file) {
   }
   // A length that fits to the byte decides, and then whether the header is text.
   const bool fits = long_enough && content.size() == kHeader + kTriangle * std::size_t{count_of_binary(content)};
-  const bool ascii = solid && !fits && begins_with_text(content);
+  const bool ascii = solid && (!long_enough || (!fits && begins_with_text(content)));
   ImportedMesh mesh = ascii ? AsciiStl(file).read(content) : read_binary(content, file);
   if (mesh.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file);
   return mesh;
