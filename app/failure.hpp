@@ -12,7 +12,11 @@ struct Failure {
   std::string message;
 };
 
-/// The exception that is being handled, as a failure; an interruption is thrown on. Only inside of a catch block.
+/// The exception that is being handled, whatever it is. Only inside of a catch block.
+Failure describe_current_exception();
+
+/// The exception that is being handled, as a failure; an interruption, and a device that
+/// does not answer, are thrown on. Only inside of a catch block.
 Failure current_failure();
 
 }  // namespace penumbra::app

@@ -1,15 +1,13 @@
 #include "app/process.hpp"
 
+#include "app/failure.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
 
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <new>
-#include <string>
 #include <system_error>
 
 #include <fcntl.h>
@@ -37,31 +35,6 @@ void occupy_closed_streams() {
   std::_Exit(code);
 }
 
-int fail(ExitCode code, std::string_view message) {
-  say(fmt::format("penumbra: error: {}\n", message));
-  return static_cast<int>(code);
-}
-
-std::string stdout_message(const std::string& reason) {
-  return fmt::format("cannot write to stdout: {}", reason);
-}
-
-/// What an exception of a library means, as far as that can be told.
-std::string explain(const std::exception& error) {
-  const auto* system = dynamic_cast<const std::system_error*>(&error);
-  if (std::ferror(stdout) != 0) return stdout_message(system != nullptr ? system->code().message() : error.what());
-  const bool no_thread = (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
-                         std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
-  if (no_thread) {
-    return fmt::format(
-        "cannot start a thread ({}); raise the limit on processes (ulimit -u, the control group's pids.max), or that "
-        "on memory (ulimit -v)",
-        error.what());
-  }
-  // No library's exception should come this far; if one does, it is ours to repair, and no crash for the user.
-  return fmt::format("internal: {}", error.what());
-}
-
 }  // namespace
 
 void prepare_process() {
@@ -77,27 +50,18 @@ void say(std::string_view text) noexcept {
 }
 
 int explain_current_exception() noexcept try {
-  try {
-    throw;
-  } catch (const Error& error) {
-    return fail(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    // How much there was cannot be told any more: unwinding has given back what was taken.
-    const MemoryRoom room = memory_room();
-    return fail(ExitCode::resource, fmt::format("out of memory ({} is all that {}, now that everything is given back); "
-                                                "choose a smaller --size, fewer --light-samples or a smaller scene",
-                                                in_bytes(room.bytes), room.limit));
-  } catch (const std::exception& error) {
-    return fail(ExitCode::resource, explain(error));
-  }
+  const Failure failure = describe_current_exception();
+  say(fmt::format("penumbra: error: {}\n", failure.message));
+  return static_cast<int>(failure.code);
 } catch (...) {  // no memory left even for the message
   say("penumbra: error: out of memory\n");
   return static_cast<int>(ExitCode::resource);
 }
 
 void check_stdout() {
-  if (std::fflush(stdout) != 0) throw ResourceError("{}", stdout_message(std::generic_category().message(errno)));
-  if (std::ferror(stdout) != 0) throw ResourceError("{}", stdout_message("an earlier write failed"));
+  if (std::fflush(stdout) != 0)
+    throw ResourceError("cannot write to stdout: {}", std::generic_category().message(errno));
+  if (std::ferror(stdout) != 0) throw ResourceError("cannot write to stdout: an earlier write failed");
 }
 
 }  // namespace penumbra::app
