@@ -20,16 +20,26 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at, std::size_t 
 }
 
 /// Chunks made of chunks, as Assimp reads them; those of a material hold nothing that is counted.
-constexpr std::array<std::uint32_t, 7> kContainers = {0x4D4D, 0x3DC2, 0x3D3D, 0x4100, 0xB000, 0xB002, 0xAFFF};
+constexpr std::array<std::uint32_t, 12> kContainers = {0x4D4D, 0x3DC2, 0x3D3D, 0x4100, 0xAFFF, 0xB000,
+                                                       0xB002, 0xB003, 0xB004, 0xB005, 0xB006, 0xB007};
 constexpr std::uint32_t kObject = 0x4000;  ///< a name, then chunks
 constexpr std::uint32_t kFaces = 0x4120;   ///< a count, faces, then chunks
 
-/// Chunks that begin with a count of 16 bits, and the bytes of each of what is counted.
+/// Chunks with a count of something in them.
 struct Counted {
   std::uint32_t number;
-  std::size_t bytes;
+  std::size_t skip;   ///< bytes before the count
+  std::size_t width;  ///< of the count
+  std::size_t bytes;  ///< the least that each takes of what is counted
 };
-constexpr std::array<Counted, 3> kCounted = {{{0x4110, 12}, {kFaces, 8}, {0x4140, 8}}};
+constexpr std::array<Counted, 8> kCounted = {{{0x4110, 0, 2, 12},  // vertices
+                                              {kFaces, 0, 2, 8},
+                                              {0x4140, 0, 2, 8},    // texture coordinates
+                                              {0xB020, 10, 4, 18},  // keys: time, flags, and a vector,
+                                              {0xB021, 10, 4, 22},  // a rotation,
+                                              {0xB022, 10, 4, 18},  // a vector,
+                                              {0xB023, 10, 4, 10},  // an angle,
+                                              {0xB024, 10, 4, 10}}};
 
 struct Span {
   std::size_t first, end;
@@ -64,8 +74,10 @@ void audit_3ds(std::string_view content, const std::string& file) {
       const auto* const counted = std::ranges::find(kCounted, number, &Counted::number);
       if (counted != kCounted.end()) {
         const std::size_t room = inside.end - inside.first;
-        const std::uint64_t count = room >= 2 ? little_endian(content, inside.first, 2) : 0;
-        if (room < 2 + count * counted->bytes) {
+        const std::size_t before = counted->skip + counted->width;
+        const std::uint64_t count =
+            room >= before ? little_endian(content, inside.first + counted->skip, counted->width) : 0;
+        if (room < before + count * counted->bytes) {
           throw InputError(
               "{}: the chunk {:#06x} at byte {} says that it holds {} entries, for which its {} bytes are "
               "too few; the file is truncated or damaged",
