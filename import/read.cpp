@@ -322,9 +322,24 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
   return mesh;
 }
 
+/// An OBJ's material libraries are not read, but they belong to it: no output may take their place.
+void note_material_libraries(std::string_view text, const std::filesystem::path& folder) {
+  constexpr std::string_view kKeyword = "mtllib";
+  for (std::size_t at = text.find(kKeyword); at != std::string_view::npos; at = text.find(kKeyword, at + 1)) {
+    if (at > 0 && text[at - 1] != '\n' && text[at - 1] != '\r') continue;
+    std::string_view rest = text.substr(at), line;
+    take_line(rest, line);
+    take_word(line);
+    for (std::string_view name; !(name = take_word(line)).empty();) note_opened_file(folder / name);
+  }
+}
+
 ImportedMesh read_as(const std::string& extension, const InputFile& input, const std::string& content) {
   const std::string file = input.name.string();
-  if (extension == ".obj") return read_obj_text(content, file);
+  if (extension == ".obj") {
+    note_material_libraries(content, std::filesystem::absolute(input.name).parent_path());
+    return read_obj_text(content, file);
+  }
   if (extension == ".ply") return read_ply(content, file);
   if (extension == ".off") return read_off_text(content, file);
   if (extension == ".stl") return read_stl(content, file);

@@ -81,10 +81,13 @@ TEST_F(LimitFaults, FewThreadsForTheImportHelper) {
   }
 }
 
-TEST_F(LimitFaults, FewDescriptors) {  // with 3, the program cannot be loaded
+TEST_F(LimitFaults, FewDescriptors) {
   (void)small_scene();
   for (const rlim_t files : {4, 5, 6, 8, 10, 12, 16, 20, 64}) {
-    check({.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}}, std::to_string(files) + " descriptors");
+    const Conditions conditions{.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}};
+    // Where this process has files open of its own, too few are left to load the program: that is no answer of ours.
+    if (files < 8 && run_under(conditions).err.find("while loading shared libraries") != std::string::npos) continue;
+    check(conditions, std::to_string(files) + " descriptors");
   }
 }
 
