@@ -29,6 +29,8 @@ class ObjReader {
     std::string joined;  // of lines that end in a backslash
     while (take_line(text, line)) {
       ++line_number_;
+      std::string_view words = line;
+      if (joined.empty() && take_word(words).starts_with('#')) continue;  // a comment's backslash continues nothing
       if (line.ends_with('\\')) {
         joined.append(line.substr(0, line.size() - 1)).append(" ");
       } else if (joined.empty()) {

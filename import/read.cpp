@@ -326,10 +326,11 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
 void note_material_libraries(std::string_view text, const std::filesystem::path& folder) {
   constexpr std::string_view kKeyword = "mtllib";
   for (std::size_t at = text.find(kKeyword); at != std::string_view::npos; at = text.find(kKeyword, at + 1)) {
-    if (at > 0 && text[at - 1] != '\n' && text[at - 1] != '\r') continue;
-    std::string_view rest = text.substr(at), line;
+    std::string_view rest = text.substr(at + kKeyword.size()), line;
     take_line(rest, line);
-    take_word(line);
+    while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
+    if (line.empty()) continue;
+    note_opened_file(folder / line);  // one name with blanks, or several names: both are meant in files that exist
     for (std::string_view name; !(name = take_word(line)).empty();) note_opened_file(folder / name);
   }
 }

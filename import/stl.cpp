@@ -89,14 +89,19 @@ class AsciiStl {
     while (take_line(text, line)) {
       ++line_number_;
       for (std::string_view word; !(word = take_word(line)).empty();) {
-        if (same_keyword(word, "solid") || same_keyword(word, "endsolid")) break;  // a name follows
-        statement(word, line);
+        if (same_keyword(word, "solid") || same_keyword(word, "endsolid")) {
+          open_solid_ = same_keyword(word, "solid");
+          skip_name(line);
+        } else {
+          statement(word, line);
+        }
       }
     }
     if (facet_line_ > 0) {
       throw InputError("{}: line {}: the facet that begins here has no end; the file is truncated", file_, facet_line_);
     }
     mesh_.notes = faces_.notes();
+    if (open_solid_) mesh_.notes.emplace_back("the last solid has no end ('endsolid'): the file may be truncated");
     if (unknown_ > 0) {
       mesh_.notes.push_back(fmt::format("{} unknown statements skipped, the first in {}", unknown_, first_unknown_));
     }
@@ -109,11 +114,27 @@ class AsciiStl {
     throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
   }
 
+  /// A solid's name runs to the end of its line, but for writers that put a whole solid on one line.
+  static void skip_name(std::string_view& line) {
+    for (std::string_view rest = line; !rest.empty();) {
+      const std::string_view from = rest, word = take_word(rest);
+      std::string_view after = rest;
+      const std::string_view next = take_word(after);
+      if (word.empty() || (same_keyword(word, "facet") && same_keyword(next, "normal")) ||
+          same_keyword(word, "endsolid")) {
+        line = word.empty() ? std::string_view() : from;
+        return;
+      }
+    }
+    line = {};
+  }
+
   void statement(std::string_view word, std::string_view& line) {
     if (same_keyword(word, "facet")) {
       if (facet_line_ > 0) fail("a facet begins, but that of line {} has no end", facet_line_);
       facet_line_ = line_number_;
       corners_ = 0;
+      had_loop_ = false;
     } else if (same_keyword(word, "normal")) {
       for (int i = 0; i < 3; ++i) take_word(line);  // which are not looked at
     } else if (same_keyword(word, "vertex")) {
@@ -121,7 +142,11 @@ class AsciiStl {
     } else if (same_keyword(word, "endfacet")) {
       if (facet_line_ == 0) fail("a facet ends that has not begun");
       facet_line_ = 0;
+      if (corners_ > 0 || !had_loop_) add_corners(mesh_.soup, faces_, corners_);
+    } else if (same_keyword(word, "endloop") && facet_line_ > 0 && corners_ > 0) {
+      had_loop_ = true;
       add_corners(mesh_.soup, faces_, corners_);
+      corners_ = 0;
     } else if (!same_keyword(word, "outer") && !same_keyword(word, "loop") && !same_keyword(word, "endloop")) {
       if (unknown_++ == 0) first_unknown_ = fmt::format("line {}: '{}'", line_number_, word.substr(0, 40));
       line = {};
@@ -148,7 +173,9 @@ class AsciiStl {
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::size_t line_number_ = 0, facet_line_ = 0;  ///< where the open facet begins; 0 if none is open
-  std::uint32_t corners_ = 0;
+  std::uint32_t corners_ = 0;                     ///< of the loop that is being read
+  bool had_loop_ = false;                         ///< the open facet has a face already
+  bool open_solid_ = false;
   std::uint64_t unknown_ = 0;
   std::string first_unknown_;
 };

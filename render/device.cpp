@@ -1,6 +1,7 @@
 #include "render/device.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "base/threads.hpp"
 #include "render/vulkan.hpp"
 
@@ -293,6 +294,10 @@ unsigned driver_threads() {
   return 2 * std::clamp(std::thread::hardware_concurrency(), 1U, kLargestTeam) + 2;
 }
 
+/// What that driver takes for its compiler and its threads' stacks before the first pass runs, with some to spare. It
+/// does not look whether it got them.
+constexpr std::uint64_t kDriverBytes = std::uint64_t{256} << 20;
+
 Limits read_limits(const vk::raii::PhysicalDevice& physical, std::uint32_t timestamp_bits) {
   const auto& limits = physical.getProperties().limits;
   Limits out;
@@ -356,7 +361,11 @@ Device::Device(const DeviceOptions& options) try : state_(std::make_unique<State
   s.timestamp_bits = s.physical.getQueueFamilyProperties()[s.queue_family].timestampValidBits;
   s.limits = read_limits(s.physical, s.timestamp_bits);
   s.memory = s.physical.getMemoryProperties();
-  if (s.info.kind == "cpu") require_threads(driver_threads(), "the device " + s.info.name);
+  longest_wait(s.info.kind == "cpu");  // wrong values are refused here, while nothing is at work
+  if (s.info.kind == "cpu") {
+    require_threads(driver_threads(), "the device " + s.info.name);
+    require_memory(kDriverBytes, "the device " + s.info.name, "raise the limit on memory (ulimit -v)");
+  }
   s.device = make_device(s.physical, s.queue_family);
   s.queue = vk::raii::Queue(s.device, s.queue_family, 0);
   s.pool = vk::raii::CommandPool(

@@ -54,6 +54,10 @@ struct Device::State {
   void name(const Handle& handle, const std::string& text) const;
 };
 
+/// The longest that one submission may take: PENUMBRA_DEVICE_TIMEOUT in seconds, else a day on processors, an hour
+/// elsewhere. UsageError for a value that is no number of seconds.
+std::chrono::seconds longest_wait(bool is_processor);
+
 /// Waits until the device has done what the fence was submitted with; `what` says what that is. Throws
 /// DeviceDoesNotAnswer when it can be told that this will not be, or after too long (PENUMBRA_DEVICE_TIMEOUT).
 void wait_for(Device::State& device, const vk::raii::Fence& fence, const std::string& what);

@@ -17,19 +17,6 @@ using std::chrono::duration;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
-/// PENUMBRA_DEVICE_TIMEOUT: the longest that one submission may take, in seconds.
-seconds longest_wait(bool is_processor) {
-  if (const char* text = std::getenv("PENUMBRA_DEVICE_TIMEOUT"); text != nullptr) {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(text, text + std::strlen(text), value);
-    if (error != std::errc() || *end != '\0' || value < 1 || value > 1'000'000'000) {
-      throw UsageError("PENUMBRA_DEVICE_TIMEOUT={}: expected a whole number of seconds, 1 or more", text);
-    }
-    return seconds(value);
-  }
-  return is_processor ? std::chrono::hours(24) : std::chrono::hours(1);
-}
-
 nanoseconds time_of(clockid_t clock) {
   timespec now{};
   ::clock_gettime(clock, &now);
@@ -56,6 +43,18 @@ class IdleTurns {
 };
 
 }  // namespace
+
+seconds longest_wait(bool is_processor) {
+  if (const char* text = std::getenv("PENUMBRA_DEVICE_TIMEOUT"); text != nullptr) {
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(text, text + std::strlen(text), value);
+    if (error != std::errc() || *end != '\0' || value < 1 || value > 1'000'000'000) {
+      throw UsageError("PENUMBRA_DEVICE_TIMEOUT={}: expected a whole number of seconds, 1 or more", text);
+    }
+    return seconds(value);
+  }
+  return is_processor ? std::chrono::hours(24) : std::chrono::hours(1);
+}
 
 void wait_for(Device::State& device, const vk::raii::Fence& fence, const std::string& what) {
   constexpr std::chrono::milliseconds kTurn(250);

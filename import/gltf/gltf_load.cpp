@@ -127,6 +127,10 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
     check_gltf_numbers(bytes, name);
     loaded = parser.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, here, tinygltf::NO_REQUIRE);
   }
+  // Images are not read, but they belong to the scene: no output may take their place.
+  for (const tinygltf::Image& image : model.images) {
+    if (!image.uri.empty()) mesh::note_opened_file(confinement.folder_name / image.uri);
+  }
   if (!confinement.refused.empty() && !loaded) {
     throw InputError("{}: it refers to {}, which is outside its folder; copy it there or pass --allow-outside", name,
                      confinement.refused);

@@ -59,7 +59,7 @@ class OutputFaults : public FaultTest {
     const float one = 1;
     for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, std::span<const float>(&one, 1), 1});
     write_exr(folder_ / "t.exr", picture);
-    write("m.obj", "mtllib m.mtl\nv -1 1 0\nv 1 1 0\nv 0 1 1\nusemtl grey\nf 1 2 3\n");
+    write("m.obj", "  mtllib m.mtl\nv -1 1 0\nv 1 1 0\nv 0 1 1\nusemtl grey\nf 1 2 3\n");
     write("m.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
     write("p.ply",
           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

@@ -150,6 +150,28 @@ TEST_F(MeshReaders, StlFacetsThatAreNone) {
   expect_refused("nothing.stl", "solid a\nendsolid a\n", {"no triangles"});
 }
 
+TEST_F(MeshReaders, StlThatOtherReadersCutShort) {
+  const std::string corners = "outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop ";
+  const std::string facet = "facet normal 0 0 1 " + corners + "endfacet ";
+  EXPECT_EQ(read("one_line.stl", "solid a name " + facet + facet + "endsolid a\n").soup.triangles.size(), 2u);
+  EXPECT_EQ(
+      read("glued.stl", "solid a\n" + facet + "\nendsolid a solid b " + facet + "endsolid b").soup.triangles.size(),
+      2u);
+  EXPECT_EQ(read("loops.stl", "solid a\nfacet normal 0 0 1 " + corners + corners + "endfacet\nendsolid")
+                .soup.triangles.size(),
+            2u)
+      << "two loops are two faces, not a hexagon";
+  EXPECT_THAT(read("whole.stl", "solid a\n" + facet + "\nendsolid a\n").notes, IsEmpty());
+  EXPECT_THAT(read("cut.stl", "solid a\n" + facet + "\n").notes, Contains(HasSubstr("may be truncated")));
+}
+
+TEST_F(MeshReaders, ObjCommentsContinueNothing) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const ImportedMesh imported = read("comment.obj", "# made in C:\\\n" + mesh + "  # D:\\\nf 1 2 3\nf 1 \\\n2 3\n");
+  EXPECT_EQ(imported.soup.positions.size(), 3u);
+  EXPECT_EQ(imported.soup.triangles.size(), 2u);
+}
+
 // -------------------------------------------------------------------------------------------------------------- PLY
 
 std::string ply_header(const std::string& format, const std::string& faces) {
