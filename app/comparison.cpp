@@ -112,12 +112,7 @@ class Comparison {
   }
 
   void prepare_folder() {
-    std::error_code error;
-    std::filesystem::create_directories(run_.out, error);
-    if (error || !std::filesystem::is_directory(run_.out)) {
-      throw ResourceError("cannot make the folder \"{}\": {}", run_.out.string(),
-                          error ? error.message() : "not a folder");
-    }
+    folder_.make(run_.out);
     outputs_.add("-o", run_.out / "metrics.json");
     outputs_.add("-o", run_.out / "report.html");
     outputs_.add("--stats", options_.stats);
@@ -340,6 +335,7 @@ class Comparison {
   const Entry reference_;
   bool same_samples_;
   visibility::SampleRequest reference_request_;
+  OutputFolder folder_;
   OutputFiles outputs_;
   DeviceSource devices_;
   Session session_;

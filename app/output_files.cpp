@@ -52,4 +52,23 @@ void OutputFiles::require_writable() const {
   for (const OutputFile& output : files_) const AtomicFile probe(output.path);  // makes, and removes, a file there
 }
 
+void OutputFolder::make(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (std::filesystem::path missing = std::filesystem::absolute(folder).lexically_normal();
+       std::filesystem::symlink_status(missing, error).type() == std::filesystem::file_type::not_found &&
+       missing.has_relative_path();
+       missing = missing.parent_path()) {
+    made_.push_back(missing);
+  }
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw ResourceError("cannot make the folder \"{}\": {}", folder.string(), error ? error.message() : "not a folder");
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;  // one that is not empty stays
+  for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, ignored);
+}
+
 }  // namespace penumbra::app

@@ -46,4 +46,20 @@ class OutputFiles {
   std::map<FileIdentity, std::size_t> numbers_;  ///< into files_
 };
 
+/// A folder for outputs. What of it, and of the folders around it, had to be made goes again with this object if it is
+/// still empty then: a command that is refused leaves nothing.
+class OutputFolder {
+ public:
+  OutputFolder() = default;
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder();
+
+  /// Throws ResourceError if it cannot be made.
+  void make(const std::filesystem::path& folder);
+
+ private:
+  std::vector<std::filesystem::path> made_;  // innermost first
+};
+
 }  // namespace penumbra::app

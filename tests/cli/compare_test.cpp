@@ -125,6 +125,14 @@ TEST_F(Compare, AFileThatCannotBeWrittenIsSaidBeforeAnythingIsDone) {
   EXPECT_FALSE(std::filesystem::exists(path("dir/metrics.json")));
 }
 
+TEST_F(Compare, ARefusalLeavesNoFolders) {
+  std::filesystem::create_directories(path("kept"));
+  const std::string folder = path("kept") + "/new/inner";
+  EXPECT_EQ(run({"compare", path("nothing.json"), "-o", folder}).code, 3);
+  EXPECT_EQ(run({"compare", tiny_scene(), "-o", folder, "--methods", "edge-scatter:rows=never"}).code, 2);
+  EXPECT_TRUE(std::filesystem::is_empty(path("kept")));
+}
+
 /// Where too many pairs differ for each to be decided, an evenly spaced sample of them is, and it says how large it is.
 TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
   const Outcome outcome = compare({"--methods", "accumulate:size=8,raytrace", "--light-samples", "64",
