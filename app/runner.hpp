@@ -39,7 +39,7 @@ struct RunPlan {
 /// Times of one method over all lights, in seconds: medians where there were several runs.
 struct RunTimes {
   double mesh = 0, light = 0, evaluate = 0;
-  std::optional<double> warmup;  ///< the discarded run's light + evaluate less the medians, at least 0; empty: none was discarded
+  std::optional<double> warmup;  ///< the discarded run's light + evaluate less the medians, >= 0; empty: no such run
   double total = 0;              ///< wall-clock of all that was done for this method, reading back and sinks included
 };
 

@@ -37,8 +37,8 @@ struct SceneFloats {
   }
 };
 
-/// Throws InputError when a position, taken relative to the origin, is not finite in float32, or when the whole scene is
-/// so small that float32 loses digits.
+/// Throws InputError when a position, taken relative to the origin, is not finite in float32, or when the whole scene
+/// is so small that float32 loses digits.
 SceneFloats make_scene_floats(const scenes::Scene& scene);
 
 }  // namespace penumbra::visibility
