@@ -1,6 +1,7 @@
 #include "tests/analytic/maps_parallel_square.hpp"
 
 #include "base/error.hpp"
+#include "maps/caster_maps.hpp"
 
 #include <bit>
 
@@ -40,14 +41,21 @@ TEST_F(MapsMethod, OptionsThatCannotBeMeantAreRefused) {
 }
 
 TEST_F(MapsMethod, MapsThatFitIntoNoBufferAreRefusedWithTheSizeThatDoes) {
-  const std::uint64_t range = device_.limits().max_storage_buffer_range;
-  // Only a device whose buffers are smaller than the largest map has something to refuse (lavapipe has).
-  if (16384ull * 16384 * 4 <= range || device_.limits().max_image_size < 16384)
-    GTEST_SKIP() << "this device holds the largest map: there is nothing to refuse";
-  const Stage stage = make_stage(parallel_square(), samples(1), 8);
-  const auto method = maps::make_accumulate(device_, {{"size", "16384"}});
-  method->prepare_mesh(stage.scene);
-  EXPECT_THROW(method->prepare_light(stage.light), ResourceError);
+  // As many faces as just fit, and one more: on every device, however large its buffers are.
+  constexpr std::uint32_t kSize = 1024;
+  const auto most = static_cast<std::uint32_t>(maps::faces_per_buffer(device_, kSize));
+  EXPECT_NO_THROW(maps::check_faces_fit(device_, kSize, most));
+  try {
+    maps::check_faces_fit(device_, kSize, most + 1);
+    ADD_FAILURE() << most + 1 << " faces are too many";
+  } catch (const ResourceError& error) {
+    const std::string message = error.what();
+    const std::size_t at = message.rfind("size=");
+    ASSERT_NE(at, std::string::npos) << message;
+    const auto size = static_cast<std::uint32_t>(std::stoul(message.substr(at + 5)));
+    EXPECT_LT(size, kSize);
+    EXPECT_NO_THROW(maps::check_faces_fit(device_, size, most + 1)) << "the size that it names does";
+  }
 }
 
 TEST_F(MapsMethod, TheSameBytesTwiceAndInTiles) {
