@@ -14,10 +14,12 @@
 #include "base/png.hpp"
 #include "compare/error_picture.hpp"
 #include "compare/report.hpp"
+#include "render/device.hpp"
 
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <optional>
 #include <system_error>
@@ -86,6 +88,7 @@ class Comparison {
     if (!options_.stats.empty()) write_file_atomically(options_.stats, json);
     finish_report(arguments);
     compare::write_report(run_.out / "report.html", report_);
+    if (hang_) std::rethrow_exception(hang_);
     return std::move(report_.metrics);
   }
 
@@ -194,23 +197,34 @@ class Comparison {
     reference_beauty_ = std::move(done.beauty);
   }
 
-  /// One method that fails is no reason to lose what the others have to say.
+  /// One method that fails is no reason to lose what the others have to say. After a device that does not answer no
+  /// other method runs, and what it threw is thrown on once everything is written.
   void run_or_report(const Entry& entry) {
+    if (hang_) {
+      report_failure(entry, {ExitCode::resource, "not run, since the device does not answer any more"});
+      return;
+    }
     try {
       run_entry(entry);
+    } catch (const render::DeviceDoesNotAnswer& error) {
+      hang_ = std::current_exception();
+      report_failure(entry, {error.code(), error.what()});
     } catch (...) {
-      const Failure failure = current_failure();
-      progress_.clear();
-      spdlog::error("{}: {}", entry.label, failure.message);
-      compare::MethodResult result;
-      result.entry = entry.label;
-      result.stats = make_stats(session_, session_.lights, label_of(entry), {});
-      result.stats.seconds = {};
-      result.failure = {static_cast<int>(failure.code), failure.message};
-      report_.metrics.methods.push_back(std::move(result));
-      report_.methods.emplace_back().description = entry.description;
-      visibility_.emplace_back();
+      report_failure(entry, current_failure());
     }
+  }
+
+  void report_failure(const Entry& entry, const Failure& failure) {
+    progress_.clear();
+    spdlog::error("{}: {}", entry.label, failure.message);
+    compare::MethodResult result;
+    result.entry = entry.label;
+    result.stats = make_stats(session_, session_.lights, label_of(entry), {});
+    result.stats.seconds = {};
+    result.failure = {static_cast<int>(failure.code), failure.message};
+    report_.metrics.methods.push_back(std::move(result));
+    report_.methods.emplace_back().description = entry.description;
+    visibility_.emplace_back();
   }
 
   void run_entry(const Entry& entry) {
@@ -349,6 +363,7 @@ class Comparison {
   std::vector<std::vector<float>> visibility_;  ///< of each entry, of the first light; empty: it failed
   std::vector<std::string> warnings_;
   compare::ReportInput report_;
+  std::exception_ptr hang_;  ///< what a device that does not answer threw; it must not be used again
 };
 
 }  // namespace

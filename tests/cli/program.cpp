@@ -1,5 +1,7 @@
 #include "tests/cli/program.hpp"
 
+#include "tests/child_arguments.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -35,26 +37,10 @@ constexpr const char* kTinyScene = R"({
   ]
 })";
 
-/// argv or envp: pointers into strings that outlive it.
-std::vector<char*> pointers(std::vector<std::string>& strings) {
-  std::vector<char*> result;
-  for (std::string& string : strings) result.push_back(string.data());
-  result.push_back(nullptr);
-  return result;
-}
-
 std::vector<std::string> child_environment(const Invocation& invocation) {
-  std::map<std::string, std::string> variables;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string text = *entry;
-    const auto equals = text.find('=');
-    variables[text.substr(0, equals)] = equals == std::string::npos ? "" : text.substr(equals + 1);
-  }
-  variables["PENUMBRA_VALIDATION"] = "1";  // a validation message fails the test that caused it
-  for (const auto& [name, value] : invocation.environment) variables[name] = value;
-  std::vector<std::string> result;
-  for (const auto& [name, value] : variables) result.push_back(name + "=" + value);
-  return result;
+  std::map<std::string, std::string> more{{"PENUMBRA_VALIDATION", "1"}};  // a validation message fails its test
+  for (const auto& [name, value] : invocation.environment) more[name] = value;
+  return environment_with(more);
 }
 
 /// Reads both pipes until the child closes them; sends the signals when their time has come.

@@ -1,5 +1,7 @@
 #include "tests/faults/child.hpp"
 
+#include "tests/child_arguments.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -34,25 +36,6 @@ constexpr const char* kScene = R"({
 std::string scene_with(const std::string& mesh) {
   std::string text = kScene;
   return text.replace(text.find("MESH"), 4, mesh);
-}
-
-std::vector<char*> pointers(std::vector<std::string>& strings) {
-  std::vector<char*> result;
-  for (std::string& string : strings) result.push_back(string.data());
-  result.push_back(nullptr);
-  return result;
-}
-
-std::vector<std::string> environment_of(const Conditions& conditions) {
-  std::map<std::string, std::string> variables;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string text = *entry;
-    variables[text.substr(0, text.find('='))] = text.substr(std::min(text.size(), text.find('=') + 1));
-  }
-  for (const auto& [name, value] : conditions.environment) variables[name] = value;
-  std::vector<std::string> result;
-  for (const auto& [name, value] : variables) result.push_back(name + "=" + value);
-  return result;
 }
 
 /// A user number that nobody is likely to have, another one for each run.
@@ -94,7 +77,7 @@ bool is_documented(int code) {
 Running::Running(const Conditions& conditions) : timeout_(conditions.timeout) {
   std::vector<std::string> arguments = conditions.arguments;
   arguments.insert(arguments.begin(), PENUMBRA_PROGRAM);
-  std::vector<std::string> environment = environment_of(conditions);
+  std::vector<std::string> environment = environment_with(conditions.environment);
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   std::array<int, 2> out{}, err{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe");

@@ -52,5 +52,20 @@ TEST_F(LongWaitFaults, ADeviceThatDoesNothingIs4) {
   EXPECT_THAT(files(), ElementsAre("scene.json"));
 }
 
+TEST_F(LongWaitFaults, CompareKeepsWhatCameBefore) {
+  // The first method has work of milliseconds, the second of a minute in one submission.
+  const Ending ending =
+      run_under({.arguments = {"compare", small_scene(), "-o", path("dir"), "--size", "512x512", "--light-samples",
+                               "4096", "--reference", "exact", "--sample-pixels", "4", "--methods",
+                               "shadow-map:size=64,depth-complexity,hard-volume", "--runs", "1", "--device", "cpu"},
+                 .environment = {{"LP_NUM_THREADS", "1"}, {"PENUMBRA_DEVICE_TIMEOUT", "2"}}});
+  EXPECT_EQ(ending.code, 4) << ending.err;
+  const std::string metrics = read("dir/metrics.json");
+  EXPECT_THAT(metrics, HasSubstr("did not finish within 2 s"));
+  EXPECT_THAT(metrics, HasSubstr("not run, since the device does not answer any more"));
+  EXPECT_TRUE(std::filesystem::exists(path("dir") + "/shadow-map:size=64.exr"));
+  EXPECT_TRUE(std::filesystem::exists(path("dir") + "/report.html"));
+}
+
 }  // namespace
 }  // namespace penumbra::tests
