@@ -2,15 +2,8 @@
 if(NOT PENUMBRA_BENCH)
   return()
 endif()
-foreach(needed app compare reference render volumes vsm wedges)
-  if(NOT TARGET penumbra_${needed})
-    return()
-  endif()
-endforeach()
-find_package(nlohmann_json REQUIRED)
-add_executable(bench_test ${CMAKE_CURRENT_LIST_DIR}/cli/bench_test.cpp ${CMAKE_CURRENT_LIST_DIR}/cli/program.cpp)
+penumbra_test(bench PREFIX bench.
+  SOURCES cli/bench.cpp cli/program.cpp
+  LIBRARIES penumbra_base nlohmann_json::nlohmann_json)
 target_compile_definitions(bench_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra-bench>")
-target_link_libraries(bench_test PRIVATE penumbra_base penumbra_warnings nlohmann_json::nlohmann_json GTest::gmock
-                      GTest::gtest_main)
 add_dependencies(bench_test penumbra-bench)
-gtest_discover_tests(bench_test TEST_PREFIX bench. PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)

@@ -1,6 +1,5 @@
 # Fuzz targets. Every build replays the corpus (label quick). The preset `fuzz` links the same code with libFuzzer, and
 # its tests (label full) look for ten minutes each; elsewhere tests of that name configure and build that preset first.
-find_package(nlohmann_json REQUIRED)
 set(PENUMBRA_FUZZ_SECONDS 600 CACHE STRING "How long each fuzz target runs")
 add_custom_target(penumbra_fuzz)
 
@@ -37,3 +36,5 @@ penumbra_fuzz_target(three_ds penumbra_mesh_reader penumbra_base)
 penumbra_fuzz_target(gltf penumbra_gltf_import penumbra_base)
 penumbra_fuzz_target(texture penumbra_gltf_import penumbra_base)
 penumbra_fuzz_target(repair penumbra_mesh)
+penumbra_fuzz_target(soups penumbra_volumes penumbra_vsm gmpxx gmp)
+target_sources(fuzz_soups PRIVATE fuzz/soup_case.cpp fuzz/soup_judge.cpp fuzz/soup_methods.cpp)

@@ -1,32 +1,37 @@
-# Foreign files: meshes, glTF scenes, and the helper process that reads them.
-find_package(GTest REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_library(RAPIDCHECK rapidcheck REQUIRED)
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(MINIZIP REQUIRED IMPORTED_TARGET minizip)
-
-add_executable(mesh_import_test unit/mesh/mesh_import_test.cpp unit/mesh/mesh_readers_test.cpp unit/mesh/import_helper_test.cpp)
-target_link_libraries(mesh_import_test PRIVATE
-  penumbra_mesh PkgConfig::MINIZIP penumbra_warnings GTest::gmock GTest::gtest_main)
-gtest_discover_tests(mesh_import_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
-
-add_executable(polygon_property_test property/polygon_property_test.cpp)
-target_link_libraries(polygon_property_test PRIVATE penumbra_mesh_reader penumbra_warnings ${RAPIDCHECK} GTest::gtest_main)
-gtest_discover_tests(polygon_property_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
-
-add_executable(gltf_reader_test unit/gltf_reader_test.cpp unit/flat_light_test.cpp unit/mesh/input_file_test.cpp)
-target_link_libraries(gltf_reader_test PRIVATE
-  penumbra_scenes penumbra_gltf_import penumbra_warnings nlohmann_json::nlohmann_json GTest::gmock GTest::gtest_main)
-gtest_discover_tests(gltf_reader_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
-
-add_executable(import_corpus_test full/import_corpus_test.cpp)
-target_link_libraries(import_corpus_test PRIVATE penumbra_scenes penumbra_warnings GTest::gtest_main)
-gtest_discover_tests(import_corpus_test PROPERTIES LABELS full DISCOVERY_TIMEOUT 120 TIMEOUT 3600)
-
-# Every surface of the files of two packages, counted independently.
-add_executable(mesh_face_counts_test
-  agreement/face_counters_binary.cpp agreement/face_counters_text.cpp agreement/mesh_face_counts.cpp)
-target_link_libraries(mesh_face_counts_test PRIVATE
-  penumbra_mesh nlohmann_json::nlohmann_json PkgConfig::MINIZIP penumbra_warnings GTest::gtest_main)
-penumbra_cgal_corpus(mesh_face_counts_test)
-gtest_discover_tests(mesh_face_counts_test PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+# Meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges, diagnosis, repair.
+find_package(CGAL REQUIRED)
+penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
+  SOURCES
+  agreement/face_counters_binary.cpp
+  agreement/face_counters_text.cpp
+  agreement/mesh_face_counts.cpp
+  property/broken_meshes.cpp
+  property/diagnosis_oracle.cpp
+  property/mesh_diagnosis_properties.cpp
+  property/mesh_predicates.cpp
+  property/mesh_silhouettes.cpp
+  unit/mesh/import_helper.cpp
+  unit/mesh/mesh_corpus.cpp
+  unit/mesh/mesh_diagnosis.cpp
+  unit/mesh/mesh_edge_graph.cpp
+  unit/mesh/mesh_half_edge_view.cpp
+  unit/mesh/mesh_import.cpp
+  unit/mesh/mesh_readers.cpp
+  unit/mesh/mesh_repair.cpp
+  unit/mesh/mesh_soup_ply.cpp
+  # GMP's rationals are the judge of the exact predicates: another library, another formula.
+  LIBRARIES penumbra_mesh CGAL::CGAL PkgConfig::MINIZIP nlohmann_json::nlohmann_json ${RAPIDCHECK} TBB::tbb gmpxx gmp)
+penumbra_cgal_corpus(mesh_test)
+# Two tests to ctest: hundreds of processes for as many seeds would take longer than the seeds.
+add_test(NAME mesh_diagnosis.closed_forms COMMAND mesh_test --gtest_filter=Diagnosis.*)
+add_test(NAME mesh_diagnosis.lattice_soups COMMAND mesh_test --gtest_filter=Seeds/Soups.*)
+set_tests_properties(mesh_diagnosis.closed_forms mesh_diagnosis.lattice_soups PROPERTIES LABELS quick)
+if(PENUMBRA_WITH_CGAL_GPL)
+  # Polygon_mesh_processing is GPL: the test, never the program without repair, links it.
+  target_compile_definitions(mesh_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
+  target_sources(mesh_test PRIVATE agreement/mesh_diagnosis_cgal.cpp)
+  add_test(NAME mesh_diagnosis_cgal.small COMMAND mesh_test --gtest_filter=CgalMeshes.Small)
+  add_test(NAME mesh_diagnosis_cgal.all COMMAND mesh_test --gtest_filter=CgalMeshes.All)
+  set_tests_properties(mesh_diagnosis_cgal.small PROPERTIES LABELS quick)
+  set_tests_properties(mesh_diagnosis_cgal.all PROPERTIES LABELS full TIMEOUT 3600)
+endif()

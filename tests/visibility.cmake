@@ -1,13 +1,17 @@
-add_executable(visibility_tests
-  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_light_touch.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_lights.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_method.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_sample_patterns.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_scene_floats.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/unit/visibility_view_samples.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/property/visibility_invariance.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/property/visibility_pair_truth.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/property/visibility_planes.cpp)
-# GMP's rationals are the judge of the exact predicates: another library, another formula.
-target_link_libraries(visibility_tests PRIVATE penumbra_visibility penumbra_warnings GTest::gtest_main gmpxx gmp)
-gtest_discover_tests(visibility_tests PROPERTIES LABELS quick DISCOVERY_TIMEOUT 120)
+# The question itself: scene floats, lights and their samples, the exact truth of a pair, the tree, bits files. No device.
+penumbra_test(visibility
+  SOURCES
+  property/signed_crossings.cpp
+  property/visibility_invariance.cpp
+  property/visibility_pair_truth.cpp
+  property/visibility_planes.cpp
+  property/visibility_triangle_tree.cpp
+  unit/bits_file.cpp
+  unit/visibility_light_touch.cpp
+  unit/visibility_lights.cpp
+  unit/visibility_method.cpp
+  unit/visibility_sample_patterns.cpp
+  unit/visibility_scene_floats.cpp
+  unit/visibility_view_samples.cpp
+  # GMP's rationals are the judge of the exact predicates: another library, another formula.
+  LIBRARIES penumbra_visibility TBB::tbb gmpxx gmp)

@@ -1,0 +1,26 @@
+# Methods of several rooms, one against the other and all against the exact decision.
+set(soup_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_case.cpp ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_judge.cpp
+                 ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_methods.cpp)
+penumbra_test(agreement FULL CorpusSweep.*
+  SOURCES
+  agreement/broken_meshes_raytrace.cpp
+  agreement/face_counters_binary.cpp
+  agreement/face_counters_text.cpp
+  agreement/long_walks.cpp
+  agreement/masks_raytrace.cpp
+  agreement/mesh_verdicts.cpp
+  agreement/textured_lights_methods.cpp
+  analytic/textured_lights_exact.cpp
+  cli/corpus_sweep.cpp  # every mesh of two packages through inspect and compare; prints a table
+  cli/program.cpp
+  property/adversarial_soups.cpp
+  property/mask_lamps.cpp
+  property/mask_lattice.cpp
+  unit/textured_lights_files.cpp
+  unit/textured_lights_weights.cpp
+  ${soup_sources}
+  LIBRARIES penumbra_app penumbra_compare penumbra_maps penumbra_volumes penumbra_vsm penumbra_reference penumbra_scenes
+            nlohmann_json::nlohmann_json PkgConfig::MINIZIP TBB::tbb ZLIB::ZLIB gmpxx gmp)
+penumbra_cgal_corpus(agreement_test)
+target_compile_definitions(agreement_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
+add_dependencies(agreement_test penumbra)

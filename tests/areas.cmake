@@ -1,0 +1,13 @@
+# Areas of unions on the light, and `exact`, which gives them. No device.
+penumbra_test(areas
+  SOURCES analytic/exact_area_closed_forms.cpp property/exact_area_soups.cpp unit/exact_method.cpp
+  LIBRARIES penumbra_reference)
+if(PENUMBRA_WITH_CGAL_GPL)
+  # CGAL's Boolean set operations (GPL) judge the union: another library, another way, in a test alone.
+  find_package(CGAL REQUIRED)
+  target_sources(areas_test PRIVATE agreement/exact_area_booleans.cpp)
+  if(PENUMBRA_SANITIZE)  # CGAL's arrangements cast faces down to what they are not
+    set_source_files_properties(agreement/exact_area_booleans.cpp PROPERTIES COMPILE_OPTIONS -fno-sanitize=vptr)
+  endif()
+  target_link_libraries(areas_test PRIVATE CGAL::CGAL)
+endif()

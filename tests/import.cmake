@@ -1,0 +1,9 @@
+# What the child process does: polygons of any shape, glTF, and files that are opened once.
+penumbra_test(import FULL ImportCorpus.*
+  SOURCES
+  agreement/import_corpus.cpp
+  property/polygon_property.cpp
+  unit/flat_light.cpp
+  unit/gltf_reader.cpp
+  unit/mesh/input_file.cpp
+  LIBRARIES penumbra_scenes penumbra_gltf_import penumbra_mesh_reader nlohmann_json::nlohmann_json ${RAPIDCHECK})
