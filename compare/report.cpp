@@ -2,6 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/atomic_file.hpp"
+#include "compare/question.hpp"
 #include "compare/report_parts.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +16,13 @@ namespace {
 
 /// `same`: what to add if they are the methods' own.
 std::string samples_of_reference(const ReportInput& in, const char* same) {
-  if (in.reference.description.output != visibility::Output::mask) return "areas, no light samples";
-  return fmt::format("{} light samples{}", in.metrics.reference.light_samples, in.same_samples ? same : "");
+  const bool mask = in.reference.description.output == visibility::Output::mask;
+  return question_of({in.reference.description, in.metrics.reference}) + (mask && in.same_samples ? same : "");
+}
+
+bool same_question(const ReportInput& in, const ReportEntry& entry, const MethodResult& result) {
+  return compare::same_question({entry.description, result.stats}, {in.reference.description, in.metrics.reference},
+                                in.sampled_pixels != 0);
 }
 
 std::string options_text(const visibility::MethodOptions& options) {
@@ -68,12 +74,14 @@ std::string glance_html(const ReportInput& in) {
                              error_text(best->error->rmse)));
   }
   if (const MethodResult* best = smallest(in.metrics.methods, shadow_of)) {
-    const std::string speed = speed_text(shadow_of(*best), reference.seconds.shadow());
-    html +=
-        card("Fastest", best->entry,
-             fmt::format(
-                 "{} for the shadow{}", seconds_text(shadow_of(*best)),
-                 speed == "–" ? "" : fmt::format(", {} {} the reference", speed, speed == "as fast" ? "as" : "than")));
+    const ReportEntry& entry = in.methods[static_cast<std::size_t>(best - in.metrics.methods.data())];
+    const std::string speed =
+        same_question(in, entry, *best) ? speed_text(shadow_of(*best), reference.seconds.shadow()) : std::string("–");
+    html += card(
+        "Least time", best->entry,
+        fmt::format(
+            "{} for the shadow, {}{}", seconds_text(shadow_of(*best)), question_of({entry.description, best->stats}),
+            speed == "–" ? "" : fmt::format(": {} {} the reference", speed, speed == "as fast" ? "as" : "than")));
   }
   html += card("Judged by", reference.method,
                fmt::format("{}, {} for the shadow", samples_of_reference(in, ", the same as the methods’"),
@@ -98,11 +106,13 @@ of it). Get <var>V</var> right, and the shadow is right.</p>
       "methods differ in how they find out what stands between, and so in speed and in the mistakes they make. "
       "<strong>{}</strong> served as the reference; the light in question is “{}”.</p>\n",
       count_text(samples), escape_html(in.metrics.reference.method), escape_html(in.light));
-  if (in.same_samples) {
+  if (in.same_samples && in.reference.description.output == visibility::Output::mask) {
     html +=
         "<p>The reference looked for the same points of the light, so that every single answer can be compared, not "
         "only "
         "their sums.</p>\n";
+  } else if (in.reference.description.output != visibility::Output::mask) {
+    html += "<p>The reference needs no points of the light: it measures the area that is visible.</p>\n";
   } else {
     html += fmt::format(
         "<p>The reference looked for {} points of the light. Its own V is an estimate too, in steps of 1/{}: errors "
@@ -257,7 +267,9 @@ std::string failures_html(const ReportInput& in) {
 std::string seconds_html(const ReportInput& in) {
   const Stats& reference = in.metrics.reference;
   ReportTable table{
-      "Seconds: medians of repeated runs on the machine below. Shadow = light + evaluate.",
+      "Seconds: medians of repeated runs on the machine below. Shadow = light + evaluate. A ratio is given "
+      "where a method answers the same question as the reference, with as many light samples; elsewhere "
+      "the cell says what the reference was asked.",
       {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory"},
       {}};
   const auto row = [&](const std::string& label, const Stats& stats, bool is_best, const std::string& speed) {
@@ -267,13 +279,20 @@ std::string seconds_html(const ReportInput& in) {
                           seconds_text(stats.seconds.mesh), seconds_text(stats.seconds.warmup),
                           bytes_text(stats.peak_memory_bytes)});
   };
-  row(label_html(reference.method, fmt::format("the reference, {} light samples", reference.light_samples)), reference,
-      false, "–");
+  const std::string asked = question_of({in.reference.description, reference});
+  row(label_html(reference.method, "the reference, " + asked), reference, false, "–");
   const MethodResult* best = smallest(in.metrics.methods, shadow_of);
-  for (const MethodResult& result : in.metrics.methods) {
+  for (std::size_t i = 0; i < in.methods.size(); ++i) {
+    const MethodResult& result = in.metrics.methods[i];
     if (result.failure) continue;
-    row(label_html(result.entry, fmt::format("{} light samples, {}", result.stats.light_samples, result.stats.device)),
-        result.stats, &result == best, speed_text(shadow_of(result), reference.seconds.shadow()));
+    const std::string speed =
+        same_question(in, in.methods[i], result)
+            ? speed_text(shadow_of(result), reference.seconds.shadow())
+            : "another question<small>the reference: " + (in.sampled_pixels == 0 ? asked : asked + ", chosen pixels") +
+                  "</small>";
+    row(label_html(result.entry,
+                   fmt::format("{}, {}", question_of({in.methods[i].description, result.stats}), result.stats.device)),
+        result.stats, &result == best, speed);
   }
   return table_html(table);
 }

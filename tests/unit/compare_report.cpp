@@ -146,6 +146,41 @@ TEST(Report, SaysTheNumbers) {
   }
 }
 
+/// 4 s of the reference against 2 s: what that says of speed depends on what either was asked.
+TEST(Report, GivesASpeedOnlyBetweenAnswersToTheSameQuestion) {
+  const auto says_faster = [](const ReportInput& in) {
+    const std::string html = report_html(in);
+    EXPECT_EQ(unbalanced_tag(html), "");
+    // In the table and at a glance, or in neither.
+    EXPECT_EQ(occurrences(html, "2.00× faster</td>"), occurrences(html, "2.00× faster than the reference"));
+    EXPECT_EQ(occurrences(html, "× faster"), 2 * occurrences(html, "× faster</td>"));
+    EXPECT_NE(occurrences(html, "× faster</td>"), occurrences(html, "another question"));
+    return html.find("× faster") != std::string::npos;
+  };
+  using enum visibility::Output;
+  ReportInput in = input_with(1);
+  EXPECT_TRUE(says_faster(in));
+  in.metrics.reference.light_samples = 1024;
+  EXPECT_FALSE(says_faster(in));
+  EXPECT_NE(report_html(in).find("another question<small>the reference: 1024 light samples</small>"),
+            std::string::npos);
+  in.metrics.reference.light_samples = 256;
+  in.metrics.reference.sample_pattern = "sobol";
+  EXPECT_FALSE(says_faster(in));
+  in.metrics.reference.sample_pattern = "rows";
+  for (const visibility::Output output : {scalar, radiance}) {
+    in.methods[0].description.output = output;
+    EXPECT_FALSE(says_faster(in)) << visibility::name_of(output);
+  }
+  in.reference.description.output = radiance;  // both areas: light samples do not matter
+  in.metrics.reference.light_samples = 1;
+  EXPECT_TRUE(says_faster(in));
+  in.sampled_pixels = 2000;  // the reference's alone, perhaps
+  EXPECT_FALSE(says_faster(in));
+  in.metrics.methods[0].stats.method = in.metrics.reference.method;
+  EXPECT_TRUE(says_faster(in));
+}
+
 TEST(Report, ErrorScaleHasNumbers) {
   const std::string legend = error_legend_html(0.2);
   for (const char* text : {">−0.2<", ">−0.05<", ">−0.0125<", ">0<", ">+0.0125<", ">+0.05<", ">+0.2<"}) {
