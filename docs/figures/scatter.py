@@ -1,0 +1,278 @@
+"""docs/edge-scatter.md: changes and running sums; block, shaft and cone; open light samples."""
+
+from math import atan2, ceil, cos, degrees, hypot, pi, sin
+
+from drawing import BLUE, DARK, FAINT, GREEN, INK, LIGHT, PALE, RED, Drawing, View, arc
+from geometry import (SQUARE, Light, add, area, clip_to, counter_clockwise, cross, det2, dot, hull, inside, mix, mul,
+                      multiplicities, rows_pattern, sub)
+
+P = (0.0, 0.0, 0.0)
+LAMP = Light((0, 0, 6), (-2, 0, 0), (0, 1.2, 0))  # as seen from P, u runs to the right and v upward
+
+
+def seen_at(s, t, share):
+    """The point on the way from P to the light point (s, t)."""
+    return mix(P, LAMP.point((s, t)), share)
+
+
+def solid(corners):
+    a, b, c, d = corners
+    return [(a, b, c), (a, b, d), (b, c, d), (a, c, d)]
+
+
+def depth(triangles, st):
+    """How many triangles the segment from P to a light point meets, triangle by triangle."""
+    return sum(inside(st, counter_clockwise([LAMP.project(P, x) for x in triangle])) for triangle in triangles)
+
+
+def signed(change):
+    return f"+{change}" if change > 0 else f"−{-change}"
+
+
+def rows_figure():
+    tetrahedron = solid([seen_at(-1.25, -0.52, .6), seen_at(0.12, -0.8, .5), seen_at(-0.22, 0.72, .62),
+                         seen_at(-0.45, -0.2, .4)])
+    sheet = [(seen_at(-0.36, 0.22, .8), seen_at(0.86, -0.34, .8), seen_at(0.62, 0.8, .85))]
+    triangles = tetrahedron + sheet
+    rows, columns = 6, 10
+    samples = rows_pattern(rows, columns, shifted=False)
+
+    edges = []  # ends on the light, directed so that k > 0; and those inside the surface
+    for (a, b), k in multiplicities(triangles, P).items():
+        q, r = LAMP.project(P, a), LAMP.project(P, b)
+        edges.append((q, r, k) if k >= 0 else (r, q, -k))
+
+    d = Drawing(730, 532, "Edges over the grid of light samples: changes at crossings, and their running sum")
+    d.text((20, 26), "The light as seen from *p*: crossings of each row with edges, and their sum", 14,
+           bold=True)
+    view = View(d, (130, 50, 470, 282), (-1.3, 1), (-1, 1), stretch=True)
+    view.polygon(SQUARE, "#fff7df", LIGHT, 2)
+    chosen = 3
+    view.polygon([(-1, samples[chosen][0][1] - 1 / rows), (1, samples[chosen][0][1] - 1 / rows),
+                  (1, samples[chosen][0][1] + 1 / rows), (-1, samples[chosen][0][1] + 1 / rows)], "#e8f3e8")
+    for triangle in triangles:
+        view.polygon([LAMP.project(P, x) for x in triangle], DARK, opacity=0.13)
+    for row in samples:
+        for st in row:
+            view.dot(st, 3.6, LIGHT if depth(triangles, st) == 0 else DARK, stroke=INK, width=0.7)
+    for q, r, k in edges:
+        if k == 0:
+            view.line(q, r, FAINT, 1.2, dash="3 3")
+        else:
+            view.line(q, r, INK, 2)
+            middle = mix(q, r, 0.5)
+            along = mul(0.02 / hypot(*sub(r, q)), sub(r, q))
+            view.arrow(sub(middle, along), add(middle, along), INK, 1, 9)
+
+    corner = depth(triangles, (-1, -1))
+    d.text((20, 355), "D(corner) = " + str(corner), 12.5)
+    d.line((105, 351), view.at((-1, -1)), FAINT, 1)
+    histogram = []
+    for r, row in enumerate(samples):
+        t = row[0][1]
+        left, changes = corner, [0] * columns
+        for q, e, k in edges:
+            if k == 0:
+                continue
+            lower, upper = min(q[1], e[1]), max(q[1], e[1])
+            change = -k if e[1] > q[1] else k      # crossed to the right: upward −k, downward +k
+            if lower < t < upper:                  # the row crosses the edge
+                s = q[0] + (t - q[1]) / (e[1] - q[1]) * (e[0] - q[0])
+                if s > -1:
+                    column = max(0, ceil((s + 1) / 2 * columns - 0.5))
+                    if column < columns:
+                        changes[column] += change
+                        view.text((s, t), signed(change), 11.5, (0, -4), anchor="middle",
+                                  fill=RED if change > 0 else BLUE, bold=True, halo=True)
+            if (q[0] + 1) * (e[0] + 1) < 0:        # the left side crosses the edge, at this height:
+                height = q[1] + (-1 - q[0]) / (e[0] - q[0]) * (e[1] - q[1])
+                if -1 < height < t:                # crossed upward: an edge that runs to the right adds k
+                    left += k if e[0] > q[0] else -k
+        assert left == depth(triangles, (-1, t)), "the left side's depth is what triangles say"
+        total = left
+        for column, change in enumerate(changes):
+            total += change
+            assert total == depth(triangles, row[column]), "the running sum is what triangles say"
+        histogram.append((left, changes))
+        x, y = view.at((-1.3, t))
+        d.text((x - 10, y + 4), f"D(left, {r}) = {left}", 12.5, anchor="end", fill=GREEN if r == chosen else INK,
+               bold=r == chosen)
+
+    left, changes = histogram[chosen]
+    top = 392
+    width = 470 * 2 / 2.3 / columns
+    x0 = view.at((-1, 0))[0]
+    d.text((x0 - 12, top + 17), f"row {chosen}: changes", 12.5, anchor="end")
+    d.text((x0 - 12, top + 49), f"{left} + running sum", 12.5, anchor="end")
+    d.text((x0 - 12, top + 81), "sum = 0: visible", 12.5, anchor="end")
+    total = left
+    for column, change in enumerate(changes):
+        total += change
+        x = x0 + column * width
+        for i in range(2):
+            d.polygon([(x, top + 32 * i), (x + width, top + 32 * i), (x + width, top + 32 * i + 25),
+                       (x, top + 32 * i + 25)], PALE if i == 0 else "#e8f3e8", FAINT, 1)
+        if change:
+            d.text((x + width / 2, top + 17), signed(change), 12.5, RED if change > 0 else BLUE, "middle", True)
+        else:
+            d.text((x + width / 2, top + 17), "0", 12.5, FAINT, "middle")
+        d.text((x + width / 2, top + 49), total, 12.5, INK, "middle", True)
+        d.circle((x + width / 2, top + 76), 4.5, LIGHT if total == 0 else DARK, INK, 0.7)
+    d.legend((612, 88), [("dot", LIGHT, "visible"), ("dot", DARK, "hidden"), ("line", INK, "*k* ≠ 0"),
+                         ("dash", FAINT, "*k* = 0")])
+    d.text((612, 182), "tetrahedron:", 12)
+    d.text((612, 198), "*k* = 2", 12)
+    d.text((612, 222), "one triangle:", 12)
+    d.text((612, 238), "*k* = 1", 12)
+    d.text((20, 500), "Edges run counter-clockwise around what they hide. On its way to the right, a row that crosses", 12.5)
+    d.text((20, 518), "a downward edge adds +*k*, one that crosses an upward edge adds −*k*.", 12.5)
+    return d.finish()
+
+
+def shaft_figure():
+    """From the side: two clusters of one pixel block, the shaft of one, boxes and cones of edges beside and in it."""
+    light = [(2.6, 6.0), (4.4, 6.0)]
+    table = [(1.62 + 0.16 * i, 1.55) for i in range(4)]
+    floor = [(2.3 + 0.38 * i, 0.0) for i in range(4)]
+    box = [(min(x for x, _ in floor), 0), (max(x for x, _ in floor), 0)]
+    shaft = hull(box + light)
+
+    d = Drawing(760, 430, "A block of view samples, its clusters, the shaft of one, and boxes of edges")
+    view = View(d, (15, 40, 420, 370), (-0.1, 6.3), (-0.35, 6.3))
+    d.text((20, 26), "Which edges does a cluster of view samples need?", 14, bold=True)
+    view.polygon(shaft, "#e8f3e8", GREEN, 1.2, "5 3")
+    view.line((0, 0), (6.2, 0), DARK, 2)
+    view.polygon([(0.3, 1.55), (2.2, 1.55), (2.2, 1.4), (0.3, 1.4)], DARK)
+    view.line(*light, stroke=LIGHT, width=6)
+    view.text((3.5, 6.0), "light", 13, (0, -8), anchor="middle")
+    for q in table:
+        view.dot(q, 3.2, FAINT)
+    for q in floor:
+        view.dot(q, 3.6, INK)
+    view.text(table[0], "cluster 1", 12.5, (-8, -8), anchor="middle")
+    view.text((2.87, 0), "cluster 2", 12.5, (0, 16), anchor="middle")
+    view.text((3.05, 1.6), "shaft", 12.5, (0, 0), fill=GREEN, anchor="middle")
+
+    def surface(center, radius, start, end, steps=6):
+        """A bent sheet's facets from the side: their ends."""
+        return arc(center, radius, start, end, steps)
+
+    def judge(points):
+        """Box, and what becomes of it: outside the shaft, all seen from one side, or needed."""
+        x0, x1 = min(x for x, _ in points), max(x for x, _ in points)
+        y0, y1 = min(y for _, y in points), max(y for _, y in points)
+        corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        if area(clip_to(corners, shaft) or [(0, 0)] * 3) == 0:
+            return corners, "outside the shaft"
+        signs = set()
+        for a, b in zip(points, points[1:]):
+            n = (b[1] - a[1], a[0] - b[0])
+            signs |= {dot(n, sub(p, x)) > 0 for p in box for x in (a, b)}
+        return corners, "seen from one side" if len(signs) == 1 else "silhouettes possible"
+
+    sheets = [surface((5.35, 2.2), 0.55, 0.3, 2.6), surface((3.25, 5.55), 1.0, -2.35, -0.95),
+              surface((3.35, 2.7), 0.42, 0, 2 * pi, 12)]
+    verdicts = []
+    for points in sheets:
+        corners, verdict = judge(points)
+        verdicts.append(verdict)
+        needed = verdict == "silhouettes possible"
+        view.polygon(corners, None, GREEN if needed else FAINT, 1.5, None if needed else "4 3")
+        view.path(points, INK, 2)
+        for q in points:
+            view.dot(q, 2.2, INK)
+    assert verdicts == ["outside the shaft", "seen from one side", "silhouettes possible"]
+    view.text((5.4, 3.1), "1", 13, (0, -2), anchor="middle", bold=True)
+    view.text((2.38, 4.9), "2", 13, (0, 0), anchor="middle", bold=True)
+    view.text((3.95, 3.15), "3", 13, (0, 0), anchor="middle", bold=True)
+
+    # The cone of box 2: normals of its facets around an axis, and the directions from its edges to the view samples.
+    points = sheets[1]
+    normals = []
+    for a, b in zip(points, points[1:]):
+        n = (b[1] - a[1], a[0] - b[0])
+        normals.append(mul(1 / hypot(*n), n))
+    if dot(normals[0], sub(box[0], points[0])) < 0:
+        normals = [mul(-1, n) for n in normals]
+    angles = sorted(atan2(n[1], n[0]) for n in normals)
+    axis, theta = (angles[0] + angles[-1]) / 2, (angles[-1] - angles[0]) / 2
+    ways = sorted(atan2(p[1] - x[1], p[0] - x[0]) for p in box for x in points)
+    center = (600, 84)
+    inset = View(d, (center[0] - 140, center[1] - 140, 280, 280), (-1, 1), (-1, 1))
+    inset.polygon([(0, 0)] + arc((0, 0), 0.95, ways[0], ways[-1]), "#dbe9f6")
+    inset.polygon([(0, 0)] + arc((0, 0), 0.72, axis - theta, axis + theta), "#f6dcd8")
+    for n in normals:
+        inset.arrow((0, 0), mul(0.72, n), RED, 1, 5)
+    inset.arrow((0, 0), (0.95 * cos(axis), 0.95 * sin(axis)), INK, 1.5, 7)
+    inset.dot((0, 0), 3)
+    d.text((460, 56), "The cone of box 2", 13, bold=True)
+    d.text((center[0] + 14, center[1] - 2), "an edge", 12)
+    tip = inset.at((0.95 * cos(axis), 0.95 * sin(axis)))
+    d.text((tip[0] + 4, tip[1] + 14), "axis", 12)
+    d.text((460, 252), "red: normals of its facets, all within", 12.5, RED)
+    d.text((460, 269), f"θ = {degrees(theta):.0f}° of the axis", 12.5, RED)
+    d.text((460, 290), "blue: all ways *d* from its edges to cluster 2", 12.5, BLUE)
+    worst = max(abs(w - axis) for w in (ways[0], ways[-1])) + theta
+    d.text((460, 311), f"A way and a normal are at most {degrees(worst):.0f}° apart,", 12.5)
+    d.text((460, 328), "less than 90°: every *n* · *d* is positive.", 12.5)
+    assert worst < pi / 2
+    for i, (label, verdict) in enumerate(zip("123", verdicts)):
+        d.text((460, 364 + 19 * i), f"{label}  {verdict}: " + ("kept" if i == 2 else "left out"), 12.5,
+               GREEN if i == 2 else INK, bold=i == 2)
+    return d.finish()
+
+
+def open_figure():
+    """A crossing and a vertex with their errors, drawn many thousand times too large."""
+    rows, columns = 4, 8
+    samples = rows_pattern(rows, columns)
+    spacing = (2 / columns, 2 / rows)
+    ends = [((-0.7, -0.93), (0.28, 0.9)), ((0.5, -0.9), (0.71, 0.27)), ((0.71, 0.27), (0.4, 0.95))]
+    error = 0.036  # of every vertex, in s and in t
+
+    d = Drawing(760, 380, "Open light samples around a crossing and around a vertex")
+    d.text((20, 26), "What rounding may have moved across a light sample is *open*", 14, bold=True)
+    view = View(d, (20, 42, 480, 316), (-1.02, 1.02), (-1.02, 1.02), stretch=True)
+    view.polygon(SQUARE, "#fffdf5", LIGHT, 2)
+    opened = set()
+    for a, b in ends:
+        m = (b[0] - a[0]) / (b[1] - a[1])
+        wide = error * (1 + abs(m))
+        view.polygon([(a[0] - wide, a[1]), (a[0] + wide, a[1]), (b[0] + wide, b[1]), (b[0] - wide, b[1])], RED,
+                     opacity=0.16)
+        view.line(a, b, INK, 2)
+        for r, row in enumerate(samples):
+            t = row[0][1]
+            view.line((-1, t), (1, t), FAINT, 0.8, "2 3")
+            x = a[0] + (t - a[1]) * m
+            if a[1] < t < b[1]:
+                view.line((x - wide, t), (x + wide, t), RED, 3)
+                opened |= {(r, k) for k, st in enumerate(row) if abs(st[0] - x) <= wide}
+            for v in (a, b):  # a vertex within its error of the row
+                if abs(t - v[1]) <= error:
+                    opened |= {(r, k) for k, st in enumerate(row) if abs(st[0] - v[0]) <= wide}
+    for v in {q for e in ends for q in e}:
+        view.polygon([(v[0] - error, v[1] - error), (v[0] + error, v[1] - error), (v[0] + error, v[1] + error),
+                      (v[0] - error, v[1] + error)], None, BLUE, 1.3)
+        view.dot(v, 2.5, INK)
+    for r, row in enumerate(samples):
+        for k, st in enumerate(row):
+            if (r, k) in opened:
+                view.dot(st, 5, "#ffffff", stroke=RED, width=2.2)
+            else:
+                view.dot(st, 3.6, LIGHT, stroke=INK, width=0.7)
+    assert 1 <= len(opened) <= 4
+    d.legend((520, 70), [("dot", LIGHT, "certain"), ("ring", RED, "open"),
+                         ("line", INK, "a projected edge"), ("line", RED, "a crossing ± its error"),
+                         ("box", "#a9c8e4", "a vertex ± its error")], step=22)
+    d.text((542, 185), "The crossing's error is", 12.5)
+    d.text((542, 202), "that of the ends, times", 12.5)
+    d.text((542, 219), "1 + |*m*|, *m* = Δ*X* / Δ*Y*.", 12.5)
+    d.text((542, 252), f"{len(opened)} of {rows * columns} samples are open:", 12.5, RED)
+    d.text((542, 269), "exact predicates decide them.", 12.5)
+    d.text((542, 302), "Errors are drawn some ten", 12.5)
+    d.text((542, 319), "thousand times too large.", 12.5)
+    return d.finish()
+
+
+FIGURES = {"edge-scatter-rows": rows_figure, "edge-scatter-shaft": shaft_figure, "edge-scatter-open": open_figure}
