@@ -53,7 +53,7 @@ MethodDescription describe_with(const MethodOptions& options) {
     return kDescribe(options);
   } else {
     MethodDescription description = kDescribe();
-    visibility::check_options(description, options);
+    visibility::parse_options(description, options);
     return description;
   }
 }
@@ -180,9 +180,7 @@ MethodDescription describe_method(std::string_view name, const MethodOptions& op
 }
 
 std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& options, DeviceSource& devices) {
-  const TableRow& row = find_row(name);
-  visibility::check_options(row.describe(), options);
-  return row.make(devices, options);
+  return find_row(name).make(devices, options);
 }
 
 bool runs_on_device(std::string_view name) {

@@ -29,7 +29,8 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
                method->paper);
     fmt::print("{:<18} exact for: {}\n", "", method->exact_for);
     for (const OptionDescription& option : method->options) {
-      fmt::print("{:<18} {}={} (default {}): {}\n", "", option.name, option.values, option.default_value, option.help);
+      fmt::print("{:<18} {}={} (default {}): {}\n", "", option.name, option.values(), option.default_value,
+                 option.help);
     }
   }
 }
@@ -40,12 +41,11 @@ void print_json(const std::vector<const MethodDescription*>& methods) {
     auto options = nlohmann::ordered_json::array();
     for (const OptionDescription& option : method->options) {
       nlohmann::ordered_json row = {
-          {"name", option.name}, {"values", option.values}, {"default", option.default_value}, {"help", option.help}};
-      const visibility::OptionValues values = visibility::values_of(option);
-      if (values.choices.empty()) {
-        row["range"] = {{"least", values.least}, {"most", values.most}, {"whole", values.whole}};
+          {"name", option.name}, {"values", option.values()}, {"default", option.default_value}, {"help", option.help}};
+      if (option.choices.empty()) {
+        row["range"] = {{"least", option.least}, {"most", option.most}, {"whole", option.whole}};
       } else {
-        row["choices"] = values.choices;
+        row["choices"] = option.choices;
       }
       options.push_back(std::move(row));
     }

@@ -166,12 +166,12 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     if (const auto group = method_group(fields[0])) {
       if (group->empty()) throw UsageError("--methods {}: this build has no {} method", text, fields[0]);
       for (const visibility::MethodDescription* description : *group) {
-        visibility::check_options(*description, options);
+        visibility::parse_options(*description, options);
         add(description->name, description->name, options, true);
       }
     } else {
       const auto& description = describe_method(fields[0]);  // throws for a name that is not there
-      visibility::check_options(description, options);
+      visibility::parse_options(description, options);
       add(part, fields[0], std::move(options), false);
     }
   }

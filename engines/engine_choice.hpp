@@ -1,14 +1,27 @@
 #pragma once
 
 #include "render/device.hpp"
-#include "visibility/method.hpp"
+#include "visibility/method_options.hpp"
 
-#include <string>
+#include <cstdint>
 
 namespace penumbra::engines {
 
-/// engine=auto|vulkan|native of a method that has both; auto: native where the device is a processor. Throws
-/// UsageError.
-bool runs_natively(const render::Device& device, const visibility::MethodOptions& options, const std::string& method);
+/// What the option `engine` of a method that has both asks for.
+enum class Engine : std::uint8_t {
+  automatic,  ///< vectors where the Vulkan device is the processor itself
+  vulkan,     ///< the device
+  vectors,    ///< the processor's own vector units, for what they can do
+};
+
+inline constexpr visibility::ChoiceOption kEngine{
+    "engine",
+    {{"auto", Engine::automatic}, {"vulkan", Engine::vulkan}, {"native", Engine::vectors}},
+    Engine::automatic,
+    "vulkan: on the device; native: light samples in rows of a rectangle on the processor's own vector units; auto: "
+    "native where the Vulkan device is the processor anyway. The same bits"};
+
+/// On vector units, what they can do?
+bool runs_on_vectors(const render::Device& device, Engine engine);
 
 }  // namespace penumbra::engines

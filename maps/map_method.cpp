@@ -216,9 +216,9 @@ std::vector<visibility::LightKind> planar_lights() {
 
 std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,
                                                     const visibility::MethodOptions& options) {
-  visibility::check_options(recipe.description, options);
-  const MapOptions parsed = parse_map_options(device, recipe.description, options);
-  return std::make_unique<MapMethod>(device, std::move(recipe), parsed);
+  const MapOptions chosen =
+      map_options(device, recipe.description, visibility::parse_options(recipe.description, options));
+  return std::make_unique<MapMethod>(device, std::move(recipe), chosen);
 }
 
 }  // namespace penumbra::maps

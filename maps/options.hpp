@@ -4,27 +4,26 @@
 #include "visibility/method.hpp"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace penumbra::maps {
 
+inline constexpr visibility::IntegerOption kMapSize{"size", 8, 16384, 1024, "texels on a side of a map"};
+inline constexpr visibility::RealOption kBias{
+    "bias", 0, 1024, 0.5,
+    "how far, in texels, a surface may rise above the receiver's plane without shading it; grows with the slope"};
+
 /// What all methods here have: texels on a side of a map, and the bias in texels.
 struct MapOptions {
-  std::uint32_t size = 1024;
-  double bias = 0.5;
+  std::uint32_t size = kMapSize.otherwise;
+  double bias = kBias.otherwise;
 };
 
 /// How `methods` describes them.
 std::vector<visibility::OptionDescription> map_option_descriptions();
 
-/// Throws UsageError for values that cannot be meant, or a size that the device cannot draw.
-MapOptions parse_map_options(const render::Device& device, const visibility::MethodDescription& method,
-                             const visibility::MethodOptions& options);
-
-/// The option `key` as a whole number in [lower, upper], or `otherwise` if it is not given. Throws UsageError.
-std::uint32_t whole_number_option(const visibility::MethodDescription& method, const visibility::MethodOptions& options,
-                                  const std::string& key, std::uint32_t lower, std::uint32_t upper,
-                                  std::uint32_t otherwise);
+/// Throws UsageError for a size that the device cannot draw.
+MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,
+                       const visibility::ParsedOptions& options);
 
 }  // namespace penumbra::maps

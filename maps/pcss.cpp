@@ -11,14 +11,13 @@
 #include "maps/pcss.comp.spv.hpp"
 #include "maps/pcss.shared.h"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 namespace penumbra::maps {
 namespace {
 
-constexpr std::uint32_t kMostSamples = 1024, kBlockerSamples = 64, kFilterSamples = 64;
+constexpr visibility::IntegerOption kBlockerSamples{"blockerSamples", 1, 1024, 64, "taps of the blocker search"};
+constexpr visibility::IntegerOption kFilterSamples{"filterSamples", 1, 1024, 64, "taps of the filter"};
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return judge_for_maps("one map, and one mean height for all that shades a pixel", mesh);
@@ -36,10 +35,8 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .options = map_option_descriptions(),
       .verdict_on = verdict_on};
-  const std::string values = fmt::format("1 … {}", kMostSamples);
-  description.options.push_back(
-      {"blockerSamples", values, fmt::format("{}", kBlockerSamples), "taps of the blocker search"});
-  description.options.push_back({"filterSamples", values, fmt::format("{}", kFilterSamples), "taps of the filter"});
+  description.options.push_back(kBlockerSamples.description());
+  description.options.push_back(kFilterSamples.description());
   return description;
 }
 
@@ -51,11 +48,8 @@ visibility::MethodDescription pcss_description() {
 
 std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = describe(), .look_up_name = "pcss look-up", .look_up = shaders::kPcssComp};
-  const auto taps = [&](const char* key, std::uint32_t otherwise) {
-    return whole_number_option(recipe.description, options, key, 1, kMostSamples, otherwise);
-  };
-  const std::uint32_t blocker_samples = taps("blockerSamples", kBlockerSamples);
-  const std::uint32_t filter_samples = taps("filterSamples", kFilterSamples);
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  const std::uint32_t blocker_samples = parsed[kBlockerSamples], filter_samples = parsed[kFilterSamples];
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{blocker_samples, filter_samples}));

@@ -26,6 +26,12 @@ using visibility::ViewSamples;
 constexpr float kNotEvaluated = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kTileRows = 8;  // enough pixels for all cores, few enough to see progress
 
+constexpr visibility::ChoiceOption kSweep{
+    "sweep",
+    {{"rounded", SweepArithmetic::rounded}, {"rational", SweepArithmetic::rational}},
+    SweepArithmetic::rounded,
+    "add areas in double on exactly projected vertices, or in rational numbers (slow)"};
+
 class Exact final : public visibility::Method {
  public:
   explicit Exact(const visibility::MethodOptions& options);
@@ -82,11 +88,8 @@ Exact::Exact(const visibility::MethodOptions& options) {
       "(a polygon of 4096 sides)";
   description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
   description_.verdict_on = verdict_on;
-  description_.options = {{"sweep", "rounded|rational", "rounded",
-                           "add areas in double on exactly projected vertices, or in rational numbers (slow)"}};
-  visibility::check_options(description_, options);
-  const auto sweep = options.find("sweep");
-  if (sweep != options.end() && sweep->second == "rational") arithmetic_ = SweepArithmetic::rational;
+  description_.options = {kSweep.description()};
+  arithmetic_ = visibility::parse_options(description_, options)[kSweep];
 }
 
 void Exact::prepare_mesh(const SceneFloats& scene) {

@@ -60,6 +60,11 @@ struct Counts {
   std::atomic<std::uint64_t> rays = 0, short_rays = 0, horizon_pairs = 0;
 };
 
+constexpr visibility::ChoiceOption kPacket{"packet",
+                                           {{"auto", 0}, {"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
+                                           0,
+                                           "shadow rays traced together; auto: as the processor does"};
+
 class RayTraced final : public visibility::Method {
  public:
   explicit RayTraced(const visibility::MethodOptions& options);
@@ -130,12 +135,8 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
   description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
   description_.verdict_on = verdict_on;
-  description_.options = {
-      {"packet", "auto|1|4|8|16", "auto", "shadow rays traced together; auto: as the processor does"}};
-  visibility::check_options(description_, options);
-  if (const auto packet = options.find("packet"); packet != options.end()) {
-    if (packet->second != "auto") width_ = std::stoi(packet->second);
-  }
+  description_.options = {kPacket.description()};
+  width_ = visibility::parse_options(description_, options)[kPacket];
 }
 
 void RayTraced::prepare_mesh(const SceneFloats& scene) {

@@ -2,6 +2,7 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/mesh_verdict.hpp"
+#include "visibility/method_options.hpp"
 #include "visibility/pass_times.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
@@ -23,24 +24,6 @@ enum class Output {
 const char* name_of(Family family);
 const char* name_of(Output output);
 
-struct OptionDescription {
-  std::string name;
-  /// "on|off": one of these; "1 … 4096": a whole number; "0.0 … 8.0": any number, ends included. Nothing else.
-  std::string values;
-  std::string default_value;
-  std::string help;
-};
-
-/// OptionDescription::values, read: choices, or a range.
-struct OptionValues {
-  std::vector<std::string> choices;
-  double least = 0, most = 0;  ///< where there are no choices
-  bool whole = false;          ///< only whole numbers
-
-  [[nodiscard]] bool permit(const std::string& value) const;
-};
-OptionValues values_of(const OptionDescription& option);
-
 /// What `penumbra methods` and `penumbra inspect` print of a method.
 struct MethodDescription {
   std::string name;
@@ -55,9 +38,6 @@ struct MethodDescription {
   /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
 };
-
-/// KEY=VALUE pairs as the user gave them.
-using MethodOptions = std::map<std::string, std::string>;
 
 /// A band of whole pixel rows.
 struct Tile {
@@ -107,9 +87,10 @@ class Method {
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return 0; }
 };
 
-/// Refuses, with what can be done instead, a light that the method cannot do, and options that it does not have or
-/// values that they cannot have.
+/// Refuses a light that the method cannot do, and says what can be done instead.
 void check_light(const MethodDescription& description, const Light& light);
-void check_options(const MethodDescription& description, const MethodOptions& options);
+
+/// The user's options as values of the types that the method declares. Throws UsageError, see ParsedOptions.
+ParsedOptions parse_options(const MethodDescription& description, const MethodOptions& given);
 
 }  // namespace penumbra::visibility

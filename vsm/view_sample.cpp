@@ -2,6 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "visibility/visible_share.hpp"
@@ -46,9 +47,7 @@ const visibility::MethodDescription& describe() {
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
       .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon},
-      .options = {{"engine", "auto|vulkan|native", "auto",
-                   "vulkan: on the device; native: light samples in rows of a rectangle on the processor's own vector "
-                   "units; auto: native where the Vulkan device is the processor anyway. The same bits"}},
+      .options = {engines::kEngine.description()},
       .verdict_on = verdict_on,
   };
   return description;

@@ -83,9 +83,9 @@ class ViewSample final : public visibility::Method {
 }  // namespace
 
 std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
-                                                     const visibility::MethodOptions& options) {
-  visibility::check_options(view_sample_description(), options);
-  if (engines::runs_natively(device, options, "view-sample")) return std::make_unique<ViewSample>(device);
+                                                     const visibility::MethodOptions& given) {
+  const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
+  if (engines::runs_on_vectors(device, options[engines::kEngine])) return std::make_unique<ViewSample>(device);
   return make_vulkan_view_sample(device);
 }
 

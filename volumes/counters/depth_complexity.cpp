@@ -31,6 +31,20 @@ constexpr std::size_t kMostEdges = 1U << 29;  // |k_e| of a record is at most 2:
 
 enum class Variant { soup, laine, forest };
 
+constexpr visibility::ChoiceOption kVariant{
+    "variant",
+    {{"soup", Variant::soup}, {"laine", Variant::laine}, {"forest", Variant::forest}},
+    Variant::soup,
+    "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes; forest: "
+    "silhouettes of the light's centre and hard volumes, at most 16 light samples"};
+constexpr auto kCrop = visibility::flag_option(
+    "crop", true,
+    "soup, laine: leave out edges that are no silhouettes as seen from a group of view samples; V is the same");
+constexpr visibility::ChoiceOption kCounterBits{"counter-bits",
+                                                {{"6", 6U}, {"8", 8U}, {"16", 16U}},
+                                                16U,
+                                                "forest: of a packed counter; where it overflows, pairs are exact"};
+
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::exact,
@@ -44,17 +58,16 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
             "triangles without area, which cast nothing, and where variant=laine is only approximate"}})};
 }
 
-std::string choice(const visibility::MethodOptions& options, const std::string& key, const char* otherwise) {
-  const auto option = options.find(key);
-  return option == options.end() ? otherwise : option->second;
-}
-
-Variant variant_of(const visibility::MethodOptions& options) {
-  const std::string name = choice(options, "variant", "soup");
-  const Variant variant = name == "soup" ? Variant::soup : name == "laine" ? Variant::laine : Variant::forest;
-  const char* without = variant == Variant::forest ? "crop" : "counter-bits";
-  if (options.contains(without)) throw UsageError("depth-complexity: variant={} has no option {}", name, without);
-  return variant;
+/// Throws UsageError where the chosen variant does not have an option that is given.
+visibility::ParsedOptions parse(const visibility::MethodDescription& description,
+                                const visibility::MethodOptions& given) {
+  visibility::ParsedOptions options = visibility::parse_options(description, given);
+  const bool forest = options[kVariant] == Variant::forest;
+  if (forest ? options.given(kCrop) : options.given(kCounterBits)) {
+    throw UsageError("depth-complexity: variant={} has no option {}", kVariant.name_of(options[kVariant]),
+                     forest ? kCrop.name() : kCounterBits.name());
+  }
+  return options;
 }
 
 class DepthComplexity final : public DepthCounters {
@@ -284,26 +297,17 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
           "same where no occluding triangle's "
           "plane passes through the light, too bright elsewhere",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
-      .options = {{"variant", "soup|laine|forest", "soup",
-                   "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes; "
-                   "forest: silhouettes of the light's centre and hard volumes, at most 16 light samples"},
-                  {"crop", "on|off", "on",
-                   "soup, laine: leave out edges that are no silhouettes as seen from a group of view samples; V is "
-                   "the same"},
-                  {"counter-bits", "6|8|16", "16", "forest: of a packed counter; where it overflows, pairs are exact"}},
+      .options = {kVariant.description(), kCrop.description(), kCounterBits.description()},
       .verdict_on = verdict_on};
-  visibility::check_options(description, options);
-  variant_of(options);
+  parse(description, options);
   return description;
 }
 
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
-                                                          const visibility::MethodOptions& options) {
-  depth_complexity_description(options);
-  const Variant variant = variant_of(options);
-  const std::string crop = choice(options, "crop", "on"), bits = choice(options, "counter-bits", "16");
-  if (variant == Variant::forest) return make_packed_counters(device, static_cast<std::uint32_t>(std::stoul(bits)));
-  return std::make_unique<DepthComplexity>(device, variant, crop == "on", false);
+                                                          const visibility::MethodOptions& given) {
+  const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
+  if (options[kVariant] == Variant::forest) return make_packed_counters(device, options[kCounterBits]);
+  return std::make_unique<DepthComplexity>(device, options[kVariant], options[kCrop], false);
 }
 
 std::unique_ptr<DepthCounters> make_depth_counters(const render::Device& device) {

@@ -89,13 +89,6 @@ struct WedgeBuilder::State {
   std::optional<ShadowCasters> casters;
 };
 
-WedgesOn wedges_on(const visibility::MethodDescription& method, const visibility::MethodOptions& options) {
-  const auto found = options.find("wedges");
-  if (found == options.end() || found->second == "device") return WedgesOn::device;
-  if (found->second == "host") return WedgesOn::host;
-  throw UsageError("method {}: wedges={} is neither device nor host", method.name, found->second);
-}
-
 WedgeBuilder::WedgeBuilder(const render::Device& device, const Options& options)
     : state_(std::make_unique<State>(device, options)) {}
 WedgeBuilder::~WedgeBuilder() = default;

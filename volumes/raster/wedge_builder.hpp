@@ -2,7 +2,8 @@
 
 #include "render/device.hpp"
 #include "visibility/light_samples.hpp"
-#include "visibility/method.hpp"
+#include "visibility/method_options.hpp"
+#include "visibility/pass_times.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/raster/light_volumes.hpp"
 #include "volumes/wedges/penumbra_wedge.hpp"
@@ -16,8 +17,11 @@ namespace penumbra::volumes {
 
 enum class WedgesOn { device, host };
 
-/// What a method's option "wedges" says: the device unless "host". Throws UsageError.
-WedgesOn wedges_on(const visibility::MethodDescription& method, const visibility::MethodOptions& options);
+/// The option `wedges` of a method that builds them.
+constexpr auto wedges_option(const char* help) {
+  return visibility::ChoiceOption{
+      "wedges", {{"device", WedgesOn::device}, {"host", WedgesOn::host}}, WedgesOn::device, help};
+}
 
 /// The silhouettes of a light's centre and their wedges, anew for every light: what a moving light needs each frame.
 ///

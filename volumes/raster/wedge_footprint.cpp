@@ -155,10 +155,6 @@ bool drop_edge(Points& polygon) {
 
 }  // namespace
 
-const char* name_of(WedgeTests tests) {
-  return tests == WedgeTests::none ? "none" : tests == WedgeTests::z ? "z" : "both";
-}
-
 Receivers::Receivers(const visibility::ViewSamples& samples, const std::optional<glm::dvec3>& center)
     : columns_((samples.width + kBlock - 1) / kBlock), rows_((samples.height + kBlock - 1) / kBlock) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -31,7 +31,6 @@ enum class WedgeTests {
   z,     ///< and footprints by the hull of the blocks of pixels whose receivers' box is not beyond a plane of the wedge
   both,  ///< and receivers that face away from the light's centre, which are dark, do not count
 };
-const char* name_of(WedgeTests tests);
 
 /// Where receivers lie, by square blocks of pixels: what wedges, which have no caps, are cut by.
 class Receivers {

@@ -6,8 +6,12 @@
 
 // Proposes pixels for one wedge (an instance): its footprint as a fan. No near or far plane, no depth.
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };
-layout(scalar, push_constant) uniform Push { WedgePush push; };
+layout(scalar, binding = 0) readonly buffer Faces {
+  WedgeFace faces[];
+};
+layout(scalar, push_constant) uniform Push {
+  WedgePush push;
+};
 
 // Handed on, not looked up again: some drivers load from buffers one lane after the other.
 layout(location = 0) flat out vec3 a;

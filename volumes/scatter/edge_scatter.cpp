@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 namespace penumbra::volumes {
@@ -28,6 +27,12 @@ namespace {
 
 constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
 constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: what a question can name
+
+constexpr visibility::ChoiceOption kExactRows{
+    "rows",
+    {{"samples", false}, {"exact", true}},
+    false,
+    "exact: V of the whole light, without light samples, on the processor; no masks"};
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
@@ -38,15 +43,13 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
 
 class EdgeScatter final : public visibility::Method {
  public:
-  EdgeScatter(const render::Device& device, const visibility::MethodOptions& options)
+  explicit EdgeScatter(const render::Device& device)
       : description_(edge_scatter_description()),
         device_(&device),
         edges_(device, description_.name),
         settle_(device,
                 {.name = "settle rows", .spirv = shaders::kSettleRowsComp, .push_bytes = sizeof(std::uint32_t)}),
-        commands_(device) {
-    visibility::check_options(description_, options);
-  }
+        commands_(device) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
 
@@ -241,11 +244,6 @@ class EdgeScatter final : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
 };
 
-bool has(const visibility::MethodOptions& options, const std::string& key, std::string_view value) {
-  const auto found = options.find(key);
-  return found != options.end() && found->second == value;
-}
-
 visibility::MethodDescription describe() {
   return {.name = "edge-scatter",
           .family = visibility::Family::geometry,
@@ -254,21 +252,17 @@ visibility::MethodDescription describe() {
           .exact_for = "every pair of view sample and light sample, for any triangle soup (rows of a rectangle light)",
           .lights = {visibility::LightKind::rectangle},
           .any_pattern = false,
-          .options = {{"engine", "auto|vulkan|native", "auto",
-                       "vulkan: on the device; native: on the processor's own vector units; auto: native where the "
-                       "Vulkan device is the processor anyway. The same bits"},
-                      {"rows", "samples|exact", "samples",
-                       "exact: V of the whole light, without light samples, on the processor; no masks"}},
+          .options = {engines::kEngine.description(), kExactRows.description()},
           .verdict_on = verdict_on};
 }
 
 }  // namespace
 
-visibility::MethodDescription edge_scatter_description(const visibility::MethodOptions& options) {
+visibility::MethodDescription edge_scatter_description(const visibility::MethodOptions& given) {
   visibility::MethodDescription description = describe();
-  visibility::check_options(description, options);
-  if (!has(options, "rows", "exact")) return description;
-  if (has(options, "engine", "vulkan")) {
+  const visibility::ParsedOptions options = visibility::parse_options(description, given);
+  if (!options[kExactRows]) return description;
+  if (options[engines::kEngine] == engines::Engine::vulkan) {
     throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
   }
   description.output = visibility::Output::radiance;
@@ -279,13 +273,14 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
 }
 
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
-                                                      const visibility::MethodOptions& options) {
-  visibility::MethodDescription description = edge_scatter_description(options);
-  const bool exact = description.output == visibility::Output::radiance;
-  if (exact || engines::runs_natively(device, options, description.name)) {
+                                                      const visibility::MethodOptions& given) {
+  visibility::MethodDescription description = edge_scatter_description(given);
+  const visibility::ParsedOptions options = visibility::parse_options(description, given);
+  const bool exact = options[kExactRows];
+  if (exact || engines::runs_on_vectors(device, options[engines::kEngine])) {
     return make_native_edge_scatter(std::move(description), exact);
   }
-  return std::make_unique<EdgeScatter>(device, options);
+  return std::make_unique<EdgeScatter>(device);
 }
 
 }  // namespace penumbra::volumes

@@ -17,6 +17,12 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                               mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
+constexpr visibility::ChoiceOption kVariant{
+    "variant",
+    {{"z-fail", CountVariant::z_fail}, {"z-pass", CountVariant::z_pass}},
+    CountVariant::z_fail,
+    "count volumes beyond the surface, or between it and the camera: wrong when the camera is in shadow"};
+
 visibility::MethodDescription describe() {
   using visibility::LightKind;
   return {.name = "hard-volume",
@@ -25,21 +31,14 @@ visibility::MethodDescription describe() {
           .output = visibility::Output::scalar,
           .exact_for = "the hard shadow of the light's centre, of any triangle soup (z-fail)",
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
-          .options = {{"variant", "z-fail|z-pass", "z-fail",
-                       "count volumes beyond the surface, or before it: wrong when the camera is in shadow"}},
+          .options = {kVariant.description()},
           .verdict_on = verdict_on};
-}
-
-CountVariant variant_of(const visibility::MethodDescription& method, const visibility::MethodOptions& options) {
-  visibility::check_options(method, options);
-  const auto found = options.find("variant");
-  return found != options.end() && found->second == "z-pass" ? CountVariant::z_pass : CountVariant::z_fail;
 }
 
 class HardVolume final : public visibility::Method {
  public:
   HardVolume(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(describe()), count_(device, variant_of(description_, options)) {}
+      : description_(describe()), count_(device, visibility::parse_options(description_, options)[kVariant]) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void prepare_mesh(const visibility::SceneFloats& scene) override { count_.prepare_mesh(scene); }

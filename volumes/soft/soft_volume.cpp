@@ -35,6 +35,28 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
+constexpr visibility::ChoiceOption kSplit{
+    "split",
+    {{"1", 1U}, {"2", 2U}, {"3", 3U}},
+    1U,
+    "cut a rectangle in split² lights, each with silhouettes and a count of its own"};
+constexpr visibility::ChoiceOption kTable{
+    "coverage",
+    {{"analytic", false}, {"table", true}},
+    false,
+    "integrate the light beyond each edge, or look it up between 1024 points of the light"};
+constexpr visibility::ChoiceOption kConstruction{"construction",
+                                                 {{"original", Construction::original}, {"tight", Construction::tight}},
+                                                 Construction::original,
+                                                 "of the wedges, which say where to look"};
+constexpr auto kWedges =
+    wedges_option("where silhouettes and wedges are built for each light (tight ones always on the host)");
+constexpr visibility::ChoiceOption kTests{
+    "tests",
+    {{"none", WedgeTests::none}, {"z", WedgeTests::z}, {"both", WedgeTests::both}},
+    WedgeTests::both,
+    "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"};
+
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
@@ -54,53 +76,9 @@ visibility::MethodDescription describe() {
               "occluders that do not overlap as seen from the view sample and whose silhouettes are those that "
               "the light's centre sees: planar ones, say",
           .lights = {LightKind::rectangle, LightKind::disk},
-          .options = {{"split", "1|2|3", "1",
-                       "cut a rectangle in split² lights, each with silhouettes and a count of its own"},
-                      {"coverage", "analytic|table", "analytic",
-                       "integrate the light beyond each edge, or look it up between 1024 points of the light"},
-                      {"construction", "original|tight", "original", "of the wedges, which say where to look"},
-                      {"wedges", "device|host", "device",
-                       "where silhouettes and wedges are built for each light (tight ones always on the host)"},
-                      {"tests", "none|z|both", "both",
-                       "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"}},
+          .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
+                      kTests.description()},
           .verdict_on = verdict_on};
-}
-
-std::string option(const visibility::MethodOptions& options, const std::string& key, const std::string& otherwise) {
-  const auto found = options.find(key);
-  return found == options.end() ? otherwise : found->second;
-}
-
-std::uint32_t split_of(const visibility::MethodOptions& options) {
-  const std::string split = option(options, "split", "1");
-  for (const std::uint32_t n : {1u, 2u, 3u}) {
-    if (split == std::to_string(n)) return n;
-  }
-  throw UsageError("method soft-volume: split={} is none of 1, 2, 3", split);
-}
-
-/// Is the option the second of the two values that it has?
-bool second_of(const visibility::MethodOptions& options, const std::string& key,
-               const std::pair<std::string, std::string>& values) {
-  const std::string value = option(options, key, values.first);
-  if (value == values.first || value == values.second) return value == values.second;
-  throw UsageError("method soft-volume: {}={} is neither {} nor {}", key, value, values.first, values.second);
-}
-
-WedgeTests tests_of(const visibility::MethodOptions& options) {
-  const std::string value = option(options, "tests", name_of(WedgeTests::both));
-  for (const WedgeTests tests : {WedgeTests::none, WedgeTests::z, WedgeTests::both}) {
-    if (value == name_of(tests)) return tests;
-  }
-  throw UsageError("method soft-volume: tests={} is none of none, z, both", value);
-}
-
-WedgeBuilder::Options builder_options(const visibility::MethodDescription& method,
-                                      const visibility::MethodOptions& options) {
-  return {.on = wedges_on(method, options),
-          .construction =
-              second_of(options, "construction", {"original", "tight"}) ? Construction::tight : Construction::original,
-          .layers = Layers::one_a_solid};
 }
 
 /// The light, or one of the parts it is cut in.
@@ -127,14 +105,14 @@ struct Part {
 
 class SoftVolume final : public visibility::Method {
  public:
-  SoftVolume(const render::Device& device, const visibility::MethodOptions& options)
+  SoftVolume(const render::Device& device, const visibility::ParsedOptions& options)
       : description_(describe()),
         device_(&device),
-        split_(split_of(options)),
-        table_(second_of(options, "coverage", {"analytic", "table"})),
-        builder_(device, builder_options(description_, options)),
-        tests_(tests_of(options)) {
-    visibility::check_options(description_, options);
+        split_(options[kSplit]),
+        table_(options[kTable]),
+        builder_(device,
+                 {.on = options[kWedges], .construction = options[kConstruction], .layers = Layers::one_a_solid}),
+        tests_(options[kTests]) {
     for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<Part>(device));
   }
 
@@ -348,7 +326,7 @@ visibility::MethodDescription soft_volume_description() {
 
 std::unique_ptr<visibility::Method> make_soft_volume(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
-  return std::make_unique<SoftVolume>(device, options);
+  return std::make_unique<SoftVolume>(device, visibility::parse_options(describe(), options));
 }
 
 }  // namespace penumbra::volumes

@@ -31,6 +31,8 @@ using visibility::ViewSamples;
 
 constexpr std::size_t kMostOccluders = 32;  // each has passes of its own; further objects share the last
 
+constexpr auto kWedges = wedges_option("where silhouettes and wedges are built for each light, object by object");
+
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
@@ -46,8 +48,7 @@ visibility::MethodDescription describe() {
           .exact_for = "what soft-volume is exact for, if boxes around occluders on a quarter of the light are apart",
           .lights = {LightKind::rectangle},
           .textures = false,
-          .options = {{"wedges", "device|host", "device",
-                       "where silhouettes and wedges are built for each light, object by object"}},
+          .options = {kWedges.description()},
           .verdict_on = verdict_on};
 }
 
@@ -103,10 +104,8 @@ class SoftVolumeBlend final : public visibility::Method {
   SoftVolumeBlend(const render::Device& device, const visibility::MethodOptions& options)
       : description_(describe()),
         device_(&device),
-        wedges_on_(wedges_on(description_, options)),
-        raster_(device, {"blended wedges", shaders::kSoftVolumeBlendFrag, {}, gpu::kBlendWords, false}) {
-    visibility::check_options(description_, options);
-  }
+        wedges_on_(visibility::parse_options(description_, options)[kWedges]),
+        raster_(device, {"blended wedges", shaders::kSoftVolumeBlendFrag, {}, gpu::kBlendWords, false}) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
 

@@ -49,7 +49,7 @@ class WedgeRamp final : public visibility::Method {
       : description_(describe()),
         count_(device, CountVariant::z_fail, Layers::one_a_solid),
         raster_(device, {"wedge ramps", shaders::kWedgeRampFrag, {}}) {
-    visibility::check_options(description_, options);
+    visibility::parse_options(description_, options);
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
