@@ -9,6 +9,8 @@
 
 #include "maps/map_fit.hpp"
 
+#include "visibility/receivers.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -63,7 +65,7 @@ struct SideTriangles {
 };
 
 bool receives(const visibility::SceneFloats& scene, std::size_t triangle) {
-  return scene.receives_shadow[triangle] != 0 && scene.emits[triangle] < 0 &&
+  return visibility::is_receiver(scene, static_cast<std::uint32_t>(triangle)) &&
          scene.plane[triangle] != visibility::SceneFloats::kNoPlane;
 }
 

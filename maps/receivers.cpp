@@ -2,22 +2,12 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "visibility/receivers.hpp"
 
 #include <algorithm>
 #include <numeric>
 
 namespace penumbra::maps {
-namespace {
-
-/// Nothing shades a background pixel, the body of a light, or what does not receive shadow.
-bool receives(const visibility::SceneFloats& scene, const visibility::ViewSamples& samples, std::size_t pixel) {
-  const std::int32_t triangle = samples.triangle[pixel];
-  if (triangle == visibility::ViewSamples::kBackground) return false;
-  const auto carrier = static_cast<std::size_t>(triangle);
-  return scene.emits[carrier] < 0 && scene.receives_shadow[carrier] != 0;
-}
-
-}  // namespace
 
 void Receivers::upload(const render::Device& device, const visibility::SceneFloats& scene,
                        const visibility::ViewSamples& samples) {
@@ -31,7 +21,7 @@ void Receivers::upload(const render::Device& device, const visibility::SceneFloa
     receivers.assign(std::size_t{rows} * width_, {});
     const std::size_t first = std::size_t{row} * width_;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-      if (receives(scene, samples, first + i)) receivers[i] = {samples.p[first + i], samples.n[first + i]};
+      if (visibility::is_receiver(scene, samples, first + i)) receivers[i] = {samples.p[first + i], samples.n[first + i]};
     }
     bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});
   }

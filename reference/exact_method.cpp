@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "areas/exact_area.hpp"
+#include "visibility/receivers.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -107,9 +108,7 @@ void Exact::prepare_light(const Light& light) {
 
 /// Not those that the host's rules answer.
 bool Exact::is_question(std::size_t pixel) const {
-  if (samples_->triangle[pixel] == ViewSamples::kBackground) return false;
-  const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
-  return scene_->emits[carrier] < 0 && scene_->receives_shadow[carrier] != 0;
+  return visibility::is_receiver(*scene_, *samples_, pixel);
 }
 
 ExactView Exact::evaluate_pixel(std::size_t pixel) {

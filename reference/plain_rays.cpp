@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "reference/embree_packets.hpp"
 #include "reference/tracing_order.hpp"
+#include "visibility/receivers.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -153,9 +154,7 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
       for (std::size_t x = block.cols().begin(); x != block.cols().end(); ++x) {
         const std::size_t pixel = y * samples.width + x;
         visibility[pixel] = 1;
-        if (samples.triangle[pixel] < 0) continue;
-        const auto carrier = static_cast<std::size_t>(samples.triangle[pixel]);
-        if (scene_->emits[carrier] >= 0 || scene_->receives_shadow[carrier] == 0) continue;
+        if (!visibility::is_receiver(*scene_, samples, pixel)) continue;
         visibility[pixel] = 0;
         const glm::vec3 n = samples.n[pixel], p = range.scaled(samples.p[pixel]) + offset_ * n;
         if (sphere) {

@@ -15,6 +15,7 @@
 #include "reference/tracing_order.hpp"
 #include "visibility/horizon.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/receivers.hpp"
 #include "visibility/visible_share.hpp"
 
 #include <glm/common.hpp>
@@ -203,12 +204,11 @@ void RayTraced::decide_short_rays(std::size_t pixel, const std::vector<glm::vec3
 
 template <int kWidth>
 void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible) {
-  const std::int32_t triangle = samples_->triangle[pixel];
-  const auto carrier = static_cast<std::uint32_t>(triangle);
-  if (triangle == ViewSamples::kBackground || scene_->emits[carrier] >= 0 || scene_->receives_shadow[carrier] == 0) {
+  if (!visibility::is_receiver(*scene_, *samples_, pixel)) {
     std::copy(full_mask_.begin(), full_mask_.end(), visible.begin());
     return;
   }
+  const auto carrier = static_cast<std::uint32_t>(samples_->triangle[pixel]);
   const glm::vec3 p = samples_->p[pixel];
   const EmbreeRange& range = embree_->range();
   const bool sphere = light_->kind == LightKind::sphere;

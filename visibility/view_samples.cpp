@@ -5,6 +5,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/receivers.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <glm/geometric.hpp>
@@ -62,8 +63,7 @@ bool sphere_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, c
 PixelClass classify(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light) {
   if (samples.triangle[pixel] == ViewSamples::kBackground) return PixelClass::background;
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
-  if (scene.emits[carrier] >= 0) return PixelClass::emitter;
-  if (scene.receives_shadow[carrier] == 0) return PixelClass::unshadowed;
+  if (!is_receiver(scene, carrier)) return scene.emits[carrier] >= 0 ? PixelClass::emitter : PixelClass::unshadowed;
   if (!in_front_of_light(light, samples.p[pixel])) return PixelClass::behind;
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
   if (light.kind == LightKind::sphere) {

@@ -1,7 +1,5 @@
 #include "vsm/uploads.hpp"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
@@ -14,25 +12,11 @@ namespace penumbra::vsm {
 
 using visibility::TriangleTree;
 
-std::array<std::vector<Texel>, 3> corner_texels(const TriangleTree& tree, const visibility::SceneFloats& scene,
-                                                const ClosedParts& closed, float scale) {
-  std::array<std::vector<Texel>, 3> texels;
-  for (auto& list : texels) list.reserve(tree.leaves.size() * TriangleTree::kWidth);
-  for (const TriangleTree::Leaf& leaf : tree.leaves) {
-    for (const std::uint32_t triangle : leaf) {
-      std::array<glm::vec3, 3> at{};
-      std::array<std::uint32_t, 3> numbers{TriangleTree::kNoTriangle, visibility::SceneFloats::kNoPlane, 0xffffffffU};
-      if (triangle != TriangleTree::kNoTriangle) {
-        at = scene.corners(triangle);
-        const std::uint32_t part = closed.parts.empty() ? 0U : closed.part[triangle];
-        if (part != 0 && closed.turn[triangle] < 0) std::swap(at[1], at[2]);
-        numbers = {triangle, scene.plane[triangle] | part << kPartShift,
-                   static_cast<std::uint32_t>(scene.emits[triangle])};
-      }
-      for (std::size_t i = 0; i < 3; ++i) texels[i].push_back({at[i] * scale, numbers[i]});
-    }
-  }
-  return texels;
+std::vector<std::uint32_t> part_tags(const ClosedParts& closed) {
+  std::vector<std::uint32_t> tags;
+  tags.reserve(closed.part.size());
+  for (const std::uint32_t part : closed.part) tags.push_back(part << kPartShift);
+  return tags;
 }
 
 namespace {
@@ -76,24 +60,6 @@ std::vector<Texel> part_texels(const ClosedParts& closed, float scale) {
     for (const Box& box : part.touching) add(box);
   }
   if (texels.empty()) texels.emplace_back();  // a buffer is never empty
-  return texels;
-}
-
-std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
-                               const ClosedParts& closed, float scale) {
-  std::vector<Texel> texels;
-  texels.reserve(2 * samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const std::int32_t carrier = samples.triangle[i];
-    const bool background = carrier == visibility::ViewSamples::kBackground ||
-                            scene.receives_shadow[static_cast<std::size_t>(carrier)] == 0;  // the host says V = 1
-    texels.push_back(
-        {samples.p[i] * scale, background ? TriangleTree::kNoTriangle : static_cast<std::uint32_t>(carrier)});
-    const bool known = !background && visibility::normal_is_known(scene.corners(static_cast<std::uint32_t>(carrier)));
-    const std::uint32_t part = background || closed.parts.empty() ? 0U : closed.part[static_cast<std::size_t>(carrier)];
-    const std::uint32_t plane = background ? 0U : scene.plane[static_cast<std::size_t>(carrier)];
-    texels.push_back({known ? samples.n[i] : glm::vec3(0), plane | part << kPartShift});
-  }
   return texels;
 }
 

@@ -22,11 +22,8 @@ using visibility::Texel;
 /// A plane's number shares its word with a closed part's.
 inline constexpr std::uint32_t kPartShift = 27;
 
-/// For each slot of each leaf: (a, triangle), (b, plane and closed part), (c, light that the triangle is the body of).
-/// Triangles of closed parts are wound alike.
-std::array<std::vector<Texel>, 3> corner_texels(const visibility::TriangleTree& tree,
-                                                const visibility::SceneFloats& scene, const ClosedParts& closed,
-                                                float scale);
+/// For each triangle the closed part that it is of, to be OR-ed to the number of its plane; empty: there is no part.
+std::vector<std::uint32_t> part_tags(const ClosedParts& closed);
 
 /// Writes into each child's second texel the closed part to whose outside all triangles below are dispensable, or 0.
 void mark_dispensable(const visibility::TriangleTree& tree, std::span<const std::uint8_t> dispensable,
@@ -34,10 +31,6 @@ void mark_dispensable(const visibility::TriangleTree& tree, std::span<const std:
 
 /// Seven boxes of two texels a part: itself, and what touches each face.
 std::vector<Texel> part_texels(const ClosedParts& closed, float scale);
-
-/// Two texels a pixel: (p, carrying triangle), (normal, plane and closed part). Pixels without shadow are background.
-std::vector<Texel> view_texels(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
-                               const ClosedParts& closed, float scale);
 
 /// The shaders' table of light samples: uint first_point[257], then (s, t) of each, sorted by t, so that a triangle
 /// looks at one stretch of them. Rows are computed, not read: their table is empty and their order the light samples'.

@@ -2,6 +2,8 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "engines/device/triangle_upload.hpp"
+#include "engines/device/view_upload.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/triangle_tree.hpp"
@@ -59,7 +61,8 @@ class ViewSampleMapping final : public visibility::Method {
       : device_(&device),
         settle_(device, {.name = "settle", .spirv = shaders::kSettleComp, .push_bytes = sizeof(std::uint32_t)}),
         resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
-        commands_(device) {}
+        commands_(device),
+        view_(device) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return describe(); }
 
@@ -73,15 +76,10 @@ class ViewSampleMapping final : public visibility::Method {
                           scene.triangles.size());
     }
     closed_ = find_closed_parts(scene);
-    node_texels_ = visibility::node_texels(tree_, scale_);
-    const std::array<std::vector<Texel>, 3> corners = corner_texels(tree_, scene, closed_, scale_);
-    using render::BufferUse;
-    nodes_.emplace(render::make_buffer<Texel>(*device_, "tree nodes", node_texels_, BufferUse::texels));
-    for (std::size_t i = 0; i < 3; ++i) {
-      corners_[i].emplace(render::make_buffer<Texel>(*device_, "tree corners", corners[i], BufferUse::texels));
-    }
+    tags_ = part_tags(closed_);
+    triangles_.prepare(*device_, scene, tree_, scale_, {tags_, closed_.turn});
     parts_.emplace(
-        render::make_buffer<Texel>(*device_, "closed parts", part_texels(closed_, scale_), BufferUse::texels));
+        render::make_buffer<Texel>(*device_, "closed parts", part_texels(closed_, scale_), render::BufferUse::texels));
   }
 
   void prepare_light(const visibility::Light& light) override {
@@ -108,21 +106,20 @@ class ViewSampleMapping final : public visibility::Method {
     build_passes();
     parts_apart_ = parts_apart_from(closed_, frame_, scale_);
     if (parts_apart_ != 0) {
-      mark_dispensable(tree_, find_dispensable(closed_, *scene_, frame_, scale_), node_texels_);
-      nodes_->write(std::span<const Texel>(node_texels_));
+      mark_dispensable(tree_, find_dispensable(closed_, *scene_, frame_, scale_), triangles_.node_texels());
+      triangles_.write_nodes();
     }
   }
 
   void prepare_view(const visibility::ViewSamples& samples) override {
     samples_ = &samples;
-    view_texels_ = view_texels(samples, *scene_, closed_, scale_);
-    view_rows_ = 0;
-    if (max_tile_rows() >= samples.height) upload_rows({0, samples.height});
+    view_.prepare(samples, *scene_, scale_, tags_);
+    if (max_tile_rows() >= samples.height) view_.load({0, samples.height});
   }
 
   [[nodiscard]] std::uint32_t max_tile_rows() const override {
     PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-    const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * light_->words_per_mask(), 2 * sizeof(Texel));
+    const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * light_->words_per_mask(), device::ViewUpload::kBytesPerPixel);
     const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
     if (rows == 0) {
       throw ResourceError(
@@ -134,7 +131,7 @@ class ViewSampleMapping final : public visibility::Method {
   }
 
   void evaluate(const visibility::Tile& tile) override {
-    if (tile.first_row < view_row_ || tile.first_row + tile.row_count > view_row_ + view_rows_) upload_rows(tile);
+    view_.load(tile);
     tile_ = tile;
     const std::uint32_t pixels = tile.row_count * samples_->width;
     render::grow(*device_, masks_, "masks", std::uint64_t{pixels} * light_->words_per_mask() * 4);
@@ -238,16 +235,6 @@ class ViewSampleMapping final : public visibility::Method {
     constants_ = constants;
   }
 
-  void upload_rows(const visibility::Tile& tile) {
-    const std::span<const Texel> rows = std::span<const Texel>(view_texels_)
-                                            .subspan(std::size_t{2} * tile.first_row * samples_->width,
-                                                     std::size_t{2} * tile.row_count * samples_->width);
-    render::grow(*device_, view_, "view samples", rows.size_bytes(), render::BufferUse::texels);
-    view_->write(rows);
-    view_row_ = tile.first_row;
-    view_rows_ = tile.row_count;
-  }
-
   [[nodiscard]] gpu::ViewSamplePush push_constants() const {
     gpu::ViewSamplePush push{};
     for (int i = 0; i < 3; ++i) {
@@ -260,7 +247,7 @@ class ViewSampleMapping final : public visibility::Method {
     push.two_sided = light_->two_sided ? 1 : 0;
     push.light = light_->index;
     push.width = samples_->width;
-    push.first_row = tile_.first_row - view_row_;
+    push.first_row = view_.place_of(tile_.first_row);
     push.sample_count = light_->sample_count();
     push.rows = light_->rows;
     push.columns = light_->columns;
@@ -314,7 +301,8 @@ class ViewSampleMapping final : public visibility::Method {
       }
       push.chunk_capacity = counts.chunks;
       test_pairs_->record(commands_, push,
-                          {*view_, *table_, *masks_, *questions_, *chunks_, *corners_[0], *corners_[1], *corners_[2]},
+                          {view_.buffer(), *table_, *masks_, *questions_, *chunks_, triangles_.corners(0),
+                           triangles_.corners(1), triangles_.corners(2)},
                           counts.chunks);
       submit();
       questions_->read(std::span(&counts, 1));
@@ -343,7 +331,7 @@ class ViewSampleMapping final : public visibility::Method {
     commands_.fill(*questions_, 0, 0, sizeof(Counts));
     push.part_levels = part_levels_;
     for (push.part = 0; push.part < 1U << (3 * part_levels_); ++push.part) {
-      find_leaves_->record(commands_, push, {*view_, *table_, *masks_, *questions_, *chunks_, *nodes_, *parts_},
+      find_leaves_->record(commands_, push, {view_.buffer(), *table_, *masks_, *questions_, *chunks_, triangles_.nodes(), *parts_},
                            blocks);
       submit();
       questions_->read(std::span(&counts, 1));
@@ -386,10 +374,10 @@ class ViewSampleMapping final : public visibility::Method {
   float scale_ = 1;
   TriangleTree tree_;
   ClosedParts closed_;
-  std::vector<Texel> node_texels_;  // a light changes them
-  std::uint32_t parts_apart_ = 0;   // bits: closed parts apart from the light
-  std::optional<render::Buffer> nodes_, parts_;
-  std::array<std::optional<render::Buffer>, 3> corners_;
+  std::vector<std::uint32_t> tags_;  // of triangles: closed parts
+  std::uint32_t parts_apart_ = 0;    // bits: closed parts apart from the light
+  device::TriangleUpload triangles_;
+  std::optional<render::Buffer> parts_;
 
   const visibility::Light* light_ = nullptr;
   visibility::LightFrame frame_;
@@ -397,9 +385,8 @@ class ViewSampleMapping final : public visibility::Method {
   std::optional<render::Buffer> table_;
 
   const visibility::ViewSamples* samples_ = nullptr;
-  std::vector<Texel> view_texels_;
-  std::uint32_t view_row_ = 0, view_rows_ = 0;  // what view_ holds
-  std::unique_ptr<render::Buffer> view_, masks_, visibility_, chunks_, questions_, answers_;
+  device::ViewUpload view_;
+  std::unique_ptr<render::Buffer> masks_, visibility_, chunks_, questions_, answers_;
   std::uint32_t part_levels_ = 0;  // grows: 8 to that power are the parts that the tree is walked in
   std::uint32_t chunk_capacity_ = kFirstChunks, question_capacity_ = kFirstQuestions;
   visibility::Tile tile_;

@@ -1,5 +1,7 @@
 #include "engines/vectors/clusters.hpp"
 
+#include "visibility/receivers.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -41,10 +43,8 @@ std::size_t split(std::span<Placed> samples) {
 
 Outlook look(const ViewInput& view, std::uint32_t pixel, Placed& at) {
   const auto& [scene, samples, light, frame, normal_is_known, scale] = view;
-  const std::int32_t carrier = samples.triangle[pixel];
-  if (carrier == visibility::ViewSamples::kBackground) return Outlook::all;
-  const auto triangle = static_cast<std::uint32_t>(carrier);
-  if (scene.receives_shadow[triangle] == 0) return Outlook::all;
+  if (!visibility::is_receiver(scene, samples, pixel)) return Outlook::all;
+  const auto triangle = static_cast<std::uint32_t>(samples.triangle[pixel]);
   at.p = samples.p[pixel] * scale;
   const glm::vec3 from = at.p - frame.center;
   at.pixel = pixel;

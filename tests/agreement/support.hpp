@@ -9,6 +9,7 @@
 #include "tests/unit/visibility_scenes.hpp"
 #include "visibility/method.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/receivers.hpp"
 #include "vsm/view_sample.hpp"
 
 #include <fmt/format.h>
@@ -118,7 +119,7 @@ struct PairCounts {
   }
 };
 
-/// Every pair of every `step`-th pixel against the exact decision; background must be lit whole, the bits beyond the
+/// Every pair of every `step`-th pixel against the exact decision; what receives no shadow must be lit whole, the bits beyond the
 /// last sample 0, and V the share of set bits.
 inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floats, const visibility::Light& light,
                                              const visibility::ViewSamples& samples, const Masks& masks,
@@ -143,8 +144,8 @@ inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floa
     if (n % 32 != 0 && masks.word(pixel, light.words_per_mask() - 1) >> (n % 32) != 0) {
       wrong(fmt::format("pixel {}: bits beyond sample {} are set", pixel, n - 1));
     }
-    if (samples.triangle[pixel] == visibility::ViewSamples::kBackground) {
-      if (set != n) wrong(fmt::format("background pixel {} is not lit", pixel));
+    if (!visibility::is_receiver(floats, samples, pixel)) {
+      if (set != n) wrong(fmt::format("pixel {} receives no shadow, and is not lit", pixel));
       return;
     }
     for (std::uint32_t j = 0; j < n; ++j) {

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "tests/fuzz/soup_judge.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/receivers.hpp"
 #include "volumes/counters/depth_complexity.hpp"
 #include "volumes/scatter/edge_scatter.hpp"
 #include "vsm/view_sample.hpp"
@@ -112,7 +113,10 @@ SoupFindings SoupMethods::check(const SoupCase& judged) {
     if (!can_do(*variant.method, judged.light)) continue;
     try {
       const std::vector<std::uint32_t> masks = masks_of(*variant.method, judged);
-      for_each_pair([&](std::size_t pixel, std::uint32_t j) { compare(variant.name, pixel, j, bit(masks, pixel, j)); });
+      for_each_pair([&](std::size_t pixel, std::uint32_t j) {
+        if (!visibility::is_receiver(judged.floats, judged.samples, pixel)) return;  // lit, whatever the truth
+        compare(variant.name, pixel, j, bit(masks, pixel, j));
+      });
     } catch (const InputError&) {
       ++found.refusals;  // float32 cannot span light and scene together
     }

@@ -116,7 +116,7 @@ class DepthComplexity final : public DepthCounters {
     PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
     const std::uint64_t of_counters = keeps_depths_ ? 4ULL * light_->sample_count() : 0;
     const std::uint64_t per_pixel =
-        std::max<std::uint64_t>({4ULL * light_->words_per_mask(), 2 * sizeof(visibility::Texel), of_counters});
+        std::max<std::uint64_t>({4ULL * light_->words_per_mask(), device::ViewUpload::kBytesPerPixel, of_counters});
     const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
     if (rows == 0) {
       throw ResourceError(

@@ -30,7 +30,7 @@ struct EdgeLists::Counts {
 };
 
 EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crops)
-    : device_(&device), method_(std::move(method)), sides_(method_), crops_(crops) {
+    : device_(&device), method_(std::move(method)), sides_(method_), crops_(crops), view_(device) {
   const std::uint32_t lanes = device.limits().subgroup_size;
   if (lanes >= TriangleTree::kWidth && kBlock * kBlock % lanes == 0) return;
   throw ResourceError("{} needs subgroups of 8, 16, 32 or 64 lanes; {} has {}", method_, device.info().name, lanes);
@@ -41,30 +41,11 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
   part_levels_ = 0;
   scale_ = visibility::device_scale(scene);
   tree_ = visibility::make_triangle_tree(scene);
-  triangle_nodes_.emplace(make_texels(*device_, "triangle nodes", visibility::node_texels(tree_, scale_)));
-  const std::array<std::vector<Texel>, 3> corners = corner_texels();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    triangle_corners_[i].emplace(make_texels(*device_, "triangle corners", corners[i]));
-  }
+  triangles_.prepare(*device_, scene, tree_, scale_);
   sides_.prepare_mesh(scene);
   const std::vector<EdgeRecord> records = sides_.records(std::nullopt);
   edge_count_ = records.size();
   whole_ = upload(records);
-}
-
-/// For each slot of each leaf: (a, triangle), (b, plane), (c, light that the triangle is the body of).
-std::array<std::vector<Texel>, 3> EdgeLists::corner_texels() const {
-  std::array<std::vector<Texel>, 3> texels;
-  for (const TriangleTree::Leaf& leaf : tree_.leaves) {
-    for (const std::uint32_t triangle : leaf) {
-      const bool used = triangle != TriangleTree::kNoTriangle;
-      const auto at = used ? scene_->corners(triangle) : std::array<glm::vec3, 3>{};
-      texels[0].push_back({at[0] * scale_, triangle});
-      texels[1].push_back({at[1] * scale_, used ? scene_->plane[triangle] : visibility::SceneFloats::kNoPlane});
-      texels[2].push_back({at[2] * scale_, used ? static_cast<std::uint32_t>(scene_->emits[triangle]) : 0xffffffffU});
-    }
-  }
-  return texels;
 }
 
 EdgeLists::SideBuffers EdgeLists::upload(const std::vector<EdgeRecord>& records) const {
@@ -110,30 +91,12 @@ void EdgeLists::build_pass() {
 
 void EdgeLists::prepare_view(const visibility::ViewSamples& samples) {
   samples_ = &samples;
-  view_texels_.clear();
-  view_texels_.reserve(2 * samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const std::int32_t carrier = samples.triangle[i];
-    const bool background = carrier == visibility::ViewSamples::kBackground ||
-                            scene_->receives_shadow[static_cast<std::size_t>(carrier)] == 0;  // the host says V = 1
-    const auto triangle = background ? 0U : static_cast<std::uint32_t>(carrier);
-    const bool known = !background && visibility::normal_is_known(scene_->corners(triangle));
-    view_texels_.push_back({samples.p[i] * scale_, background ? TriangleTree::kNoTriangle : triangle});
-    view_texels_.push_back({known ? samples.n[i] : glm::vec3(0), background ? 0U : scene_->plane[triangle]});
-  }
-  view_row_ = view_rows_ = 0;
+  view_.prepare(samples, *scene_, scale_);
 }
 
 void EdgeLists::load(const visibility::Tile& tile) {
   tile_ = tile;
-  if (tile.first_row >= view_row_ && tile.first_row + tile.row_count <= view_row_ + view_rows_) return;
-  const auto rows = std::span<const Texel>(view_texels_)
-                        .subspan(std::size_t{2} * tile.first_row * samples_->width,
-                                 std::size_t{2} * tile.row_count * samples_->width);
-  render::grow(*device_, view_, "view samples", rows.size_bytes(), render::BufferUse::texels);
-  view_->write(rows);
-  view_row_ = tile.first_row;
-  view_rows_ = tile.row_count;
+  view_.load(tile);
 }
 
 std::uint64_t EdgeLists::blocks() const {
@@ -156,7 +119,7 @@ void EdgeLists::describe(gpu::ScatterPush& push) const {
   push.keeps_rest = light_->two_sided ? 1 : 0;
   push.light = static_cast<std::uint32_t>(light_->index);
   push.width = samples_->width;
-  push.first_row = tile_.first_row - view_row_;
+  push.first_row = view_.place_of(tile_.first_row);
   push.row_count = tile_.row_count;
   push.block_count = static_cast<std::uint32_t>(blocks());
   push.triangle_depth = tree_.depth;
@@ -207,9 +170,9 @@ EdgeLists::Counts EdgeLists::walk(render::Commands& commands, gpu::ScatterPush& 
   Counts counts;
   for (push.part = 0; push.part < 1U << (3 * part_levels_); ++push.part) {
     pass_->record(commands, push,
-                  {*view_, *heads_, *lists_, *edges.nodes, *triangle_nodes_, *edges.slots[0], *edges.slots[1],
-                   *edges.slots[2], *edges.slots[3], *edges.slots[4], *edges.slots[5], *triangle_corners_[0],
-                   *triangle_corners_[1], *triangle_corners_[2]},
+                  {view_.buffer(), *heads_, *lists_, *edges.nodes, triangles_.nodes(), *edges.slots[0], *edges.slots[1],
+                   *edges.slots[2], *edges.slots[3], *edges.slots[4], *edges.slots[5], triangles_.corners(0),
+                   triangles_.corners(1), triangles_.corners(2)},
                   blocks());
     const std::vector<visibility::PassTime> part = commands.submit();
     times_.insert(times_.end(), part.begin(), part.end());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "engines/device/triangle_upload.hpp"
+#include "engines/device/view_upload.hpp"
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
@@ -46,13 +48,13 @@ class EdgeLists {
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
   [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }  ///< of the last find
 
-  [[nodiscard]] const render::Buffer& view() const { return *view_; }
+  [[nodiscard]] const render::Buffer& view() const { return view_.buffer(); }
   [[nodiscard]] const render::Buffer& heads() const { return *heads_; }
   [[nodiscard]] const render::Buffer& lists() const { return *lists_; }
   /// EdgeTexels::slots[i] of that side.
   [[nodiscard]] const render::Buffer& slots(float side, std::size_t i) const { return *of_side(side).slots[i]; }
-  /// Corner i of the triangle in each leaf slot: (a, triangle), (b, plane), (c, light that it is the body of).
-  [[nodiscard]] const render::Buffer& triangle_corners(std::size_t i) const { return *triangle_corners_[i]; }
+  /// As device::TriangleUpload has them.
+  [[nodiscard]] const render::Buffer& triangle_corners(std::size_t i) const { return triangles_.corners(i); }
 
  private:
   /// What device passes read of the edges on one side of the light's plane.
@@ -62,7 +64,6 @@ class EdgeLists {
     std::array<std::optional<render::Buffer>, 6> slots;
   };
   [[nodiscard]] SideBuffers upload(const std::vector<EdgeRecord>& records) const;
-  [[nodiscard]] std::array<std::vector<visibility::Texel>, 3> corner_texels() const;
   void build_pass();
   [[nodiscard]] const SideBuffers& of_side(float side) const;
   [[nodiscard]] std::uint64_t blocks() const;
@@ -81,8 +82,7 @@ class EdgeLists {
   const visibility::SceneFloats* scene_ = nullptr;
   float scale_ = 1;
   visibility::TriangleTree tree_;
-  std::optional<render::Buffer> triangle_nodes_;
-  std::array<std::optional<render::Buffer>, 3> triangle_corners_;
+  device::TriangleUpload triangles_;
   SideBuffers whole_;  // of all casters, cut nowhere
   std::size_t edge_count_ = 0;
 
@@ -92,10 +92,9 @@ class EdgeLists {
   std::optional<SideBuffers> front_, back_;  // where `whole_` will not do
 
   const visibility::ViewSamples* samples_ = nullptr;
-  std::vector<visibility::Texel> view_texels_;
-  std::uint32_t view_row_ = 0, view_rows_ = 0;  // what view_ holds
+  device::ViewUpload view_;
   visibility::Tile tile_;
-  std::unique_ptr<render::Buffer> view_, heads_, lists_;
+  std::unique_ptr<render::Buffer> heads_, lists_;
   std::uint32_t capacity_ = 1U << 20;  // words; grows
   std::uint32_t part_levels_ = 0;      // grows: 8 to that power are the parts that the hierarchies are walked in
   std::uint64_t retries_ = 0;

@@ -13,6 +13,7 @@
 #include "render/commands.hpp"
 #include "render/raster_pass.hpp"
 #include "visibility/pair_truth.hpp"
+#include "visibility/receivers.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "volumes/raster/light_volumes.hpp"
 #include "volumes/raster/screen_box.hpp"
@@ -251,9 +252,8 @@ void VolumeCount::State::classify(const Tile& tile) {
   const BoxFinder boxes(samples->camera);
   mesh::for_each_index(pixels, [&](std::size_t i) {
     const std::size_t pixel = first + i;
-    if (samples->triangle[pixel] == ViewSamples::kBackground) return;
+    if (!visibility::is_receiver(*scene, *samples, pixel)) return;
     const auto carrier = static_cast<std::uint32_t>(samples->triangle[pixel]);
-    if (scene->emits[carrier] >= 0 || scene->receives_shadow[carrier] == 0) return;
     const std::array<glm::vec3, 3> corners = scene->corners(carrier);
     const glm::vec3& p = samples->p[pixel];
     const bool faces_light = visibility::above_horizon(corners, samples->facing[pixel], volumes.l) &&

@@ -79,7 +79,7 @@ class EdgeScatter final : public visibility::Method {
 
   [[nodiscard]] std::uint32_t max_tile_rows() const override {
     PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-    const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * words_per_mask(), 2 * sizeof(visibility::Texel));
+    const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * words_per_mask(), device::ViewUpload::kBytesPerPixel);
     const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
     if (rows == 0) {
       throw ResourceError(

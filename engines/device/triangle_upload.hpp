@@ -1,0 +1,44 @@
+#pragma once
+
+#include "render/buffer.hpp"
+#include "render/device.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/tree_texels.hpp"
+#include "visibility/triangle_tree.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace penumbra::device {
+
+/// What a method adds to triangles; empty: nothing.
+struct TriangleNotes {
+  std::span<const std::uint32_t> tags;  ///< for each triangle bits to be OR-ed to the number of its plane
+  std::span<const std::int8_t> turns;   ///< −1: its second and third corner change places
+};
+
+/// A hierarchy of triangles on the device, scaled: of its nodes two texels a child (visibility::node_texels); of its
+/// triangles, for each slot of each leaf, one texel in each of three lists: (a, triangle), (b, plane and tag), (c, light
+/// that it is the body of).
+class TriangleUpload {
+ public:
+  void prepare(const render::Device& device, const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
+               float scale, const TriangleNotes& notes = {});
+
+  [[nodiscard]] const render::Buffer& nodes() const { return *nodes_; }
+  [[nodiscard]] const render::Buffer& corners(std::size_t i) const { return *corners_[i]; }
+  /// To be changed, and written again.
+  [[nodiscard]] std::vector<visibility::Texel>& node_texels() { return node_texels_; }
+  void write_nodes() { nodes_->write(std::span<const visibility::Texel>(node_texels_)); }
+
+ private:
+  std::vector<visibility::Texel> node_texels_;
+  std::optional<render::Buffer> nodes_;
+  std::array<std::optional<render::Buffer>, 3> corners_;
+};
+
+}  // namespace penumbra::device

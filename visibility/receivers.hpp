@@ -1,0 +1,22 @@
+#pragma once
+
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace penumbra::visibility {
+
+/// Who receives shadow: not the body of a light, nor what says that it does not. There V = 1, whatever casts.
+[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::uint32_t triangle) {
+  return scene.emits[triangle] < 0 && scene.receives_shadow[triangle] != 0;
+}
+
+/// The same of what a pixel sees; background is none.
+[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel) {
+  const std::int32_t carrier = samples.triangle[pixel];
+  return carrier != ViewSamples::kBackground && is_receiver(scene, static_cast<std::uint32_t>(carrier));
+}
+
+}  // namespace penumbra::visibility
