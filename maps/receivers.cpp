@@ -21,7 +21,8 @@ void Receivers::upload(const render::Device& device, const visibility::SceneFloa
     receivers.assign(std::size_t{rows} * width_, {});
     const std::size_t first = std::size_t{row} * width_;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-      if (visibility::is_receiver(scene, samples, first + i)) receivers[i] = {samples.p[first + i], samples.n[first + i]};
+      if (visibility::is_receiver(scene, samples, first + i))
+        receivers[i] = {samples.p[first + i], samples.n[first + i]};
     }
     bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});
   }

@@ -116,7 +116,7 @@ void walk(bool on, float side, uint header, uint outside_of) {
     if (emitted < kChunk && stack_size > 0) break;        // the inner loop was cut off
   }
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
-  if (stack_size > 0) atomicOr(unfinished, kWalkCut);
+  if (stack_size > 0) atomicOr(unfinished, 1u);
 }
 
 void main() {
@@ -129,7 +129,7 @@ void main() {
 
   // (2) p strictly on an emitting side of the light's plane.
   if (on && abs(level) <= level_error) {
-    if (first_part) ask(kWholePixel, kAllSamples);
+    if (first_part) ask(kAnyTriangle, kAllSamples);
     on = false;
   }
   if (on && push.two_sided == 0 && level < 0.0) {
@@ -152,9 +152,9 @@ void main() {
   const uint words = (push.sample_count + 31) / 32;
   if (inside && first_part) {
     for (uint word = 0; word < words; ++word) {
-      masks[pixel * words + word] = all_blocked ? bits(0, int(min(push.sample_count - 32 * word, 32)) - 1) : 0;
+      masks[pixel * words + word] = all_blocked ? 0 : bits(0, int(min(push.sample_count - 32 * word, 32)) - 1);
     }
-    if (on) add_to_mask();
+    if (on) take_from_mask();
   }
   if (push.empty_tree == 0) {
     const uint outside_of = parts_around(on);

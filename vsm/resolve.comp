@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "vsm/view_sample.shared.h"
 
-// Blocked masks to visibility: V = 1 − popcount / N.
+// How many light samples each pixel sees.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Masks { uint masks[]; };
-layout(scalar, binding = 1) writeonly buffer Visibility { float visibility[]; };
+layout(scalar, binding = 1) writeonly buffer Counts { uint counts[]; };
 layout(scalar, push_constant) uniform Push { ResolvePush push; };
 
 void main() {
@@ -16,5 +16,5 @@ void main() {
   const uint words = (push.sample_count + 31) / 32;
   uint count = 0;
   for (uint word = 0; word < words; ++word) count += bitCount(masks[i * words + word]);
-  visibility[i] = float(push.sample_count - count) / float(push.sample_count);
+  counts[i] = count;
 }

@@ -176,7 +176,7 @@ void main() {
   const uint words = (push.sample_count + 31) / 32;
   bool full = true;                                       // nothing left to block: other chunks or the horizon did
   for (uint word = 0; word < words && full; ++word) {
-    full = masks[pixel * words + word] == bits(0, int(min(push.sample_count - 32 * word, 32)) - 1);
+    full = masks[pixel * words + word] == 0;
   }
   const bool on = inside && carrier != kNone && level * side > level_error && !full;
   for (uint word = 0; word < kSharedWords; ++word) blocked[slot_of(word)] = 0;
@@ -241,6 +241,6 @@ void main() {
     if (on && t.plane != carrier_plane) test_carefully(t.a, e1, e2, vec2(length(e1), length(e2)), t.triangle, again[i] >> 31 != 0);
   }
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
-  if (at < kChunk || i < again_count) atomicOr(unfinished, kTestCut);
-  if (on) add_to_mask();
+  if (at < kChunk || i < again_count) atomicOr(asked.cut_off, 1u);
+  if (on) take_from_mask();
 }

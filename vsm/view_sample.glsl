@@ -7,6 +7,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_vote : require
+#include "engines/device/mask.shared.h"
 #include "vsm/view_sample.shared.h"
 
 layout(local_size_x_id = 0) in;
@@ -23,14 +24,17 @@ layout(scalar, binding = 1) readonly buffer Samples {
   uint first_point[257];                                  // scattered: first point with t ≥ −1 + i / 128
   vec2 samples[];                                         // scattered: (s, t)
 };
-layout(scalar, binding = 2) buffer Masks { uint masks[]; };  // blocked light samples, words per pixel
+layout(scalar, binding = 2) buffer Masks { uint masks[]; };  // visible light samples, words per pixel
 layout(scalar, binding = 3) buffer Questions {
-  uint question_count, chunk_count, unfinished;
+  QuestionHead asked;
   OpenQuestion questions[];
 };
 // A chunk is 2 + kChunk words: the block (top bit: on the light's back side), the closed parts that all its view
 // samples are outside of (bits), and leaves of the tree that its shaft meets.
-layout(scalar, binding = 4) buffer Chunks { uint chunks[]; };
+layout(scalar, binding = 4) buffer Chunks {
+  uint chunk_count, unfinished;
+  uint chunks[];
+};
 layout(scalar, push_constant) uniform Push { ViewSamplePush push; };
 
 const uint kTeam = 8;                                     // children of a node, triangles of a leaf
@@ -72,9 +76,9 @@ void load_view_sample(uint block) {
   level_error = size1(push.u) * size1(push.v) * (16.0 * kRound * (size1(towards) + size1(p)) + push.deviation);
 }
 
-void ask(uint triangle, uint light_sample) {
-  const uint at = atomicAdd(question_count, 1);
-  if (at < push.question_capacity) questions[at] = OpenQuestion(pixel, triangle, light_sample);
+void ask(uint hider, uint light_sample) {
+  const uint at = atomicAdd(asked.count, 1);
+  if (at < push.question_capacity) questions[at] = OpenQuestion(pixel, hider, light_sample);
 }
 
 bool is_blocked(uint light_sample) {
@@ -163,19 +167,19 @@ const vec4 kWholeLight = vec4(-1.0, -1.0, 1.0, 1.0);
 const vec3 kAlways = vec3(0.0, 0.0, 1.0);                 // the half-plane without an edge,
 const float kAlwaysError = 0.5;                           // and an error that leaves it certain
 
-// Adds this lane's blocked samples to its mask in memory. Rows end anywhere in a word.
-void add_to_mask() {
+// Takes this lane's blocked samples out of its mask in memory. Rows end anywhere in a word.
+void take_from_mask() {
   const uint words = (push.sample_count + 31) / 32;
   for (uint i = 0; i < kSharedWords; ++i) {
     const uint value = blocked[slot_of(i)];
     if (value == 0) continue;
     if (kScatteredPoints != 0) {
-      atomicOr(masks[pixel * words + i], value);
+      atomicAnd(masks[pixel * words + i], ~value);
       continue;
     }
     const uint bit = i / kWordsPerRow * push.columns + i % kWordsPerRow * 32, shift = bit & 31;
-    atomicOr(masks[pixel * words + (bit >> 5)], value << shift);
-    if (shift != 0 && value >> (32 - shift) != 0) atomicOr(masks[pixel * words + (bit >> 5) + 1], value >> (32 - shift));
+    atomicAnd(masks[pixel * words + (bit >> 5)], ~(value << shift));
+    if (shift != 0 && value >> (32 - shift) != 0) atomicAnd(masks[pixel * words + (bit >> 5) + 1], ~(value >> (32 - shift)));
   }
 }
 

@@ -31,30 +31,22 @@ struct ViewSamplePush {
   uint closed_parts;           // bit k: part k, from 1, is apart from the light, and has dispensable triangles
 };
 
-// Why a pass could not finish: what the device's loop limit cut off.
-const uint kWalkCut = 1u, kTestCut = 2u;
-
 struct ResolvePush {
   uint pixel_count;
   uint sample_count;
 };
 
-// A question that float arithmetic left open, for the exact predicates: does `triangle` hide `light_sample` from `pixel`
+// A question that float arithmetic left open, for the exact predicates: does `hider` hide `light_sample` from `pixel`
 // (of the tile)?
 struct OpenQuestion {
   uint pixel;
-  uint triangle;               // or one of the two below
-  uint light_sample;           // or kAllSamples
+  uint hider;                  // a triangle, kCarrier or kAnyTriangle (engines/device/mask.shared.h)
+  uint light_sample;           // a bit of the mask, or kAllSamples
 };
 
-#ifdef __cplusplus
-inline constexpr uint kCarrier = 0xfffffffeu;     // instead of a triangle: is the light sample above the horizon?
-inline constexpr uint kWholePixel = 0xffffffffu;  // instead of a triangle: p is within rounding of the light's plane
-inline constexpr uint kAllSamples = 0xffffffffu;
-}  // namespace penumbra::vsm::gpu
-#else
-const uint kCarrier = 0xfffffffeu;
-const uint kWholePixel = 0xffffffffu;
 const uint kAllSamples = 0xffffffffu;
+
+#ifdef __cplusplus
+}  // namespace penumbra::vsm::gpu
 #endif
 #undef FLOAT3

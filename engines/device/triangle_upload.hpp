@@ -22,8 +22,8 @@ struct TriangleNotes {
 };
 
 /// A hierarchy of triangles on the device, scaled: of its nodes two texels a child (visibility::node_texels); of its
-/// triangles, for each slot of each leaf, one texel in each of three lists: (a, triangle), (b, plane and tag), (c, light
-/// that it is the body of).
+/// triangles, for each slot of each leaf, one texel in each of three lists: (a, triangle), (b, plane and tag), (c,
+/// light that it is the body of).
 class TriangleUpload {
  public:
   void prepare(const render::Device& device, const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,

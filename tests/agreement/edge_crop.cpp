@@ -35,20 +35,26 @@ struct ClusterList {
 
 /// By number of cluster. Nothing of the scene may be behind the light or its body: slots are those of `records`.
 std::vector<ClusterList> lists_of(const render::Device& device, const CropStage& stage, bool crops) {
-  constexpr std::uint32_t kBlock = 8, kClusters = 4, kNone = 0xffffffffU, kHead = 3;  // as in edge_scatter.glsl
+  constexpr std::uint32_t kBlock = 8, kClusters = 4, kNone = 0xffffffffU, kHead = 2;  // as in edge_scatter.glsl
+  const float scale = visibility::device_scale(stage.floats);
+  const visibility::TriangleTree tree = visibility::make_triangle_tree(stage.floats);
+  device::TriangleUpload triangles;
+  triangles.prepare(device, stage.floats, tree, scale);
+  device::ViewUpload view(device);
+  const visibility::Tile whole{0, stage.samples.height};
+  view.prepare(stage.samples, stage.floats, scale);
+  view.load(whole);
   EdgeLists edges(device, "edge_crop", crops);
-  edges.prepare_mesh(stage.floats);
-  edges.prepare_light(stage.light, visibility::make_light_frame(stage.light, edges.scale()));
-  edges.prepare_view(stage.samples);
-  edges.load({0, stage.samples.height});
+  edges.prepare_mesh(stage.floats, tree, scale);
+  edges.prepare_light(stage.light, visibility::make_light_frame(stage.light, scale));
   render::Commands commands(device);
   gpu::ScatterPush push{};
   push.rows = push.columns = 2;
   push.question_capacity = 1;
-  const std::uint64_t words = edges.find(commands, push, 1, 0);
+  EXPECT_TRUE(edges.find(commands, push, {view, triangles, stage.samples.width, whole, whole, 1}));
   const std::uint32_t across = (stage.samples.width + kBlock - 1) / kBlock,
                       clusters = kClusters * across * ((stage.samples.height + kBlock - 1) / kBlock);
-  std::vector<std::uint32_t> heads(2 * clusters + stage.samples.size()), memory(kHead + words);
+  std::vector<std::uint32_t> heads(2 * clusters + stage.samples.size()), memory(kHead + edges.words());
   edges.heads().read(std::span(heads));
   edges.lists().read(std::span(memory));
   std::vector<ClusterList> lists(clusters);

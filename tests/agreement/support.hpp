@@ -119,8 +119,8 @@ struct PairCounts {
   }
 };
 
-/// Every pair of every `step`-th pixel against the exact decision; what receives no shadow must be lit whole, the bits beyond the
-/// last sample 0, and V the share of set bits.
+/// Every pair of every `step`-th pixel against the exact decision; what receives no shadow must be lit whole, the bits
+/// beyond the last sample 0, and V the share of set bits.
 inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floats, const visibility::Light& light,
                                              const visibility::ViewSamples& samples, const Masks& masks,
                                              PairCounts* counts = nullptr, std::size_t step = 1) {

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "engines/device/mask.shared.h"
 #include "volumes/edges/edge_scatter.glsl"
 #include "volumes/counters/depth_complexity.shared.h"
 
@@ -28,7 +29,10 @@ layout(binding = 11) uniform usamplerBuffer corner_c;
 layout(scalar, binding = 12) readonly buffer Places { vec2 places[]; };   // light samples in the frame, from c0: [0, 2]²
 layout(scalar, binding = 13) writeonly buffer Masks { uint masks[]; };    // visible: bit j mod 32 of word j / 32
 layout(scalar, binding = 14) writeonly buffer Counts { uint counts[]; };  // visible light samples of a pixel
-layout(scalar, binding = 15) writeonly buffer Questions { DepthQuestion questions[]; };
+layout(scalar, binding = 15) buffer Questions {
+  QuestionHead asked;
+  DepthQuestion questions[];
+};
 layout(scalar, binding = 16) writeonly buffer Depths { int depths[]; };
 
 const uint kQueue = 64;
@@ -276,7 +280,7 @@ uint bits_of_word(uint word) {
 }
 
 void ask(uint pixel, uint word, uint bits) {
-  const uint question = atomicAdd(question_count, 1);
+  const uint question = atomicAdd(asked.count, 1);
   if (question < push.question_capacity) questions[question] = DepthQuestion(pixel, word, bits);
 }
 
@@ -318,10 +322,10 @@ uvec2 least() {
 
 void main() {
   make_frame();
-  const uint pixel = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-  if (pixel >= push.width * push.row_count) return;
-  const uint block = pixel / push.width / kBlock * ((push.width + kBlock - 1) / kBlock) + pixel % push.width / kBlock;
-  at = fetch_view_sample(pixel);
+  const uint in_band = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x, pixel = push.first_pixel + in_band;
+  if (in_band >= push.width * push.row_count) return;
+  const uint block = in_band / push.width / kBlock * ((push.width + kBlock - 1) / kBlock) + in_band % push.width / kBlock;
+  at = fetch_view_sample(in_band);
   from_center = at.p - push.center;
   open_pixel = false;
   cut_off = false;
@@ -341,7 +345,7 @@ void main() {
   const float span = abs(above.x) + abs(above.y);
   const bool below = above.z + span < -error_above, straddles = above.z - span <= error_above;
 
-  const uint list = 2 * (block * kClusters + (below ? 0 : heads[2 * kClusters * push.block_count + pixel]));
+  const uint list = 2 * (block * kClusters + (below ? 0 : heads[2 * kClusters * block_count() + in_band]));
   const uint edges = below ? kNone : heads[list], triangles = below || kHalves != 0 ? kNone : heads[list + 1];
   const int depth = triangles != kNone ? int(count_to_corner(triangles)) : 0;
   for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) counters[j] = depth;

@@ -28,7 +28,8 @@ std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& 
 visibility::MethodDescription depth_complexity_description(const visibility::MethodOptions& options = {});
 
 /// A variant that keeps its counters beside its masks: to look at them.
-class DepthCounters : public visibility::Method {
+/// Virtual: a variant may be a method by another way, too.
+class DepthCounters : public virtual visibility::Method {
  public:
   /// Left to exact predicates, or of a view sample that sees nothing of the light.
   static constexpr std::int32_t kNoCounter = std::numeric_limits<std::int32_t>::min();

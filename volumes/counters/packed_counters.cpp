@@ -9,12 +9,12 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "engines/device/open_judge.hpp"
 #include "mesh/predicates.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "visibility/visible_share.hpp"
 #include "volumes/raster/carrier_horizon.hpp"
-#include "volumes/counters/depth_judge.hpp"
 #include "volumes/wedges/light_hull.hpp"
 #include "volumes/counters/packed_counters.frag.spv.hpp"
 #include "volumes/counters/packed_counters.shared.h"
@@ -295,16 +295,17 @@ void PackedCounters::evaluate(const Tile& tile) {
 
 /// Exactly.
 void PackedCounters::answer() {
-  std::vector<gpu::DepthQuestion> questions;
+  std::vector<device::OpenBits> questions;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (open_[i] != 0) questions.push_back({static_cast<std::uint32_t>(i), 0, open_[i]});
   }
   if (questions.empty()) return;
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
-  const DepthAnswers depths = host_times_.add("exact predicates", [&] {
-    return judge_depths({*scene_, tree_, *samples_, *light_, first}, questions);
+  const device::MaskLayout layout{.words = 1};
+  const std::vector<device::gpu::MaskWord> decided = host_times_.add("exact predicates", [&] {
+    return device::decide({{*scene_, tree_, *samples_, *light_}, layout, first}, questions);
   });
-  for (const gpu::MaskWord& word : depths.decided) {
+  for (const device::gpu::MaskWord& word : decided) {
     masks_[word.word] = (masks_[word.word] & ~word.decided) | word.bits;
   }
 }

@@ -17,31 +17,34 @@ using visibility::Texel;
 using visibility::TriangleTree;
 
 constexpr std::uint32_t kBlock = 8, kClusters = 4;  // as in edge_scatter.glsl
+constexpr std::uint32_t kFirstWords = 1U << 20;
 
 render::Buffer make_texels(const render::Device& device, const char* name, const std::vector<Texel>& texels) {
   return render::make_buffer<Texel>(device, name, texels, render::BufferUse::texels);
 }
 
+std::uint64_t blocks(const EdgeListInput& input) {
+  return std::uint64_t{(input.width + kBlock - 1) / kBlock} * ((input.band.row_count + kBlock - 1) / kBlock);
+}
+
 }  // namespace
 
-/// Head of the buffer of lists.
-struct EdgeLists::Counts {
-  std::uint32_t words = 0, questions = 0, unfinished = 0;
-};
-
 EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crops)
-    : device_(&device), method_(std::move(method)), sides_(method_), crops_(crops), view_(device) {
+    : device_(&device),
+      method_(std::move(method)),
+      sides_(method_),
+      crops_(crops),
+      lists_(device, {"edge lists", sizeof(Head), sizeof(std::uint32_t), kFirstWords}) {
   const std::uint32_t lanes = device.limits().subgroup_size;
   if (lanes >= TriangleTree::kWidth && kBlock * kBlock % lanes == 0) return;
   throw ResourceError("{} needs subgroups of 8, 16, 32 or 64 lanes; {} has {}", method_, device.info().name, lanes);
 }
 
-void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene) {
+void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
   scene_ = &scene;
-  part_levels_ = 0;
-  scale_ = visibility::device_scale(scene);
-  tree_ = visibility::make_triangle_tree(scene);
-  triangles_.prepare(*device_, scene, tree_, scale_);
+  tree_ = &tree;
+  scale_ = scale;
+  walk_.reset();
   sides_.prepare_mesh(scene);
   const std::vector<EdgeRecord> records = sides_.records(std::nullopt);
   edge_count_ = records.size();
@@ -63,10 +66,9 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   frame_ = frame;
-  retries_ = 0;
   const LightEdges edges = sides_.prepare_light(light, frame, scale_);
   cut_ = edges.front.has_value();
-  touch_ = visibility::find_touch(*scene_, tree_, light);
+  touch_ = visibility::find_touch(*scene_, *tree_, light);
   front_.reset();
   back_.reset();
   if (edges.front || edges.has_body) front_ = upload(sides_.records(edges.front));
@@ -79,7 +81,7 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
 void EdgeLists::build_pass() {
   const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
   const std::vector<std::uint32_t> constants{
-      lanes, lanes, teams * TriangleTree::kWidth * (std::max(tree_.depth, whole_.depth) + 10), crops_ ? 1U : 0U};
+      lanes, lanes, teams * TriangleTree::kWidth * (std::max(tree_->depth, whole_.depth) + 10), crops_ ? 1U : 0U};
   if (pass_ && constants == constants_) return;
   pass_.emplace(*device_, render::ComputePassOptions{.name = "find edges",
                                                      .spirv = shaders::kFindEdgesComp,
@@ -89,25 +91,11 @@ void EdgeLists::build_pass() {
   constants_ = constants;
 }
 
-void EdgeLists::prepare_view(const visibility::ViewSamples& samples) {
-  samples_ = &samples;
-  view_.prepare(samples, *scene_, scale_);
-}
-
-void EdgeLists::load(const visibility::Tile& tile) {
-  tile_ = tile;
-  view_.load(tile);
-}
-
-std::uint64_t EdgeLists::blocks() const {
-  return std::uint64_t{(samples_->width + kBlock - 1) / kBlock} * ((tile_.row_count + kBlock - 1) / kBlock);
-}
-
 const EdgeLists::SideBuffers& EdgeLists::of_side(float side) const {
   return side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
 }
 
-void EdgeLists::describe(gpu::ScatterPush& push) const {
+void EdgeLists::describe(gpu::ScatterPush& push, const EdgeListInput& input) const {
   for (int i = 0; i < 3; ++i) {
     push.center[i] = frame_.center[i];
     push.u[i] = frame_.u[i];
@@ -116,13 +104,15 @@ void EdgeLists::describe(gpu::ScatterPush& push) const {
   push.deviation = frame_.deviation;
   push.reach = visibility::reach_of(*scene_, frame_, scale_);
   push.cut_reach = cut_ ? 4 * push.reach : 0;
+  push.side = input.side;
   push.keeps_rest = light_->two_sided ? 1 : 0;
   push.light = static_cast<std::uint32_t>(light_->index);
-  push.width = samples_->width;
-  push.first_row = view_.place_of(tile_.first_row);
-  push.row_count = tile_.row_count;
-  push.block_count = static_cast<std::uint32_t>(blocks());
-  push.triangle_depth = tree_.depth;
+  push.width = input.width;
+  push.first_row = input.view.place_of(input.tile.first_row + input.band.first_row);
+  push.row_count = input.band.row_count;
+  push.first_pixel = input.band.first_row * input.width;
+  push.triangle_depth = tree_->depth;
+  push.edge_depth = of_side(input.side).depth;
   push.near_plane = touch_.any_near ? 1 : 0;
   std::uint64_t rows = 0;
   for (const std::uint32_t sample : touch_.samples) {
@@ -133,59 +123,49 @@ void EdgeLists::describe(gpu::ScatterPush& push) const {
   push.touched_high = static_cast<std::uint32_t>(rows >> 32U);
 }
 
-std::uint64_t EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push, float side, std::uint32_t keep) {
-  const SideBuffers& edges = of_side(side);
-  describe(push);
-  push.side = side;
-  push.edge_depth = edges.depth;
-  const std::uint64_t pixels = std::uint64_t{tile_.row_count} * samples_->width;
-  render::grow(*device_, heads_, "heads of lists", blocks() * kClusters * 8 + pixels * 4);
-  for (;; ++retries_) {
-    const Counts counts = walk(commands, push, edges, keep);
-    if (counts.unfinished != 0) {
-      // What is left of the deepest walk when all levels are taken is one leaf.
-      if (part_levels_ >= std::max(tree_.depth, edges.depth)) {
-        throw ResourceError("{}: {} cuts off loops that a hierarchy over {} triangles needs", method_,
-                            device_->info().name, scene_->triangles.size());
-      }
-      ++part_levels_;
-    } else if (counts.words <= capacity_) {
-      return counts.words;
-    } else {
-      capacity_ = counts.words + counts.words / 8;
+bool EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input) {
+  describe(push, input);
+  const std::uint64_t pixels = std::uint64_t{input.band.row_count} * input.width;
+  render::grow(*device_, heads_, "heads of lists", blocks(input) * kClusters * 8 + pixels * 4);
+  for (retries_ = 0;; ++retries_) {
+    if (!lists_.is_possible()) {
+      lists_.shrink();
+      return false;
+    }
+    const Head head = walk(commands, push, input);
+    if (head.unfinished != 0) {
+      walk_.go_deeper(
+          {method_, device_->info().name, scene_->triangles.size(), std::max(tree_->depth, of_side(input.side).depth)});
+    } else if (lists_.holds(head.words)) {
+      words_ = head.words;
+      return true;
     }
   }
 }
 
-/// Some processors' drivers end loops after 65,535 turns of a workgroup: where that is too few, the hierarchies are
-/// walked in parts, one dispatch after the other.
-EdgeLists::Counts EdgeLists::walk(render::Commands& commands, gpu::ScatterPush& push, const SideBuffers& edges,
-                                  std::uint32_t keep) {
-  push.list_capacity = capacity_;
-  push.part_levels = part_levels_;
-  render::grow(*device_, lists_, "edge lists", sizeof(Counts) + std::uint64_t{capacity_} * 4);
-  commands.fill(*lists_, 0, 0, sizeof(Counts));
-  commands.fill(*lists_, keep, sizeof(std::uint32_t), sizeof(std::uint32_t));
+EdgeLists::Head EdgeLists::walk(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input) {
+  push.list_capacity = lists_.capacity();
+  push.part_levels = walk_.levels();
+  lists_.clear(commands);
   times_.clear();
-  Counts counts;
-  for (push.part = 0; push.part < 1U << (3 * part_levels_); ++push.part) {
-    pass_->record(commands, push,
-                  {view_.buffer(), *heads_, *lists_, *edges.nodes, triangles_.nodes(), *edges.slots[0], *edges.slots[1],
-                   *edges.slots[2], *edges.slots[3], *edges.slots[4], *edges.slots[5], triangles_.corners(0),
-                   triangles_.corners(1), triangles_.corners(2)},
-                  blocks());
+  std::vector<render::BufferReference> buffers = inputs(input);
+  buffers.insert(buffers.begin() + 3, {*of_side(input.side).nodes, input.triangles.nodes()});
+  Head head;
+  for (push.part = 0; push.part < walk_.parts(); ++push.part) {
+    pass_->record(commands, std::as_bytes(std::span(&push, 1)), buffers, blocks(input));
     const std::vector<visibility::PassTime> part = commands.submit();
     times_.insert(times_.end(), part.begin(), part.end());
-    lists_->read(std::span(&counts, 1));
-    if (counts.unfinished != 0) break;
+    head = lists_.head<Head>();
+    if (head.unfinished != 0) break;
   }
-  return counts;
+  return head;
 }
 
-std::uint32_t EdgeLists::question_count() const {
-  Counts counts;
-  lists_->read(std::span(&counts, 1));
-  return counts.questions;
+std::vector<render::BufferReference> EdgeLists::inputs(const EdgeListInput& input) const {
+  std::vector<render::BufferReference> buffers{input.view.buffer(), *heads_, lists_.buffer()};
+  for (const std::optional<render::Buffer>& slots : of_side(input.side).slots) buffers.emplace_back(*slots);
+  for (std::size_t i = 0; i < 3; ++i) buffers.emplace_back(input.triangles.corners(i));
+  return buffers;
 }
 
 }  // namespace penumbra::volumes

@@ -15,7 +15,7 @@ layout(binding = 0) uniform usamplerBuffer view;          // 2 texels a pixel: (
 layout(scalar, binding = 1) buffer Heads { uint heads[]; };
 // A list is pieces: where the next one is, how many items, the items (slots of the hierarchy's leaves).
 layout(scalar, binding = 2) buffer Lists {
-  uint list_words, question_count, unfinished;
+  uint list_words, unfinished;
   uint lists[];
 };
 layout(scalar, push_constant) uniform Push { ScatterPush push; };
@@ -25,6 +25,9 @@ const uint kBlock = 8;                                    // a block is kBlock �
 const uint kClusters = 4;                                 // of view samples, at most, in a block
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u;
 const float kRound = 1.0 / 16777216.0;                    // 2⁻²⁴: half a unit in the last place of 1
+
+// Of the band.
+uint block_count() { return (push.width + kBlock - 1) / kBlock * ((push.row_count + kBlock - 1) / kBlock); }
 
 float size1(vec3 x) { return abs(x.x) + abs(x.y) + abs(x.z); }
 

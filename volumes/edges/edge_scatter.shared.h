@@ -21,10 +21,10 @@ struct ScatterPush {
   uint keeps_rest;           // leave view samples on the other side alone: another dispatch has them
   uint light;                // triangles that are this light's body are transparent to it
   uint width;                // pixels in a row
-  uint first_row, row_count; // of the tile in the stored view samples
+  uint first_row, row_count; // of the band in the stored view samples
+  uint first_pixel;          // of the band in the tile, whose masks and questions these are
   uint rows, columns;        // of light samples
   uint shift_step;           // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
-  uint block_count;          // of the tile
   uint list_capacity;        // words
   uint question_capacity;
   uint edge_depth, triangle_depth;  // levels of the hierarchies; 0: empty
@@ -43,15 +43,7 @@ struct RowQuestion {
   uint sample_1, sample_2;   // or kNoSample
 };
 
-// Words of a mask that the host decided.
-struct MaskWord {
-  uint pixel;                // | kWholePixel: the old word says nothing
-  uint word;
-  uint decided;              // those bits of the word
-  uint bits;
-};
-
-const uint kWholePixel = 0x80000000u, kNoSample = 0xffffffffu;
+const uint kNoSample = 0xffffffffu;
 
 #ifdef __cplusplus
 }  // namespace penumbra::volumes::gpu

@@ -263,7 +263,7 @@ void main() {
   }
   for (uint i = 0; i < kEach; ++i) {
     const uint pixel = pixel_of(i, block);
-    if (pixel != kNone) heads[2 * kClusters * push.block_count + pixel] = cluster_of(i);
+    if (pixel != kNone) heads[2 * kClusters * block_count() + pixel] = cluster_of(i);
   }
   for (uint cluster = 0; cluster < clusters; ++cluster) list_for(cluster, block);
 }

@@ -7,15 +7,10 @@
 #include "base/error.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
-#include "visibility/tree_texels.hpp"
-#include "visibility/light_frame.hpp"
-#include "visibility/visible_share.hpp"
-#include "volumes/edges/edge_lists.hpp"
-#include "volumes/scatter/vectors/edge_scatter_native.hpp"
+#include "volumes/edges/edge_method.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
-#include "volumes/scatter/row_judge.hpp"
 #include "volumes/scatter/scatter_edges.comp.spv.hpp"
-#include "volumes/edges/settle_rows.comp.spv.hpp"
+#include "volumes/scatter/vectors/edge_scatter_native.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -41,207 +36,113 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
-class EdgeScatter final : public visibility::Method {
+class EdgeScatter final : public EdgeMethod {
  public:
-  explicit EdgeScatter(const render::Device& device)
-      : description_(edge_scatter_description()),
-        device_(&device),
-        edges_(device, description_.name),
-        settle_(device,
-                {.name = "settle rows", .spirv = shaders::kSettleRowsComp, .push_bytes = sizeof(std::uint32_t)}),
-        commands_(device) {}
-
-  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
-
-  void prepare_mesh(const visibility::SceneFloats& scene) override {
-    scene_ = &scene;
-    edges_.prepare_mesh(scene);
-  }
-
-  void prepare_light(const visibility::Light& light) override {
-    visibility::check_light(description_, light);
-    PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
-    light_ = &light;
-    counters_.clear();
-    question_retries_ = 0;
-    const visibility::LightFrame frame = visibility::make_light_frame(light, edges_.scale());
-    PENUMBRA_ASSERT(frame.rows, "light {} has no rows that a step describes", light.name);
-    shift_step_ = frame.shift_step;
-    choose_band();
-    edges_.prepare_light(light, frame);
-  }
-
-  void prepare_view(const visibility::ViewSamples& samples) override {
-    samples_ = &samples;
-    edges_.prepare_view(samples);
-    if (max_tile_rows() >= samples.height) edges_.load({0, samples.height});
-  }
-
-  [[nodiscard]] std::uint32_t max_tile_rows() const override {
-    PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-    const std::uint64_t per_pixel = std::max<std::uint64_t>(4ULL * words_per_mask(), device::ViewUpload::kBytesPerPixel);
-    const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
-    if (rows == 0) {
-      throw ResourceError(
-          "one row of {} pixels with {} light samples is more than this device's storage buffers can hold",
-          samples_->width, light_->sample_count());
-    }
-    const auto whole = static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, samples_->height));
-    return whole >= kBlock && whole < samples_->height ? whole / kBlock * kBlock : whole;
-  }
-
-  void evaluate(const visibility::Tile& tile) override {
-    tile_ = tile;
-    edges_.load(tile);
-    const std::uint64_t pixels = std::uint64_t{tile.row_count} * samples_->width;
-    render::grow(*device_, masks_, "masks", pixels * words_per_mask() * 4);
-    render::grow(*device_, visible_, "visible light samples", pixels * 4);
-    while (!try_tile()) ++question_retries_;
-    if (edges_.retries() + question_retries_ > 0) counters_["listRetries"] = edges_.retries() + question_retries_;
-  }
-
-  void read_masks(std::span<std::uint32_t> masks) override {
-    const std::uint32_t words = light_->words_per_mask(), own = words_per_mask(), columns = light_->columns;
-    const std::size_t pixels = masks.size() / words;
-    std::vector<std::uint32_t> blocks_of_bits(pixels * own), counts(pixels);
-    masks_->read(std::span(blocks_of_bits));
-    visible_->read(std::span(counts));
-    std::fill(masks.begin(), masks.end(), 0U);
-    const std::uint32_t count = light_->sample_count(), row_words = (light_->rows + 3) / 4;
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-      const auto mask = masks.subspan(pixel * words, words);
-      if (counts[pixel] == 0) continue;
-      for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t row = j / columns, column = j % columns;
-        const std::uint32_t word = column / 8 * row_words + row / 4, bit = row % 4 * 8 + column % 8;
-        const bool visible = counts[pixel] == count || (blocks_of_bits[pixel * own + word] >> bit & 1U) != 0;
-        mask[j / 32] |= (visible ? 1U : 0U) << (j % 32);
-      }
-    }
-  }
-
-  void read_visibility(std::span<float> visibility) override {
-    if (!light_->weights.empty()) {
-      std::vector<std::uint32_t> masks(visibility.size() * light_->words_per_mask());
-      read_masks(masks);
-      visibility::visible_shares(*light_, masks, visibility);
-      return;
-    }
-    std::vector<std::uint32_t> counts(visibility.size());
-    visible_->read(std::span(counts));
-    const auto all = static_cast<double>(light_->sample_count());
-    std::transform(counts.begin(), counts.end(), visibility.begin(),
-                   [&](std::uint32_t count) { return static_cast<float>(count / all); });
-  }
-
-  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
-  [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
+  EdgeScatter(const render::Device& device, visibility::MethodDescription given)
+      : EdgeMethod(device, std::move(given), sizeof(gpu::RowQuestion)) {}
 
  private:
   /// As many light rows at a time as the histograms of a subgroup leave room for.
-  void choose_band() {
-    const std::uint32_t lanes = device_->limits().subgroup_size;
-    const std::uint32_t room = device_->limits().max_shared_memory / (4 * lanes * light_->columns);
+  device::MaskLayout prepare_kernel() override {
+    PENUMBRA_ASSERT(light_frame().rows, "light {} has no rows that a step describes", light().name);
+    const std::uint32_t lanes = device().limits().subgroup_size;
+    const std::uint32_t room = device().limits().max_shared_memory / (4 * lanes * light().columns);
     if (room == 0) {
       throw InputError(
           "light \"{}\": edge-scatter handles rows of up to {} light samples on {}; this has {}; use view-sample",
-          light_->name, device_->limits().max_shared_memory / (lanes * 4), device_->info().name, light_->columns);
+          light().name, device().limits().max_shared_memory / (lanes * 4), device().info().name, light().columns);
     }
-    band_words_ = std::min({room, kMostBandWords, (light_->rows + 3) / 4});
+    band_words_ = std::min({room, kMostBandWords, row_words()});
     const std::uint32_t block_width = lanes >= 32 ? 8 : 4;
     const std::vector<std::uint32_t> constants{lanes,           lanes,       block_width,
-                                               light_->columns, band_words_, light_->columns * band_words_};
+                                               light().columns, band_words_, light().columns * band_words_};
     if (!scatter_ || constants != constants_) {
-      scatter_.emplace(*device_, render::ComputePassOptions{.name = "scatter edges",
+      scatter_.emplace(device(), render::ComputePassOptions{.name = "scatter edges",
                                                             .spirv = shaders::kScatterEdgesComp,
                                                             .push_bytes = sizeof(gpu::ScatterPush),
                                                             .constants = constants,
                                                             .full_subgroups = true});
       constants_ = constants;
     }
+    return blocks_of_samples();
   }
 
-  [[nodiscard]] std::uint32_t words_per_mask() const { return (light_->columns + 7) / 8 * ((light_->rows + 3) / 4); }
-  [[nodiscard]] std::uint64_t blocks() const {
-    return std::uint64_t{(samples_->width + kBlock - 1) / kBlock} * ((tile_.row_count + kBlock - 1) / kBlock);
+  /// Words of 8 columns × 4 rows, those of a column of words one after the other.
+  [[nodiscard]] device::MaskLayout blocks_of_samples() const {
+    device::MaskLayout layout{.words = column_words() * row_words()};
+    for (std::uint32_t bit = 0; bit < 32 * layout.words; ++bit) {
+      const std::uint32_t word = bit / 32, row = word % row_words() * 4 + bit % 32 / 8,
+                          column = word / row_words() * 8 + bit % 8;
+      const bool is_sample = row < light().rows && column < light().columns;
+      layout.light_sample.push_back(is_sample ? row * light().columns + column : device::MaskLayout::kNone);
+    }
+    return layout;
   }
+  [[nodiscard]] std::uint32_t row_words() const { return (light().rows + 3) / 4; }
+  [[nodiscard]] std::uint32_t column_words() const { return (light().columns + 7) / 8; }
 
-  /// False when the list of questions was too short; it has grown then.
-  bool try_tile() {
-    render::grow(*device_, questions_, "open rows", std::uint64_t{question_capacity_} * sizeof(gpu::RowQuestion));
-    commands_.fill(*visible_, 0);
+  [[nodiscard]] gpu::ScatterPush make_push() const override {
     gpu::ScatterPush push{};
-    push.rows = light_->rows;
-    push.columns = light_->columns;
-    push.shift_step = shift_step_;
-    push.question_capacity = question_capacity_;
-    std::uint32_t questions = 0;
-    for (const float side : {1.0F, -1.0F}) {
-      if (side < 0 && !light_->two_sided) continue;
-      counters_["listWords"] += edges_.find(commands_, push, side, questions);
-      times_.add(edges_.times());
-      const std::uint32_t lanes = device_->limits().subgroup_size,
-                          bands = (light_->rows + 4 * band_words_ - 1) / (4 * band_words_);
-      scatter_->record(commands_, push,
-                       {edges_.view(), edges_.heads(), edges_.lists(), edges_.slots(side, 0), edges_.slots(side, 1),
-                        edges_.slots(side, 2), edges_.slots(side, 3), edges_.slots(side, 4), edges_.slots(side, 5),
-                        edges_.triangle_corners(0), edges_.triangle_corners(1), edges_.triangle_corners(2), *masks_,
-                        *visible_, *questions_},
-                       blocks() * (kBlock * kBlock / lanes) * bands);
-      times_.add(commands_.submit());
-      questions = edges_.question_count();
-      if (questions > question_capacity_) {
-        question_capacity_ = questions + questions / 8;
-        return false;
+    push.rows = light().rows;
+    push.columns = light().columns;
+    push.shift_step = light_frame().shift_step;
+    return push;
+  }
+
+  void record(const gpu::ScatterPush& push, std::vector<render::BufferReference> inputs,
+              const visibility::Tile& band) override {
+    if (push.side > 0) {
+      commands().fill(counts(), 0, std::uint64_t{4} * push.first_pixel, std::uint64_t{4} * band.row_count * push.width);
+    }
+    inputs.insert(inputs.end(), {masks(), counts(), questions().buffer()});
+    const std::uint64_t blocks =
+        std::uint64_t{(push.width + kBlock - 1) / kBlock} * ((band.row_count + kBlock - 1) / kBlock);
+    const std::uint32_t lanes = device().limits().subgroup_size,
+                        bands = (light().rows + 4 * band_words_ - 1) / (4 * band_words_);
+    scatter_->record(commands(), std::as_bytes(std::span(&push, 1)), inputs,
+                     blocks * (kBlock * kBlock / lanes) * bands);
+  }
+
+  std::vector<device::OpenBits> open_bits(std::uint32_t count) override {
+    std::vector<gpu::RowQuestion> asked(count);
+    questions().read(std::span(asked));
+    open_pixels_ += count;
+    std::vector<device::OpenBits> open;
+    for (const gpu::RowQuestion& question : asked) add_open(question, open);
+    return open;
+  }
+
+  void add_open(const gpu::RowQuestion& question, std::vector<device::OpenBits>& open) {
+    const std::uint64_t rows = question.low | std::uint64_t{question.high} << 32U;
+    open_rows_ += static_cast<std::uint64_t>(std::popcount(rows));
+    for (std::uint32_t row = question.first_row; row < std::min(question.first_row + 64, light().rows); row += 4) {
+      const auto four = static_cast<std::uint32_t>(rows >> (row - question.first_row) & 15U);
+      if (four == 0) continue;
+      std::uint32_t bits = 0;
+      for (std::uint32_t r = 0; r < 4; ++r) bits |= (four >> r & 1U) * (0xffU << (8 * r));
+      for (std::uint32_t word = row / 4; word < column_words() * row_words(); word += row_words()) {
+        open.push_back({question.pixel, word, bits});
       }
     }
-    answer(questions);
-    return true;
-  }
-
-  void answer(std::uint32_t count) {
-    if (count == 0) return;
-    std::vector<gpu::RowQuestion> questions(count);
-    questions_->read(std::span(questions));
-    const std::vector<gpu::MaskWord> words = times_.add("exact predicates", [&] {
-      return judge_rows({*scene_, edges_.tree(), *samples_, *light_, std::size_t{tile_.first_row} * samples_->width},
-                        questions);
-    });
-    counters_["openPixels"] += count;
-    for (const gpu::RowQuestion& question : questions) {
-      counters_["openRows"] += static_cast<std::uint64_t>(std::popcount(question.low) + std::popcount(question.high));
-    }
-    const std::size_t at_once = device_->limits().max_storage_buffer_range / sizeof(gpu::MaskWord);
-    for (std::size_t first = 0; first < words.size(); first += at_once) {
-      const auto part = std::span(words).subspan(first, std::min(at_once, words.size() - first));
-      render::grow(*device_, decided_, "decided rows", part.size_bytes());
-      decided_->write(part);
-      settle_.record(commands_, static_cast<std::uint32_t>(part.size()), {*masks_, *visible_, *decided_},
-                     (part.size() + 63) / 64);
-      times_.add(commands_.submit());
+    for (const std::uint32_t sample : {question.sample_1, question.sample_2}) {
+      if (sample == gpu::kNoSample) continue;
+      const std::uint32_t row = sample / light().columns, column = sample % light().columns;
+      if ((rows >> (row - question.first_row) & 1U) != 0) continue;  // asked already
+      open.push_back({question.pixel, column / 8 * row_words() + row / 4, 1U << (row % 4 * 8 + column % 8)});
     }
   }
 
-  visibility::MethodDescription description_;
-  const render::Device* device_;
-  EdgeLists edges_;
-  render::ComputePass settle_;
+  void count(std::map<std::string, std::uint64_t>& counters) override {
+    EdgeMethod::count(counters);
+    if (open_pixels_ == 0) return;
+    counters["openPixels"] += std::exchange(open_pixels_, 0);
+    counters["openRows"] += std::exchange(open_rows_, 0);
+  }
+
   std::optional<render::ComputePass> scatter_;
   std::vector<std::uint32_t> constants_;
-  render::Commands commands_;
-
-  const visibility::SceneFloats* scene_ = nullptr;
-  const visibility::Light* light_ = nullptr;
-  const visibility::ViewSamples* samples_ = nullptr;
-  visibility::Tile tile_;
-  std::uint32_t band_words_ = 1, shift_step_ = 0;
-  std::unique_ptr<render::Buffer> masks_, visible_, questions_, decided_;
-  std::uint32_t question_capacity_ = 1U << 14;  // grows
-  std::uint64_t question_retries_ = 0;
-
-  visibility::PassTimes times_;
-  std::map<std::string, std::uint64_t> counters_;
+  std::uint32_t band_words_ = 1;
+  std::uint64_t open_pixels_ = 0, open_rows_ = 0;  // to be counted
 };
 
 visibility::MethodDescription describe() {
@@ -280,7 +181,7 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
   if (exact || engines::runs_on_vectors(device, options[engines::kEngine])) {
     return make_native_edge_scatter(std::move(description), exact);
   }
-  return std::make_unique<EdgeScatter>(device);
+  return std::make_unique<EdgeScatter>(device, std::move(description));
 }
 
 }  // namespace penumbra::volumes

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "engines/device/mask.shared.h"
 #include "volumes/edges/edge_scatter.glsl"
 
 // Second pass of edge scatter, a workgroup a few neighbouring view samples (one a lane) and a band of light rows: how many
@@ -26,7 +27,10 @@ layout(binding = 10) uniform usamplerBuffer corner_b;
 layout(binding = 11) uniform usamplerBuffer corner_c;
 layout(scalar, binding = 12) buffer Masks { uint masks[]; };    // visible: 8 columns × 4 rows a word
 layout(scalar, binding = 13) buffer Counts { uint counts[]; };  // visible light samples of a pixel
-layout(scalar, binding = 14) writeonly buffer Questions { RowQuestion questions[]; };
+layout(scalar, binding = 14) buffer Questions {
+  QuestionHead asked;
+  RowQuestion questions[];
+};
 
 // Some devices run a loop's body once even for no turn at all, and once more than a `for` asks: loops that count are
 // written do … while, their bodies harmless where there is nothing to do.
@@ -111,7 +115,7 @@ void main() {
   const bool any_touched = subgroupAny((open_rows.x | open_rows.y) != 0);
 
   uint visible = receives ? 0 : all_samples;
-  const uint cluster = on ? heads[2 * kClusters * push.block_count + pixel] : kNone;
+  const uint cluster = on ? heads[2 * kClusters * block_count() + pixel] : kNone;
   uint depth = 0;
   cut_off = false;
   const bool any_edges = subgroupAny(on && heads[2 * (block * kClusters + (on ? cluster : 0))] != kNone);
@@ -140,12 +144,12 @@ void main() {
   if ((cut_off || out_of_range != 0) && on) open_pixel = true;
   if (open_pixel) visible = 0;                            // the host counts
   const bool mine = inside && !(other_side && push.keeps_rest != 0) && (receives || push.side > 0.0);
-  if (mine && visible != 0) atomicAdd(counts[pixel], visible);
+  if (mine && visible != 0) atomicAdd(counts[push.first_pixel + pixel], visible);
   if (!on) open_rows = uvec2(0);
   if (receives && (open_pixel || (open_rows.x | open_rows.y) != 0 || open_samples.x != kNone)) {
-    const uint question = atomicAdd(question_count, 1);
+    const uint question = atomicAdd(asked.count, 1);
     const int band = last_row + 1 - first_row;
     if (open_pixel) open_rows = first_rows(band);
-    if (question < push.question_capacity) questions[question] = RowQuestion(pixel | (open_pixel ? kWholePixel : 0), uint(first_row), open_rows.x, open_rows.y, open_samples.x, open_samples.y);
+    if (question < push.question_capacity) questions[question] = RowQuestion((push.first_pixel + pixel) | (open_pixel ? kWholePixel : 0), uint(first_row), open_rows.x, open_rows.y, open_samples.x, open_samples.y);
   }
 }

@@ -6,7 +6,7 @@ uint zero_bytes(uint x) { return (~(((x & 0x7f7f7f7fu) + 0x7f7f7f7fu) | x) & 0x8
 
 uint words_per_mask() { return (push.columns + 7) / 8 * ((push.rows + 3) / 4); }
 uint mask_word(uint pixel, uint column_word, uint row_word) {
-  return pixel * words_per_mask() + column_word * ((push.rows + 3) / 4) + row_word;
+  return (push.first_pixel + pixel) * words_per_mask() + column_word * ((push.rows + 3) / 4) + row_word;
 }
 
 // Depths from changes; a light sample is visible where no triangle is before it.

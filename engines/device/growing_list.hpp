@@ -1,0 +1,67 @@
+#pragma once
+
+#include "render/buffer.hpp"
+#include "render/commands.hpp"
+#include "render/device.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace penumbra::device {
+
+/// A list that kernels append to: a head of counters, then items. Kernels go on counting where its room ends; it has
+/// grown then, and they run again: nothing is cut off, and nothing of the failed try is used.
+class GrowingList {
+ public:
+  struct Shape {
+    std::string name;
+    std::uint64_t head_bytes = 0, item_bytes = 0;
+    std::uint32_t capacity = 0;  ///< at first
+  };
+  GrowingList(const render::Device& device, Shape shape)
+      : device_(&device), shape_(std::move(shape)), capacity_(shape_.capacity) {}
+
+  [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
+  void want(std::uint32_t items) { capacity_ = capacity_ < items ? items : capacity_; }
+  /// Is it less than a storage buffer can be?
+  [[nodiscard]] bool is_possible() const { return bytes() <= device_->limits().max_storage_buffer_range; }
+  void shrink() { capacity_ = shape_.capacity; }  ///< to what it was at first
+  void set_item_bytes(std::uint64_t bytes) { shape_.item_bytes = bytes; }
+
+  /// Records that it is empty: there is room for it, and its head is 0.
+  void clear(render::Commands& commands) {
+    render::grow(*device_, buffer_, shape_.name, bytes());
+    commands.fill(*buffer_, 0, 0, shape_.head_bytes);
+  }
+  [[nodiscard]] const render::Buffer& buffer() const { return *buffer_; }
+  template <typename Head>
+  [[nodiscard]] Head head() const {
+    Head head;
+    buffer_->read(std::span(&head, 1));
+    return head;
+  }
+  template <typename Item>
+  void read(std::span<Item> items) const {
+    buffer_->read(items, shape_.head_bytes);
+  }
+
+  /// Is there room for that many items? If not, there will be.
+  [[nodiscard]] bool holds(std::uint32_t items) {
+    if (items <= capacity_) return true;
+    capacity_ = items + items / 8;
+    return false;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t bytes() const { return shape_.head_bytes + capacity_ * shape_.item_bytes; }
+
+  const render::Device* device_;
+  Shape shape_;
+  std::uint32_t capacity_;
+  std::unique_ptr<render::Buffer> buffer_;
+};
+
+}  // namespace penumbra::device

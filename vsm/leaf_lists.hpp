@@ -1,0 +1,79 @@
+#pragma once
+
+#include "engines/device/growing_list.hpp"
+#include "engines/device/mask_method.hpp"
+#include "engines/device/part_walk.hpp"
+#include "render/commands.hpp"
+#include "render/compute_pass.hpp"
+#include "render/device.hpp"
+#include "visibility/light_frame.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/triangle_tree.hpp"
+#include "vsm/closed_parts.hpp"
+#include "vsm/view_sample.shared.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace penumbra::vsm {
+
+/// What find_leaves.comp reads and writes beside its lists.
+struct LeafListInput {
+  const render::Buffer& view;
+  const render::Buffer& table;  ///< SampleTable
+  const render::Buffer& masks;
+  const render::Buffer& questions;
+  const render::Buffer& nodes;
+};
+
+/// For each block of pixels the leaves of the tree of triangles that the shaft from its view samples to the light
+/// meets, in chunks; closed parts of the scene spare triangles. The pass decides as well what needs no triangles: the
+/// light's plane and the horizon.
+class LeafLists {
+ public:
+  /// `method` names errors.
+  LeafLists(const render::Device& device, std::string method);
+
+  /// Finds closed parts.
+  void prepare_mesh(const visibility::SceneFloats& scene, float scale);
+  [[nodiscard]] device::TriangleNotes notes() const { return {tags_, closed_.turn}; }
+  /// Marks in `triangles` what is dispensable for this light. `frame` is scaled by `scale`.
+  void prepare_light(const visibility::TriangleTree& tree, const visibility::LightFrame& frame, float scale,
+                     device::TriangleUpload& triangles);
+  /// `constants`: of the pass; the seventh is the number of leaves in a chunk.
+  void build_pass(const std::vector<std::uint32_t>& constants);
+
+  /// Lists of the `blocks` that `push` describes, whose chunk_capacity becomes the number of chunks.
+  [[nodiscard]] device::Attempt find(render::Commands& commands, gpu::ViewSamplePush& push, const LeafListInput& input,
+                                     std::uint64_t blocks);
+
+  [[nodiscard]] const render::Buffer& chunks() const { return chunks_.buffer(); }
+  // Of the last find:
+  [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }
+  [[nodiscard]] bool was_cut_off() const { return was_cut_off_; }  ///< by a driver that ends loops
+
+ private:
+  struct Head {
+    std::uint32_t chunks = 0, unfinished = 0;
+  };
+
+  const render::Device* device_;
+  std::string method_;
+  std::optional<render::ComputePass> pass_;
+
+  const visibility::SceneFloats* scene_ = nullptr;
+  std::uint32_t depth_ = 0;  // of the tree
+  ClosedParts closed_;
+  std::vector<std::uint32_t> tags_;  // of triangles: closed parts
+  std::optional<render::Buffer> parts_;
+  std::uint32_t parts_apart_ = 0;  // bits: closed parts apart from the light
+
+  device::GrowingList chunks_;
+  device::PartWalk walk_;
+  bool was_cut_off_ = false;
+  std::vector<visibility::PassTime> times_;
+};
+
+}  // namespace penumbra::vsm
