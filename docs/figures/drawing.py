@@ -3,7 +3,7 @@
 A Drawing has pixel coordinates, y down, and a white card behind everything, so that it can be read on a dark page too.
 A View maps the coordinates of a construction (y up) into a part of a Drawing."""
 
-from math import atan2, cos, degrees, hypot, sin
+from math import cos, hypot, sin
 
 # Colours with one meaning in all figures.
 INK = "#1f2933"      # text, outlines
@@ -160,7 +160,3 @@ def arc(center, radius, start, end, steps=24):
     """Points of an arc, angles in radians."""
     return [(center[0] + radius * cos(start + (end - start) * i / steps),
              center[1] + radius * sin(start + (end - start) * i / steps)) for i in range(steps + 1)]
-
-
-def angle_of(v):
-    return degrees(atan2(v[1], v[0]))

@@ -1,7 +1,5 @@
 """The geometry that the figures compute: vectors, projection onto a light, signed multiplicities, areas in the plane."""
 
-from math import floor
-
 
 def add(a, b):
     return tuple(x + y for x, y in zip(a, b))
@@ -142,10 +140,6 @@ def crosses(a, b, c, d):
     def side(x, y, z):
         return det2(sub(y, x), sub(z, x))
     return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0
-
-
-def cell(value):
-    return int(floor(value))
 
 
 SQUARE = [(-1, -1), (1, -1), (1, 1), (-1, 1)]

@@ -1,11 +1,11 @@
 """docs/definitions.md, docs/raytrace.md: light samples and the truth of a pair. docs/view-sample.md: half-planes, bits.
 docs/depth-complexity.md: counters along ways. docs/exact.md: the sweep."""
 
-from math import ceil, cos, hypot, pi, sin
+from math import cos, hypot, pi, sin
 
 from drawing import BLUE, DARK, FAINT, GREEN, INK, LIGHT, PALE, RED, Drawing, View
-from geometry import (SQUARE, area, clip_to, counter_clockwise, crosses, det2, dot, inside, meet, mix, mul,
-                      multiplicities, row_shift, rows_pattern, sub)
+from geometry import (SQUARE, counter_clockwise, crosses, det2, inside, meet, mix, mul, multiplicities, rows_pattern,
+                      sub)
 from scatter import LAMP, P, depth, seen_at, signed, solid
 
 WORD = 0xffffffff

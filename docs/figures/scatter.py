@@ -3,7 +3,7 @@
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 
 from drawing import BLUE, DARK, FAINT, GREEN, INK, LIGHT, PALE, RED, Drawing, View, arc
-from geometry import (SQUARE, Light, add, area, clip_to, counter_clockwise, cross, det2, dot, hull, inside, mix, mul,
+from geometry import (SQUARE, Light, add, area, clip_to, counter_clockwise, dot, hull, inside, mix, mul,
                       multiplicities, rows_pattern, sub)
 
 P = (0.0, 0.0, 0.0)

@@ -217,10 +217,6 @@ def ramp_figure():
         front, back = distance((x, 0), "front"), distance((x, 0), "back")
         return back / (front + back) if at["back"] < x < at["front"] else float(x >= at["front"])
 
-    def truth(x):
-        s = meet((x, 0), edge, *lamp)[0]           # the light is visible where it is right of ... the line through e
-        return min(1, max(0, (s - lamp[0][0]) / 2)) if x < edge[0] else min(1, max(0, 1 - (s - lamp[0][0]) / 2))
-
     def visible(x):
         """The share of the light that a board from far left to the edge leaves, by counting."""
         n, seen = 4000, 0
