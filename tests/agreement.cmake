@@ -3,6 +3,7 @@ set(soup_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_case.cpp ${CMAKE_CURRENT_
                  ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_methods.cpp)
 penumbra_test(agreement FULL CorpusSweep.*
   SOURCES
+  agreement/aimed_pairs.cpp
   agreement/broken_meshes_raytrace.cpp
   agreement/face_counters_binary.cpp
   agreement/face_counters_text.cpp

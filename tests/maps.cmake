@@ -2,8 +2,10 @@
 penumbra_test(maps FULL MapsTable.*
   SOURCES
   analytic/maps_closed_form.cpp
+  analytic/maps_formulas.cpp
   analytic/maps_method.cpp
   analytic/maps_products.cpp
   analytic/maps_resolution_table.cpp
-  LIBRARIES penumbra_maps)
+  LIBRARIES penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

@@ -16,12 +16,12 @@
 
 namespace penumbra::tests {
 
-struct SoftStage {
+struct SoftStage : Stage {
   SoftStage(const scenes::Scene& scene, const render::Device& device, std::uint32_t width, std::uint32_t height)
-      : floats(visibility::make_scene_floats(scene)),
-        light(visibility::make_light(scene, 0, floats.origin, {64, 0, 0, visibility::SamplePattern::grid, 0})),
-        samples(render::VisibilityBuffer(device, floats)
-                    .render(visibility::make_camera(scene.cameras.at(0), floats.origin, width, height))),
+      : Stage(scene, width, height, {64, 0, 0, visibility::SamplePattern::grid, 0},
+              [&](const visibility::SceneFloats& scene_floats, const visibility::PinholeCamera& camera) {
+                return render::VisibilityBuffer(device, scene_floats).render(camera);
+              }),
         classes(visibility::classify_pixels(floats, samples, light)) {}
   SoftStage(const SoftStage&) = delete;
   SoftStage& operator=(const SoftStage&) = delete;
@@ -33,18 +33,7 @@ struct SoftStage {
 
   /// V of the whole picture.
   [[nodiscard]] std::vector<float> run(visibility::Method& method, std::uint32_t rows = 0) const {
-    method.prepare_mesh(floats);
-    method.prepare_light(light);
-    method.prepare_view(samples);
-    rows = rows == 0 ? method.max_tile_rows() : rows;
-    std::vector<float> result(samples.size());
-    for (std::uint32_t first = 0; first < samples.height; first += rows) {
-      const visibility::Tile tile{first, std::min(rows, samples.height - first)};
-      method.evaluate(tile);
-      method.read_visibility(
-          std::span(result).subspan(std::size_t{first} * samples.width, std::size_t{tile.row_count} * samples.width));
-    }
-    return result;
+    return tests::run(method, *this, rows).visibility;
   }
 
   /// V of judged pixels by `of`, NaN elsewhere.
@@ -70,9 +59,6 @@ struct SoftStage {
     });
   }
 
-  visibility::SceneFloats floats;
-  visibility::Light light;
-  visibility::ViewSamples samples;
   std::vector<visibility::PixelClass> classes;
 };
 

@@ -47,14 +47,16 @@ class DeviceTest : public testing::Test {
   static inline std::unique_ptr<render::Device> device_;
 };
 
-/// Masks and V of a whole picture, `rows_at_once` rows at a time (0: as many as the method takes).
+/// V of a whole picture and, of a method that gives them, masks; `rows_at_once` rows at a time (0: as many as it
+/// takes).
 inline Masks run(visibility::Method& method, const visibility::SceneFloats& floats, const visibility::Light& light,
                  const visibility::ViewSamples& samples, std::uint32_t rows_at_once = 0) {
   method.prepare_mesh(floats);
   method.prepare_light(light);
   method.prepare_view(samples);
+  const bool gives_masks = method.description().output == visibility::Output::mask;
   Masks masks;
-  masks.words_per_pixel = light.words_per_mask();
+  masks.words_per_pixel = gives_masks ? light.words_per_mask() : 0;
   masks.words.resize(samples.size() * masks.words_per_pixel);
   masks.visibility.resize(samples.size());
   const std::uint32_t rows = rows_at_once != 0 ? rows_at_once : method.max_tile_rows();
@@ -62,10 +64,15 @@ inline Masks run(visibility::Method& method, const visibility::SceneFloats& floa
     const visibility::Tile tile{first, std::min(rows, samples.height - first)};
     method.evaluate(tile);
     const std::size_t pixel = std::size_t{first} * samples.width, pixels = std::size_t{tile.row_count} * samples.width;
-    method.read_masks(std::span(masks.words).subspan(pixel * masks.words_per_pixel, pixels * masks.words_per_pixel));
+    if (gives_masks) {
+      method.read_masks(std::span(masks.words).subspan(pixel * masks.words_per_pixel, pixels * masks.words_per_pixel));
+    }
     method.read_visibility(std::span(masks.visibility).subspan(pixel, pixels));
   }
   return masks;
+}
+inline Masks run(visibility::Method& method, const Stage& stage, std::uint32_t rows_at_once = 0) {
+  return run(method, stage.floats, stage.light, stage.samples, rows_at_once);
 }
 
 /// On the device.

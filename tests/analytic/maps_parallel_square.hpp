@@ -3,7 +3,7 @@
 
 #include "tests/analytic/maps_fixture.hpp"
 
-namespace penumbra::maps_test {
+namespace penumbra::tests {
 
 /// Floor at height 0 (object 0), occluder [−1, 1]² at height 2 (object 1), light of half-size 1 at height 5.
 /// `reach` stretches the occluder toward −x: with a large one it is a half-plane whose edge is at x = 1.
@@ -11,23 +11,23 @@ inline scenes::Scene parallel_square(double reach = 1, double half_width = 1) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
   add_quad(scene, {(1 - reach) / 2, 2, 0}, {(1 + reach) / 2, 0, 0}, {0, 0, half_width});
-  scene.lights.push_back(square_light(5, 1));
-  scene.cameras.push_back(camera_at({0.3, 1.5, 6}, {0, 0, 0}, 60));
+  scene.lights.push_back(ceiling_light(5, 1));
+  scene.cameras.push_back(camera({0.3, 1.5, 6}, {0, 0, 0}, 60));
   return scene;
 }
 
 class ParallelSquare {
  public:
   explicit ParallelSquare(const Stage& stage) : stage_(&stage) {
-    lower_ = upper_ = stage.scene.positions[6];  // the occluder's corners follow the floor's six
+    lower_ = upper_ = stage.floats.positions[6];  // the occluder's corners follow the floor's six
     for (std::size_t i = 7; i < 12; ++i) {
-      lower_ = glm::min(lower_, glm::dvec3(stage.scene.positions[i]));
-      upper_ = glm::max(upper_, glm::dvec3(stage.scene.positions[i]));
+      lower_ = glm::min(lower_, glm::dvec3(stage.floats.positions[i]));
+      upper_ = glm::max(upper_, glm::dvec3(stage.floats.positions[i]));
     }
   }
   [[nodiscard]] bool on_floor(std::size_t pixel) const {
     const std::int32_t triangle = stage_->samples.triangle[pixel];
-    return triangle >= 0 && stage_->scene.object[static_cast<std::size_t>(triangle)] == 0;
+    return triangle >= 0 && stage_->floats.object[static_cast<std::size_t>(triangle)] == 0;
   }
   /// Does light sample j see the floor at this pixel?
   [[nodiscard]] bool visible(std::size_t pixel, std::size_t j) const {
@@ -58,4 +58,4 @@ class ParallelSquare {
   glm::dvec3 lower_, upper_;
 };
 
-}  // namespace penumbra::maps_test
+}  // namespace penumbra::tests

@@ -11,7 +11,7 @@
 #include <limits>
 #include <tuple>
 
-namespace penumbra::maps_test {
+namespace penumbra::tests {
 namespace {
 
 constexpr std::uint32_t kSize = 64;
@@ -21,11 +21,11 @@ struct CentreMaps {
   CentreMaps(const render::Device& device, const Stage& stage)
       : frame(maps::frame_of(stage.light)),
         centre(frame.center),
-        fitted(maps::fit_views(stage.scene, stage.light, frame, std::span(&centre, 1), {.size = kSize})),
+        fitted(maps::fit_views(stage.floats, stage.light, frame, std::span(&centre, 1), {.size = kSize})),
         views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
         depths(device, "depths", std::uint64_t{kSize} * kSize * sizeof(float) * fitted.faces) {
     maps::CasterMaps casters(device, kSize);
-    casters.upload(stage.scene);
+    casters.upload(stage.floats);
     render::Commands commands(device);
     casters.record(commands, fitted.views.front(), frame, stage.light.index, depths, 0);
     commands.submit();
@@ -57,15 +57,15 @@ std::array<float, 2> nearest_twin(const CentreMaps& maps, const std::vector<floa
 scenes::Scene scene_around(bool two_sided, double wall_height) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
-  add_sphere(scene, {0.3, 1, 0.2}, 0.5, 8);
+  add_object(scene, "sphere", sphere({0.3, 1, 0.2}, 0.5, 8));
   if (wall_height > 0) add_quad(scene, {3, wall_height / 2, 0}, {0, wall_height / 2, 0}, {0, 0, 3});
   if (two_sided) {
     add_quad(scene, {0, 8, 0}, {3, 0, 0}, {0, 0, 3});
     add_quad(scene, {0.5, 6.5, 0}, {0.5, 0, 0}, {0, 0, 0.5});
   }
-  scene.lights.push_back(square_light(5, 0.5));
+  scene.lights.push_back(ceiling_light(5, 0.5));
   scene.lights.back().two_sided = two_sided;
-  scene.cameras.push_back(camera_at({0, 3, 8}, {0, 1, 0}));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
   return scene;
 }
 
@@ -74,11 +74,11 @@ class MapsProducts : public MapsTest {};
 TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
   for (const auto& [two_sided, wall] :
        {std::tuple(false, 0.0), std::tuple(false, 5.0), std::tuple(true, 0.0), std::tuple(true, 6.0)}) {
-    const Stage stage = make_stage(scene_around(two_sided, wall), samples(1), 4);
-    CentreMaps maps(device_, stage);
+    const Stage stage(scene_around(two_sided, wall), 4, 4, light_samples(1));
+    CentreMaps maps(device(), stage);
     ASSERT_EQ(maps.fitted.faces, (wall > 0 ? 5U : 1U) + (two_sided ? (wall > 5 ? 5U : 1U) : 0U));
-    maps::NearestCaster product(device_);
-    render::Commands commands(device_);
+    maps::NearestCaster product(device());
+    render::Commands commands(device());
     product.record(commands, {maps.views, maps.depths, maps.fitted.faces, kSize, stage.light, maps.frame});
     commands.submit();
     std::array<float, 2> found{};
@@ -97,10 +97,10 @@ TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
   add_quad(scene, {0, 0, 0}, {0.05, 0, 0}, {0, 0, -0.05});
   // Half the light's height up, from x = 0.3 on: hides the light from x = 0.6 on.
   add_quad(scene, {4.3, 1, 0}, {4, 0, 0}, {0, 0, -4}).receives_shadow = false;
-  scene.lights.push_back(square_light(2, 1));
-  scene.cameras.push_back(camera_at({0, 0.5, 0.5}, {0, 0, 0}, 20));
-  const Stage stage = make_stage(scene, samples(1), 16);
-  const Result result =
+  scene.lights.push_back(ceiling_light(2, 1));
+  scene.cameras.push_back(camera({0, 0.5, 0.5}, {0, 0, 0}, 20));
+  const Stage stage(scene, 16, 16, light_samples(1));
+  const Masks result =
       run(maps::make_pcss, stage, {{"size", "256"}, {"blockerSamples", "1024"}, {"filterSamples", "1024"}});
   std::size_t receivers = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
@@ -111,7 +111,7 @@ TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
     // light's side over the radius of a disk of its area, 0.886, each way): 1.83 in 254 texels at the board's height 1,
     // so half a texel moves the board's edge by 0.0036, its shadow on the light by twice that, and V, of a light 2
     // wide, by 0.0036.
-    const double x = stage.scene.origin.x + static_cast<double>(stage.samples.p[i].x);
+    const double x = stage.floats.origin.x + static_cast<double>(stage.samples.p[i].x);
     const double exact = (1 + 0.6 - x) / 2;
     EXPECT_NEAR(static_cast<double>(result.visibility[i]), exact, 10.0 / 1024 + 0.0036);
   }
@@ -125,23 +125,23 @@ class TwoPlanes : public MapsTest {
 
   /// The depths of all texels, times kScene; -1 if they are not all the same.
   float depth(render::DepthCompare compare, render::Cull cull) {
-    const render::RasterPass pass(device_, {.name = "planes",
-                                            .vertex = shaders::kCasterVert,
-                                            .fragment = shaders::kCasterFrag,
-                                            .push_bytes = sizeof(maps::gpu::CasterPush),
-                                            .constants = {},
-                                            .depth = true,
-                                            .compare = compare,
-                                            .cull = cull});
+    const render::RasterPass pass(device(), {.name = "planes",
+                                             .vertex = shaders::kCasterVert,
+                                             .fragment = shaders::kCasterFrag,
+                                             .push_bytes = sizeof(maps::gpu::CasterPush),
+                                             .constants = {},
+                                             .depth = true,
+                                             .compare = compare,
+                                             .cull = cull});
     std::vector<glm::vec3> corners;
     for (const float z : {kNear, kFar}) {
       const float turn = z == kNear ? 1.0F : -1.0F;
       const glm::vec3 a(-9 * turn, -9, z), b(9 * turn, -9, z), c(9 * turn, 9, z), d(-9 * turn, 9, z);
       corners.insert(corners.end(), {a, b, c, a, c, d});
     }
-    const render::Buffer triangles = render::make_buffer<glm::vec3>(device_, "planes", corners);
-    const render::DepthTarget target(device_, "planes", kSize, kSize);
-    render::Buffer depths(device_, "depths", std::uint64_t{kSize} * kSize * sizeof(float));
+    const render::Buffer triangles = render::make_buffer<glm::vec3>(device(), "planes", corners);
+    const render::DepthTarget target(device(), "planes", kSize, kSize);
+    render::Buffer depths(device(), "depths", std::uint64_t{kSize} * kSize * sizeof(float));
     const maps::gpu::CasterPush push{.point = {0, 0, 0},
                                      .near = 0x1p-20F,
                                      .row_x = {1, 0, 0},
@@ -149,7 +149,7 @@ class TwoPlanes : public MapsTest {
                                      .row_y = {0, 1, 0},
                                      .first_vertex = 0,
                                      .row_w = {0, 0, 1}};
-    render::Commands commands(device_);
+    render::Commands commands(device());
     pass.record(commands, push, {triangles}, {.width = kSize, .height = kSize, .vertices = 12, .depth = &target});
     target.copy_to(commands, depths);
     commands.submit();
@@ -174,4 +174,4 @@ TEST_F(TwoPlanes, CullingLeavesOneSideOut) {
 }
 
 }  // namespace
-}  // namespace penumbra::maps_test
+}  // namespace penumbra::tests

@@ -9,7 +9,10 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +41,28 @@ inline std::vector<Corners> quad(const glm::dvec3& center, const glm::dvec3& u, 
   return {{a, b, c}, {a, c, d}};
 }
 
+inline scenes::Object& add_quad(scenes::Scene& scene, const glm::dvec3& center, const glm::dvec3& u,
+                                const glm::dvec3& v) {
+  return add_object(scene, "quad", quad(center, u, v));
+}
+
+/// A sphere of `rings` × 2 `rings` faces.
+inline std::vector<Corners> sphere(const glm::dvec3& center, double radius, int rings) {
+  const auto at = [&](int i, int j) {
+    const double theta = std::numbers::pi * i / rings, phi = std::numbers::pi * j / rings;
+    return center +
+           radius * glm::dvec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+  };
+  std::vector<Corners> faces;
+  for (int i = 0; i < rings; ++i) {
+    for (int j = 0; j < 2 * rings; ++j) {
+      if (i > 0) faces.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
+      if (i + 1 < rings) faces.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
+    }
+  }
+  return faces;
+}
+
 inline scenes::AreaLight rectangle_light(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v) {
   scenes::AreaLight light;
   light.name = "key";
@@ -59,14 +84,26 @@ inline scenes::Camera camera(const glm::dvec3& eye, const glm::dvec3& target, do
   return result;
 }
 
+/// This many light samples, else as usual.
+inline visibility::SampleRequest light_samples(std::uint32_t count) {
+  visibility::SampleRequest request;
+  request.count = count;
+  return request;
+}
+
 /// Everything that visibility starts from, for the first camera and light of a scene.
 struct Stage {
   Stage(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height,
         const visibility::SampleRequest& request = {})
+      : Stage(scene, width, height, request, visibility::brute_force_view_samples) {}
+  /// With view samples that `view(floats, pinhole)` finds.
+  template <typename View>
+  Stage(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height, const visibility::SampleRequest& request,
+        const View& view)
       : floats(visibility::make_scene_floats(scene)),
         light(visibility::make_light(scene, 0, floats.origin, request)),
         pinhole(visibility::make_camera(scene.cameras.front(), floats.origin, width, height)),
-        samples(visibility::brute_force_view_samples(floats, pinhole)) {}
+        samples(view(floats, pinhole)) {}
 
   visibility::SceneFloats floats;
   visibility::Light light;

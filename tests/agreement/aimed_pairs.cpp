@@ -1,0 +1,65 @@
+// Bounds of error, aimed at: every pair of scenes where all that casts shadow passes pairs within float rounding.
+
+#include "tests/agreement/aimed_scene.hpp"
+#include "tests/agreement/mask_methods.hpp"
+#include "volumes/counters/depth_complexity.hpp"
+
+#include <fmt/format.h>
+
+#include <tuple>
+
+namespace penumbra {
+namespace {
+
+using tests::Aim;
+
+std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
+                                                          const visibility::MethodOptions& options) {
+  return volumes::make_depth_complexity(device, options);
+}
+constexpr std::array kMethods{tests::kViewSample, tests::kNativeViewSample, tests::kEdgeScatter,
+                              tests::kNativeEdgeScatter,
+                              tests::MaskMethod{"depth_complexity", make_depth_complexity, false}};
+
+class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<std::tuple<Aim, tests::MaskMethod>> {
+ protected:
+  static void look(std::uint32_t first, std::uint32_t count) {
+    const auto& [aim, under_test] = GetParam();
+    const auto method = under_test.make(device(), {});
+    tests::PairCounts counts;
+    std::uint64_t open = 0;
+    for (std::uint32_t seed = first; seed < first + count && !HasFailure(); ++seed) {
+      const tests::AimedScene scene(aim, seed);
+      const tests::Masks masks = tests::run(*method, scene.floats, scene.light, scene.samples);
+      EXPECT_TRUE(equals_truth(scene.floats, scene.light, scene.samples, masks, &counts)) << "seed " << seed;
+      const auto counters = method->counters();
+      for (const char* name : {"openPairs", "openQuestions", "openPixels", "trianglesTestedCarefully"}) {
+        if (const auto found = counters.find(name); found != counters.end()) open += found->second;
+      }
+    }
+    fmt::print("{} {}: {} pairs, {} visible, {} blocked, {} with a zero; {} times something was open\n",
+               under_test.name, name_of(aim), counts.pairs, counts.visible, counts.blocked, counts.zero, open);
+    EXPECT_GT(counts.visible, counts.pairs / 20);
+    EXPECT_GT(aim == Aim::horizon ? counts.horizon : counts.blocked, counts.pairs / 100);
+    // What is aimed at within rounding cannot all be certain. (View-sample on vector units does not count the light
+    // samples that it asks double about.)
+    EXPECT_TRUE(open > 0 || under_test.make == tests::kNativeViewSample.make);
+  }
+  [[nodiscard]] static bool on_device() {
+    return !std::string_view(std::get<1>(GetParam()).name).starts_with("native");
+  }
+};
+
+TEST_P(AimedPairs, EveryPairIsTheExactDecision) {
+  look(0, on_device() ? 8 : 100);
+}
+TEST_P(AimedPairs, ThousandsFull) {
+  for (std::uint32_t first = 1000; first < 4000 && !HasFailure(); first += 500) look(first, 500);
+}
+INSTANTIATE_TEST_SUITE_P(At, AimedPairs, testing::Combine(testing::ValuesIn(tests::kAims), testing::ValuesIn(kMethods)),
+                         [](const auto& it) {
+                           return fmt::format("{}_{}", std::get<1>(it.param).name, name_of(std::get<0>(it.param)));
+                         });
+
+}  // namespace
+}  // namespace penumbra

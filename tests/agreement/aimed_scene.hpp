@@ -1,0 +1,153 @@
+#pragma once
+
+// Scenes in which everything happens within float rounding of a pair: each view sample has a triangle of its own that
+// is aimed at one of its light samples. What a bound of error is too small for is decided wrongly here, and exact
+// predicates tell.
+
+#include "tests/agreement/support.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace penumbra::tests {
+
+/// What passes a pair's segment, or what else it comes near.
+enum class Aim : std::uint8_t {
+  edge,     ///< an edge through the light sample, as seen from p
+  corner,   ///< an edge through the light's corner, where rows and columns begin
+  left,     ///< an edge through the light's left side, at the height of a light sample
+  vertex,   ///< a vertex on the light sample
+  row,      ///< a vertex at the height of a row
+  sliver,   ///< p in the triangle's plane, and near the triangle's edges or in it
+  grazing,  ///< an edge just above p, seen far off
+  horizon,  ///< p's own plane through the light sample
+};
+inline constexpr std::array kAims{Aim::edge, Aim::corner, Aim::left,    Aim::vertex,
+                                  Aim::row,  Aim::sliver, Aim::grazing, Aim::horizon};
+inline std::string name_of(Aim aim) {
+  static constexpr std::array kNames{"edge", "corner", "left", "vertex", "row", "sliver", "grazing", "horizon"};
+  return kNames.at(static_cast<std::size_t>(aim));
+}
+
+class AimedScene {
+ public:
+  /// 64 view samples, as many light samples in rows.
+  AimedScene(Aim aim, std::uint32_t seed) : aim_(aim), random_(seed) {
+    scenes::Scene scene;
+    // Keeps the origin of scene floats at zero, whatever is added.
+    add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}}).casts_shadow = false;
+    // From a speck to the whole floor: view samples that are near one another, and far from zero.
+    const double patch = std::exp2(-static_cast<double>(random_() % 8)),
+                 size = std::exp2(1 - static_cast<double>(random_() % 6));
+    const glm::dvec3 middle(4 * real(), real(), 4 * real());
+    const glm::dvec3 u = patch * glm::normalize(glm::dvec3(1, 0.4 * real(), 0.4 * real()));
+    const glm::dvec3 v = patch * glm::normalize(glm::dvec3(0.4 * real(), 0.4 * real(), -1));
+    scene.lights.push_back(rectangle_light(middle + glm::dvec3(3 * real(), 2 + 4 * std::abs(real()), 3 * real()),
+                                           size * glm::normalize(glm::dvec3(1, 0.5 * real(), 0.5 * real())),
+                                           size * glm::normalize(glm::dvec3(0.5 * real(), 0.5 * real(), 1))));
+    std::vector<Corners> floor = quad(middle, u, v);
+    const visibility::SampleRequest request{64, 8, 8, visibility::SamplePattern::rows, 0};
+    light = visibility::make_light(scene, 0, visibility::make_scene_floats(scene).origin, request);
+
+    std::vector<Corners> carriers, casters;
+    std::vector<glm::dvec2> places;
+    std::vector<glm::vec3> points;
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+      const glm::vec3 l = light.points[random_() % light.points.size()];
+      const glm::dvec2 st(positive() * 0.45, positive() * 0.45);
+      Corners carrier = floor[random_() % 2];
+      if (aim_ == Aim::horizon) {
+        const glm::dvec3 at = middle + real() * u + real() * v;
+        carrier = {at, at + (0.02 + 0.2 * positive()) * (glm::dvec3(l) - at),
+                   at + 0.2 * patch * glm::normalize(vector())};
+      }
+      carriers.push_back(carrier);
+      places.push_back(st);
+      const glm::dvec3 a = rounded(carrier[0]), b = rounded(carrier[1]), c = rounded(carrier[2]);
+      points.emplace_back(glm::vec3(a + st.x * (b - a) + st.y * (c - a)));
+      // Not at all of them: where view samples are near one another each has all triangles before it.
+      const std::uint32_t every = aim_ == Aim::sliver || aim_ == Aim::grazing ? 8 : 3;
+      if (aim_ != Aim::horizon && i % every == 0)
+        casters.push_back(aimed(glm::dvec3(points.back()), glm::dvec3(l), size));
+    }
+    add_object(scene, "carriers", carriers);
+    if (!casters.empty()) add_object(scene, "casters", casters);
+    floats = visibility::make_scene_floats(scene);
+    EXPECT_EQ(floats.origin, glm::dvec3(0));
+    take_samples(points);
+  }
+
+  visibility::SceneFloats floats;
+  visibility::Light light;
+  visibility::ViewSamples samples;
+
+ private:
+  static constexpr std::uint32_t kSide = 8;
+
+  double positive() { return (static_cast<double>(random_() % (1U << 24U)) + 0.5) / (1U << 24U); }
+  double real() { return 2 * positive() - 1; }
+  glm::dvec3 vector() { return glm::dvec3(real(), real(), real()) + glm::dvec3(0x1p-30); }
+  static glm::dvec3 rounded(const glm::dvec3& x) { return glm::dvec3(glm::vec3(x)); }
+
+  /// The triangle of a pair.
+  Corners aimed(const glm::dvec3& p, glm::dvec3 l, double light_size) {
+    const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
+                                           v = glm::dvec3(light.center_v) - center;
+    const double s = glm::dot(l - center, u) / glm::dot(u, u);
+    if (aim_ == Aim::corner) l = center - u - v;
+    if (aim_ == Aim::left) l -= (1 + s) * u;
+    if (aim_ == Aim::row) l += 2 * real() * u;
+    const glm::dvec3 way = l - p;
+    // As seen from p it covers a few light samples, and now and then much more.
+    const double share = 0.05 + 0.9 * positive();
+    const double size = share * light_size * (random_() % 8 == 0 ? 4 : std::exp2(-0.5 - 2.5 * positive()));
+    const glm::dvec3 at = p + share * way, e = glm::normalize(vector()), f = glm::normalize(vector());
+    switch (aim_) {
+      case Aim::vertex:
+      case Aim::row:
+        return {at, at + size * e, at + size * f};
+      case Aim::sliver: {  // p = a + α (b − a) + β (c − a), outside beside an edge or inside
+        const glm::dvec3 a = at + 0.1 * size * e, b = p + share * positive() * (way + size / share * f);
+        const bool inside = random_() % 2 == 0;
+        const double alpha = inside ? -positive() : positive(), beta = inside ? -positive() : real();
+        return {a, b, p + alpha * (a - p) + beta * (b - p)};
+      }
+      case Aim::grazing: {  // low over p: its places are far off, or as near as a small height lets them
+        const double low = std::exp2(-4 - 16 * positive());
+        const glm::dvec3 near = p + low * way, along = glm::normalize(glm::cross(way, e));
+        const double wide = 16 * low / share * size;
+        return {near - wide * along, near + wide * (along + std::exp2(-20 * positive()) * f), near + 0.1 * wide * f};
+      }
+      default:
+        return {at - size * positive() * e, at + size * positive() * e, at + size * f};
+    }
+  }
+
+  void take_samples(const std::vector<glm::vec3>& points) {
+    samples.width = samples.height = kSide;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      const std::uint32_t triangle = 1 + i;  // the anchor comes first
+      const auto [a, b, c] = floats.corners(triangle);
+      const glm::dvec3 n = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+      const glm::dvec3 to_light = glm::dvec3(light.center) - glm::dvec3(points[i]);
+      const bool front = aim_ == Aim::horizon ? random_() % 2 == 0 : glm::dot(n, to_light) > 0;
+      const bool background = floats.plane[triangle] == visibility::SceneFloats::kNoPlane;
+      samples.triangle.push_back(background ? visibility::ViewSamples::kBackground
+                                            : static_cast<std::int32_t>(triangle));
+      samples.p.push_back(points[i] + 0.0F);
+      samples.n.push_back(background ? glm::vec3(0) : glm::vec3(glm::normalize(front ? n : -n)));
+      samples.depth.push_back(1);
+      samples.facing.push_back(static_cast<std::int8_t>(background ? 0 : front ? 1 : -1));
+    }
+  }
+
+  Aim aim_;
+  std::mt19937 random_;
+};
+
+}  // namespace penumbra::tests

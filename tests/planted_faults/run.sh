@@ -1,0 +1,105 @@
+#!/bin/bash
+# Plants each fault of faults.txt into a copy of the tree, builds what is needed and runs the tests that should fail.
+#   run.sh match SOURCE               does every fault still fit the tree? Builds nothing.
+#   run.sh plant SOURCE WORK [NAME…]  plants all, or those whose names hold one of these; prints a table.
+# Exit 1 if a fault does not fit, a test fails without any, or a fault survives. See README.md.
+set -euo pipefail
+
+here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+mode=$1 source=$(cd -- "$2" && pwd)
+names=() files=() olds=() news=() targets=() filters=()
+
+say() { printf '%s\n' "$*" >&2; }
+
+read_faults() {
+  local key rest
+  while IFS= read -r line || [[ -n $line ]]; do
+    [[ -z $line || $line == '#'* ]] && continue
+    key=${line%% *} rest=${line#* }
+    case $key in
+      fault) names+=("$rest") ;;
+      file) files+=("$rest") ;;
+      old) olds+=("$rest") ;;
+      new) news+=("$rest") ;;
+      test) targets+=("${rest%% *}") filters+=("${rest#* }") ;;
+      *) say "faults.txt: what is '$line'?"; exit 1 ;;
+    esac
+  done <"$here/faults.txt"
+  local count=${#names[@]}
+  if ((${#files[@]} != count || ${#olds[@]} != count || ${#news[@]} != count || ${#targets[@]} != count)); then
+    say "faults.txt: every fault has a file, an old, a new and a test line"; exit 1
+  fi
+}
+
+# Fails unless the old text is in the file exactly once, on one line.
+fits() {
+  local found
+  found=$(grep -cF -- "${olds[$1]}" "$source/${files[$1]}" || true)
+  [[ $found == 1 ]] && return
+  say "${names[$1]}: '${olds[$1]}' is on ${found:-0} lines of ${files[$1]}, not on one"
+  return 1
+}
+
+fit_all() {
+  local bad=0 i
+  for i in "${!names[@]}"; do fits "$i" || bad=1; done
+  return $bad
+}
+
+# swap FILE FROM TO: the one place, as text.
+swap() {
+  FROM=$2 TO=$3 perl -0777 -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$1"
+}
+
+build() { ninja -C "$work/tree/build" "$@" >"$work/build.log" 2>&1; }
+# A test executable's tests; anything but success is a caught fault.
+passes() { (cd "$work/tree/build" && timeout 1200 "./$1" --gtest_filter="$2" --gtest_brief=1) >"$work/test.log" 2>&1; }
+
+plant_all() {
+  local survivors=0 i status seconds
+  rm -rf "$work/tree"
+  mkdir -p "$work/tree/build"
+  git -C "$source" ls-files -z --cached --others --exclude-standard | (cd "$source" && xargs -0 cp --parents -t "$work/tree")
+  cmake -S "$work/tree" -B "$work/tree/build" -G Ninja -DCMAKE_BUILD_TYPE=Release ${PENUMBRA_CMAKE_OPTIONS:-} >"$work/configure.log"
+  local wanted=()
+  for i in "${!names[@]}"; do
+    ((${#only[@]} == 0)) && wanted+=("$i") && continue
+    local name
+    for name in "${only[@]}"; do [[ ${names[$i]} == *"$name"* ]] && wanted+=("$i") && break; done
+  done
+  local needed
+  needed=$(for i in "${wanted[@]}"; do echo "${targets[$i]}"; done | sort -u)
+  # shellcheck disable=SC2086
+  build $needed || { tail -30 "$work/build.log" >&2; say "it does not build without a fault"; exit 1; }
+  for i in "${wanted[@]}"; do
+    passes "${targets[$i]}" "${filters[$i]}" && continue
+    tail -30 "$work/test.log" >&2
+    say "${targets[$i]} --gtest_filter=${filters[$i]} fails without a fault"; exit 1
+  done
+  printf '| fault | place | tests | |\n| --- | --- | --- | --- |\n'
+  for i in "${wanted[@]}"; do
+    seconds=$SECONDS
+    swap "$work/tree/${files[$i]}" "${olds[$i]}" "${news[$i]}"
+    status=caught
+    if ! build "${targets[$i]}"; then
+      status='caught by the compiler'
+    elif passes "${targets[$i]}" "${filters[$i]}"; then
+      status='**survives**'
+      survivors=$((survivors + 1))
+    fi
+    cp -f "$source/${files[$i]}" "$work/tree/${files[$i]}"
+    printf '| %s | %s | %s %s | %s |\n' "${names[$i]}" "${files[$i]}" "${targets[$i]}" "${filters[$i]}" "$status"
+    say "${names[$i]}: $status ($((SECONDS - seconds)) s)"
+  done
+  printf '%d of %d survive\n' "$survivors" "${#wanted[@]}"
+  ((survivors == 0))
+}
+
+read_faults
+fit_all
+if [[ $mode == plant ]]; then
+  mkdir -p "$3"
+  work=$(cd -- "$3" && pwd)
+  only=("${@:4}")
+  plant_all
+fi

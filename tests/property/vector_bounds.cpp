@@ -1,0 +1,164 @@
+// How much of a bound of error is ever used on vector units: a search for the input that uses most of it. Exact values
+// come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
+
+#include "engines/vectors/clusters.hpp"
+#include "engines/vectors/frame.hpp"
+#include "tests/agreement/support.hpp"
+#include "visibility/light_frame.hpp"
+#include "visibility/tree_texels.hpp"
+
+#include <fmt/format.h>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace penumbra::native {
+namespace {
+
+using Exact = glm::tvec3<long double>;
+
+/// One view sample under a light, and a point whose place on the light is asked for: fourteen numbers in [0, 1].
+struct Try {
+  std::array<double, 20> x{};
+};
+
+struct Use {
+  double of_bound = 0, error = 0, bound = 0;
+};
+
+class BoundX {
+ public:
+  explicit BoundX(const Try& numbers) : numbers_(numbers) {}
+
+  /// |X as computed − X| over its bound (docs/edge-scatter.md, "X, relative to a cluster"), the worse of two axes;
+  /// nothing if the point is not well above p.
+  Use operator()() {
+    const double away = std::exp2(6 * next()), size = std::exp2(-6 * next()), patch = std::exp2(-12 * next());
+    scenes::Scene scene;
+    const glm::dvec3 offset = away * vector();
+    tests::add_object(scene, "floor", tests::quad(offset, {1, 0.2 * real(), 0}, {0, 0.3 * real(), -1}));
+    tests::add_object(scene, "anchor", {{glm::dvec3(-80), glm::dvec3(80, 80, -80), glm::dvec3(80)}}).casts_shadow =
+        false;
+    scene.lights.push_back(tests::rectangle_light(offset + glm::dvec3(3 * real(), 1 + 4 * next(), 3 * real()),
+                                                  size * glm::dvec3(1, 0.3 * real(), 0.3 * real()),
+                                                  size * glm::dvec3(0.5 * real(), 0.3 * real(), 1)));
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    const visibility::Light light =
+        visibility::make_light(scene, 0, floats.origin, {64, 8, 8, visibility::SamplePattern::rows, 0});
+    const float scale = visibility::device_scale(floats);
+    const visibility::LightFrame light_frame = visibility::make_light_frame(light, scale);
+    const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale); };
+    const Frame frame = make_frame({light_frame,
+                                    {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                    light.rows,
+                                    light.columns,
+                                    0,
+                                    1,
+                                    visibility::reach_of(floats, light_frame, scale),
+                                    0,
+                                    scale,
+                                    light.points});
+    visibility::ViewSamples samples;
+    samples.width = 2;
+    samples.height = 1;
+    for (int i = 0; i < 2; ++i) {
+      const glm::dvec3 at = glm::dvec3(floats.positions[0]) + patch * (vector() + glm::dvec3(1, 0, -1));
+      samples.triangle.push_back(0);
+      samples.p.emplace_back(at);
+      samples.n.emplace_back(0, 1, 0);
+      samples.depth.push_back(1);
+      samples.facing.push_back(1);
+    }
+    const std::vector<std::uint8_t> known(floats.triangles.size(), 1);
+    const ViewInput view{floats, samples, light_frame, frame, known, scale};
+    std::array<Placed, 2> placed;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      if (look(view, i, placed[i]) != Outlook::scattered) return {};
+    }
+    const Cluster cluster = make_cluster(frame, placed);
+    const Sample at = complete(frame, cluster, placed[0]);
+    // A point over p, on the way to somewhere near the light.
+    const glm::dvec3 target = scaled(light.center) + 2 * real() * (scaled(light.center_u) - scaled(light.center)) +
+                              2 * real() * (scaled(light.center_v) - scaled(light.center));
+    const glm::vec3 x(glm::mix(glm::dvec3(at.p), target, 0.95 * next()));
+    return use_of(frame, cluster, at, x);
+  }
+
+ private:
+  double next() { return numbers_.x.at(used_++ % numbers_.x.size()); }
+  double real() { return 2 * next() - 1; }
+  glm::dvec3 vector() {
+    const double x = real(), y = real(), z = real();
+    return {x, y, z};
+  }
+
+  static Use use_of(const Frame& frame, const Cluster& cluster, const Sample& at, const glm::vec3& x) {
+    // As the tables and Projection compute it: one order, nothing fused.
+    const glm::vec3 from = x - cluster.middle;
+    const auto dot = [&](const glm::vec3& n) { return (from.x * n.x + from.y * n.y) + from.z * n.z; };
+    const float w = at.seen.z - dot(frame.axis), q = at.height / w;
+    const float far = glm::length(from) * 1.0001F + at.far;
+    if (!(w > 64 * kRound * far)) return {};
+    const glm::vec2 seen = at.foot + q * glm::vec2(dot(frame.across) - at.seen.x, dot(frame.along) - at.seen.y);
+    // The light's plane and axes are those of the stored points (Frame::axes, exact but for 2⁻⁵³).
+    const auto exact_dot = [](const glm::dvec3& n, const Exact& d) { return n.x * d.x + n.y * d.y + n.z * d.z; };
+    const Exact p(at.p), way = Exact(x) - p, to_p = p - Exact(frame.corner);
+    const long double height = exact_dot(frame.axes[2], to_p), over = -exact_dot(frame.axes[2], way);
+    Use worst;
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      const long double place = exact_dot(frame.axes[i], to_p) + height / over * exact_dot(frame.axes[i], way) - 0.5L;
+      const float from_foot = glm::length(seen - at.foot);
+      const double bound = far / w * (at.per_way + kPerReach * from_foot) + at.per_foot * from_foot + at.fixed;
+      const auto error = static_cast<double>(std::abs(static_cast<long double>(seen[axis]) - place));
+      if (error / bound > worst.of_bound) worst = {error / bound, error, bound};
+    }
+    return worst;
+  }
+
+  const Try& numbers_;
+  std::size_t used_ = 0;
+};
+
+/// Tries at random, then changes of the best of them, number by number.
+template <typename Bound>
+Use most_used(std::uint32_t seed, int tries, int changes) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> real(0, 1);
+  Try best;
+  Use most;
+  const auto ask = [&](const Try& numbers) {
+    const Use use = Bound(numbers)();
+    if (use.of_bound <= most.of_bound) return;
+    most = use;
+    best = numbers;
+  };
+  for (int i = 0; i < tries; ++i) {
+    Try numbers;
+    for (double& x : numbers.x) x = real(random);
+    ask(numbers);
+  }
+  for (int i = 0; i < changes; ++i) {
+    Try numbers = best;
+    for (unsigned k = 0; k <= random() % 3; ++k) {
+      double& x = numbers.x.at(random() % numbers.x.size());
+      x = random() % 4 == 0
+              ? real(random)
+              : std::clamp(x + (real(random) - 0.5) * std::exp2(-static_cast<double>(random() % 20)), 0.0, 1.0);
+    }
+    ask(numbers);
+  }
+  return most;
+}
+
+TEST(VectorBounds, PlacesOfPointsOnTheLight) {
+  const Use most = most_used<BoundX>(1, 20000, 20000);
+  fmt::print("X: {:.1f} % of the bound used (off by {:.2e} cells, allowed {:.2e})\n", 100 * most.of_bound, most.error,
+             most.bound);
+  EXPECT_LT(most.of_bound, 1);
+  EXPECT_GT(most.of_bound, 0.02) << "a bound that is never used is no bound of this error";
+}
+
+}  // namespace
+}  // namespace penumbra::native
