@@ -19,15 +19,15 @@ const uint kLookupGroup = 64;  // invocations of a look-up's workgroup
 // One side of the light's plane as a light point sees it. With d = (x, y, z) in the light's frame, z > 0 on this side:
 // one face holds the directions (x/z, y/z) in a window; five (a hemicube) hold every direction.
 struct SideView {
-  vec2 lower, upper;          // window of (x/z, y/z); one face only
-  uint first_face;            // among the faces of its light point
-  uint face_count;            // 0: no receiver on this side; 1: a window; 5: a hemicube
+  vec2 lower, upper;  // window of (x/z, y/z); one face only
+  uint first_face;    // among the faces of its light point
+  uint face_count;    // 0: no receiver on this side; 1: a window; 5: a hemicube
 };
 
 struct LightView {
-  vec3 point;                 // the light point, in scene floats
-  float far;                  // beyond every receiver and caster; maps hold (distance along the face's axis) / far
-  SideView side[2];           // 0: where the light's normal points, 1: behind
+  vec3 point;        // the light point, in scene floats
+  float far;         // beyond every receiver and caster; maps hold (distance along the face's axis) / far
+  SideView side[2];  // 0: where the light's normal points, 1: behind
 };
 
 // The light's frame, orthonormal; n points to the emitting side.
@@ -35,7 +35,8 @@ struct Frame {
   vec3 u, v, n;
 };
 
-// A view sample as the look-ups take it. n is zero where nothing is shadowed: background, emitters, receivesShadow false.
+// A view sample as the look-ups take it. n is zero where nothing is shadowed: background, emitters, receivesShadow
+// false.
 struct Receiver {
   vec3 p, n;
 };
@@ -44,7 +45,7 @@ struct Receiver {
 struct CasterPush {
   vec3 point;
   float near;
-  vec3 row_x;                 // clip.x = dot(row_x, corner - point), likewise y and w
+  vec3 row_x;  // clip.x = dot(row_x, corner - point), likewise y and w
   float far;
   vec3 row_y;
   uint first_vertex;
@@ -54,16 +55,16 @@ struct CasterPush {
 // What every look-up needs; its own push constants follow.
 struct LookupPush {
   Frame frame;
-  float bias;                 // in texels
-  uint size;                  // of a face, texels on a side
+  float bias;  // in texels
+  uint size;   // of a face, texels on a side
   uint two_sided;
-  uint first_receiver;        // in the receivers' buffer
+  uint first_receiver;  // in the receivers' buffer
   uint receiver_count;
-  uint first_result;          // where the results of the first receiver go, counted in receivers
-  uint words_per_pixel;       // of results: a mask's words, or 1 for V
-  uint first_point;           // of the light points whose maps are asked; all of them bits of one word
+  uint first_result;     // where the results of the first receiver go, counted in receivers
+  uint words_per_pixel;  // of results: a mask's words, or 1 for V
+  uint first_point;      // of the light points whose maps are asked; all of them bits of one word
   uint point_count;
-  uint faces;                 // of one light point
+  uint faces;  // of one light point
 };
 
 #ifdef __cplusplus

@@ -6,9 +6,9 @@ namespace penumbra::maps::gpu {
 #endif
 
 struct PcssPush {
-  uint blocker_samples;       // the first of the pattern's points
-  uint filter_samples;        // those that follow
-  float smallest_near;        // no near plane is put nearer to the light than this
+  uint blocker_samples;  // the first of the pattern's points
+  uint filter_samples;   // those that follow
+  float smallest_near;   // no near plane is put nearer to the light than this
 };
 
 #ifdef __cplusplus

@@ -11,24 +11,24 @@ using uint = std::uint32_t;
 #endif
 
 struct ViewSamplePush {
-  FLOAT3(center);              // the light: center + s·u + t·v, s and t in [−1, 1]
+  FLOAT3(center);  // the light: center + s·u + t·v, s and t in [−1, 1]
   FLOAT3(u);
   FLOAT3(v);
-  float deviation;             // the farthest that a stored light sample lies from where (s, t) puts it
-  float reach;                 // at least the largest coordinate, in size, of anything in the scene
+  float deviation;  // the farthest that a stored light sample lies from where (s, t) puts it
+  float reach;      // at least the largest coordinate, in size, of anything in the scene
   uint two_sided;
   int light;                   // triangles that are this light's body are transparent to it
   uint width;                  // pixels in a row
   uint first_row;              // of the tile in the stored view samples
   uint band_first, band_rows;  // the rows of the tile that this dispatch works on
   uint sample_count;
-  uint rows, columns;          // rows and grid patterns
-  uint shift_step;             // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
+  uint rows, columns;  // rows and grid patterns
+  uint shift_step;     // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
   uint question_capacity, chunk_capacity;
   uint empty_tree;
-  uint part_levels, part;      // find_leaves: of the tree only what lies below one child of each of so many levels; which
-                               // child, three bits a level from the lowest. Part 0 does what is done once, too
-  uint closed_parts;           // bit k: part k, from 1, is apart from the light, and has dispensable triangles
+  uint part_levels, part;  // find_leaves: of the tree only what lies below one child of each of so many levels; which
+                           // child, three bits a level from the lowest. Part 0 does what is done once, too
+  uint closed_parts;       // bit k: part k, from 1, is apart from the light, and has dispensable triangles
 };
 
 struct ResolvePush {
@@ -40,8 +40,8 @@ struct ResolvePush {
 // (of the tile)?
 struct OpenQuestion {
   uint pixel;
-  uint hider;                  // a triangle, kCarrier or kAnyTriangle (engines/device/mask.shared.h)
-  uint light_sample;           // a bit of the mask, or kAllSamples
+  uint hider;         // a triangle, kCarrier or kAnyTriangle (engines/device/mask.shared.h)
+  uint light_sample;  // a bit of the mask, or kAllSamples
 };
 
 const uint kAllSamples = 0xffffffffu;

@@ -6,8 +6,8 @@ namespace penumbra::device::gpu {
 using uint = std::uint32_t;
 #endif
 
-// Where a list of questions begins: how many there are, also where there is no room for them; and whether a driver ended
-// a kernel's loop too soon.
+// Where a list of questions begins: how many there are, also where there is no room for them; and whether a driver
+// ended a kernel's loop too soon.
 struct QuestionHead {
   uint count;
   uint cut_off;
@@ -15,8 +15,8 @@ struct QuestionHead {
 
 // A word of a pixel's mask that exact predicates decided: those bits of it.
 struct MaskWord {
-  uint pixel;                // of the tile; | kWholePixel: the old word says nothing
-  uint word;                 // in the buffer of masks
+  uint pixel;  // of the tile; | kWholePixel: the old word says nothing
+  uint word;   // in the buffer of masks
   uint decided;
   uint bits;
 };

@@ -9,9 +9,9 @@ using uint = std::uint32_t;
 /// Light samples, at most.
 const uint kMostPacked = 16;
 
-/// A counter is a digit of `bits` bits, from the lowest on. A sum of digits d_j · 2^(bits · j) modulo 2⁶⁴, in any order,
-/// says each d_j as long as every |d_j| < 2^(bits − 1) at the end.
-/// The last word is the sum of |k_e| of all edges that changed a counter: no |d_j| is larger.
+/// A counter is a digit of `bits` bits, from the lowest on. A sum of digits d_j · 2^(bits · j) modulo 2⁶⁴, in any
+/// order, says each d_j as long as every |d_j| < 2^(bits − 1) at the end. The last word is the sum of |k_e| of all
+/// edges that changed a counter: no |d_j| is larger.
 
 /// Doubles before the light samples (packed_counters.frag).
 const uint kPackedHead = 6;

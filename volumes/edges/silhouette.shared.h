@@ -7,8 +7,8 @@
 namespace penumbra::volumes::gpu {
 #endif
 
-/// Bits 0 and 1 of a triangle's word: is the light in front of it, behind it (neither: on its plane, or no area)? Bits 2
-/// and 3: the same if it counts so seen (ShadowCasters::counted_sides), else 0.
+/// Bits 0 and 1 of a triangle's word: is the light in front of it, behind it (neither: on its plane, or no area)? Bits
+/// 2 and 3: the same if it counts so seen (ShadowCasters::counted_sides), else 0.
 const uint kFrontBit = 1u, kBackBit = 2u, kBothBits = 3u, kCountedShift = 2u;
 
 /// An edge's triangles as the device reads them, triangle · 2, + 1 if it runs from b to a: two of them, where there is
