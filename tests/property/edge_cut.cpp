@@ -1,9 +1,11 @@
-// Edges cut at a light's plane inside their hierarchy: what the walk finds is what cutting all records gives, and
-// mending leaves nothing behind.
+// Edges cut at a light's plane inside their hierarchy, on vector units and on the device: what the walk finds is what
+// cutting all records gives, and mending leaves nothing behind.
 
-#include "visibility/tree_texels.hpp"
 #include "tests/agreement/lattice.hpp"
+#include "tests/agreement/support.hpp"
+#include "visibility/tree_texels.hpp"
 #include "volumes/edges/edge_sides.hpp"
+#include "volumes/edges/edge_upload.hpp"
 #include "volumes/scatter/vectors/cut.hpp"
 
 #include <gtest/gtest.h>
@@ -54,9 +56,58 @@ std::vector<Numbers> reachable(const native::WideEdgeTree& tree) {
   return found;
 }
 
-TEST(CutEdges, AreThoseOfAllRecordsCut) {
+/// Of the hierarchy below a root, in texels.
+std::vector<Numbers> reachable(const EdgeTexels& texels, std::uint32_t root) {
+  std::vector<Numbers> found;
+  if (texels.depth == 0) return found;
+  std::vector<std::uint32_t> stack{root};
+  while (!stack.empty()) {
+    const std::uint32_t first = stack.back() * TriangleTree::kWidth;
+    stack.pop_back();
+    for (std::uint32_t child = first; child < first + TriangleTree::kWidth; ++child) {
+      const std::uint32_t reference = texels.nodes[std::size_t{3} * child].number;
+      if (reference == TriangleTree::kNoChild) continue;
+      if ((reference & TriangleTree::kLeafBit) == 0) {
+        stack.push_back(reference);
+        continue;
+      }
+      const std::size_t leaf = std::size_t{reference & ~TriangleTree::kLeafBit} * TriangleTree::kWidth;
+      for (std::size_t slot = leaf; slot < leaf + TriangleTree::kWidth; ++slot) {
+        if (texels.slots[2][slot].number == 0) continue;
+        Numbers numbers{};
+        std::size_t i = 0;
+        for (const std::size_t list : {0U, 1U, 2U, 4U, 3U, 5U}) {
+          for (int axis = 0; axis < 3; ++axis) numbers[i++] = texels.slots[list][slot].value[axis];
+        }
+        numbers[i++] = static_cast<float>(texels.slots[0][slot].number);
+        numbers[i] = static_cast<float>(texels.slots[1][slot].number);
+        found.push_back(numbers);
+      }
+    }
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+std::vector<Numbers> reachable(const CutEdges& edges) {
+  return reachable(edges.tree());
+}
+/// What is on the device, at that: as far as it is in use.
+std::vector<Numbers> reachable(const EdgeUpload& edges) {
+  EdgeTexels texels = edges.texels();
+  const auto read = [](const render::Buffer& from, std::vector<visibility::Texel>& texels_to) {
+    from.read(std::span(texels_to));
+  };
+  read(edges.nodes(), texels.nodes);
+  for (std::size_t i = 0; i < texels.slots.size(); ++i) read(edges.slots(i), texels.slots[i]);
+  return reachable(texels, edges.root());
+}
+
+/// `make(records, scale)`: the hierarchy under test.
+template <typename Make>
+void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
   std::size_t cut = 0, third = 0, kept = 0;
-  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+  for (std::uint32_t seed = 0; seed < soups; ++seed) {
     tests::LatticeSoup soup(seed, 2);
     scenes::Scene scene;
     tests::add_object(scene, "soup", soup.triangles(5 + soup.below(120)));
@@ -68,8 +119,8 @@ TEST(CutEdges, AreThoseOfAllRecordsCut) {
     EdgeSides sides("test");
     sides.prepare_mesh(floats);
     const std::vector<EdgeRecord> all = sides.records(std::nullopt);
-    CutEdges edges(wide_edges(all, scale));
-    const std::vector<Numbers> whole = reachable(edges.tree());
+    auto edges = make(all, scale);
+    const std::vector<Numbers> whole = reachable(edges);
     ASSERT_EQ(whole.size(), all.size());
     for (int turn = 0; turn < 2; ++turn) {  // one light after the other: the second cuts what the first has cut
       const visibility::Light light = visibility::make_light(scene, 0, floats.origin, request);
@@ -78,7 +129,7 @@ TEST(CutEdges, AreThoseOfAllRecordsCut) {
         if (!side) continue;
         edges.cut({floats, triangles, sides.casters(), -1, *side});
         const std::vector<EdgeRecord> expected = sides.records(side);
-        EXPECT_EQ(reachable(edges.tree()), reachable(wide_edges(expected, scale))) << "seed " << seed;
+        EXPECT_EQ(reachable(edges), reachable(wide_edges(expected, scale))) << "seed " << seed;
         const std::size_t in_plane = edges_in_plane(floats, sides.casters(), sides.casters().triangle, *side).size();
         cut += all.size() - std::min(all.size(), expected.size() - in_plane);
         third += in_plane;
@@ -87,11 +138,24 @@ TEST(CutEdges, AreThoseOfAllRecordsCut) {
       scene.lights[0] = soup.light(request);
     }
     edges.mend();
-    EXPECT_EQ(reachable(edges.tree()), whole) << "seed " << seed;
+    EXPECT_EQ(reachable(edges), whole) << "seed " << seed;
   }
-  EXPECT_GT(cut, 1000U);
-  EXPECT_GT(third, 1000U);
-  EXPECT_GT(kept, 1000U);
+  EXPECT_GT(cut, 3 * soups);
+  EXPECT_GT(third, 3 * soups);
+  EXPECT_GT(kept, 3 * soups);
+}
+
+TEST(CutEdges, AreThoseOfAllRecordsCut) {
+  expect_cut_like_all_records(
+      300, [](const std::vector<EdgeRecord>& records, float scale) { return CutEdges(wide_edges(records, scale)); });
+}
+
+using CutEdgesOnDevice = tests::DeviceTest;
+
+TEST_F(CutEdgesOnDevice, AreThoseOfAllRecordsCut) {
+  expect_cut_like_all_records(100, [&](const std::vector<EdgeRecord>& records, float scale) {
+    return EdgeUpload(device(), edge_texels(records, scale));
+  });
 }
 
 }  // namespace

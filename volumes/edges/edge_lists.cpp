@@ -13,15 +13,10 @@
 namespace penumbra::volumes {
 namespace {
 
-using visibility::Texel;
 using visibility::TriangleTree;
 
 constexpr std::uint32_t kBlock = 8, kClusters = 4;  // as in edge_scatter.glsl
 constexpr std::uint32_t kFirstWords = 1U << 20;
-
-render::Buffer make_texels(const render::Device& device, const char* name, const std::vector<Texel>& texels) {
-  return render::make_buffer<Texel>(device, name, texels, render::BufferUse::texels);
-}
 
 std::uint64_t blocks(const EdgeListInput& input) {
   return std::uint64_t{(input.width + kBlock - 1) / kBlock} * ((input.band.row_count + kBlock - 1) / kBlock);
@@ -48,40 +43,51 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene, const Triangl
   sides_.prepare_mesh(scene);
   const std::vector<EdgeRecord> records = sides_.records(std::nullopt);
   edge_count_ = records.size();
-  whole_ = upload(records);
-}
-
-EdgeLists::SideBuffers EdgeLists::upload(const std::vector<EdgeRecord>& records) const {
-  const EdgeTexels texels = edge_texels(records, scale_);
-  SideBuffers side;
-  side.depth = texels.depth;
-  side.nodes.emplace(make_texels(*device_, "edge nodes", texels.nodes));
-  for (std::size_t i = 0; i < side.slots.size(); ++i) {
-    side.slots[i].emplace(make_texels(*device_, "edges", texels.slots[i]));
-  }
-  return side;
+  whole_.emplace(*device_, edge_texels(records, scale_));
+  without_body_.reset();
+  back_.reset();
+  front_ = &*whole_;
 }
 
 void EdgeLists::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   frame_ = frame;
-  const LightEdges edges = sides_.prepare_light(light, frame, scale_);
-  cut_ = edges.front.has_value();
+  prepare_edges();
   touch_ = visibility::find_touch(*scene_, *tree_, light);
-  front_.reset();
-  back_.reset();
-  if (edges.front || edges.has_body) front_ = upload(sides_.records(edges.front));
-  if (edges.back) back_ = upload(sides_.records(edges.back));
   build_pass();
 }
 
-/// Its stack: depth first, `teams` nodes at a time, each leaves at most seven more than it takes. Cut edges may deepen
-/// a hierarchy.
+/// Those of all casters, or without the light's body; cut at its plane where something lies behind that.
+void EdgeLists::prepare_edges() {
+  const LightEdges edges = sides_.prepare_light(*light_, frame_, scale_);
+  is_cut_ = edges.front.has_value();
+  back_is_used_ = edges.back.has_value();
+  const EdgeUpload* before = front_;
+  front_->mend();
+  if (edges.has_body && !(without_body_ && without_body_->light == light_->index)) {
+    without_body_.emplace(
+        WithoutBody{light_->index, EdgeUpload(*device_, edge_texels(sides_.records(std::nullopt), scale_))});
+    before = nullptr;
+  }
+  front_ = edges.has_body ? &without_body_->edges : &*whole_;
+  if (before != front_) back_.reset();
+  const auto input = [&](const LightSide& side) {
+    return CutInput{*scene_, *tree_, sides_.casters(), edges.has_body ? light_->index : -1, side};
+  };
+  if (edges.back) {
+    if (!back_) back_.emplace(*device_, front_->texels());
+    back_->cut(input(*edges.back));
+  }
+  if (edges.front) front_->cut(input(*edges.front));
+}
+
+/// Its stack: depth first, `teams` nodes at a time, each leaves at most seven more than it takes. Cut edges deepen a
+/// hierarchy by a level, and may be many; rounded up, so that not every scene needs a pass of its own.
 void EdgeLists::build_pass() {
   const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
-  const std::vector<std::uint32_t> constants{
-      lanes, lanes, teams * TriangleTree::kWidth * (std::max(tree_->depth, whole_.depth) + 10), crops_ ? 1U : 0U};
+  const std::uint32_t levels = (std::max(tree_->depth, whole_->depth()) + 3) / 4 * 4 + 10;
+  const std::vector<std::uint32_t> constants{lanes, lanes, teams * TriangleTree::kWidth * levels, crops_ ? 1U : 0U};
   if (pass_ && constants == constants_) return;
   pass_.emplace(*device_, render::ComputePassOptions{.name = "find edges",
                                                      .spirv = shaders::kFindEdgesComp,
@@ -89,10 +95,6 @@ void EdgeLists::build_pass() {
                                                      .constants = constants,
                                                      .full_subgroups = true});
   constants_ = constants;
-}
-
-const EdgeLists::SideBuffers& EdgeLists::of_side(float side) const {
-  return side < 0 && back_ ? *back_ : front_ ? *front_ : whole_;
 }
 
 void EdgeLists::describe(gpu::ScatterPush& push, const EdgeListInput& input) const {
@@ -103,7 +105,7 @@ void EdgeLists::describe(gpu::ScatterPush& push, const EdgeListInput& input) con
   }
   push.deviation = frame_.deviation;
   push.reach = visibility::reach_of(*scene_, frame_, scale_);
-  push.cut_reach = cut_ ? 4 * push.reach : 0;
+  push.cut_reach = is_cut_ ? 4 * push.reach : 0;
   push.side = input.side;
   push.keeps_rest = light_->two_sided ? 1 : 0;
   push.light = static_cast<std::uint32_t>(light_->index);
@@ -112,7 +114,8 @@ void EdgeLists::describe(gpu::ScatterPush& push, const EdgeListInput& input) con
   push.row_count = input.band.row_count;
   push.first_pixel = input.band.first_row * input.width;
   push.triangle_depth = tree_->depth;
-  push.edge_depth = of_side(input.side).depth;
+  push.edge_depth = of_side(input.side).depth();
+  push.edge_root = of_side(input.side).root();
   push.near_plane = touch_.any_near ? 1 : 0;
   std::uint64_t rows = 0;
   for (const std::uint32_t sample : touch_.samples) {
@@ -134,8 +137,8 @@ bool EdgeLists::find(render::Commands& commands, gpu::ScatterPush& push, const E
     }
     const Head head = walk(commands, push, input);
     if (head.unfinished != 0) {
-      walk_.go_deeper(
-          {method_, device_->info().name, scene_->triangles.size(), std::max(tree_->depth, of_side(input.side).depth)});
+      walk_.go_deeper({method_, device_->info().name, scene_->triangles.size(),
+                       std::max(tree_->depth, of_side(input.side).depth())});
     } else if (lists_.holds(head.words)) {
       words_ = head.words;
       return true;
@@ -149,7 +152,7 @@ EdgeLists::Head EdgeLists::walk(render::Commands& commands, gpu::ScatterPush& pu
   lists_.clear(commands);
   times_.clear();
   std::vector<render::BufferReference> buffers = inputs(input);
-  buffers.insert(buffers.begin() + 3, {*of_side(input.side).nodes, input.triangles.nodes()});
+  buffers.insert(buffers.begin() + 3, {of_side(input.side).nodes(), input.triangles.nodes()});
   Head head;
   for (push.part = 0; push.part < walk_.parts(); ++push.part) {
     pass_->record(commands, std::as_bytes(std::span(&push, 1)), buffers, blocks(input));
@@ -163,7 +166,7 @@ EdgeLists::Head EdgeLists::walk(render::Commands& commands, gpu::ScatterPush& pu
 
 std::vector<render::BufferReference> EdgeLists::inputs(const EdgeListInput& input) const {
   std::vector<render::BufferReference> buffers{input.view.buffer(), *heads_, lists_.buffer()};
-  for (const std::optional<render::Buffer>& slots : of_side(input.side).slots) buffers.emplace_back(*slots);
+  for (std::size_t i = 0; i < 6; ++i) buffers.emplace_back(of_side(input.side).slots(i));
   for (std::size_t i = 0; i < 3; ++i) buffers.emplace_back(input.triangles.corners(i));
   return buffers;
 }

@@ -14,6 +14,7 @@
 #include "volumes/edges/edge_scatter.shared.h"
 #include "volumes/edges/edge_set.hpp"
 #include "volumes/edges/edge_sides.hpp"
+#include "volumes/edges/edge_upload.hpp"
 
 #include <array>
 #include <cstddef>
@@ -67,15 +68,9 @@ class EdgeLists {
   [[nodiscard]] std::vector<render::BufferReference> inputs(const EdgeListInput& input) const;
 
  private:
-  /// What device passes read of the edges on one side of the light's plane.
-  struct SideBuffers {
-    std::uint32_t depth = 0;
-    std::optional<render::Buffer> nodes;
-    std::array<std::optional<render::Buffer>, 6> slots;
-  };
-  [[nodiscard]] SideBuffers upload(const std::vector<EdgeRecord>& records) const;
+  void prepare_edges();
   void build_pass();
-  [[nodiscard]] const SideBuffers& of_side(float side) const;
+  [[nodiscard]] const EdgeUpload& of_side(float side) const { return side < 0 && back_is_used_ ? *back_ : *front_; }
   void describe(gpu::ScatterPush& push, const EdgeListInput& input) const;
   Head walk(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input);
 
@@ -90,13 +85,19 @@ class EdgeLists {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::TriangleTree* tree_ = nullptr;
   float scale_ = 1;
-  SideBuffers whole_;  // of all casters, cut nowhere
+  std::optional<EdgeUpload> whole_;  // of all casters
   std::size_t edge_count_ = 0;
+  struct WithoutBody {
+    std::int32_t light;
+    EdgeUpload edges;
+  };
+  std::optional<WithoutBody> without_body_;  // what casts shadow of the last light with a body
+  EdgeUpload* front_ = nullptr;              // one of these
+  std::optional<EdgeUpload> back_;           // a copy of it, where the light's plane cuts and it emits to both sides
 
   const visibility::Light* light_ = nullptr;
   visibility::LightFrame frame_;
-  bool cut_ = false;
-  std::optional<SideBuffers> front_, back_;  // where `whole_` will not do
+  bool is_cut_ = false, back_is_used_ = false;
 
   std::unique_ptr<render::Buffer> heads_;
   device::GrowingList lists_;

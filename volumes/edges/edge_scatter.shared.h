@@ -28,6 +28,7 @@ struct ScatterPush {
   uint list_capacity;         // words
   uint question_capacity;
   uint edge_depth, triangle_depth;  // levels of the hierarchies; 0: empty
+  uint edge_root;                   // node that the hierarchy of edges begins at
   uint near_plane;                  // something is near the light's plane: view samples close to that are for the host
   uint part_levels, part;  // find_edges: of both hierarchies only what lies below one child of each of so many levels;
                            // which child, three bits a level from the lowest

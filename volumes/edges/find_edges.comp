@@ -87,7 +87,7 @@ uint emit(uint next, uint count) {
 // Lays the root of this dispatch's part of a hierarchy on the stack; or, if a leaf lies above the part's level, the leaf
 // with the first of the parts that it could belong to. Returns the sizes of stack and leaves.
 uvec2 first_of_part(bool edges) {
-  uint node = 0;
+  uint node = edges ? push.edge_root : 0;
   uvec2 sizes = uvec2(1, 0);
   for (uint level = 0; level < push.part_levels; ++level) {
     const int child = int(node * kTeam + (push.part >> (3 * level) & 7));

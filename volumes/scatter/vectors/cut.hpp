@@ -2,10 +2,8 @@
 
 #include "engines/vectors/frame.hpp"
 #include "engines/vectors/trees.hpp"
-#include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
 #include "volumes/edges/cut_ends.hpp"
-#include "volumes/edges/edge_cut.hpp"
+#include "volumes/edges/cut_walk.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -16,16 +14,6 @@
 namespace penumbra::volumes {
 
 native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
-
-/// What casts shadow of a light, to be cut at its plane.
-struct CutInput {
-  const visibility::SceneFloats& scene;
-  const visibility::TriangleTree& triangles;  ///< of the scene
-  const EdgeCasters& casters;
-  std::int32_t without;  ///< the light whose body is not among them, or −1
-  LightSide side;
-  bool exact_ends = false;  ///< keep where edges pass through the plane as it is before rounding
-};
 
 /// A hierarchy of edges that is cut at a light's plane, and mended for the next light. Only what the plane cuts is made
 /// anew: subtrees behind it are left out, the cut edges are a second tree beside the first.
@@ -44,8 +32,7 @@ class CutEdges {
   void mend();
 
  private:
-  void cut_nodes(const LightSide& side, std::vector<EdgeRecord>& records);
-  void cut_leaf(const LightSide& side, std::uint32_t leaf, std::vector<EdgeRecord>& records);
+  class Dropping;
 
   /// What a node or a leaf had in use.
   struct Used {
