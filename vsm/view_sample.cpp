@@ -114,9 +114,10 @@ class ViewSampleMapping final : public device::MaskMethod {
   [[nodiscard]] std::uint32_t block_height() const { return lanes() / block_width(); }
 
   void build_passes() {
-    // Depth first, `teams` nodes at a time, each leaves at most seven more than it takes.
-    const std::uint32_t teams = lanes() / TriangleTree::kWidth,
-                        stack = teams * TriangleTree::kWidth * (tree().depth + 2);
+    // Depth first, `teams` nodes at a time, each leaves at most seven more than it takes; rounded up, so that not every
+    // scene needs passes of its own.
+    const std::uint32_t teams = lanes() / TriangleTree::kWidth, levels = (tree().depth + 3) / 4 * 4 + 2,
+                        stack = teams * TriangleTree::kWidth * levels;
     const std::vector<std::uint32_t> constants{
         lanes(),      lanes(), shape_.scattered ? 1U : 0U, shape_.words_per_row, shape_.shared_words, block_width(),
         shape_.chunk, stack};

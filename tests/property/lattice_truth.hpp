@@ -8,6 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+
 namespace penumbra::tests {
 
 /// What all cameras see, and points on triangles that no camera's rounding has moved off them.
@@ -37,8 +44,25 @@ struct LatticeRun {
   std::uint32_t first = 0;
 };
 
+/// A method for each layout of light samples: one that is given another compiles its kernels anew.
+class MethodsByLayout {
+ public:
+  using Make = std::function<std::unique_ptr<visibility::Method>()>;
+  explicit MethodsByLayout(Make make) : make_(std::move(make)) {}
+
+  visibility::Method& of(const visibility::Light& light) {
+    std::unique_ptr<visibility::Method>& method = methods_[{light.rows, light.columns, light.sample_count()}];
+    if (!method) method = make_();
+    return *method;
+  }
+
+ private:
+  Make make_;
+  std::map<std::array<std::uint32_t, 3>, std::unique_ptr<visibility::Method>> methods_;
+};
+
 /// Returns what the pairs were.
-inline PairCounts expect_lattice_truth(visibility::Method& method, const LatticeRun& run_of) {
+inline PairCounts expect_lattice_truth(MethodsByLayout& methods, const LatticeRun& run_of) {
   PairCounts counts;
   for (std::uint32_t i = run_of.first; i < run_of.first + run_of.count; ++i) {
     const std::uint32_t seed = i + 1000 * static_cast<std::uint32_t>(run_of.range);
@@ -49,7 +73,7 @@ inline PairCounts expect_lattice_truth(visibility::Method& method, const Lattice
     const visibility::Light rows = visibility::make_light(scene, 0, floats.origin, request);
     const visibility::ViewSamples samples = all_samples(scene, floats, soup.random());
     const visibility::Light light = i % 3 == 0 || !run_of.any_light ? rows : scattered(rows, i % 3 == 2);
-    const Masks masks = run(method, floats, light, samples);
+    const Masks masks = run(methods.of(light), floats, light, samples);
     EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << run_of.range;
   }
   return counts;

@@ -45,7 +45,9 @@ shared vec2 queue_more[kQueue];                           // (error, k)
 
 ViewSample at;
 vec3 from_center;
+float lift_per_length;                                    // lift_of
 bool open_pixel, cut_off;                                 // everything is for the host; a loop did not run to its end
+bool side_in_doubt, on_triangle;                          // p within rounding of a triangle's plane; on one that occludes
 
 // The passes below run with cells of the frame's half-sizes: (X, Y) from the middle is (s, t).
 
@@ -106,7 +108,9 @@ Edge see(uint slot, bool used) {
   const float wa = -dot(axis, da), wb = -dot(axis, db);
   const vec2 xa = vec2(dot(across, da), dot(along, da)) * at.height + (at.foot - first_cell) * wa;
   const vec2 xb = vec2(dot(across, db), dot(along, db)) * at.height + (at.foot - first_cell) * wb;
-  const vec4 inside_a = vec4(window * wa - xa, window * wa + xa), inside_b = vec4(window * wb - xb, window * wb + xb);
+  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b), lift = lift_per_length * far;
+  const vec2 wide_a = window * (wa + lift), wide_b = window * (wb + lift);
+  const vec4 inside_a = vec4(wide_a - xa, wide_a + xa), inside_b = vec4(wide_b - xb, wide_b + xb);
   const vec4 t = inside_a / (inside_a - inside_b);
   float from = 0.0, to = 1.0;
   for (int i = 0; i < 4; ++i) {
@@ -117,7 +121,7 @@ Edge see(uint slot, bool used) {
   const vec3 start = from > 0.0 ? mix(da, db, from) : da, end = to < 1.0 ? mix(da, db, to) : db;
   const vec3 seen_a = project(start), seen_b = project(end);
 
-  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b), away = length(from_center);
+  const float away = length(from_center);
   const vec2 foot = at.foot - (first_cell - half_cells);
   const float foot_a = length(seen_a.xy - foot), foot_b = length(seen_b.xy - foot);
   // p within rounding of a triangle's plane: seen from it that is a sliver. (bound sliver)
@@ -128,6 +132,7 @@ Edge see(uint slot, bool used) {
   const bool seen = used && (both != 0 || open) && from <= to;
   const bool through_p = seen && min(seen_a.z, seen_b.z) < 64.0 * kRound * far;
   open_pixel = open_pixel || through_p;                   // it passes through p, but for rounding
+  side_in_doubt = side_in_doubt || (seen && open);
   Edge edge;
   edge.a = seen_a.xy;
   edge.b = seen_b.xy;
@@ -265,6 +270,7 @@ uint count_to_corner(uint head) {
       const bool without = passes || highest < -16.0 * kRound * far || lowest > at.height + slack ||
                            (one_sign && (meeting < -error_w || meeting > at.height + error_w));
       const bool hit = occludes && !without && one_sign && within;
+      on_triangle = on_triangle || (occludes && is_on_triangle(da, db, dc));
       open_pixel = open_pixel || (occludes && !without && !hit);
       met += subgroupBallotBitCount(subgroupBallot(hit));
     }
@@ -327,8 +333,11 @@ void main() {
   const uint block = in_band / push.width / kBlock * ((push.width + kBlock - 1) / kBlock) + in_band % push.width / kBlock;
   at = fetch_view_sample(in_band);
   from_center = at.p - push.center;
+  lift_per_length = lift_of(at, 4.0 * half_cells);
   open_pixel = false;
   cut_off = false;
+  side_in_doubt = false;
+  on_triangle = false;
 
   const bool receives = at.carrier != kNone;
   // (2) p strictly on an emitting side of the light's plane. (bound level)
@@ -360,7 +369,9 @@ void main() {
     for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
   }
   const bool touched = (push.touched_low | push.touched_high) != 0 || sees_flat(length(from_center), at.height);
-  if (subgroupAny(open_pixel || cut_off) || touched || below) {
+  // On a triangle, but for rounding: half of all ways from p hang on which side of it p is. (bound on)
+  const bool on_some = subgroupAny(side_in_doubt) && subgroupAny(on_triangle);
+  if (subgroupAny(open_pixel || cut_off) || on_some || touched || below) {
     settle_whole(pixel, false, !below);
     return;
   }

@@ -84,6 +84,21 @@ bool sees_flat(float away, float height) {
   return push.near_plane != 0 && height < farthest / 256.0;
 }
 
+// How far below p's height, in lengths of an edge's farther end, an edge may be where p is, but for rounding. (bound window)
+float lift_of(ViewSample at, vec2 window) {
+  const vec2 off = abs(at.foot - first_cell);
+  return 64.0 * kRound * (1.0 + 0.125 * (max(off.x, off.y) + per_length * at.height) / min(window.x, window.y));
+}
+
+// Is p on the triangle with corners p + da, p + db, p + dc, but for rounding? (bound on)
+bool is_on_triangle(vec3 da, vec3 db, vec3 dc) {
+  const vec3 n = cross(db - da, dc - da);
+  const float size = length(n), far = max(length(da), max(length(db), length(dc))), unit = kRound * far;
+  const float least = min(dot(n, cross(da, db)), min(dot(n, cross(db, dc)), dot(n, cross(dc, da))));
+  return abs(dot(n, da)) <= 128.0 * kRound * push.reach * size + 64.0 * unit * far * far &&
+         least >= -(256.0 * unit * push.reach * size + 64.0 * unit * far * far * far);
+}
+
 // The hull of view samples and a rectangle of the light's plane, `low` to `high` in cells from the light's middle: between
 // two parallel planes, and in n·x ≤ beyond for four planes, one a component of nx, ny, nz. (bound shaft)
 struct Shaft {

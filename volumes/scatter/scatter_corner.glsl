@@ -1,5 +1,24 @@
 // How many triangles are before the light's corner, from which the changes count on. Part of scatter_edges.comp.
 
+// Where p is on a triangle, but for rounding, and so may be its side of it: half of all ways from p hang on that, not only
+// what is near its edges. Such a triangle is in the list of those that the way to the corner may meet. (bound on)
+void open_where_on(uint head, bool on) {
+  uint piece = head;
+  for (; piece != kNone; piece = lists[piece]) {
+    const uint count = lists[piece + 1];
+    uint i = 0;
+    for (; i < count; ++i) {
+      const int texel = int(lists[piece + 2 + i]);
+      const uvec4 t0 = texelFetch(corner_a, texel), t1 = texelFetch(corner_b, texel), t2 = texelFetch(corner_c, texel);
+      const bool occludes = t0.w != kNone && t2.w != push.light && t1.w != at.plane;
+      const bool is_met = is_on_triangle(uintBitsToFloat(t0.xyz) - at.p, uintBitsToFloat(t1.xyz) - at.p, uintBitsToFloat(t2.xyz) - at.p);
+      if (on && side_in_doubt && occludes && is_met) open_pixel = true;
+    }
+    cut_off = cut_off || i < count;
+  }
+  cut_off = cut_off || piece != kNone;
+}
+
 // How many triangles the segment from p to the light's lower left corner meets (Woop et al. 2013: in coordinates with the
 // ray as third axis, what decides is three products in two dimensions).
 // One is as good as many where no edge changes the count (`one_will_do`).

@@ -41,11 +41,13 @@ shared uint histogram[kHistogramWords * kLanes];
 ViewSample at;
 vec3 from_center;
 float away;                                               // |from_center|
+float lift_per_length;                                    // lift_of
 int first_row, last_row;                                  // of the band
 uint left_changes[kWordsPerColumn];                       // where edges cross the light's left side, a byte a row
 uvec2 open_rows;                                          // light rows of the band for the host
 uvec2 open_samples;                                       // and two more light samples, or kNone
 bool open_pixel;                                          // all of them
+bool side_in_doubt;                                       // of some edge's triangle: within rounding of p
 bool cut_off;                                             // a loop did not run to its end
 uint out_of_range;                                        // bytes of changes on the light's left side: open all rows
 
@@ -83,12 +85,14 @@ void main() {
   at = fetch_view_sample(pixel);
   from_center = at.p - push.center;
   away = length(from_center);
+  lift_per_length = lift_of(at, 2.0 * half_cells + 2.0);
   first_row = int(band * band_rows);
   last_row = min(first_row + int(band_rows), int(push.rows)) - 1;
   for (uint word = 0; word < kWordsPerColumn; ++word) left_changes[word] = 0;
   open_rows = uvec2(0);
   open_samples = uvec2(kNone);
   open_pixel = false;
+  side_in_doubt = false;
   out_of_range = 0;
   const uint all_samples = uint(last_row - first_row + 1) * kColumns;
 
@@ -131,6 +135,7 @@ void main() {
       if (here) depth = met;
     }
     if (edges != kNone) scatter_list(edges, here);
+    if (triangles != kNone && subgroupAny(side_in_doubt)) open_where_on(triangles, here);
   }
   if (by_rows) {
     const uint counted = count_visible(pixel, depth, on);

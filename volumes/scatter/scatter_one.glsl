@@ -103,6 +103,11 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   } while (++row < end);
   cut_off = cut_off || row < end;
 
+  // An outline that may pass the light's corner on either side, be it along the left side: D is counted there.
+  const float around = error_near + error_far, at_corner = clamp(near.x + (-0.5 - near.y) * slope, low.x, high.x);
+  const bool holds_corner = all(lessThanEqual(low - around, vec2(-0.5))) && all(greaterThanEqual(high + around, vec2(-0.5)));
+  if (holds_corner && !(abs(at_corner + 0.5) >= error_x)) open_pixel = true;
+
   if ((a.x < -0.5) != (b.x < -0.5)) {
     const float inverse = way.y / way.x, flat_error = 1.2 * (error_near + error_far * min(1.0, (abs(near.x - first_cell.x) + 2.0 * half_cells.x) / abs(way.x))) * (1.0 + abs(inverse)) +
                           8.0 * kRound * (half_cells.y + abs(near.y));
@@ -140,9 +145,12 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
 void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
   const vec3 way_a = seen_way(da), way_b = seen_way(db);
+  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
   const vec2 window = 2.0 * half_cells + 2.0, xa = way_a.xy * at.height + (at.foot - first_cell) * way_a.z,
              xb = way_b.xy * at.height + (at.foot - first_cell) * way_b.z;
-  const vec4 inside_a = vec4(window * way_a.z - xa, window * way_a.z + xa), inside_b = vec4(window * way_b.z - xb, window * way_b.z + xb);
+  const float lift = lift_per_length * far;
+  const vec2 wide_a = window * (way_a.z + lift), wide_b = window * (way_b.z + lift);
+  const vec4 inside_a = vec4(wide_a - xa, wide_a + xa), inside_b = vec4(wide_b - xb, wide_b + xb);
   const vec4 t = inside_a / (inside_a - inside_b);
   const vec4 froms = mix(vec4(0.0), mix(t, vec4(2.0), lessThan(inside_b, vec4(0.0))), lessThan(inside_a, vec4(0.0)));
   const vec4 tos = mix(vec4(1.0), t, bvec4(ivec4(greaterThanEqual(inside_a, vec4(0.0))) * ivec4(lessThan(inside_b, vec4(0.0)))));
@@ -151,12 +159,12 @@ void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) 
   const bool cut = from > 0.0 || to < 1.0;
   const vec3 start = from > 0.0 ? mix(way_a, way_b, from) : way_a, end = to < 1.0 ? mix(way_a, way_b, to) : way_b;
   const vec2 seen_a = appears(start), seen_b = appears(end);
-  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
   const float foot_a = length(seen_a - at.foot), foot_b = length(seen_b - at.foot), off = open ? sliver : 0.0;
   const float error_a = error_of(cut ? far : far_a, start.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / start.z * off;
   const float error_b = error_of(cut ? far : far_b, end.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / end.z * off;
   const bool matters = (k != 0 || open) && from <= to;
   const bool through_p = !settled && min(start.z, end.z) < 64.0 * kRound * far;
   if (matters && through_p) open_pixel = true;            // it passes through p, but for rounding
+  side_in_doubt = side_in_doubt || open;
   if (matters && !through_p) scatter(seen_a, seen_b, k, error_a, error_b);
 }
