@@ -37,6 +37,7 @@ std::vector<gpu::MaskWord> decide(const JudgeInput& input, std::span<const OpenB
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, questions.size(), 8), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) words[i] = decide_one(input, questions[i]);
   });
+  std::erase_if(words, [](const gpu::MaskWord& word) { return word.decided == 0; });
   return words;
 }
 

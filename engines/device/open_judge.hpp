@@ -25,8 +25,8 @@ struct JudgeInput {
   std::size_t first_pixel;  ///< of the tile, in the view samples
 };
 
-/// What exact predicates (visibility/pair_truth.hpp) say, one word for each question, on all cores. Of a question about
-/// one hider only what that hides is decided.
+/// What exact predicates (visibility/pair_truth.hpp) say, in the order of the questions, on all cores. Of a question
+/// about one hider only what that hides is decided; no word comes of what decides nothing.
 std::vector<gpu::MaskWord> decide(const JudgeInput& input, std::span<const OpenBits> questions);
 
 }  // namespace penumbra::device
