@@ -148,16 +148,4 @@ double decided_share(const PairCounts& counts, const PairVerdicts& verdicts) {
   return static_cast<double>(verdicts.decided) / static_cast<double>(counts.differing);
 }
 
-PairVerdicts judge_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels,
-                         const std::function<PairDecision(std::uint32_t, std::uint32_t)>& decide) {
-  PairVerdicts verdicts;
-  for_each_differing_pair(masks, pixels, [&](std::uint32_t pixel, std::uint32_t sample, bool method_says_visible) {
-    const PairDecision truth = decide(pixel, sample);
-    ++verdicts.decided;
-    ++(truth.visible == method_says_visible ? verdicts.method_right : verdicts.reference_right);
-    if (truth.zero_predicate) ++verdicts.zero_predicate;
-  });
-  return verdicts;
-}
-
 }  // namespace penumbra::compare

@@ -74,12 +74,6 @@ PairCounts count_pairs(const MaskPair& masks, std::span<const std::uint32_t> pix
 void for_each_differing_pair(const MaskPair& masks, std::span<const std::uint32_t> pixels,
                              const std::function<void(std::uint32_t, std::uint32_t, bool)>& visit);
 
-/// What an exact decision says about one pair.
-struct PairDecision {
-  bool visible = false;
-  bool zero_predicate = false;  ///< some exact predicate was zero, and read as the definition says
-};
-
 /// Who was right on differing pairs: on all of them, or on a sample. Each pair makes exactly one of the two right.
 struct PairVerdicts {
   std::uint64_t decided = 0;  ///< `pairsDecided`; the other counts are of these
@@ -92,9 +86,5 @@ struct PairVerdicts {
 
 /// The part of the differing pairs that was decided; 1 where none differ.
 double decided_share(const PairCounts& counts, const PairVerdicts& verdicts);
-
-/// Has every differing pair decided by `decide(pixel, light sample)`, typically visibility::decide_pair.
-PairVerdicts judge_pairs(const MaskPair& masks, std::span<const std::uint32_t> pixels,
-                         const std::function<PairDecision(std::uint32_t, std::uint32_t)>& decide);
 
 }  // namespace penumbra::compare

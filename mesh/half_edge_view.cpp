@@ -180,26 +180,6 @@ Triangle HalfEdgeView::corners(std::uint32_t face) const {
           number(mesh.to_vertex_handle(mesh.next_halfedge_handle(h)))};
 }
 
-OneRing HalfEdgeView::one_ring(std::uint32_t vertex) const {
-  const auto& mesh = surface_->mesh;
-  OneRing ring;
-  // OpenMesh keeps a boundary vertex's own half-edge on the boundary: turning counter-clockwise from it meets the
-  // faces in one run. A vertex has no half-edge only if OpenMesh refused all its faces.
-  const HalfedgeHandle start = mesh.halfedge_handle(handle<VertexHandle>(vertex));
-  if (!start.is_valid()) return ring;
-  ring.closed = !mesh.is_boundary(start);
-  // Turning counter-clockwise from it leaves the fan at once: the run of faces begins at its other end.
-  const HalfedgeHandle first = ring.closed ? start : mesh.ccw_rotated_halfedge_handle(start);
-  HalfedgeHandle h = first;
-  do {
-    ring.vertices.push_back(number(mesh.to_vertex_handle(h)));
-    if (mesh.is_boundary(h)) break;
-    ring.faces.push_back(surface_->face_left_of(h));
-    h = mesh.ccw_rotated_halfedge_handle(h);
-  } while (h != first);
-  return ring;
-}
-
 std::vector<SurfaceLoop> HalfEdgeView::loops_around(const std::vector<bool>& inside) const {
   const auto& mesh = surface_->mesh;
   PENUMBRA_ASSERT(inside.size() == mesh.n_faces(), "{} flags for {} faces", inside.size(), mesh.n_faces());

@@ -46,14 +46,6 @@ struct SurfaceLoop {
   std::uint32_t component = 0;
 };
 
-/// The neighbours of a vertex, counter-clockwise around it: faces[i] lies between vertices[i] and vertices[i + 1].
-/// Closed if it runs all around; otherwise vertices has one entry more than faces.
-struct OneRing {
-  std::vector<std::uint32_t> vertices;  ///< of the view
-  std::vector<std::uint32_t> faces;     ///< of the view
-  bool closed = false;
-};
-
 /// A view's faces are consecutive numbers in the order of the soup's triangles. Its vertices are one for each fan of
 /// faces: a point where several fans meet is as many vertices here. Held and listed faces together are the soup's
 /// triangles, each once (asserted). Within a component all faces are wound alike; those that had to be turned for it
@@ -78,7 +70,6 @@ class HalfEdgeView {
 
   /// A face's corners: vertices of the view, as the face is wound here.
   [[nodiscard]] Triangle corners(std::uint32_t face) const;
-  [[nodiscard]] OneRing one_ring(std::uint32_t vertex) const;
 
   /// The loops around a set of faces: each edge between a face inside and one that is not (or none) is in one loop,
   /// once for each inside face. Where several sectors of the set meet in a vertex, a loop follows its own sector.

@@ -1,7 +1,9 @@
 # The question itself: scene floats, lights and their samples, the exact truth of a pair, the tree, bits files. No device.
+find_package(CGAL REQUIRED)
 penumbra_test(visibility
   SOURCES
   property/signed_crossings.cpp
+  property/signed_crossings_sum.cpp
   property/visibility_invariance.cpp
   property/visibility_pair_truth.cpp
   property/visibility_planes.cpp
@@ -14,4 +16,4 @@ penumbra_test(visibility
   unit/visibility_scene_floats.cpp
   unit/visibility_view_samples.cpp
   # GMP's rationals are the judge of the exact predicates: another library, another formula.
-  LIBRARIES penumbra_visibility TBB::tbb gmpxx gmp)
+  LIBRARIES penumbra_visibility CGAL::CGAL TBB::tbb gmpxx gmp)

@@ -15,7 +15,7 @@ penumbra_test(wedges
   LIBRARIES penumbra_wedges penumbra_reference penumbra_scenes ${RAPIDCHECK} gmpxx gmp)
 penumbra_cgal_corpus(wedges_test)
 
-penumbra_test(volumes FULL *FullMillions*
+penumbra_test(volumes
   SOURCES
   agreement/depth_complexity_scenes.cpp
   agreement/edge_crop.cpp
@@ -29,7 +29,6 @@ penumbra_test(volumes FULL *FullMillions*
   agreement/wedge_ramp.cpp
   property/depth_complexity_counters.cpp
   property/depth_complexity_lattice.cpp
-  property/facing_pass.cpp
   property/hard_volume_exact.cpp
   property/packed_counters.cpp
   property/row_sweep.cpp

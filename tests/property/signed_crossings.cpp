@@ -5,7 +5,7 @@
 
 #include "mesh/silhouettes.hpp"
 #include "visibility/pair_truth.hpp"
-#include "visibility/signed_crossings.hpp"
+#include "tests/property/signed_crossings_sum.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -7,7 +7,12 @@
 #include "mesh/shapes/shapes.hpp"
 #include "volumes/edges/silhouette_pass.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
 
 namespace penumbra::volumes {
 namespace {
@@ -46,6 +51,21 @@ class SilhouettePassTest : public tests::DeviceTest {
     const std::vector<mesh::SilhouetteEdge> last = pass_.read_edges();
     pass_.evaluate(points.back(), some);
     EXPECT_EQ(pass_.read_edges(), last) << name << ": once more";
+  }
+
+  /// Facings alone; returns how many of them the device left to the host.
+  std::uint64_t expect_facings(const std::string& name, const Mesh& mesh, const std::vector<glm::vec3>& points) {
+    EXPECT_TRUE(pass_.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph}));
+    const std::vector<std::uint32_t> none(mesh.triangles.size(), 0U);
+    std::uint64_t open = 0;
+    for (const glm::vec3& l : points) {
+      pass_.evaluate(l, none);
+      std::vector<std::uint32_t> expected;
+      for (const mesh::Side side : mesh::facings(mesh.view(), mesh.graph, l)) expected.push_back(bits_of(side));
+      EXPECT_EQ(pass_.read_sides(), expected) << name << " from " << tests::text_of(l);
+      open += pass_.open_facings();
+    }
+    return open;
   }
 
   void expect_edges(const std::string& name, const Mesh& mesh, const glm::vec3& l,
@@ -129,6 +149,86 @@ TEST_F(SilhouettePassTest, LatticeSoups) {
              tally_.ties, tally_.open);
   EXPECT_GT(tally_.ties, 1000U);
   EXPECT_GT(tally_.open, 100U);
+}
+
+TEST_F(SilhouettePassTest, TiesOnAxisAlignedPlanesNeedNoHost) {
+  // Level and upright triangles, points of a lattice: nothing but exact products and exact zeros.
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> step(-5, 5);
+  std::vector<glm::vec3> points(60);
+  for (glm::vec3& p : points) {
+    for (int i = 0; i < 3; ++i) p[i] = 0.25F * static_cast<float>(step(random));
+  }
+  for (const mesh::TriangleSoup& shape :
+       {mesh::make_grid({.cells_u = 8, .cells_v = 8}), mesh::make_box({0, 0, 0}, {1, 0.5, 0.25})}) {
+    EXPECT_EQ(expect_facings("axis-aligned", Mesh(shape), points), 0U);
+  }
+}
+
+TEST_F(SilhouettePassTest, FacingsAtHugeAndTinyScales) {
+  const mesh::TriangleSoup blob = mesh::make_blob({.subdivisions = 2});
+  for (const double scale : {1e-44, 1e-40, 1e-38, 1e-37, 1e-30, 1e-20, 1e-10, 1e5, 1e15, 1e30, 1e38}) {
+    const Mesh mesh(blob, scale);
+    std::vector<glm::vec3> points;
+    for (const glm::vec3& p : around(4, 20, 2)) points.emplace_back(glm::dvec3(p) * scale);
+    const std::uint64_t open = expect_facings(fmt::format("times {}", scale), mesh, points);
+    if (scale > 1e-37) {
+      EXPECT_LT(open, points.size() * mesh.triangles.size() / 1000) << scale;
+    }
+  }
+}
+
+mesh::TriangleSoup loose_triangles(std::size_t count, const std::function<glm::vec3()>& corner) {
+  mesh::TriangleSoup soup;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (int k = 0; k < 3; ++k) soup.positions.emplace_back(corner());
+    soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return soup;
+}
+
+std::vector<glm::vec3> many(std::size_t count, const std::function<glm::vec3()>& point) {
+  std::vector<glm::vec3> points(count);
+  std::ranges::generate(points, point);
+  return points;
+}
+
+TEST_F(SilhouettePassTest, FacingsWithMagnitudesMixedInOneMesh) {
+  // From the least subnormal to the largest float side by side, in corners and points alike.
+  const std::array<float, 14> values = {0,       -0.0F, 1,      -1,       1.5F,      1 + 0x1p-23F, 1e-20F,
+                                        -1e-20F, 1e15F, -1e15F, 0x1p-80F, 0x1p-126F, 0x1p-149F,    3e38F};
+  std::mt19937 random(5);
+  for (const std::size_t most : {7U, 9U, 13U, 14U}) {
+    const auto value = [&] { return values[std::uniform_int_distribution<std::size_t>(0, most - 1)(random)]; };
+    const auto point = [&] {
+      const float x = value(), y = value(), z = value();
+      return glm::vec3(x, y, z);
+    };
+    expect_facings(fmt::format("{} magnitudes", most), Mesh(loose_triangles(300, point)), many(40, point));
+  }
+}
+
+TEST_F(SilhouettePassTest, FacingsOfNearlyCoplanarTriangles) {
+  // Triangles of one tilted plane and points on it, each height rounded or moved by an ulp: most are left open.
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> draw(-1, 1);
+  std::uniform_int_distribution<int> draw_step(-1, 1);
+  const auto near_plane = [&] {
+    const float x = draw(random), y = draw(random);
+    float z = 0.3F * x - 0.7F * y;
+    const int step = draw_step(random);
+    if (step != 0) z = std::nextafter(z, static_cast<float>(step) * std::numeric_limits<float>::infinity());
+    return glm::vec3(x, y, z);
+  };
+  const Mesh mesh(loose_triangles(200, near_plane));
+  EXPECT_GT(expect_facings("one plane", mesh, many(60, near_plane)), 60U * 200 / 2);
+  // Needles, whose normals are nothing but rounding.
+  const auto near_line = [&] {
+    const float t = draw(random);
+    const float y = std::nextafter(3 * t, 9 * draw(random)), z = std::nextafter(5 * t, 9 * draw(random));
+    return glm::vec3(t, y, z);
+  };
+  expect_facings("needles", Mesh(loose_triangles(200, near_line)), many(60, near_line));
 }
 
 TEST_F(SilhouettePassTest, NothingIsNoSilhouette) {

@@ -113,16 +113,5 @@ TEST(Pairs, CountsOfBandsAddUp) {
   EXPECT_EQ(sum, (PairCounts{110, 55, 3}));
 }
 
-TEST(Pairs, TheJudgeSaysWhoWasRight) {
-  Masks masks;
-  masks.reference[0] ^= 1u << 31;  // the method says visible
-  masks.reference[2] = 5;          // the method says hidden, twice
-  // Truth: pixel 0's pair is visible, pixel 1's sample 0 hidden, its sample 2 visible by a tie.
-  const PairVerdicts verdicts = judge_pairs(masks.pair(), masks.pixels, [](std::uint32_t pixel, std::uint32_t sample) {
-    return PairDecision{pixel == 0 || sample == 2, sample == 2};
-  });
-  EXPECT_EQ(verdicts, (PairVerdicts{3, 2, 1, 1}));
-}
-
 }  // namespace
 }  // namespace penumbra::compare

@@ -2,9 +2,10 @@
 #ifdef __cplusplus
 #pragma once
 #include "volumes/edges/facing.shared.h"
-#endif
-#ifdef __cplusplus
+
+#include <cstdint>
 namespace penumbra::volumes::gpu {
+using uint = std::uint32_t;
 #endif
 
 /// Bits 0 and 1 of a triangle's word: is the light in front of it, behind it (neither: on its plane, or no area)? Bits

@@ -4,7 +4,9 @@
 #include "volumes/edges/facing.shared.h"
 #include "volumes/edges/silhouette.shared.h"
 
-// On which side of every triangle is one point? A lane a triangle: facing.comp, whose bound this is, has a lane a point.
+// On which side of every triangle is one point? One lane for each triangle. A sign counts only beyond its error bound
+// (README.md, Bounds); a triangle whose sign is within it gets both bits and goes on a list for the host. No branch on
+// the way.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Triangles { FacingTriangle triangles[]; };

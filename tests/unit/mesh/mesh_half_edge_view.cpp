@@ -155,26 +155,6 @@ TEST(HalfEdgeView, BoundaryLoopsOfKnownShapes) {
   EXPECT_EQ(hole[0].edges.size(), 3u);
 }
 
-TEST(HalfEdgeView, OneRingsRunAroundTheirVertex) {
-  GridShape grid;
-  grid.cells_u = grid.cells_v = 4;
-  const HalfEdgeView surface = half_edges(make_grid(grid));
-  std::size_t closed = 0, faces = 0;
-  for (std::uint32_t v = 0; v < surface.point_of_vertex().size(); ++v) {
-    const OneRing ring = surface.one_ring(v);
-    closed += ring.closed ? 1 : 0;
-    faces += ring.faces.size();
-    ASSERT_EQ(ring.vertices.size(), ring.faces.size() + (ring.closed ? 0 : 1));
-    for (std::size_t i = 0; i < ring.faces.size(); ++i) {  // the face (v, vertices[i], vertices[i + 1]), as it is wound
-      Triangle corners = surface.corners(ring.faces[i]);
-      std::rotate(corners.begin(), std::ranges::find(corners, v), corners.end());
-      EXPECT_EQ(corners, (Triangle{v, ring.vertices[i], ring.vertices[(i + 1) % ring.vertices.size()]}));
-    }
-  }
-  EXPECT_EQ(closed, 9u);
-  EXPECT_EQ(faces, 3u * 32u);
-}
-
 TEST(HalfEdgeView, SilhouettesOfClosedShapesAreTheSilhouetteEdges) {
   for (const TriangleSoup& soup : {make_torus({}), make_knot({}), make_blob({})}) {
     const EdgeGraph graph = build_edge_graph(view(soup));

@@ -2,7 +2,7 @@
 // whose sections the comments name. Works on edges that scatter methods would project onto the light; a method in
 // floats has this one as its twin.
 
-#include "visibility/signed_crossings.hpp"
+#include "tests/property/signed_crossings_sum.hpp"
 
 #include "base/assert.hpp"
 #include "mesh/silhouettes.hpp"
