@@ -131,7 +131,7 @@ Edge see(uint slot, bool used) {
 
   const bool seen = used && (both != 0 || open) && from <= to;
   const bool through_p = seen && min(seen_a.z, seen_b.z) < 64.0 * kRound * far;
-  open_pixel = open_pixel || through_p;                   // it passes through p, but for rounding
+  open_pixel = open_pixel || through_p;                   // it passes through p within rounding
   side_in_doubt = side_in_doubt || (seen && open);
   Edge edge;
   edge.a = seen_a.xy;
@@ -144,6 +144,10 @@ Edge see(uint slot, bool used) {
   edge.matters = seen && !through_p && !beside;
   return edge;
 }
+
+// The direction of an edge that appears with these differences of its ends; any direction where they are so near that it
+// is a point beside its error of 2⁻¹⁷ of a cell or more (bound near). (1e-12)² is a normal float, so the length is right.
+vec2 direction_of(vec2 d, float size) { return size > 1e-12 ? d / size : vec2(1.0, 0.0); }
 
 // Is x as near to the edge from a to b as `error`? `direction` is of unit length.
 bool is_near(vec2 x, vec2 a, vec2 direction, float size, float error) {
@@ -177,7 +181,7 @@ void drain(uint queued) {
       const vec4 ends = queue_ends[e];
       const vec2 more = queue_more[e], a = ends.xy, b = ends.zw, d = b - a;
       const float size = sqrt(dot(d, d));
-      const vec2 direction = size > 1e-12 ? d / size : vec2(1.0, 0.0);
+      const vec2 direction = direction_of(d, size);
       const int k = int(more.y);
       for (uint i = 0; i < kEach; ++i) {
         const float side_a = beside_way(x[i], a), side_b = beside_way(x[i], b);
@@ -211,7 +215,7 @@ void count_list(uint head) {
       // c0 as near to it: D at c0 is not that of the edges as projected.
       const vec2 d = edge.b - edge.a;
       const float size = sqrt(dot(d, d));
-      open_pixel = open_pixel || (edge.matters && is_near(vec2(0.0), edge.a, size > 1e-12 ? d / size : vec2(1.0, 0.0), size, edge.error));
+      open_pixel = open_pixel || (edge.matters && is_near(vec2(0.0), edge.a, direction_of(d, size), size, edge.error));
       const uvec4 all = subgroupBallot(edge.matters);
       const uint place = queued + subgroupBallotExclusiveBitCount(all);
       if (edge.matters) {

@@ -8,7 +8,9 @@
 
 namespace penumbra::volumes {
 
-/// What the summed coverage may be off by where it must be exact.
+/// What the summed coverage may be off by where it must be exact: far above what rounding adds (1e-14 measured,
+/// docs/coverage.md), far below what one wrong edge changes on a visible part of the light. Not a bound but a limit
+/// that `wedges --validate` states.
 inline constexpr double kCoverageTolerance = 1e-6;
 /// Layers that overlap by less of the light are taken for a single one: a tenth of the tolerance.
 inline constexpr double kSingleLayer = 1e-7;
@@ -33,8 +35,8 @@ inline constexpr double kMostOverlap = 4;
 std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visibility::Light& light,
                                           std::span<const LitPoint> samples, ValidationReport& report);
 
-/// The same invariant against the exact area of the union, `hidden`, which the caller knows: the sum is at least that
-/// and at most `overlap` more; so for a single layer equal to it. `error` bounds that of `hidden` itself.
+/// Checks the invariant `coverage` against the exact area of the union, `hidden`, which the caller knows: the sum is at
+/// least that and at most `overlap` more; so for a single layer equal to it. `error` bounds that of `hidden` itself.
 void check_union(const CoveragePoint& point, double hidden, double error, ValidationReport& report);
 
 }  // namespace penumbra::volumes

@@ -114,8 +114,12 @@ double TextureWeights::along_rim(double position) const {
 double TextureWeights::beyond(const Edge& edge, const glm::dvec2& reference) const {
   const double first = rim_position(reference, edge.from), last = rim_position(reference, edge.to);
   double way = last - first;  // of 8 in all
-  if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(way, 8.0)) < 1e-6) {
-    way = std::remainder(way, 8.0);  // hardly a turn: whatever rounding says of its sign
+  // An edge whose ends are less than 90° apart turns past at most 6 of the rim's 8: of the four axis directions it
+  // passes at most one, so the rest of the turn passes three neighbours, which have a whole side of the square between
+  // them. So of way and way ± 8 one below 1 is the right one, whatever rounding says of its sign; above, its sign is
+  // certain.
+  if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(way, 8.0)) < 1) {
+    way = std::remainder(way, 8.0);
   } else {
     way += edge.side > 0 && way < 0 ? 8 : edge.side < 0 && way > 0 ? -8 : 0;
   }
