@@ -68,7 +68,8 @@ struct EdgeGraph {
 /// vertex lies where the first of them does. Sorts, in parallel: O(n log n) time with a small constant, linear memory.
 EdgeGraph build_edge_graph(const MeshView& mesh, double weld = 0);
 
-/// The same coordinates in double: float meshes (SceneFloats) use the graph through these.
+/// Float coordinates converted to double, which the graph takes: float meshes (SceneFloats) are given to it through
+/// this.
 std::vector<glm::dvec3> widened(std::span<const glm::vec3> positions);
 
 }  // namespace penumbra::mesh

@@ -218,20 +218,4 @@ std::vector<SurfaceLoop> HalfEdgeView::silhouette_loops(std::span<const Side> fa
   return loops_around(inside);
 }
 
-std::string_view reason(NotHeld why) {
-  switch (why) {
-    case NotHeld::repeated_vertex:
-      return "two corners are the same point";
-    case NotHeld::collinear:
-      return "its corners lie on a line";
-    case NotHeld::crowded_edge:
-      return "an edge of it has more than two triangles";
-    case NotHeld::not_orientable:
-      return "its neighbours want it wound both ways";
-    case NotHeld::refused:
-      return "OpenMesh refused it";
-  }
-  return "";
-}
-
 }  // namespace penumbra::mesh

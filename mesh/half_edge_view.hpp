@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
-/// The manifold, orientable parts of a soup as a half-edge structure (OpenMesh), for whoever walks on surfaces: rings,
+/// The manifold, orientable parts of a soup as a half-edge structure (OpenMesh), for code that walks on surfaces:
 /// loops, components. Faces that such a structure cannot hold are listed, each with its reason, and stay on the soup
 /// path: nothing that decides about shadows may look at this view alone.
 namespace penumbra::mesh {
@@ -22,7 +21,6 @@ enum class NotHeld : std::uint8_t {
   not_orientable,   ///< its neighbours that are held want it wound both ways (it closes a Möbius band)
   refused,          ///< OpenMesh would not take it; not known to happen
 };
-std::string_view reason(NotHeld why);
 
 struct ListedFace {
   std::uint32_t triangle = 0;

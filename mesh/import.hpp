@@ -36,8 +36,8 @@ struct ImportLimits {
 /// that is not finite, a file shorter than its header promises.
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits = {});
 
-/// The same for a file that has been opened. glTF finds its buffers in the file's folder and below, or anywhere if
-/// `allow_outside`.
+/// Reads a mesh file that has been opened already. glTF finds its buffers in the file's folder and below, or anywhere
+/// if `allow_outside`.
 ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits = {}, bool allow_outside = false);
 
 }  // namespace penumbra::mesh

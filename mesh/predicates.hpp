@@ -9,7 +9,7 @@
 /// error bound suffices, exact numbers where not). Every topological decision goes through here; no epsilon does.
 namespace penumbra::mesh {
 
-/// Three outcomes. Whoever meets a tie reads it the one documented way: a triangle whose plane contains the point p
+/// Three outcomes. A tie is read in one documented way everywhere: a triangle whose plane contains the point p
 /// is seen edge-on from p, counts 0 on all three of its edges, and is not met (docs/definitions.md, "Truth of a pair").
 enum class Side { back = -1, on = 0, front = 1 };
 

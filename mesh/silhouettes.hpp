@@ -36,7 +36,7 @@ struct SilhouetteEdge {
 std::vector<SilhouetteEdge> silhouette_edges(const MeshView& mesh, const EdgeGraph& graph, const glm::dvec3& p);
 
 /// The edges that may be silhouettes as seen from some point of the convex hull of `corners` (a light's corners, the
-/// corners of a box of receivers), ascending: conservative, and exact but for edges with triangles that the hull's
+/// corners of a box of receivers), ascending: conservative, and exact except for edges with triangles that the hull's
 /// points see from both sides. Why none is missed: (a, b, c; p) is affine in p, so a triangle whose sign is the same
 /// at every corner has that sign on the whole hull. An edge is dropped only when its triangles are such, with sum 0,
 /// or cancel in pairs on the same plane on either side of the edge, where the signs are opposite for every p.

@@ -45,7 +45,7 @@ struct Diagnosis {
   /// is closed by another component's edges, or across T-junctions, is closed), and a sheet that is merely doubled is
   /// not.
   bool closed = false;
-  /// The same as the triangles are wound now, nothing turned.
+  /// Closed with the triangles wound as they are, none turned.
   bool closed_as_wound = false;
 
   Defect boundary_edges;             ///< exactly one triangle

@@ -63,7 +63,7 @@ class PairTest {
   static bool meet_away_from_vertex(const std::array<Point, 3>& p, const std::array<Point, 3>& q) {
     const CGAL::Orientation q1 = CGAL::orientation(p[0], p[1], p[2], q[1]);
     const CGAL::Orientation q2 = CGAL::orientation(p[0], p[1], p[2], q[2]);
-    if (q1 == q2 && q1 != CGAL::COPLANAR) return false;  // strictly on one side, but for the vertex
+    if (q1 == q2 && q1 != CGAL::COPLANAR) return false;  // strictly on one side, except for the shared vertex
     const Kernel::Triangle_3 s(p[0], p[1], p[2]), t(q[0], q[1], q[2]);
     return CGAL::do_intersect(s, Kernel::Segment_3(q[1], q[2])) || CGAL::do_intersect(t, Kernel::Segment_3(p[1], p[2]));
   }

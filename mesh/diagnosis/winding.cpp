@@ -88,7 +88,7 @@ std::array<std::array<double, 3>, 3> sorted_corners(const MeshView& mesh, const 
   return sorted;
 }
 
-/// A patch of neighbours, all wound like its first triangle but for those in `turned`; nothing if they cannot be.
+/// A patch of neighbours, all wound like its first triangle except those in `turned`; nothing if that is impossible.
 struct Patch {
   std::vector<std::uint32_t> triangles;
   bool orientable = true;

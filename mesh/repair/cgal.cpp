@@ -275,7 +275,7 @@ Components find_components(const TriangleSoup& soup) {
   return components;
 }
 
-TriangleSoup turn_outward(const TriangleSoup& soup, Mending& mending) {
+TriangleSoup turn_outward(const TriangleSoup& soup, RepairRecord& record) {
   const QuietCgal quiet;
   const Components parts = find_components(soup);
   std::vector<std::uint32_t> closed;
@@ -286,15 +286,15 @@ TriangleSoup turn_outward(const TriangleSoup& soup, Mending& mending) {
   CgalSurface surface = to_cgal(soup, closed);
   const std::vector<std::uint32_t> turned =
       pmp::does_self_intersect(surface.mesh) ? inside_out_parts(soup, parts) : inverted_parts(soup, parts, surface);
-  TriangleSoup mended = soup;
+  TriangleSoup repaired = soup;
   for (const std::uint32_t part : turned) {
-    for (const std::uint32_t t : parts.triangles[part]) std::swap(mended.triangles[t][1], mended.triangles[t][2]);
+    for (const std::uint32_t t : parts.triangles[part]) std::swap(repaired.triangles[t][1], repaired.triangles[t][2]);
   }
-  mending[Mend::outward] += turned.size();
-  return mended;
+  record[RepairKind::outward] += turned.size();
+  return repaired;
 }
 
-TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Mending& mending) {
+TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, RepairRecord& record) {
   const QuietCgal quiet;
   CgalSurface surface = to_cgal(soup);
   FillingJudge judge(soup);
@@ -316,26 +316,26 @@ TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Mend
     }
   }
   const std::set<std::size_t> crossing = crossing_fillings(tried, soup.triangles.size());
-  TriangleSoup mended = soup;
+  TriangleSoup repaired = soup;
   for (const Filling& filling : fillings) {
     const auto end = crossing.lower_bound(filling.first_triangle + filling.triangles);
     if (crossing.lower_bound(filling.first_triangle) != end) {
       ++unfilled;
       continue;
     }
-    ++mending[Mend::hole];
-    mending[Mend::hole_face] += filling.triangles;
+    ++record[RepairKind::hole];
+    record[RepairKind::hole_face] += filling.triangles;
     const auto first = tried.triangles.begin() + static_cast<std::ptrdiff_t>(filling.first_triangle);
-    mended.triangles.insert(mended.triangles.end(), first, first + static_cast<std::ptrdiff_t>(filling.triangles));
-    mended.object.resize(mended.triangles.size(), soup.object[filling.neighbour]);
-    mended.source_face.resize(mended.triangles.size(), soup.source_face[filling.neighbour]);
+    repaired.triangles.insert(repaired.triangles.end(), first, first + static_cast<std::ptrdiff_t>(filling.triangles));
+    repaired.object.resize(repaired.triangles.size(), soup.object[filling.neighbour]);
+    repaired.source_face.resize(repaired.triangles.size(), soup.source_face[filling.neighbour]);
   }
   if (unfilled > 0) {
-    mending.left.push_back(fmt::format(
+    record.left.push_back(fmt::format(
         "{} holes of at most {} edges stay open: their filling would have no area, or lie on or cross what is there",
         unfilled, most_edges));
   }
-  return mended;
+  return repaired;
 }
 
 }  // namespace penumbra::mesh

@@ -158,39 +158,39 @@ class Duplicates {
 
 }  // namespace
 
-TriangleSoup remove_empty_triangles(const TriangleSoup& soup, double weld, Mending& mending) {
+TriangleSoup remove_empty_triangles(const TriangleSoup& soup, double weld, RepairRecord& record) {
   const EdgeGraph graph = build_edge_graph({soup.positions, soup.triangles}, weld);
   const Subdivision subdivision(soup, graph);
-  TriangleSoup mended{soup.positions, {}, {}, {}};
+  TriangleSoup repaired{soup.positions, {}, {}, {}};
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
     if (graph.kind[t] != TriangleKind::proper) {
-      ++mending[graph.kind[t] == TriangleKind::repeated ? Mend::repeated : Mend::collinear];
+      ++record[graph.kind[t] == TriangleKind::repeated ? RepairKind::repeated : RepairKind::collinear];
       continue;
     }
     std::vector<Triangle> pieces;
     if (!subdivision.empty()) pieces = split(graph.corners(soup.triangles[t]), subdivision);
     if (pieces.empty()) {
-      add(mended, soup, t, soup.triangles[t]);
+      add(repaired, soup, t, soup.triangles[t]);
       continue;
     }
-    ++mending[Mend::split_face];
-    for (const Triangle& piece : pieces) add(mended, soup, t, piece);
+    ++record[RepairKind::split_face];
+    for (const Triangle& piece : pieces) add(repaired, soup, t, piece);
   }
-  return mended;
+  return repaired;
 }
 
-TriangleSoup remove_duplicates(const TriangleSoup& soup, double weld, Mending& mending) {
+TriangleSoup remove_duplicates(const TriangleSoup& soup, double weld, RepairRecord& record) {
   const EdgeGraph graph = build_edge_graph({soup.positions, soup.triangles}, weld);
   const std::vector<bool> keep = Duplicates(soup, graph).kept();
-  TriangleSoup mended{soup.positions, {}, {}, {}};
+  TriangleSoup repaired{soup.positions, {}, {}, {}};
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
     if (keep[t]) {
-      add(mended, soup, t, soup.triangles[t]);
+      add(repaired, soup, t, soup.triangles[t]);
     } else {
-      ++mending[Mend::duplicate];
+      ++record[RepairKind::duplicate];
     }
   }
-  return mended;
+  return repaired;
 }
 
 TriangleSoup without_unused_positions(const TriangleSoup& soup) {

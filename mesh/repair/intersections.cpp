@@ -117,7 +117,7 @@ std::vector<FacePair> intersections(const CgalMesh& mesh) {
   return pairs;
 }
 
-TriangleSoup resolve_intersections(const TriangleSoup& soup, Mending& mending) {
+TriangleSoup resolve_intersections(const TriangleSoup& soup, RepairRecord& record) {
   const QuietCgal quiet;
   const CgalSurface whole = to_cgal(soup);
   const Components parts = find_components(soup);
@@ -128,7 +128,7 @@ TriangleSoup resolve_intersections(const TriangleSoup& soup, Mending& mending) {
     if (part == parts.of_triangle[whole.triangle[g]]) ++within[part];
     ++left;
   }
-  TriangleSoup mended{soup.positions, {}, {}, {}};
+  TriangleSoup repaired{soup.positions, {}, {}, {}};
   for (std::uint32_t part = 0; part < parts.triangles.size(); ++part) {
     std::optional<CgalSurface> better;
     std::size_t resolved = 0;
@@ -140,21 +140,21 @@ TriangleSoup resolve_intersections(const TriangleSoup& soup, Mending& mending) {
       }
     }
     if (better) {
-      append(mended, soup, *better, parts.triangles[part][0]);
-      mending[Mend::intersection] += resolved;
+      append(repaired, soup, *better, parts.triangles[part][0]);
+      record[RepairKind::intersection] += resolved;
       continue;
     }
     for (const std::uint32_t t : parts.triangles[part]) {
-      mended.triangles.push_back(soup.triangles[t]);
-      mended.object.push_back(soup.object[t]);
-      mended.source_face.push_back(soup.source_face[t]);
+      repaired.triangles.push_back(soup.triangles[t]);
+      repaired.object.push_back(soup.object[t]);
+      repaired.source_face.push_back(soup.source_face[t]);
     }
   }
-  if (mending[Mend::intersection] == 0 && left > 0) {
-    mending.left.push_back(fmt::format("{} pairs of triangles intersect still", left));
+  if (record[RepairKind::intersection] == 0 && left > 0) {
+    record.left.push_back(fmt::format("{} pairs of triangles intersect still", left));
   }
-  if (failed > 0) mending.left.push_back(fmt::format("CGAL gave up on the intersections of {} parts", failed));
-  return mending[Mend::intersection] == 0 ? soup : without_unused_positions(mended);
+  if (failed > 0) record.left.push_back(fmt::format("CGAL gave up on the intersections of {} parts", failed));
+  return record[RepairKind::intersection] == 0 ? soup : without_unused_positions(repaired);
 }
 
 }  // namespace penumbra::mesh

@@ -40,10 +40,10 @@ struct Spoke {
 
 class Joiner {
  public:
-  Joiner(const TriangleSoup& soup, const EdgeGraph& graph, Mending& mending)
+  Joiner(const TriangleSoup& soup, const EdgeGraph& graph, RepairRecord& record)
       : soup_(soup),
         graph_(graph),
-        mending_(mending),
+        record_(record),
         turn_(soup.triangles.size(), false),
         mate_(3 * soup.triangles.size(), kNone) {}
 
@@ -115,7 +115,7 @@ class Joiner {
       }
     }
     if (twisted > 0) {
-      mending_.left.push_back(fmt::format(
+      record_.left.push_back(fmt::format(
           "{} edges stay cut open: no winding of their surface is consistent there (as on a Möbius band)", twisted));
     }
   }
@@ -228,27 +228,27 @@ class Joiner {
     std::set<std::uint32_t> used;
     for (const auto& [index, fan] : uses) {
       if (used.insert(index).second && soup_.positions[index] != soup_.positions[graph_.vertex[index]]) {
-        ++mending_[Mend::moved];
+        ++record_[RepairKind::moved];
       }
     }
     // Each fan is one position in the end: a use of a second position is a merge, a second use of one is a split.
-    mending_[Mend::merged] += uses.size() - fans_;
-    mending_[Mend::split_vertex] += uses.size() - used.size();
-    mending_[Mend::unused] += soup_.positions.size() - used.size();
-    mending_[Mend::turned] += static_cast<std::uint64_t>(std::ranges::count(turn_, true));
+    record_[RepairKind::merged] += uses.size() - fans_;
+    record_[RepairKind::split_vertex] += uses.size() - used.size();
+    record_[RepairKind::unused] += soup_.positions.size() - used.size();
+    record_[RepairKind::turned] += static_cast<std::uint64_t>(std::ranges::count(turn_, true));
     for (std::uint32_t h = 0; h < mate_.size(); ++h) {
       if (mate_[h] != kNone && mate_[h] > h && positions_at_ends(h) != positions_at_ends(mate_[h])) {
-        ++mending_[Mend::stitched];
+        ++record_[RepairKind::stitched];
       }
     }
     for (std::uint32_t edge = 0; edge < graph_.edges.size(); ++edge) {
       bool crowded = false;
       for_each_crowd(
           edge, [&](std::uint32_t h) { return positions_at_ends(h); }, [&](const auto&) { crowded = true; });
-      mending_[Mend::split_edge] += crowded ? 1 : 0;
+      record_[RepairKind::split_edge] += crowded ? 1 : 0;
     }
     if (detached_ > 0) {
-      mending_.left.push_back(
+      record_.left.push_back(
           fmt::format("{} triangles stay cut off: their surface touches itself along single edges", detached_));
     }
   }
@@ -258,20 +258,20 @@ class Joiner {
   }
 
   [[nodiscard]] TriangleSoup result() const {
-    TriangleSoup mended{{}, {}, soup_.object, soup_.source_face};
-    mended.positions.resize(fans_);
+    TriangleSoup repaired{{}, {}, soup_.object, soup_.source_face};
+    repaired.positions.resize(fans_);
     for (std::uint32_t t = 0; t < turn_.size(); ++t) {
-      for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i) mended.positions[fan_[i]] = soup_.positions[vertex(i)];
+      for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i) repaired.positions[fan_[i]] = soup_.positions[vertex(i)];
       Triangle corners = {fan_[3 * t], fan_[3 * t + 1], fan_[3 * t + 2]};
       if (turn_[t]) std::swap(corners[1], corners[2]);
-      mended.triangles.push_back(corners);
+      repaired.triangles.push_back(corners);
     }
-    return mended;
+    return repaired;
   }
 
   const TriangleSoup& soup_;
   const EdgeGraph& graph_;
-  Mending& mending_;
+  RepairRecord& record_;
   std::vector<bool> turn_;
   std::vector<std::uint32_t> mate_;  // for each half-edge, the one it is joined to
   std::vector<std::uint32_t> fan_;   // for each corner
@@ -281,11 +281,11 @@ class Joiner {
 
 }  // namespace
 
-TriangleSoup join(const TriangleSoup& soup, double weld, Mending& mending) {
+TriangleSoup join(const TriangleSoup& soup, double weld, RepairRecord& record) {
   const EdgeGraph graph = build_edge_graph({soup.positions, soup.triangles}, weld);
   PENUMBRA_ASSERT(std::ranges::all_of(graph.kind, [](TriangleKind kind) { return kind == TriangleKind::proper; }),
                   "a triangle without area is left among {}", graph.kind.size());
-  return Joiner(soup, graph, mending).joined();
+  return Joiner(soup, graph, record).joined();
 }
 
 }  // namespace penumbra::mesh

@@ -30,26 +30,28 @@ Repaired repair(const TriangleSoup&, const RepairOptions&) {
 
 namespace {
 
-constexpr int kMostPasses = 8;  // two suffice but for tangles; each costs a sort of all edges
+constexpr int kMostPasses = 8;  // two suffice for all but tangled meshes; each costs a sort of all edges
 
 /// The sentences, in the order of the steps. {} is the count.
-constexpr std::array<std::pair<Mend, std::string_view>, static_cast<std::size_t>(Mend::kinds)> kSentences = {{
-    {Mend::repeated, "removed {} triangles with two corners at one point"},
-    {Mend::collinear, "removed {} triangles whose corners lie on a line"},
-    {Mend::split_face, "split {} triangles at vertices on their edges, which triangles without area had joined there"},
-    {Mend::duplicate, "removed {} triangles that others repeat"},
-    {Mend::moved, "moved {} positions onto others within the welding distance"},
-    {Mend::merged, "merged {} repeated positions"},
-    {Mend::stitched, "stitched {} edges along which triangles met without sharing their vertices"},
-    {Mend::split_edge, "split {} edges that joined more triangles than a surface has there"},
-    {Mend::split_vertex, "split {} vertices in which surfaces only touched"},
-    {Mend::turned, "turned {} triangles to agree with their neighbours"},
-    {Mend::outward, "turned {} closed parts inside out, to face outward (or, in others, inward)"},
-    {Mend::hole, "filled {} holes"},
-    {Mend::hole_face, "added {} triangles in holes"},
-    {Mend::intersection, "resolved {} intersecting pairs of triangles by remeshing around them"},
-    {Mend::unused, "dropped {} positions that no triangle used"},
-}};
+constexpr std::array<std::pair<RepairKind, std::string_view>, static_cast<std::size_t>(RepairKind::kinds)> kSentences =
+    {{
+        {RepairKind::repeated, "removed {} triangles with two corners at one point"},
+        {RepairKind::collinear, "removed {} triangles whose corners lie on a line"},
+        {RepairKind::split_face,
+         "split {} triangles at vertices on their edges, which triangles without area had joined there"},
+        {RepairKind::duplicate, "removed {} triangles that others repeat"},
+        {RepairKind::moved, "moved {} positions onto others within the welding distance"},
+        {RepairKind::merged, "merged {} repeated positions"},
+        {RepairKind::stitched, "stitched {} edges along which triangles met without sharing their vertices"},
+        {RepairKind::split_edge, "split {} edges that joined more triangles than a surface has there"},
+        {RepairKind::split_vertex, "split {} vertices in which surfaces only touched"},
+        {RepairKind::turned, "turned {} triangles to agree with their neighbours"},
+        {RepairKind::outward, "turned {} closed parts inside out, to face outward (or, in others, inward)"},
+        {RepairKind::hole, "filled {} holes"},
+        {RepairKind::hole_face, "added {} triangles in holes"},
+        {RepairKind::intersection, "resolved {} intersecting pairs of triangles by remeshing around them"},
+        {RepairKind::unused, "dropped {} positions that no triangle used"},
+    }};
 
 /// One after another; a step of CGAL's that fails leaves the soup as it was.
 class Pass {
@@ -57,44 +59,45 @@ class Pass {
   Pass(const TriangleSoup& soup, const RepairOptions& options) : soup_(soup), options_(options) {}
 
   void run() {
-    soup_ = remove_empty_triangles(soup_, options_.weld, mending_);
-    soup_ = remove_duplicates(soup_, options_.weld, mending_);
-    soup_ = join(soup_, options_.weld, mending_);
+    soup_ = remove_empty_triangles(soup_, options_.weld, record_);
+    soup_ = remove_duplicates(soup_, options_.weld, record_);
+    soup_ = join(soup_, options_.weld, record_);
     if (soup_.triangles.empty()) return;
-    attempt("orienting closed parts", [&](Mending& mending) { return turn_outward(soup_, mending); });
+    attempt("orienting closed parts", [&](RepairRecord& record) { return turn_outward(soup_, record); });
     if (options_.fill_holes_up_to > 0) {
-      attempt("filling holes", [&](Mending& mending) { return fill_holes(soup_, options_.fill_holes_up_to, mending); });
+      attempt("filling holes",
+              [&](RepairRecord& record) { return fill_holes(soup_, options_.fill_holes_up_to, record); });
     }
     if (options_.resolve_self_intersections) {
-      attempt("resolving intersections", [&](Mending& mending) { return resolve_intersections(soup_, mending); });
+      attempt("resolving intersections", [&](RepairRecord& record) { return resolve_intersections(soup_, record); });
     }
   }
 
   [[nodiscard]] bool changed() const {
-    return std::ranges::any_of(mending_.done, [](std::uint64_t count) { return count > 0; });
+    return std::ranges::any_of(record_.done, [](std::uint64_t count) { return count > 0; });
   }
-  [[nodiscard]] const Mending& mending() const { return mending_; }
+  [[nodiscard]] const RepairRecord& record() const { return record_; }
   [[nodiscard]] const TriangleSoup& soup() const { return soup_; }
 
  private:
   template <typename Step>
   void attempt(std::string_view what, Step step) {
-    Mending tried = mending_;
+    RepairRecord tried = record_;
     try {
       soup_ = step(tried);
-      mending_ = std::move(tried);
+      record_ = std::move(tried);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
       std::string message = error.what();
       std::ranges::replace(message, '\n', ' ');
-      mending_.left.push_back(fmt::format("{} failed in CGAL ({})", what, message));
+      record_.left.push_back(fmt::format("{} failed in CGAL ({})", what, message));
     }
   }
 
   TriangleSoup soup_;
   const RepairOptions& options_;
-  Mending mending_;
+  RepairRecord record_;
 };
 
 /// Rims of the joined soup: edges of one triangle, by indices.
@@ -118,16 +121,16 @@ Repaired repair(const TriangleSoup& soup, const RepairOptions& options) {
     throw UsageError("a welding distance of {} cannot be; give a length of 0 or more", options.weld);
   }
   Repaired repaired{soup, {}, {}};
-  std::array<std::uint64_t, static_cast<std::size_t>(Mend::kinds)> total{};
+  std::array<std::uint64_t, static_cast<std::size_t>(RepairKind::kinds)> total{};
   bool settled = false;
   for (int i = 0; i < kMostPasses && !settled; ++i) {
     Pass pass(repaired.soup, options);
     pass.run();
     settled = !pass.changed();
-    repaired.left = pass.mending().left;
+    repaired.left = pass.record().left;
     if (settled) break;
     repaired.soup = pass.soup();
-    for (std::size_t kind = 0; kind < total.size(); ++kind) total[kind] += pass.mending().done[kind];
+    for (std::size_t kind = 0; kind < total.size(); ++kind) total[kind] += pass.record().done[kind];
   }
   for (const auto& [kind, sentence] : kSentences) {
     const std::uint64_t count = total[static_cast<std::size_t>(kind)];

@@ -23,7 +23,7 @@ struct RepairStep {
 struct Repaired {
   TriangleSoup soup;
   std::vector<RepairStep> done;   ///< each thing it did; empty if there was nothing to do
-  std::vector<std::string> left;  ///< what it could not mend, with counts
+  std::vector<std::string> left;  ///< what it could not repair, with counts
 };
 
 /// True if this build has it (CGAL's polygon mesh processing is GPL: CMake option PENUMBRA_WITH_CGAL_GPL).

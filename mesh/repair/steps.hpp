@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-/// The steps of repair, each a function from a soup to a mended one that counts what it did. Inside mesh/ only.
+/// The steps of repair, each a function from a soup to a repaired one that counts what it did. Inside mesh/ only.
 namespace penumbra::mesh {
 
-enum class Mend : std::uint8_t {
+enum class RepairKind : std::uint8_t {
   repeated,   ///< triangles removed: two corners at one point
   collinear,  ///< triangles removed: corners on a line
   split_face,
@@ -30,27 +30,27 @@ enum class Mend : std::uint8_t {
   kinds,
 };
 
-struct Mending {
-  std::array<std::uint64_t, static_cast<std::size_t>(Mend::kinds)> done{};
+struct RepairRecord {
+  std::array<std::uint64_t, static_cast<std::size_t>(RepairKind::kinds)> done{};
   std::vector<std::string> left;
 
-  std::uint64_t& operator[](Mend kind) { return done[static_cast<std::size_t>(kind)]; }
+  std::uint64_t& operator[](RepairKind kind) { return done[static_cast<std::size_t>(kind)]; }
 };
 
 /// Removes triangles without area. Where one had joined a vertex to the edge that the vertex lies on, the triangles of
 /// that edge are split there, so that no crack opens. Cuts along lines only: the set of points stays the same.
-TriangleSoup remove_empty_triangles(const TriangleSoup& soup, double weld, Mending& mending);
+TriangleSoup remove_empty_triangles(const TriangleSoup& soup, double weld, RepairRecord& record);
 
 /// Removes triangles with the vertices and the winding of an earlier one; and the later of two wound against each other
 /// where an edge of theirs has an odd number of triangles. Other opposite pairs are the two sides of a plate or the
 /// wall between two solids: both are closed with them and open without.
-TriangleSoup remove_duplicates(const TriangleSoup& soup, double weld, Mending& mending);
+TriangleSoup remove_duplicates(const TriangleSoup& soup, double weld, RepairRecord& record);
 
 /// Winds neighbours alike, joins triangles that meet at an edge in pairs (at edges of more than two, the pairs that
 /// have a solid between them), and gives each fan of joined triangles a position of its own: merged where the file
 /// repeats one, split where surfaces only touch. What comes out is an oriented manifold by its indices alone. No
 /// triangle may be without area.
-TriangleSoup join(const TriangleSoup& soup, double weld, Mending& mending);
+TriangleSoup join(const TriangleSoup& soup, double weld, RepairRecord& record);
 
 /// Drops positions that no triangle uses.
 TriangleSoup without_unused_positions(const TriangleSoup& soup);
@@ -59,10 +59,10 @@ TriangleSoup without_unused_positions(const TriangleSoup& soup);
 
 /// Winds closed parts so that they bound a volume: outward, and inward for cavities. Where they intersect or touch, a
 /// part is turned outward only if no other part's bounds hold it.
-TriangleSoup turn_outward(const TriangleSoup& soup, Mending& mending);
+TriangleSoup turn_outward(const TriangleSoup& soup, RepairRecord& record);
 
-TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Mending& mending);
+TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, RepairRecord& record);
 
-TriangleSoup resolve_intersections(const TriangleSoup& soup, Mending& mending);
+TriangleSoup resolve_intersections(const TriangleSoup& soup, RepairRecord& record);
 
 }  // namespace penumbra::mesh

@@ -74,8 +74,8 @@ Known know_doubled_box(Count s) {
   return known;
 }
 
-/// A square ring of 2 s cells a side between its corners, lying flat but for the first side, where it turns upright and
-/// on, upside down.
+/// A square ring of 2 s cells a side between its corners, lying flat except on its first side, where it turns upright
+/// and on, upside down.
 void build_moebius(LatticeMesh& mesh, int s) {
   const int near = kCell, far = (2 * s + 1) * kCell, out = (2 * s + 2) * kCell, half = kCell / 2;
   using Rung = std::pair<glm::ivec3, glm::ivec3>;  // from inside to outside; after the turn, from outside to inside

@@ -143,13 +143,13 @@ TEST_F(Inspect, ExportsTheDefectsInColour) {
 
 TEST_F(Inspect, RepairsAndTheResultReadsBack) {
   if (!mesh::can_repair()) {
-    EXPECT_EQ(run({"inspect", cube(), "--repair", path("mended.ply")}).code, 2);
+    EXPECT_EQ(run({"inspect", cube(), "--repair", path("repaired.ply")}).code, 2);
     return;
   }
-  const Outcome outcome = run({"inspect", cube(), "--repair", path("mended.ply"), "--fill-holes", "3"});
+  const Outcome outcome = run({"inspect", cube(), "--repair", path("repaired.ply"), "--fill-holes", "3"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("done:"));
-  const json back = report({path("mended.ply")});
+  const json back = report({path("repaired.ply")});
   EXPECT_EQ(back.at("triangles"), 12);
   EXPECT_EQ(back.at("boundaryEdges"), 0);
   EXPECT_EQ(back.at("closed"), true);

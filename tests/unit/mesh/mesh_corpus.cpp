@@ -94,7 +94,7 @@ void check_repair(const TriangleSoup& soup, const std::string& name, Total& tota
   for (const RepairStep& step : repaired.done) text += "\n    " + step.what;
   for (const std::string& what : repaired.left) text += "\n    left: " + what;
   if (!text.empty()) fmt::print("{}: {} triangles, {:.2f} s{}\n", name, soup.triangles.size(), seconds, text);
-  if (!repaired.done.empty()) {  // what had nothing to mend stays as it is, however its indices are
+  if (!repaired.done.empty()) {  // what had nothing to repair stays as it is, however its indices are
     const std::size_t open = open_edges(repaired.soup);
     EXPECT_EQ(open > 0, text.find("edges are open") != std::string::npos) << open << text;
   }
@@ -119,7 +119,7 @@ void check_all(const std::vector<std::filesystem::path>& files) {
     check_half_edges(mesh.soup);
     if (can_repair()) check_repair(mesh.soup, file.filename().string(), total);
   }
-  fmt::print("{} meshes repaired: {} had nothing to mend, {} have nothing left\n", total.files, total.untouched,
+  fmt::print("{} meshes repaired: {} had nothing to repair, {} have nothing left\n", total.files, total.untouched,
              total.without_rest);
   if (can_repair()) {
     EXPECT_GE(total.files, static_cast<int>(files.size()) * 9 / 10);

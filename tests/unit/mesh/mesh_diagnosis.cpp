@@ -278,9 +278,9 @@ TEST(Diagnosis, ACrackOfOneUlpIsNotClosed) {
 }
 
 TEST(Diagnosis, ACollinearTriangleBridgesATJunction) {
-  TriangleSoup mended = cut_tetrahedron({1, 0, 0});
-  mended.triangles.push_back({0, 4, 1});
-  const Diagnosis d = diagnosis_of(mended);
+  TriangleSoup filled = cut_tetrahedron({1, 0, 0});
+  filled.triangles.push_back({0, 4, 1});
+  const Diagnosis d = diagnosis_of(filled);
   EXPECT_TRUE(d.closed && d.closed_as_wound);
   EXPECT_EQ(d.boundary_edges.count, 0);
   EXPECT_EQ(d.zero_area_triangles.count, 1);

@@ -43,7 +43,7 @@ std::string sentences(const Repaired& repaired) {
   return all;
 }
 
-/// No directed edge twice: an oriented manifold but for its vertices. Returns the number of open edges.
+/// No directed edge twice: an oriented manifold except at its vertices. Returns the number of open edges.
 std::size_t expect_manifold(const TriangleSoup& soup) {
   std::set<std::pair<std::uint32_t, std::uint32_t> > directed;
   for (const Triangle& t : soup.triangles) {
@@ -87,20 +87,20 @@ bool same(const TriangleSoup& a, const TriangleSoup& b) {
 
 /// Everything that holds for any repair.
 void expect_kept_promises(const TriangleSoup& soup, const Repaired& repaired, const RepairOptions& options) {
-  const TriangleSoup& mended = repaired.soup;
-  ASSERT_EQ(mended.object.size(), mended.triangles.size());
-  ASSERT_EQ(mended.source_face.size(), mended.triangles.size());
+  const TriangleSoup& after = repaired.soup;
+  ASSERT_EQ(after.object.size(), after.triangles.size());
+  ASSERT_EQ(after.source_face.size(), after.triangles.size());
   std::set<std::pair<std::uint32_t, std::uint32_t> > names;
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) names.emplace(soup.object[t], soup.source_face[t]);
-  for (std::size_t t = 0; t < mended.triangles.size(); ++t) {
-    EXPECT_TRUE(names.contains({mended.object[t], mended.source_face[t]}));
+  for (std::size_t t = 0; t < after.triangles.size(); ++t) {
+    EXPECT_TRUE(names.contains({after.object[t], after.source_face[t]}));
   }
-  if (!repaired.done.empty()) expect_manifold(mended);
-  const EdgeGraph graph = build_edge_graph(view(mended));
+  if (!repaired.done.empty()) expect_manifold(after);
+  const EdgeGraph graph = build_edge_graph(view(after));
   for (const TriangleKind kind : graph.kind) EXPECT_EQ(kind, TriangleKind::proper);
-  const Repaired again = repair(mended, options);
+  const Repaired again = repair(after, options);
   EXPECT_TRUE(again.done.empty()) << "the second time: " << sentences(again) << " the first: " << sentences(repaired);
-  EXPECT_TRUE(same(again.soup, mended));
+  EXPECT_TRUE(same(again.soup, after));
   EXPECT_EQ(again.left, repaired.left);
 }
 
@@ -169,7 +169,7 @@ TEST(Repair, RemovesWhatHasNoAreaAndWhatRepeats) {
   };
   add({0, 0, 5});
   soup.positions.emplace_back(0.5, 0, 0);
-  add({0, 8, 1});          // hangs on an edge: nobody else uses its middle
+  add({0, 8, 1});          // attached to an edge: no other triangle uses its middle
   add(soup.triangles[3]);  // the same again
   add({soup.triangles[5][0], soup.triangles[5][2], soup.triangles[5][1]});  // and one wound the other way
   const Repaired repaired = repair_and_check(soup);
