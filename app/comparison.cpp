@@ -2,7 +2,7 @@
 
 #include "app/device_source.hpp"
 #include "app/failure.hpp"
-#include "app/judge.hpp"
+#include "app/mask_comparison.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
 #include "app/output_files.hpp"
@@ -228,7 +228,7 @@ class Comparison {
   }
 
   void run_entry(const Entry& entry) {
-    std::optional<PairJudge> judge;
+    std::optional<MaskComparison> judge;
     if (!reference_masks_.empty() && entry.description.output == Output::mask) {
       judge.emplace(session_, reference_masks_);
     }

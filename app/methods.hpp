@@ -20,7 +20,7 @@ std::optional<std::vector<const visibility::MethodDescription*>> method_group(st
 /// come.
 const visibility::MethodDescription& describe_method(std::string_view name);
 
-/// The same of the method as these options make it: what it gives and which lights it can do may depend on them. Throws
+/// The description of a method run with these options: its output and its lights may depend on them. Throws
 /// UsageError for options that it does not have, values that they cannot have, and options that exclude each other.
 visibility::MethodDescription describe_method(std::string_view name, const visibility::MethodOptions& options);
 

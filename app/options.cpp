@@ -2,7 +2,6 @@
 
 #include "app/methods.hpp"
 #include "app/parse.hpp"
-#include "base/atomic_file.hpp"
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -176,11 +175,6 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     }
   }
   return entries;
-}
-
-void require_writable(const std::filesystem::path& path) {
-  if (path.empty()) return;
-  const AtomicFile probe(path);  // makes and removes a temporary file beside it
 }
 
 }  // namespace penumbra::app

@@ -58,7 +58,4 @@ struct MethodEntry {
 /// "a,b:key=value:key=value,c"; `geometry`, `image` and `all` stand for the methods of these families in the table.
 std::vector<MethodEntry> parse_methods(std::string_view text);
 
-/// Throws ResourceError now, before long work, if a file could not be written at `path`.
-void require_writable(const std::filesystem::path& path);
-
 }  // namespace penumbra::app

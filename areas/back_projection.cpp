@@ -25,13 +25,13 @@ void negate(Integers& a) {
 
 }  // namespace
 
-LightFrame light_frame(const visibility::Light& light, const glm::vec3& p) {
-  LightFrame frame;
+IntegerFrame integer_frame(const visibility::Light& light, const glm::vec3& p) {
+  IntegerFrame frame;
   frame.c = light.center;
   if (light.kind == visibility::LightKind::sphere) {
-    const visibility::LightAxes axes = light_axes(light, p);
-    frame.u_end = axes.u;
-    frame.v_end = axes.v;
+    const visibility::LightFrame facing = light_frame_from(light, p);
+    frame.u_end = facing.u;
+    frame.v_end = facing.v;
   } else {
     frame.u_end = light.center_u;
     frame.v_end = light.center_v;
@@ -43,7 +43,7 @@ LightFrame light_frame(const visibility::Light& light, const glm::vec3& p) {
   return frame;
 }
 
-BackProjection::BackProjection(const LightFrame& frame, const IntegerGrid& grid, const glm::vec3& p)
+BackProjection::BackProjection(const IntegerFrame& frame, const IntegerGrid& grid, const glm::vec3& p)
     : grid_(grid), p_(grid.integers(p)), c_(grid.integers(frame.c)) {
   const Integers origin = grid.integers(frame.origin);
   u_ = difference(grid.integers(frame.u_end), origin);

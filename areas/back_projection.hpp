@@ -37,18 +37,19 @@ constexpr unsigned bit_of(ClipPlane plane) {
 }
 constexpr unsigned kAllClipPlanes = (1u << kClipPlanes) - 1;
 
-/// The light's frame and its grid: what all view samples share. A sphere's depends on p.
-struct LightFrame {
+/// A light's stored points, whose differences integers hold exactly (visibility::LightFrame rounds them), and the grid
+/// that has them all: what view samples share. Only a sphere's depends on p.
+struct IntegerFrame {
   glm::dvec3 c{0}, u_end{0}, v_end{0};  ///< u = u_end − origin: c, as stored, or for a sphere, whose axes are given, 0
   glm::dvec3 origin{0};
   IntegerGrid grid;  ///< of all these
 };
-LightFrame light_frame(const visibility::Light& light, const glm::vec3& p);
+IntegerFrame integer_frame(const visibility::Light& light, const glm::vec3& p);
 
 /// One view sample's projection. `grid` makes integers of p, the frame and every vertex.
 class BackProjection {
  public:
-  BackProjection(const LightFrame& frame, const IntegerGrid& grid, const glm::vec3& p);
+  BackProjection(const IntegerFrame& frame, const IntegerGrid& grid, const glm::vec3& p);
 
   /// Is p exactly on the light's plane? (Then nothing can be projected.)
   [[nodiscard]] bool on_plane() const { return reach_ == 0; }

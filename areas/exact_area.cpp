@@ -20,7 +20,7 @@
 #include "areas/light_shaft.hpp"
 #include "areas/texture_measure.hpp"
 #include "visibility/pair_truth.hpp"
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 #include "visibility/triangle_tree.hpp"
 
 #include <glm/common.hpp>
@@ -125,7 +125,7 @@ struct ExactAreaData {
   std::vector<std::uint32_t> corner;  ///< for each position, the one that stands for its place
   IntegerGrid grid;                   ///< of all positions
   const Light* light = nullptr;
-  LightFrame frame;  ///< not of a sphere
+  IntegerFrame frame;  ///< not of a sphere
   Region region;
   mpq_class area;
   GridBox box;
@@ -311,7 +311,7 @@ ExactArea& ExactArea::operator=(ExactArea&&) noexcept = default;
 
 void ExactArea::set_light(const Light& light) {
   data_->light = &light;
-  if (light.kind != LightKind::sphere) data_->frame = light_frame(light, {});
+  if (light.kind != LightKind::sphere) data_->frame = integer_frame(light, {});
   data_->region = light_region(light);
   data_->area = area_of(data_->region);
   data_->box = box_around(data_->region);
@@ -325,15 +325,15 @@ void ExactArea::set_light(const Light& light) {
 
 double ExactArea::visibility(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork* work) const {
   AreaWork ignored;
-  return look(receiver, arithmetic, work != nullptr ? *work : ignored, nullptr);
+  return visible_share(receiver, arithmetic, work != nullptr ? *work : ignored, nullptr);
 }
 
 ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) const {
   PENUMBRA_ASSERT(data_->light != nullptr, "set_light comes first");
-  const visibility::SeenLight seen(*data_->light, receiver.p, receiver.n);
+  const visibility::UnshadowedLight seen(*data_->light, receiver.p, receiver.n);
   FormFactorSum form_factor(seen, data_->blocks);
   ExactView view;
-  view.visibility = look(receiver, arithmetic, view.work, &form_factor);
+  view.visibility = visible_share(receiver, arithmetic, view.work, &form_factor);
   if (view.visibility == 1 && view.work.edges != 0) {  // what is near the light hides none of it
     FormFactorSum whole(seen, data_->blocks);
     whole.add_whole();
@@ -344,13 +344,13 @@ ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) 
   return view;
 }
 
-double ExactArea::look(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work,
-                       FormFactorSum* form_factor) const {
+double ExactArea::visible_share(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work,
+                                FormFactorSum* form_factor) const {
   PENUMBRA_ASSERT(data_->light != nullptr, "set_light comes first");
   const Light& light = *data_->light;
   work = {};
   if (!in_front_of_light(light, receiver.p)) return 0;
-  const LightFrame frame = light.kind == LightKind::sphere ? light_frame(light, receiver.p) : data_->frame;
+  const IntegerFrame frame = light.kind == LightKind::sphere ? integer_frame(light, receiver.p) : data_->frame;
   IntegerGrid grid = data_->grid;
   grid.include(frame.grid);
   grid.include(receiver.p);

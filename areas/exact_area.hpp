@@ -60,14 +60,15 @@ class ExactArea {
   /// In [0, 1]; 0 if p is not strictly on an emitting side of the light (or is the centre of a sphere).
   [[nodiscard]] double visibility(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded,
                                   AreaWork* work = nullptr) const;
-  /// The same, and the form factor (visibility/form_factor.hpp) of the visible region: the trapezoids that the sweep
-  /// finds uncovered, each in closed form, under a texture by texels or blocks of them (TextureBlocks); of a light that
-  /// nothing hides, SeenLight::whole(). Cosines are those of receiver.n.
+  /// The visible share, and the form factor (visibility/form_factor.hpp) of the visible region: the trapezoids that the
+  /// sweep finds uncovered, each in closed form, under a texture by texels or blocks of them (TextureBlocks); of a
+  /// light that nothing hides, UnshadowedLight::whole(). Cosines are those of receiver.n.
   [[nodiscard]] ExactView view(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded) const;
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
-  double look(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work, FormFactorSum* form_factor) const;
+  double visible_share(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work,
+                       FormFactorSum* form_factor) const;
 
   std::unique_ptr<ExactAreaData> data_;
 };

@@ -2,7 +2,7 @@
 
 #include "areas/area_sweep.hpp"
 #include "visibility/light_texture.hpp"
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -57,7 +57,7 @@ class TextureBlocks {
 class FormFactorSum {
  public:
   /// Both must outlive it. No texture: the colour is 1.
-  FormFactorSum(const visibility::SeenLight& seen, const std::optional<TextureBlocks>& texture)
+  FormFactorSum(const visibility::UnshadowedLight& seen, const std::optional<TextureBlocks>& texture)
       : seen_(seen), texture_(texture ? &*texture : nullptr) {}
 
   /// Slabs from left to right, and in each what lies between two edges: with their heights at the slab's ends. With a
@@ -87,7 +87,7 @@ class FormFactorSum {
   void add_ended();
   [[nodiscard]] bool between_columns(double s) const;
 
-  const visibility::SeenLight& seen_;
+  const visibility::UnshadowedLight& seen_;
   const TextureBlocks* texture_;
   double from_ = 0, to_ = 0;          // the slab
   std::vector<Part> before_, parts_;  // of the last slab what has not been continued; of this one

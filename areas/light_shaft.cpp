@@ -7,9 +7,9 @@ namespace penumbra::areas {
 namespace {
 
 // Each height is a sum of products of at most three differences of stored numbers and one grid coordinate. `size` is
-// the same sum with every term's magnitude, before anything cancels. With δ = 2⁻⁵³: differences are off by δ each,
-// products and sums by δ more a step, ten steps at most from the stored numbers to the height: less than 2⁻⁴⁸ = 32 δ
-// times the size (which is itself rounded, by far less than the rest).
+// the sum of the magnitudes of these products, so that nothing cancels in it. With δ = 2⁻⁵³: differences are off by δ
+// each, products and sums by δ more a step, ten steps at most from the stored numbers to the height: less than 2⁻⁴⁸ =
+// 32 δ times the size (which is itself rounded, by far less than the rest).
 constexpr double kRounding = 0x1p-48;
 
 struct Cross {
@@ -22,7 +22,7 @@ Cross cross_of(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-LightShaft::LightShaft(const LightFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box) : p_(p) {
+LightShaft::LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box) : p_(p) {
   const glm::dvec3 u = frame.u_end - frame.origin, v = frame.v_end - frame.origin, r = p_ - frame.c;
   const Cross s = cross_of(v, r), t = cross_of(r, u), w = cross_of(v, u);
   const double reach = -glm::dot(w.value, r);

@@ -21,7 +21,7 @@ class LightShaft {
   static constexpr unsigned kBehind = 1u << kClipPlanes;
 
   /// `mirrored` as the exact projection has it: which way p is off the light's plane.
-  LightShaft(const LightFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box);
+  LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box);
 
   [[nodiscard]] Place place_of(const glm::vec3& q) const;
   /// Is the box certainly outside of one of the planes?

@@ -41,8 +41,8 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
 }
 
-/// What the names of parts begin with on this machine until it starts again: same beginning, same kernel, so that a
-/// lock of whoever made it is seen here.
+/// What the names of parts begin with on this machine until it starts again. An equal beginning means the same kernel,
+/// where a lock of the process that made the part is visible.
 const std::string& part_prefix() {
   static const std::string prefix = [] {
     std::ifstream stream("/proc/sys/kernel/random/boot_id");

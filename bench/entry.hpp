@@ -56,10 +56,10 @@ struct Entry {
 /// Of that name, or nothing.
 const Contestant* find_contestant(const Entry& entry, const std::string& name);
 
-/// Asks all contestants about one subject, once for each number of light samples, on the same view samples and (but for
-/// jittered peers) light samples. They take turns: a run of each, then the next run of each, so that whatever else the
-/// machine does meets them alike. The first run of each is discarded. Contestants that fail are left out and said so on
-/// stderr.
+/// Asks all contestants about one subject, once for each number of light samples, on the same view samples and (except
+/// for jittered peers) light samples. They take turns: a run of each, then the next run of each, so that whatever else
+/// the machine does meets them alike. The first run of each is discarded. Contestants that fail are left out and said
+/// so on stderr.
 void measure(const Subject& subject, const Options& options, const render::Device& device,
              const std::function<void(const Entry&)>& sink);
 

@@ -14,7 +14,7 @@ std::string table_rows(const Entry& entry);
 /// One JSON line a contestant, each with its name ("bunny/n=1024/edge-scatter"), which never changes.
 std::string json_lines(const Entry& entry, const Options& options);
 
-/// The same for --cpu.
+/// Head and rows of the table that --cpu prints.
 std::string cpu_table_head();
 std::string cpu_table_row(const CpuEntry& entry);
 std::string json_line(const CpuEntry& entry, const Options& options);

@@ -17,7 +17,7 @@ namespace {
 /// What the light's body shows at p: radiance times the texel that is there, or nearest to p.
 glm::dvec3 radiance_at(const visibility::Light& light, const glm::vec3& p) {
   if (!light.texture) return light.radiance;
-  const glm::dvec3 c(light.center), u = glm::dvec3(light.center_u) - c, v = glm::dvec3(light.center_v) - c;
+  const auto [c, u, v] = visibility::light_frame(light);
   const glm::dvec3 q = glm::dvec3(p) - c, n = glm::cross(u, v);
   // q = s u + t v + h n: s (u × v) · n = (q × v) · n, and likewise t.
   const double under = glm::dot(n, n);
@@ -42,7 +42,7 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
     if (in.samples.triangle[i] < 0) continue;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     if (in.scene.emits[triangle] >= 0) continue;
-    const visibility::SeenLight view(light, in.samples.p[i], in.samples.n[i]);
+    const visibility::UnshadowedLight view(light, in.samples.p[i], in.samples.n[i]);
     if (!view.shines()) continue;
     const LitPoint at{view, in.samples.p[i]};
     const bool shadowed = in.scene.receives_shadow[triangle] != 0;

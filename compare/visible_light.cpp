@@ -17,7 +17,7 @@ namespace {
 
 using visibility::Light;
 using visibility::LightKind;
-using visibility::SeenLight;
+using visibility::UnshadowedLight;
 
 using Mask = std::span<const std::uint32_t>;
 
@@ -38,7 +38,7 @@ struct Block {
   const double *x, *y, *z;
 };
 
-/// max(0, n · d) / d⁴ of the block's samples: cos θp · cos θl / d² but for a factor that all share.
+/// max(0, n · d) / d⁴ of the block's samples: cos θp · cos θl / d² up to a factor that all share.
 std::array<double, kBlock> weigh(const glm::dvec3& p, const glm::dvec3& n, const Block& block) {
   const double *x = block.x, *y = block.y, *z = block.z;
   std::array<double, kBlock> weight;
@@ -129,7 +129,7 @@ double VisibleLight::cell_border(std::uint32_t row, std::uint32_t column) const 
   return 2 * (column + shift) / light_->columns - 1;
 }
 
-double VisibleLight::of_cells(const SeenLight& seen, Mask mask) const {
+double VisibleLight::of_cells(const UnshadowedLight& seen, Mask mask) const {
   const std::uint32_t columns = light_->columns;
   const auto t = [&](std::uint32_t row) { return 2.0 * row / light_->rows - 1; };
   double sum = 0;
@@ -156,7 +156,7 @@ double VisibleLight::of_cells(const SeenLight& seen, Mask mask) const {
 
 glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) const {
   if (at.seen.above_horizon()) return glm::dvec3(of_cells(at.seen, mask));
-  // No sample below the horizon is visible: its cell, though part of it may be above, has no say.
+  // No sample below the horizon is visible: its cell does not count, though part of it may be above.
   std::vector<std::uint32_t> above(mask.begin(), mask.end());
   const glm::dvec3 p(at.p);
   for (std::size_t j = 0; j < light_->points.size(); ++j) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -13,7 +13,7 @@ namespace penumbra::compare {
 
 /// A view sample and how it sees the light when nothing is in between.
 struct LitPoint {
-  const visibility::SeenLight& seen;
+  const visibility::UnshadowedLight& seen;
   glm::vec3 p{0};
 };
 
@@ -52,7 +52,7 @@ class VisibleLight {
     explicit Points(std::span<const glm::vec3> points);
   };
 
-  [[nodiscard]] double of_cells(const visibility::SeenLight& seen, std::span<const std::uint32_t> mask) const;
+  [[nodiscard]] double of_cells(const visibility::UnshadowedLight& seen, std::span<const std::uint32_t> mask) const;
   [[nodiscard]] double cell_border(std::uint32_t row, std::uint32_t column) const;
   [[nodiscard]] glm::dvec3 of_runs(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;
   [[nodiscard]] glm::dvec3 of_samples(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;

@@ -81,7 +81,7 @@ class FolderOnly : public Assimp::IOSystem {
   static Assimp::IOStream* stream_of(const std::string& content) {
     return std::make_unique<Assimp::MemoryIOStream>(reinterpret_cast<const std::uint8_t*>(content.data()),
                                                     content.size())
-        .release();  // whoever opens closes
+        .release();  // the handler that opened it closes it
   }
 
   int folder_;

@@ -114,7 +114,7 @@ class AsciiStl {
     throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// A solid's name runs to the end of its line, but for writers that put a whole solid on one line.
+  /// A solid's name runs to the end of its line, except where a writer puts a whole solid on one line.
   static void skip_name(std::string_view& line) {
     for (std::string_view rest = line; !rest.empty();) {
       const std::string_view from = rest, word = take_word(rest);

@@ -58,12 +58,12 @@ std::vector<CasterMaps::Range> CasterMaps::ranges(const Batch& batch, std::int32
   return ranges;
 }
 
-void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, const LightFrame& frame,
+void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                         std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
   const std::uint32_t faces = view.side[0].face_count + view.side[1].face_count;
   const std::uint64_t face_bytes = std::uint64_t{size_} * size_ * sizeof(float);
   for (std::uint32_t face = 0; face < faces; ++face) {
-    gpu::CasterPush push = face_push(view, frame, face);
+    gpu::CasterPush push = face_push(view, basis, face);
     bool clear = true;
     for (const Batch& batch : batches_) {
       for (const Range& range : ranges(batch, light_index)) {

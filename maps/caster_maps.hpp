@@ -1,6 +1,6 @@
 #pragma once
 
-#include "maps/light_frame.hpp"
+#include "maps/light_basis.hpp"
 #include "maps/map_view.shared.h"
 #include "render/buffer.hpp"
 #include "render/commands.hpp"
@@ -24,7 +24,7 @@ class CasterMaps {
 
   /// Records the faces of one light point of light number `light_index` and copies them, one after the other, to
   /// `maps`, the first at `first_face` · size² floats.
-  void record(render::Commands& commands, const gpu::LightView& view, const LightFrame& frame, std::int32_t light_index,
+  void record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis, std::int32_t light_index,
               const render::Buffer& maps, std::uint64_t first_face) const;
 
   [[nodiscard]] std::uint64_t caster_count() const { return emits_.size(); }
@@ -39,7 +39,7 @@ class CasterMaps {
   struct Range {
     std::uint32_t first, count;
   };
-  /// The casters of a batch but for the body of that light.
+  /// The casters of a batch without the body of that light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
 
   const render::Device* device_;

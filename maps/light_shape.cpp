@@ -19,7 +19,7 @@ glm::dvec2 r2_point(std::uint32_t i) {
   return glm::fract(glm::dvec2(0.5) + static_cast<double>(i) * step);
 }
 
-/// The same, area-preserving onto the unit disk.
+/// Point i of the R2 sequence, mapped onto the unit disk without changing areas.
 glm::dvec2 disk_point(std::uint32_t i) {
   const glm::dvec2 at = r2_point(i);
   const double radius = std::sqrt(at.x), angle = 2 * std::numbers::pi * at.y;
@@ -51,9 +51,9 @@ class Fan {
 
 }  // namespace
 
-std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightFrame& frame, std::uint32_t count) {
+std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count) {
   std::vector<glm::dvec2> outline;
-  for (const glm::vec3& corner : light.outline) outline.emplace_back(frame.local(corner));
+  for (const glm::vec3& corner : light.outline) outline.emplace_back(basis.local(corner));
   const Fan fan(std::move(outline));
   std::vector<glm::vec2> pattern(count);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -70,7 +70,7 @@ LightPattern::LightPattern(const render::Device& device, std::initializer_list<s
 void LightPattern::record(render::Commands& /*commands*/, const MapSet& maps) {
   std::vector<glm::vec2> points;
   for (const std::uint32_t count : counts_) {
-    const std::vector<glm::vec2> part = light_pattern(maps.light, maps.frame, count);
+    const std::vector<glm::vec2> part = light_pattern(maps.light, maps.basis, count);
     points.insert(points.end(), part.begin(), part.end());
   }
   points_.write<glm::vec2>(points);
@@ -80,10 +80,10 @@ double half_width(const visibility::Light& light) {
   return std::sqrt(light.area / std::numbers::pi);
 }
 
-glm::dvec2 half_extent(const visibility::Light& light, const LightFrame& frame) {
+glm::dvec2 half_extent(const visibility::Light& light, const LightBasis& basis) {
   if (light.kind == visibility::LightKind::disk) return glm::dvec2(light.radius);
   glm::dvec2 extent(0);
-  for (const glm::vec3& corner : light.outline) extent = glm::max(extent, glm::abs(glm::dvec2(frame.local(corner))));
+  for (const glm::vec3& corner : light.outline) extent = glm::max(extent, glm::abs(glm::dvec2(basis.local(corner))));
   return extent;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "maps/light_frame.hpp"
+#include "maps/light_basis.hpp"
 #include "maps/map_method.hpp"
 #include "visibility/light_samples.hpp"
 
@@ -12,9 +12,9 @@
 
 namespace penumbra::maps {
 
-/// `count` points spread evenly over a planar light, in its frame: always the same ones. Any first part of them is
+/// `count` points spread evenly over a planar light, in its basis: always the same ones. Any first part of them is
 /// spread evenly too. (Unlike Light::points their number is the caller's.)
-std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightFrame& frame, std::uint32_t count);
+std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count);
 
 /// light_pattern of several counts, one behind the other, on the device: what look-ups that filter need of the light.
 class LightPattern final : public MapProduct {
@@ -31,7 +31,7 @@ class LightPattern final : public MapProduct {
 /// Half the light's width: the radius of the disk of its area.
 double half_width(const visibility::Light& light);
 
-/// How far the light reaches from its centroid along the frame's u and v, on the farther side.
-glm::dvec2 half_extent(const visibility::Light& light, const LightFrame& frame);
+/// How far the light reaches from its centroid along the basis's u and v, on the farther side.
+glm::dvec2 half_extent(const visibility::Light& light, const LightBasis& basis);
 
 }  // namespace penumbra::maps

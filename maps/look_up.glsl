@@ -3,7 +3,7 @@
 // defines one function and includes the main that calls it:
 //   scalar_main.glsl   float visibility_of(LightView view, vec3 d, vec3 m)
 //   mask_main.glsl     bool sees(LightView view, uint first_map, vec3 d, vec3 m)
-// d: the receiver from the light point, m: its normal away from the light, both in the light's frame. The receiver is on
+// d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is on
 // an emitting side.
 #include "maps/map_view.shared.h"
 

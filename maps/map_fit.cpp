@@ -61,7 +61,7 @@ struct Window {
 struct SideTriangles {
   bool any = false;
   bool reach_plane = false;                // some triangle crosses or touches the light's plane
-  std::vector<glm::dvec2> hull_x, hull_y;  // (x, z) and (y, z), frame coordinates, z > 0
+  std::vector<glm::dvec2> hull_x, hull_y;  // (x, z) and (y, z), basis coordinates, z > 0
 };
 
 bool receives(const visibility::SceneFloats& scene, std::size_t triangle) {
@@ -148,11 +148,11 @@ double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
 
 }  // namespace
 
-FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightFrame& frame,
+FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options) {
   std::vector<glm::dvec3> local(scene.positions.size());
   std::transform(scene.positions.begin(), scene.positions.end(), local.begin(),
-                 [&](const glm::vec3& x) { return frame.local(x); });
+                 [&](const glm::vec3& x) { return basis.local(x); });
 
   FittedViews fitted;
   fitted.views.resize(points.size());
@@ -173,7 +173,7 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     const Contents contents{receivers, casters, options.beside};
     bool windows = true;  // for all points of the light or for none
     for (gpu::LightView& view : fitted.views) {
-      const std::optional<Window> window = fit_window(contents, frame.local(view.point), sign, options.size);
+      const std::optional<Window> window = fit_window(contents, basis.local(view.point), sign, options.size);
       if (!window) {
         windows = false;
         break;
@@ -190,19 +190,19 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   return fitted;
 }
 
-gpu::CasterPush face_push(const gpu::LightView& view, const LightFrame& frame, std::uint32_t face) {
+gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {
   const int s = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
   const gpu::SideView& side = view.side[s];
-  const glm::dvec3 up = s == 0 ? frame.n : -frame.n;
+  const glm::dvec3 up = s == 0 ? basis.n : -basis.n;
   // The face's axes: across a, b and along w. taps.glsl chooses faces and coordinates in the same way.
   struct Axes {
     glm::dvec3 a, b, w;
   };
-  const std::array<Axes, kHemicubeFaces> hemicube{{{frame.u, frame.v, up},
-                                                   {frame.v, up, frame.u},
-                                                   {frame.v, up, -frame.u},
-                                                   {frame.u, up, frame.v},
-                                                   {frame.u, up, -frame.v}}};
+  const std::array<Axes, kHemicubeFaces> hemicube{{{basis.u, basis.v, up},
+                                                   {basis.v, up, basis.u},
+                                                   {basis.v, up, -basis.u},
+                                                   {basis.u, up, basis.v},
+                                                   {basis.u, up, -basis.v}}};
   const std::uint32_t k = face - side.first_face;
   const Axes& axes = hemicube[k];
   glm::dvec2 lower{-1, k == 0 ? -1 : 0}, upper{1, 1};

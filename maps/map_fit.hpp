@@ -1,6 +1,6 @@
 #pragma once
 
-#include "maps/light_frame.hpp"
+#include "maps/light_basis.hpp"
 #include "maps/map_view.shared.h"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
@@ -29,10 +29,10 @@ struct FitOptions {
 
 /// Fits each point's maps to the receivers of the scene, so that no receiver on an emitting side is ever outside.
 /// Depends on mesh and light only, not on the camera.
-FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightFrame& frame,
+FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options);
 
 /// What caster.vert needs for one face of a view; `first_vertex` is the caller's.
-gpu::CasterPush face_push(const gpu::LightView& view, const LightFrame& frame, std::uint32_t face);
+gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face);
 
 }  // namespace penumbra::maps

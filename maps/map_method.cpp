@@ -70,7 +70,7 @@ class MapMethod final : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
-  LightFrame frame_;
+  LightBasis basis_;
   FittedViews fitted_;
   std::vector<std::uint32_t> own_push_;
   std::uint32_t batch_ = 1;        ///< light points at a time
@@ -87,11 +87,11 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   visibility::check_light(recipe_.description, light);
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
   light_ = &light;
-  frame_ = frame_of(light);
-  const glm::vec3 centre(frame_.center);
+  basis_ = light_basis(light);
+  const glm::vec3 centre(basis_.center);
   const bool many = recipe_.points == MapPoints::light_samples;
-  const FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, frame_) : glm::dvec2(0)};
-  fitted_ = fit_views(*scene_, light, frame_, many ? std::span(light.points) : std::span(&centre, 1), fit);
+  const FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
+  fitted_ = fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span(&centre, 1), fit);
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
   check_faces_fit(*device_, options_.size, faces);
 
@@ -113,7 +113,7 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   render::Commands commands(*device_);
   render_maps(commands, 0, 1);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
-    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, frame_});
+    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, basis_});
   }
   times_.add(commands.submit());
 }
@@ -140,7 +140,7 @@ void MapMethod::render_maps(render::Commands& commands, std::uint32_t first, std
       times_.add(commands.submit());
       recorded = 0;
     }
-    casters_.record(commands, fitted_.views[first + k], frame_, light_->index, *depths_,
+    casters_.record(commands, fitted_.views[first + k], basis_, light_->index, *depths_,
                     std::uint64_t{k} * fitted_.faces);
     recorded += fitted_.faces;
   }
@@ -151,7 +151,7 @@ void MapMethod::render_maps(render::Commands& commands, std::uint32_t first, std
 void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first,
                     std::uint32_t count) {
   for (const Receivers::Part& part : receivers_.parts(tile)) {
-    const gpu::LookupPush push{.frame = frame_.rounded(),
+    const gpu::LookupPush push{.basis = basis_.rounded(),
                                .bias = static_cast<float>(options_.bias),
                                .size = options_.size,
                                .two_sided = light_->two_sided ? 1u : 0u,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "maps/caster_maps.hpp"
-#include "maps/light_frame.hpp"
+#include "maps/light_basis.hpp"
 #include "maps/map_fit.hpp"
 #include "maps/options.hpp"
 #include "render/buffer.hpp"
@@ -25,7 +25,7 @@ namespace penumbra::maps {
 /// Where a method's maps are looked from.
 enum class MapPoints : std::uint8_t {
   centre,         ///< the light's centroid: one map, rendered when the light is prepared
-  light_samples,  ///< every light sample: maps are rendered in batches, anew for every tile
+  light_samples,  ///< every light sample: maps are rendered in batches, again for every tile
 };
 
 /// The maps of one light, as products and look-ups read them.
@@ -34,7 +34,7 @@ struct MapSet {
   const render::Buffer& depths;  ///< `faces` · size² floats for each light point of the batch
   std::uint32_t faces, size;
   const visibility::Light& light;
-  const LightFrame& frame;
+  const LightBasis& basis;
 };
 
 /// What a light's maps are made into before they are asked (a minimum, a pyramid), or what a look-up needs of the light
@@ -69,7 +69,7 @@ struct MapRecipe {
   std::span<const std::uint32_t> look_up{};
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
-  std::function<glm::dvec2(const visibility::Light&, const LightFrame&)> beside{};
+  std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};
   /// What the shader's push constants have behind LookupPush: `push_words` of them, for a light.
   std::uint32_t push_words = 0;
   std::function<std::vector<std::uint32_t>(const visibility::Light&)> push{};

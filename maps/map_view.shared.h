@@ -16,7 +16,7 @@ inline constexpr uint kLookupGroup = 64;
 const uint kLookupGroup = 64;  // invocations of a look-up's workgroup
 #endif
 
-// One side of the light's plane as a light point sees it. With d = (x, y, z) in the light's frame, z > 0 on this side:
+// One side of the light's plane as a light point sees it. With d = (x, y, z) in the light's basis, z > 0 on this side:
 // one face holds the directions (x/z, y/z) in a window; five (a hemicube) hold every direction.
 struct SideView {
   vec2 lower, upper;  // window of (x/z, y/z); one face only
@@ -30,8 +30,8 @@ struct LightView {
   SideView side[2];  // 0: where the light's normal points, 1: behind
 };
 
-// The light's frame, orthonormal; n points to the emitting side.
-struct Frame {
+// Axes of the light's plane, orthonormal; n points to the emitting side.
+struct LightBasis {
   vec3 u, v, n;
 };
 
@@ -54,7 +54,7 @@ struct CasterPush {
 
 // What every look-up needs; its own push constants follow.
 struct LookupPush {
-  Frame frame;
+  LightBasis basis;
   float bias;  // in texels
   uint size;   // of a face, texels on a side
   uint two_sided;

@@ -5,7 +5,7 @@ void main() {
   if (i >= lookup.receiver_count) return;
   const Receiver receiver = receivers[lookup.first_receiver + i];
   const bool receives = receiver.n != vec3(0.0);
-  const vec3 m = -to_frame(lookup.frame, receiver.n);
+  const vec3 m = -to_basis(lookup.basis, receiver.n);
   const uint first_bit = lookup.first_point & 31;
 
   uint visible = 0;
@@ -13,7 +13,7 @@ void main() {
     bool lit = true;
     if (receives) {
       const LightView view = views[lookup.first_point + k];
-      const vec3 d = to_frame(lookup.frame, receiver.p - view.point);
+      const vec3 d = to_basis(lookup.basis, receiver.p - view.point);
       lit = on_emitting_side(d) && sees(view, k * lookup.faces, d, m);
     }
     visible |= lit ? 1u << (first_bit + k) : 0u;

@@ -5,13 +5,13 @@
 #define OWN_PUSH PcssPush
 #include "maps/look_up.glsl"
 
-// Percentage-closer soft shadows (Fernando 2005), in the light's frame: centre at 0, scene at z > 0. The ray from a
+// Percentage-closer soft shadows (Fernando 2005), in the light's basis: centre at 0, scene at z > 0. The ray from a
 // receiver p to the light point s passes height z at p z/p.z + s (1 - z/p.z): on the map (x/z, y/z), the light as seen
 // through height z is an image of the light's own shape, scaled by 1/z - 1/p.z, around the receiver. So both windows have
 // the light's shape, and Fernando's width of the penumbra over the receiver, w (p.z - z)/z, is the same thing.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 5) readonly buffer Pattern { vec2 pattern[]; };  // light points in its frame
+layout(scalar, binding = 5) readonly buffer Pattern { vec2 pattern[]; };  // light points in its basis
 
 // The map at the light point s seen through height z; see above.
 Tap tap_at(LightView view, vec3 d, vec2 s, float z) {

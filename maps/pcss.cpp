@@ -55,8 +55,8 @@ std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, cons
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{blocker_samples, filter_samples}));
   // Taps at height z over the light lie 1/z times the light's outline around the receiver, and z is half the light's
   // width at least (smallest_near).
-  recipe.beside = [](const visibility::Light& light, const LightFrame& frame) {
-    return half_extent(light, frame) / half_width(light);
+  recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
+    return half_extent(light, basis) / half_width(light);
   };
   recipe.push_words = sizeof(gpu::PcssPush) / sizeof(std::uint32_t);
   recipe.push = [blocker_samples, filter_samples](const visibility::Light& light) {

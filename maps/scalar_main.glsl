@@ -6,8 +6,8 @@ void main() {
   float v = 1.0;
   if (receiver.n != vec3(0.0)) {
     const LightView view = views[0];
-    const vec3 d = to_frame(lookup.frame, receiver.p - view.point);
-    v = on_emitting_side(d) ? visibility_of(view, d, -to_frame(lookup.frame, receiver.n)) : 0.0;
+    const vec3 d = to_basis(lookup.basis, receiver.p - view.point);
+    v = on_emitting_side(d) ? visibility_of(view, d, -to_basis(lookup.basis, receiver.n)) : 0.0;
   }
   results[lookup.first_result + i] = floatBitsToUint(v);
 }

@@ -9,7 +9,7 @@
 // A receiver's plane is not followed further than this many texels in depth: so steep, half a texel is half the scene.
 const float kSteepest = 8.0;
 
-// What the map has in the direction of d, a vector in the light's frame. `direction` points to the texel's centre, one
+// What the map has in the direction of d, a vector in the light's basis. `direction` points to the texel's centre, one
 // long along the face's axis; the nearest surface is at depth * direction.
 struct Tap {
   vec3 direction;
@@ -81,9 +81,9 @@ bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
   return tap.depth < plane - bias * tap.texel * tap.along * (1.0 + slope);
 }
 
-vec3 to_frame(Frame frame, vec3 x) { return vec3(dot(frame.u, x), dot(frame.v, x), dot(frame.n, x)); }
+vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis.v, x), dot(basis.n, x)); }
 
-// The hard shadow test: receiver at d from the light point, m as above; both in the light's frame.
+// The hard shadow test: receiver at d from the light point, m as above; both in the light's basis.
 bool hard_shadow(LightView view, uint first_map, uint size, vec3 d, vec3 m, float bias) {
   const Tap tap = fetch(view, first_map, size, d);
   return blocks(tap, m, dot(m, d), tap.along * (1.0 + kSteepest * tap.texel), bias);

@@ -106,7 +106,7 @@ function(check root result)
             list(APPEND complaints "${file}: \"${path}\": a quoted include starts at the root with a room's name")
           elseif(NOT target STREQUAL room AND NOT target IN_LIST may_${room})
             string(REPLACE ";" ", " allowed "${may_${room}}")
-            list(APPEND complaints "${file}: includes \"${path}\", but ${room} may lean only on: ${allowed}")
+            list(APPEND complaints "${file}: includes \"${path}\", but ${room} may depend only on: ${allowed}")
           elseif(target STREQUAL tests AND NOT room STREQUAL tests)
             list(APPEND complaints "${file}: includes \"${path}\": tests are included by tests only")
           endif()
@@ -136,7 +136,7 @@ if(SELF_TEST)
   file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"app/runner.hpp\"\n")       # in a shader
   file(WRITE ${SELF_TEST}/maps/a.cpp "#include <vulkan/vulkan_raii.hpp>\n")     # a library outside its room
   file(WRITE ${SELF_TEST}/reference/a.hpp "#include <embree3/rtcore.h>\n")      # a library in a header
-  file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/repair/repair.hpp\"\n")     # a room on one inside it that leans on it
+  file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/repair/repair.hpp\"\n")     # a room on one inside it that depends on it
   file(WRITE ${SELF_TEST}/volumes/edges/a.hpp "#include \"volumes/scatter/a.hpp\"\n")  # one room of a family on another
   file(WRITE ${SELF_TEST}/volumes/a.hpp "")                                     # beside the rooms
   file(WRITE ${SELF_TEST}/app/fine.cpp "#include \"base/error.hpp\"\n#include <vector>\n#include <CLI/CLI.hpp>\n")

@@ -27,7 +27,7 @@ class ClosedCasters {
 
   /// For each triangle of a closed part, the side (as mesh::Side, of the triangle as stored) on which the light's
   /// centre's region lies: outside of the part, or, if it is around c, inside. `on` for open ones. `light` reads ties.
-  /// Exact but for which side is outside: the sign of the enclosed volume, in double. `mesh`: the same as before.
+  /// Exact except for which side is outside: the sign of the enclosed volume, in double. `mesh` is the constructor's.
   [[nodiscard]] std::vector<mesh::Side> light_sides(const mesh::MeshView& mesh, const Light& light,
                                                     const glm::vec3& c) const;
 

@@ -30,7 +30,7 @@ namespace penumbra::visibility {
 /// as they are. (Where the horizon cuts so small a light it is ε d² / a².) An edge that nearly contains the element (θ
 /// near π) is ill-conditioned: F itself changes by up to 1/2 when the element crosses it.
 ///
-/// An edge run backward gives exactly the negative: pieces with common edges add up to their union but for the rounding
+/// An edge run backward gives exactly the negative: pieces with common edges add up to their union up to the rounding
 /// of the sum.
 
 /// One edge, with its direction b − a given (more digits may be known than the difference has). 0 for an edge of no

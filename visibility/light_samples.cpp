@@ -67,8 +67,8 @@ struct Builder {
     light.center_u = stored(u);
     light.center_v = stored(v);
     if (!finite(light.center) || !finite(light.center_u) || !finite(light.center_v)) return;  // make_light refuses it
-    const glm::dvec3 c = light.center;
-    const glm::dvec3 normal = glm::cross(glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c);
+    const LightFrame frame = light_frame(light);
+    const glm::dvec3 normal = glm::cross(frame.u, frame.v);
     if (collinear(light.center, light.center_u, light.center_v) ||
         !(glm::dot(normal, glm::cross(u - center, v - center)) > 0)) {
       refuse_zero_area(" in float32 relative to the scene's origin");
@@ -255,8 +255,8 @@ Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const gl
 glm::vec3 center_of(const Light& light) {
   if (light.kind != LightKind::polygon) return light.center;
   // The mean of the centroids of a fan's triangles, weighted by area.
-  const glm::dvec3 c = light.center, a = light.outline.front();
-  const glm::dvec3 normal = glm::cross(glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c);
+  const LightFrame frame = light_frame(light);
+  const glm::dvec3 a = light.outline.front(), normal = glm::cross(frame.u, frame.v);
   glm::dvec3 sum{0};
   double area = 0;
   for (std::size_t i = 1; i + 1 < light.outline.size(); ++i) {
@@ -268,15 +268,18 @@ glm::vec3 center_of(const Light& light) {
   return glm::vec3(a + sum / area);
 }
 
-LightAxes light_axes(const Light& light, const glm::vec3& p) {
-  if (light.kind != LightKind::sphere) {
-    const glm::dvec3 c = light.center;
-    return {glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c};
-  }
-  const glm::dvec3 to_p = glm::dvec3(p) - glm::dvec3(light.center);
+LightFrame light_frame(const Light& light) {
+  PENUMBRA_ASSERT(light.kind != LightKind::sphere, "light {} is a sphere and has no stored axes", light.name);
+  const glm::dvec3 c = light.center;
+  return {c, glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c};
+}
+
+LightFrame light_frame_from(const Light& light, const glm::vec3& p) {
+  if (light.kind != LightKind::sphere) return light_frame(light);
+  const glm::dvec3 c = light.center, to_p = glm::dvec3(p) - c;
   const double distance = glm::length(to_p);
   const Axes axes = axes_around(distance > 0 ? to_p / distance : glm::dvec3(0, 0, 1));
-  return {light.radius * axes.u, light.radius * axes.v};
+  return {c, light.radius * axes.u, light.radius * axes.v};
 }
 
 void light_points_for(const Light& light, const glm::vec3& p, glm::vec3* out) {
@@ -284,10 +287,9 @@ void light_points_for(const Light& light, const glm::vec3& p, glm::vec3* out) {
     std::copy(light.points.begin(), light.points.end(), out);
     return;
   }
-  const LightAxes axes = light_axes(light, p);
-  const glm::dvec3 center = light.center;
+  const LightFrame frame = light_frame_from(light, p);
   for (const glm::dvec2& st : light.coordinates) {
-    *out++ = glm::vec3(center + st.x * axes.u + st.y * axes.v) + 0.0f;
+    *out++ = glm::vec3(frame.center + st.x * frame.u + st.y * frame.v) + 0.0f;
   }
 }
 

@@ -77,12 +77,20 @@ Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dve
 /// The point that stands for the whole light: its stored centre; of a polygon, its centroid rounded to float32.
 glm::vec3 center_of(const Light& light);
 
-/// The axes u, v of the light as seen from p: centre → centre + halfU and → centre + halfV of the stored frame; for a
-/// sphere the axes, one radius long, of the disk through its centre that faces p (u × v points to p).
-struct LightAxes {
-  glm::dvec3 u, v;
+/// The frame that a light is stored with, in double: its plane's points are center + s·u + t·v. A rectangle is
+/// s, t ∈ [−1, 1], a disk the unit disk. u and v are differences of stored points, rounded once; u × v points to the
+/// emitting side. What else describes a light's plane is made from this: DeviceLight (a rectangle around the samples in
+/// the floats of device passes), maps::LightBasis (orthonormal), native::LightGrid (in cells of light samples),
+/// volumes::gpu::WedgePush (the duals of u and v). Only areas::IntegerFrame takes the stored points themselves, since
+/// it is exact.
+struct LightFrame {
+  glm::dvec3 center{0}, u{0}, v{0};
 };
-LightAxes light_axes(const Light& light, const glm::vec3& p);
+/// As stored. Not for spheres, which have no stored axes.
+LightFrame light_frame(const Light& light);
+/// As p sees the light: a planar one as stored; of a sphere the disk through its centre that faces p: u and v are one
+/// radius long and u × v points to p.
+LightFrame light_frame_from(const Light& light, const glm::vec3& p);
 
 /// The light points of one view sample: `light.points`, or for a sphere the disk through its centre that faces p.
 /// Writes sample_count() points to `out`.

@@ -51,8 +51,8 @@ std::vector<double> sample_weights(const LightTexture& texture, const std::vecto
         "coarser texture",
         light, coordinates.size(), texture.width, texture.height);
   }
-  // Sums are rounded to the grid, not weights: then the weights add up. Neighbouring sums share their rounding but for
-  // the last addition, division and step: four steps at most; `sum` itself is off by 4096 · 2⁻⁵³ of its size.
+  // Sums are rounded to the grid, not weights: then the weights add up. Neighbouring sums share their rounding except
+  // for the last addition, division and step: four steps at most; `sum` itself is off by 4096 · 2⁻⁵³ of its size.
   constexpr double kStep = 0x1p-52;
   std::vector<double> weights;
   double before = 0;

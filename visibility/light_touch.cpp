@@ -20,7 +20,7 @@ namespace {
 class Plane {
  public:
   explicit Plane(const Light& light) : center_(light.center) {
-    const glm::dvec3 u = glm::dvec3(light.center_u) - center_, v = glm::dvec3(light.center_v) - center_;
+    const auto [center, u, v] = light_frame(light);
     const glm::dvec3 n = glm::cross(u, v);
     normal_ = glm::normalize(n);
     const double some = std::sqrt(static_cast<double>(light.points.size()));

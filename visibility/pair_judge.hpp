@@ -34,8 +34,9 @@ struct PairJudge {
     }));
     return met;
   }
-  /// The same for the exact point centre + s u + t v of the light's plane: a triangle counts where it is strictly
-  /// between p and that plane. Nothing: double does not know which triangles to ask (SegmentInBox).
+  /// How many triangles the segment to the exact point centre + s u + t v of the light's plane meets: a triangle counts
+  /// where it is strictly between p and that plane. Nothing: in double it is not certain which triangles to test
+  /// (SegmentInBox).
   [[nodiscard]] std::optional<std::uint32_t> depth_in_plane(std::size_t pixel, const glm::dvec2& st) const {
     const PlanePoint l(light, st);
     const glm::dvec3 p(samples.p[pixel]);

@@ -49,9 +49,9 @@ EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, c
   const ExactVector pa = difference(a, p), pb = difference(b, p);
   ExactVector u, v;
   if (light.kind == LightKind::sphere) {
-    const LightAxes axes = light_axes(light, p);
-    u = difference(axes.u, glm::dvec3(0));
-    v = difference(axes.v, glm::dvec3(0));
+    const LightFrame frame = light_frame_from(light, p);
+    u = difference(frame.u, glm::dvec3(0));
+    v = difference(frame.v, glm::dvec3(0));
   } else {
     u = difference(light.center_u, light.center);
     v = difference(light.center_v, light.center);
@@ -107,8 +107,7 @@ Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std
 }
 
 PlanePoint::PlanePoint(const Light& light, const glm::dvec2& at) : st(at) {
-  PENUMBRA_ASSERT(light.kind != LightKind::sphere, "a sphere has no plane");
-  const glm::dvec3 c(light.center), u = glm::dvec3(light.center_u) - c, v = glm::dvec3(light.center_v) - c;
+  const auto [c, u, v] = light_frame(light);
   rounded = c + st.x * u + st.y * v;
   // A rounding of each of two differences, two products and two sums, of no more than these lengths.
   off = 0x1p-50 * (glm::length(c) + std::abs(st.x) * glm::length(u) + std::abs(st.y) * glm::length(v));
@@ -118,7 +117,8 @@ bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::arra
                         const Light& light) {
   if (const std::optional<bool> certain = certainly_meets(glm::dvec3(p), l.rounded, corners, l.off)) return *certain;
   const auto& [a, b, c] = corners;
-  // Nothing of it is before the light: cheaper to know than what follows, and the rule for what lies in its plane.
+  // Nothing of it is between p and the light's plane: cheaper to test than what follows, and it decides triangles in
+  // the light's plane.
   const auto side = [&](const glm::vec3& x) { return side_of_plane(light.center, light.center_u, light.center_v, x); };
   const Side before = side(p);
   if (std::ranges::none_of(corners, [&](const glm::vec3& corner) { return side(corner) == before; })) return false;

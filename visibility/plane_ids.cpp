@@ -105,8 +105,8 @@ std::uint64_t plane_key(const std::array<glm::vec3, 3>& corners) {
 
 // ---- Verification.
 
-/// One axis of two triangles as integers in units of the axis' smallest bit; a determinant's sign does not mind units
-/// that differ by axis. False if they take more than 62 bits.
+/// One axis of two triangles as integers in units of the axis' smallest bit; a determinant's sign is the same in
+/// units that differ by axis. False if they take more than 62 bits.
 bool to_integers(const std::array<glm::vec3, 3>& carrier, const std::array<glm::vec3, 3>& other, int axis,
                  std::array<std::int64_t, 6>& out) {
   std::array<Dyadic, 6> values;

@@ -47,7 +47,7 @@ TriangleTree make_triangle_tree(const SceneFloats& scene);
 struct Bounds {
   glm::vec3 lower{0}, upper{0};
 };
-/// The same over any boxes (edges, say): leaves hold their numbers.
+/// A tree of the same form over any boxes (those of edges, for example): leaves hold their numbers.
 TriangleTree make_tree_over(std::span<const Bounds> boxes);
 
 template <typename Visit>

@@ -73,7 +73,7 @@ double size1(const glm::dvec3& x) {
 /// ±1: every light sample certainly sees the triangle from this side; 0: not certain. All arithmetic is in double on
 /// float32 numbers; the margin of 2⁻²⁰ of every length that enters is a million times the rounding there, and covers
 /// that light samples are stored in float32.
-int side_shown(const std::array<glm::vec3, 3>& corners, const visibility::LightFrame& frame, float scale) {
+int side_shown(const std::array<glm::vec3, 3>& corners, const visibility::DeviceLight& frame, float scale) {
   const glm::dvec3 a(corners[0] * scale), e1 = glm::dvec3(corners[1] * scale) - a,
                                           e2 = glm::dvec3(corners[2] * scale) - a;
   const glm::dvec3 normal = glm::cross(e1, e2), center(frame.center), u(frame.u), v(frame.v);
@@ -85,7 +85,7 @@ int side_shown(const std::array<glm::vec3, 3>& corners, const visibility::LightF
   return at_center < -(span + margin) ? -1 : 0;
 }
 
-bool apart_from_light(const Box& box, const visibility::LightFrame& frame, float scale) {
+bool apart_from_light(const Box& box, const visibility::DeviceLight& frame, float scale) {
   const glm::vec3 reach = glm::abs(frame.u) + glm::abs(frame.v);
   const glm::vec3 margin = 0x1p-20F * (glm::abs(frame.center) + reach) + frame.deviation;
   const glm::vec3 lower = frame.center - reach - margin, upper = frame.center + reach + margin;
@@ -135,7 +135,7 @@ ClosedParts find_closed_parts(const SceneFloats& scene) {
   return closed;
 }
 
-std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::LightFrame& frame, float scale) {
+std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::DeviceLight& frame, float scale) {
   std::uint32_t apart = 0;
   for (std::size_t i = 0; i < closed.parts.size(); ++i) {
     if (apart_from_light(closed.parts[i].box, frame, scale)) apart |= 1U << (i + 1);
@@ -144,7 +144,7 @@ std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Ligh
 }
 
 std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const SceneFloats& scene,
-                                           const visibility::LightFrame& frame, float scale) {
+                                           const visibility::DeviceLight& frame, float scale) {
   std::vector<std::uint8_t> dispensable(scene.triangles.size());
   mesh::for_each_index(closed.part.size(), [&](std::size_t t) {
     if (closed.part[t] == 0) return;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/scene_floats.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -38,11 +38,11 @@ ClosedParts find_closed_parts(const visibility::SceneFloats& scene);
 
 /// Bit k: the box of part k (from 1) is certainly apart from the light's. Only these parts have dispensable triangles.
 /// `frame` is scaled by `scale`.
-std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::LightFrame& frame, float scale);
+std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::DeviceLight& frame, float scale);
 
 /// For each triangle that certainly has the whole light in front, wound by `turn`, and so is dispensable to view
 /// samples outside its part (docs/view-sample.md, "Closed casters"): the part's number, else 0.
 std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const visibility::SceneFloats& scene,
-                                           const visibility::LightFrame& frame, float scale);
+                                           const visibility::DeviceLight& frame, float scale);
 
 }  // namespace penumbra::vsm

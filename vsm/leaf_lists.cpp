@@ -24,7 +24,7 @@ void LeafLists::prepare_mesh(const visibility::SceneFloats& scene, float scale) 
       render::make_buffer<Texel>(*device_, "closed parts", part_texels(closed_, scale), render::BufferUse::texels));
 }
 
-void LeafLists::prepare_light(const visibility::TriangleTree& tree, const visibility::LightFrame& frame, float scale,
+void LeafLists::prepare_light(const visibility::TriangleTree& tree, const visibility::DeviceLight& frame, float scale,
                               device::TriangleUpload& triangles) {
   depth_ = tree.depth;
   parts_apart_ = parts_apart_from(closed_, frame, scale);

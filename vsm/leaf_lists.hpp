@@ -6,7 +6,7 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "vsm/closed_parts.hpp"
@@ -40,7 +40,7 @@ class LeafLists {
   void prepare_mesh(const visibility::SceneFloats& scene, float scale);
   [[nodiscard]] device::TriangleNotes notes() const { return {tags_, closed_.turn}; }
   /// Marks in `triangles` what is dispensable for this light. `frame` is scaled by `scale`.
-  void prepare_light(const visibility::TriangleTree& tree, const visibility::LightFrame& frame, float scale,
+  void prepare_light(const visibility::TriangleTree& tree, const visibility::DeviceLight& frame, float scale,
                      device::TriangleUpload& triangles);
   /// `constants`: of the pass; the seventh is the number of leaves in a chunk.
   void build_pass(const std::vector<std::uint32_t>& constants);

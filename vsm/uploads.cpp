@@ -63,7 +63,7 @@ std::vector<Texel> part_texels(const ClosedParts& closed, float scale) {
   return texels;
 }
 
-SampleTable make_sample_table(const visibility::LightFrame& frame, bool rows) {
+SampleTable make_sample_table(const visibility::DeviceLight& frame, bool rows) {
   constexpr std::uint32_t kCells = 256;
   std::array<std::uint32_t, kCells + 1> first_point{};
   std::vector<glm::vec2> points(1);

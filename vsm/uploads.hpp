@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/tree_texels.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/triangle_tree.hpp"
 #include "visibility/view_samples.hpp"
@@ -38,6 +38,6 @@ struct SampleTable {
   std::vector<std::byte> bytes;
   std::vector<std::uint32_t> bit_of;  ///< for each of the shaders' sample numbers, the light sample
 };
-SampleTable make_sample_table(const visibility::LightFrame& frame, bool rows);
+SampleTable make_sample_table(const visibility::DeviceLight& frame, bool rows);
 
 }  // namespace penumbra::vsm

@@ -4,7 +4,7 @@
 #include "engines/device/mask_method.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "vsm/leaf_lists.hpp"
 #include "vsm/resolve.comp.spv.hpp"
 #include "vsm/test_pairs.comp.spv.hpp"
@@ -69,8 +69,8 @@ class ViewSampleMapping final : public device::MaskMethod {
     check_proportions();
     const visibility::Light& light = this->light();
     const std::uint32_t words_per_row = (light.columns + 31) / 32;
-    const bool rows = light_frame().rows && light.rows * words_per_row * lanes() * 4 <= kSharedBudget;
-    SampleTable table = make_sample_table(light_frame(), rows);
+    const bool rows = device_light().rows && light.rows * words_per_row * lanes() * 4 <= kSharedBudget;
+    SampleTable table = make_sample_table(device_light(), rows);
     table_.emplace(render::make_buffer<std::byte>(device(), "light samples", table.bytes));
 
     // Some processors' drivers end loops after 65535 turns a workgroup; a triangle takes about a turn a row or point.
@@ -80,7 +80,7 @@ class ViewSampleMapping final : public device::MaskMethod {
               .shared_words = rows ? light.rows * words_per_row : light.words_per_mask(),
               .chunk = std::clamp(40000 / turns, 1U, kMostChunk)};
     build_passes();
-    lists_.prepare_light(tree(), light_frame(), scale(), triangles());
+    lists_.prepare_light(tree(), device_light(), scale(), triangles());
     if (std::ranges::is_sorted(table.bit_of)) return {.words = light.words_per_mask()};
     table.bit_of.resize(std::size_t{32} * light.words_per_mask(), device::MaskLayout::kNone);
     return {.words = light.words_per_mask(), .light_sample = std::move(table.bit_of)};
@@ -89,7 +89,7 @@ class ViewSampleMapping final : public device::MaskMethod {
   /// The shader multiplies up to six lengths; with the scene scaled to 1, float32 holds that for lights from 2⁻²⁸ to
   /// 2²⁸.
   void check_proportions() const {
-    const visibility::LightFrame& frame = light_frame();
+    const visibility::DeviceLight& frame = device_light();
     const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
     const float largest = size(frame.center) + size(frame.u) + size(frame.v);
     const float smallest = std::min(size(frame.u), size(frame.v));
@@ -132,7 +132,7 @@ class ViewSampleMapping final : public device::MaskMethod {
   }
 
   [[nodiscard]] gpu::ViewSamplePush make_push(const visibility::Tile& band) {
-    const visibility::LightFrame& frame = light_frame();
+    const visibility::DeviceLight& frame = device_light();
     gpu::ViewSamplePush push{};
     for (int i = 0; i < 3; ++i) {
       push.center[i] = frame.center[i];

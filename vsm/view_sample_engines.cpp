@@ -2,7 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "vsm/view_sample.hpp"
 #include "vsm/vectors/view_sample_native.hpp"
@@ -31,7 +31,7 @@ class ViewSample final : public visibility::Method {
   }
   void prepare_light(const visibility::Light& light) override {
     PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
-    const bool rows = light.kind == visibility::LightKind::rectangle && visibility::make_light_frame(light, 1).rows;
+    const bool rows = light.kind == visibility::LightKind::rectangle && visibility::make_device_light(light, 1).rows;
     current_ = rows ? &native_ : &vulkan_;
     if (!current_->method) current_->method = make_vulkan_view_sample(*device_);
     give_mesh(*current_);

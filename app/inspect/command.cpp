@@ -35,7 +35,7 @@ class InspectCommand : public Command {
         ->type_name("FILE");
     cli_.add_option("--export-defects", defects_, "the mesh with its defects coloured (see below)")
         ->type_name("FILE.ply");
-    cli_.add_option("--repair", repaired_, "mend what can be mended, and say what was done and what was not")
+    cli_.add_option("--repair", repaired_, "repair what can be repaired, and say what was done and what was not")
         ->type_name("OUT.ply");
     cli_.add_option("--weld", weld_, "vertices at most this far apart (the file's unit) are one")
         ->type_name("T")

@@ -46,7 +46,7 @@ struct RepairReport {
 nlohmann::ordered_json report_json(std::span<const FileReport> files, const std::optional<RepairReport>& repaired,
                                    std::size_t list_limit);
 
-/// The same for people.
+/// A FileReport, or what a repair did, as a table for the terminal.
 std::string report_table(const FileReport& file, std::size_t list_limit);
 std::string report_table(const RepairReport& repaired);
 

@@ -57,8 +57,7 @@ std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
 std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::LightHull& hull) {
   if (light.kind != visibility::LightKind::disk) return hull.corners;
   constexpr int kRim = 256;
-  const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
-                                         v = glm::dvec3(light.center_v) - center;
+  const auto [center, u, v] = visibility::light_frame(light);
   std::vector<glm::dvec3> rim;
   for (int i = 0; i < kRim; ++i) {
     const double angle = 2 * M_PI * i / kRim;

@@ -95,7 +95,7 @@ std::vector<glm::dvec2> region_beyond(const std::vector<glm::dvec2>& boundary, c
 class Drawing {
  public:
   explicit Drawing(const LightPicture& picture) : picture_(picture), boundary_(boundary_of(picture.soft.outline())) {
-    const auto [u, v] = visibility::light_axes(picture.light, picture.sample.p);
+    const auto [center, u, v] = visibility::light_frame_from(picture.light, picture.sample.p);
     const glm::dvec3 along = u / glm::length(u);
     const bool from_behind = volumes::LightProjection(picture.light, picture.sample.p).turn() < 0;
     axis_u_ = {glm::length(u) * (from_behind ? -1 : 1), 0};

@@ -38,7 +38,7 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   counters_.clear();
-  light_frame_ = visibility::make_light_frame(light, scale_);
+  device_light_ = visibility::make_device_light(light, scale_);
   layout_ = prepare_casters();
 }
 

@@ -8,7 +8,7 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/method.hpp"
 #include "visibility/triangle_tree.hpp"
 
@@ -83,7 +83,7 @@ class MaskMethod : public virtual visibility::Method {
   [[nodiscard]] float scale() const { return scale_; }  ///< of everything on the device
   [[nodiscard]] bool has_light() const { return light_ != nullptr; }
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
-  [[nodiscard]] const visibility::LightFrame& light_frame() const { return light_frame_; }
+  [[nodiscard]] const visibility::DeviceLight& device_light() const { return device_light_; }
   [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   [[nodiscard]] const visibility::Tile& tile() const { return tile_; }
   [[nodiscard]] std::uint64_t tile_pixels() const { return std::uint64_t{tile_.row_count} * samples_->width; }
@@ -111,7 +111,7 @@ class MaskMethod : public virtual visibility::Method {
   TriangleUpload triangles_;
 
   const visibility::Light* light_ = nullptr;
-  visibility::LightFrame light_frame_;
+  visibility::DeviceLight device_light_;
   MaskLayout layout_;
 
   const visibility::ViewSamples* samples_ = nullptr;

@@ -18,9 +18,9 @@ float size1(const glm::vec3& x) {
 constexpr std::size_t kMostClusters = 4;
 
 /// In the middle of the box's longest side, if a gap of more than a third of it is there; else the end.
-std::size_t split(std::span<Placed> samples) {
+std::size_t split(std::span<GridSample> samples) {
   glm::vec3 lower(samples.front().p), upper(lower);
-  for (const Placed& at : samples) {
+  for (const GridSample& at : samples) {
     lower = glm::min(lower, at.p);
     upper = glm::max(upper, at.p);
   }
@@ -28,44 +28,44 @@ std::size_t split(std::span<Placed> samples) {
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const float cut = 0.5F * lower[axis] + 0.5F * upper[axis];
   float below = lower[axis], above = upper[axis];
-  for (const Placed& at : samples) {
+  for (const GridSample& at : samples) {
     const float x = at.p[axis];
     below = x < cut ? std::max(below, x) : below;
     above = x < cut ? above : std::min(above, x);
   }
   if (!(above - below > 0.34F * size[axis])) return samples.size();
   const auto middle =
-      std::stable_partition(samples.begin(), samples.end(), [&](const Placed& at) { return at.p[axis] < cut; });
+      std::stable_partition(samples.begin(), samples.end(), [&](const GridSample& at) { return at.p[axis] < cut; });
   return static_cast<std::size_t>(middle - samples.begin());
 }
 
 }  // namespace
 
-Outlook look(const ViewInput& view, std::uint32_t pixel, Placed& at) {
-  const auto& [scene, samples, light, frame, normal_is_known, scale] = view;
-  if (!visibility::is_receiver(scene, samples, pixel)) return Outlook::all;
+SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at) {
+  const auto& [scene, samples, light, grid, normal_is_known, scale] = view;
+  if (!visibility::is_receiver(scene, samples, pixel)) return SampleClass::all_visible;
   const auto triangle = static_cast<std::uint32_t>(samples.triangle[pixel]);
   at.p = samples.p[pixel] * scale;
-  const glm::vec3 from = at.p - frame.center;
+  const glm::vec3 from = at.p - grid.center;
   at.pixel = pixel;
   at.plane = scene.plane[triangle];
-  at.height = glm::dot(frame.axis, from);
+  at.height = glm::dot(grid.axis, from);
   // (bound level)
-  const float error_level = 16 * kRound * frame.skew * (size1(from) + size1(at.p)) + frame.deviation;
-  if (std::abs(at.height) <= error_level) return Outlook::open;
-  if (at.height < 0) return Outlook::elsewhere;
-  at.foot = glm::vec2(glm::dot(frame.across, from), glm::dot(frame.along, from)) + frame.first_cell;
+  const float error_level = 16 * kRound * grid.skew * (size1(from) + size1(at.p)) + grid.deviation;
+  if (std::abs(at.height) <= error_level) return SampleClass::open;
+  if (at.height < 0) return SampleClass::other_side;
+  at.foot = glm::vec2(glm::dot(grid.across, from), glm::dot(grid.along, from)) + grid.first_cell;
   // (bound horizon)
   const glm::vec3 normal = normal_is_known[triangle] != 0 ? samples.n[pixel] : glm::vec3(0);
   at.above = {glm::dot(normal, light.u), glm::dot(normal, light.v), -glm::dot(normal, from)};
-  at.above_error = 16 * kRound * (size1(from) + size1(light.u) + size1(light.v) + size1(at.p)) + frame.deviation;
+  at.above_error = 16 * kRound * (size1(from) + size1(light.u) + size1(light.v) + size1(at.p)) + grid.deviation;
   const float span = std::abs(at.above.x) + std::abs(at.above.y);
-  if (at.above.z + span < -at.above_error) return Outlook::none;
+  if (at.above.z + span < -at.above_error) return SampleClass::none_visible;
   at.straddles = at.above.z - span <= at.above_error;
-  return Outlook::scattered;
+  return SampleClass::in_front;
 }
 
-std::vector<std::size_t> split_at_gaps(std::span<Placed> samples) {
+std::vector<std::size_t> split_at_gaps(std::span<GridSample> samples) {
   std::vector<std::size_t> ends{samples.size()};
   for (std::size_t part = 0, begin = 0; part < ends.size() && ends.size() < kMostClusters;) {
     const std::size_t end = begin + split(samples.subspan(begin, ends[part] - begin));

@@ -2,7 +2,7 @@
 
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 
 #include <cstdint>
 #include <span>
@@ -11,28 +11,28 @@
 /// From pixels to clusters of view samples. Inside engines/vectors/ only.
 namespace penumbra::native {
 
-/// What is certain of a view sample before any triangle is looked at.
-enum class Outlook : std::uint8_t {
-  scattered,  ///< the light is, or may be, before it
-  all,        ///< not asked: background, or its triangle receives no shadow
-  none,       ///< it is behind the light, or the light is below its horizon
-  open,       ///< within rounding of the light's plane: exact predicates
-  elsewhere,  ///< on the light's other side
+/// What is certain of a view sample's light samples before any triangle is looked at.
+enum class SampleClass : std::uint8_t {
+  in_front,      ///< p is on this side of the light, and the light or a part of it may be above p's horizon
+  all_visible,   ///< background, or a triangle that receives no shadow
+  none_visible,  ///< the light is below p's horizon
+  open,          ///< p is within rounding of the light's plane: exact predicates decide
+  other_side,    ///< p is on the light's other side
 };
 
 struct ViewInput {
   const visibility::SceneFloats& scene;
   const visibility::ViewSamples& samples;
-  const visibility::LightFrame& light;
-  const Frame& frame;
+  const visibility::DeviceLight& light;
+  const LightGrid& grid;
   std::span<const std::uint8_t> normal_is_known;  ///< of each triangle
   float scale;
 };
-/// Fills `at` if it is scattered or open.
-Outlook look(const ViewInput& view, std::uint32_t pixel, Placed& at);
+/// Fills `at` if the answer is in_front or open.
+SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at);
 
-/// Splits view samples where gaps are (an object before a floor), in at most four parts that follow one another; in
-/// each they keep their order. Returns where each part ends.
-std::vector<std::size_t> split_at_gaps(std::span<Placed> samples);
+/// Splits view samples at gaps (an object in front of a floor) into at most four parts that follow one another; within
+/// a part the order stays. Returns where each part ends.
+std::vector<std::size_t> split_at_gaps(std::span<GridSample> samples);
 
 }  // namespace penumbra::native

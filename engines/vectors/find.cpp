@@ -25,9 +25,9 @@ constexpr std::uint32_t kLeafBit = visibility::TriangleTree::kLeafBit;
 struct Point {
   V x, y, z;
 };
-/// What the walks look from.
-struct From {
-  const Frame& frame;
+/// What a walk tests boxes against: a cluster of view samples and the light.
+struct WalkInput {
+  const LightGrid& grid;
   const Cluster& cluster;
 };
 
@@ -39,7 +39,8 @@ Point minus(const Point& p, const glm::vec3& q) {
   const D d;
   return {hn::Sub(p.x, hn::Set(d, q.x)), hn::Sub(p.y, hn::Set(d, q.y)), hn::Sub(p.z, hn::Set(d, q.z))};
 }
-/// In one fixed order, without fused multiplications: what later stages compute of the same floats must be the same.
+/// In one fixed order, without fused multiplications: later stages compute it again from equal floats, and must get
+/// equal results.
 V dot(const Point& p, const glm::vec3& q) {
   const D d;
   return hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, q.x)), hn::Mul(p.y, hn::Set(d, q.y))), hn::Mul(p.z, hn::Set(d, q.z)));
@@ -89,7 +90,8 @@ struct ShaftTest {
   }
 };
 
-/// What of a box is least and most in a direction. Fused: the bounds of what meets a shaft do not mind.
+/// The least and the largest n · x of a box's points x. Multiplications and additions may be fused here: boxes are only
+/// tested against shafts, whose bounds have room for either rounding.
 struct Extent {
   V low, high;
 };
@@ -102,9 +104,9 @@ HWY_INLINE Extent extent(const Point& middle, const Point& half, const glm::vec3
   return {hn::Sub(at, spread), hn::Add(at, spread)};
 }
 
-HWY_INLINE hn::Mask<D> box_meets(const From& in, const Shaft& shaft, const Point& middle, const Point& half) {
+HWY_INLINE hn::Mask<D> box_meets(const WalkInput& in, const Shaft& shaft, const Point& middle, const Point& half) {
   const D d;
-  const Extent level = extent(middle, half, in.frame.axis, in.frame.axis_size);
+  const Extent level = extent(middle, half, in.grid.axis, in.grid.axis_size);
   hn::Mask<D> met = hn::And(hn::Le(level.low, hn::Set(d, shaft.highest)), hn::Ge(level.high, hn::Set(d, shaft.lowest)));
   for (std::size_t i = 0; i < 4; ++i) {
     met = hn::And(met, hn::Le(extent(middle, half, shaft.n[i], shaft.size[i]).low, hn::Set(d, shaft.beyond[i])));
@@ -113,7 +115,8 @@ HWY_INLINE hn::Mask<D> box_meets(const From& in, const Shaft& shaft, const Point
 }
 
 /// (bound cone)
-hn::Mask<D> same_side(const From& in, const WideNode& node, std::size_t lane, const Point& middle, const Point& half) {
+hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lane, const Point& middle,
+                      const Point& half) {
   const D d;
   const glm::vec3& box = in.cluster.half_size;
   const Point axis{hn::Load(d, &node.cone[0][lane]), hn::Load(d, &node.cone[1][lane]),
@@ -127,13 +130,13 @@ hn::Mask<D> same_side(const From& in, const WideNode& node, std::size_t lane, co
   const V sine = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Mul(cosine, cosine)), zero));
   const V spread = hn::Add(hn::Mul(dot(absolute(axis), e), cosine), hn::Mul(length(e), sine));
   const V least = hn::Sub(hn::Mul(straight, cosine), hn::Mul(aside, sine));
-  const V slack = hn::Add(scaled(hn::Sqrt(squared), 0.0001F), hn::Set(d, 64 * kRound * in.frame.reach));
+  const V slack = hn::Add(scaled(hn::Sqrt(squared), 0.0001F), hn::Set(d, 64 * kRound * in.grid.reach));
   return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
 }
 
 /// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
 template <bool kCones>
-std::uint32_t children_met(const From& in, const Shaft& shaft, const WideNode& node) {
+std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNode& node) {
   const D d;
   std::uint32_t hits = 0;
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
@@ -147,7 +150,7 @@ std::uint32_t children_met(const From& in, const Shaft& shaft, const WideNode& n
 
 /// Calls `leaf` for each leaf whose box meets the shaft.
 template <bool kCones, typename Leaf>
-void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+void walk(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
           const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
   stack = roots;
   while (!stack.empty()) {
@@ -166,7 +169,7 @@ void walk(const From& in, const Shaft& shaft, const std::vector<WideNode>& nodes
 
 /// Goes down level by level until there are enough.
 template <bool kCones, typename Tree>
-void descend(const From& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
+void descend(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
   constexpr std::size_t kEnough = 24;
   roots = tree.roots;
   for (std::size_t i = 0; i < roots.size() && roots.size() < kEnough;) {
@@ -210,7 +213,7 @@ EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std::size_t sid
   const hn::Mask<D> own = equals(leaf.plane[side], lane, in.cluster.plane);
   s.error = hn::IfThenElse(s.none, hn::Set(d, -1.0F), scaled(hn::Add(lengths, over_box), 10 * kRound));
   const V spread = hn::Add(scaled(over_box, 1.001F), hn::Add(scaled(hn::Add(lengths, over_box), 32 * kRound),
-                                                             scaled(ones, 4 * kRound * in.frame.reach)));
+                                                             scaled(ones, 4 * kRound * in.grid.reach)));
   const V f = hn::Neg(s.at);
   s.nothing = hn::Or(s.none, own);
   s.positive = hn::AndNot(s.none, hn::Gt(f, spread));
@@ -230,7 +233,7 @@ void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
   out.reserve(out.count + kWide);
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
-    const V level_a = dot(a, in.frame.axis), level_b = dot(b, in.frame.axis);
+    const V level_a = dot(a, in.grid.axis), level_b = dot(b, in.grid.axis);
     const hn::Mask<D> met =
         hn::And(used_lanes(leaf.used, lane),
                 ShaftTest{in.cluster.whole}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
@@ -240,27 +243,27 @@ void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
     const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
-    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
     const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
-    put(kAx, dot(from_a, in.frame.across));
-    put(kAy, dot(from_a, in.frame.along));
-    put(kAh, dot(from_a, in.frame.axis));
-    put(kBx, dot(from_b, in.frame.across));
-    put(kBy, dot(from_b, in.frame.along));
-    put(kBh, dot(from_b, in.frame.axis));
+    store(kAx, dot(from_a, in.grid.across));
+    store(kAy, dot(from_a, in.grid.along));
+    store(kAh, dot(from_a, in.grid.axis));
+    store(kBx, dot(from_b, in.grid.across));
+    store(kBy, dot(from_b, in.grid.along));
+    store(kBh, dot(from_b, in.grid.axis));
     for (std::size_t side = 0; side < 2; ++side) {
       const EdgeSideWide& its = side == 0 ? s : t;
-      const std::size_t first = side == 0 ? kN1x : kN2x;
-      put(first, its.n.x);
-      put(first + 1, its.n.y);
-      put(first + 2, its.n.z);
-      put(first + kD1 - kN1x, its.at);
-      put(first + kE1 - kN1x, its.error);
+      const std::size_t first = side == 0 ? kNormal1X : kNormal2X;
+      store(first, its.n.x);
+      store(first + 1, its.n.y);
+      store(first + 2, its.n.z);
+      store(first + kOffset1 - kNormal1X, its.at);
+      store(first + kOffsetError1 - kNormal1X, its.error);
       const hn::RebindToUnsigned<D> words;
-      put(first + kPlane1 - kN1x, hn::BitCast(d, hn::LoadU(words, &leaf.plane[side][lane])));
+      store(first + kPlane1 - kNormal1X, hn::BitCast(d, hn::LoadU(words, &leaf.plane[side][lane])));
     }
-    put(kFar, hn::Max(length(from_a), length(from_b)));
-    put(kEdgeSlot, numbers_from(number * kWide + lane));
+    store(kFar, hn::Max(length(from_a), length(from_b)));
+    store(kEdgeSlot, numbers_from(number * kWide + lane));
     out.count += more;
   }
 }
@@ -279,7 +282,7 @@ hn::Mask<D> seen_from_outside(const TriangleInput& in, const WideTriangles& leaf
   const V least = hn::Sub(dot(n, minus(a, in.cluster.middle)), dot(absolute(n), in.cluster.half_size));
   const auto bits = hn::And(hn::LoadU(words, &leaf.closed[lane]), hn::Set(words, in.outside_of));
   const auto other = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(words, hn::Eq(bits, hn::Zero(words)))));
-  return hn::AndNot(other, hn::Gt(least, scaled(sizes, 64 * kRound * in.frame.reach)));
+  return hn::AndNot(other, hn::Gt(least, scaled(sizes, 64 * kRound * in.grid.reach)));
 }
 
 void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable& out) {
@@ -289,30 +292,30 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
   const hn::RebindToUnsigned<D> words;
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.corner[0], lane), b = load(leaf.corner[1], lane), c = load(leaf.corner[2], lane);
-    const V la = dot(a, in.frame.axis), lb = dot(b, in.frame.axis), lc = dot(c, in.frame.axis);
+    const V la = dot(a, in.grid.axis), lb = dot(b, in.grid.axis), lc = dot(c, in.grid.axis);
     const hn::Mask<D> met =
         ShaftTest{in.shaft}(hn::Min(la, hn::Min(lb, lc)), hn::Max(la, hn::Max(lb, lc)),
                             [&](const glm::vec3& n) { return hn::Min(dot(a, n), hn::Min(dot(b, n), dot(c, n))); });
     const hn::Mask<D> never =
-        hn::Or(equals(leaf.emits, lane, in.frame.light), equals(leaf.plane, lane, in.cluster.plane));
+        hn::Or(equals(leaf.emits, lane, in.grid.light), equals(leaf.plane, lane, in.cluster.plane));
     hn::Mask<D> kept = hn::And(used_lanes(leaf.used, lane), hn::AndNot(never, met));
     if (in.outside_of != 0 && !hn::AllFalse(d, kept)) kept = hn::AndNot(seen_from_outside(in, leaf, lane), kept);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
-    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
     V far = hn::Zero(d);
     std::size_t field = kCornerA;
     for (const Point& corner : {a, b, c}) {
       const Point from = minus(corner, in.cluster.middle);
-      put(field, dot(from, in.frame.across));
-      put(field + 1, dot(from, in.frame.along));
-      put(field + 2, dot(from, in.frame.axis));
+      store(field, dot(from, in.grid.across));
+      store(field + 1, dot(from, in.grid.along));
+      store(field + 2, dot(from, in.grid.axis));
       far = hn::Max(far, length(from));
       field += 3;
     }
-    put(kTrianglePlane, hn::BitCast(d, hn::LoadU(words, &leaf.plane[lane])));
-    put(kTriangleFar, far);
-    put(kTriangleSlot, numbers_from(number * kWide + lane));
+    store(kTrianglePlane, hn::BitCast(d, hn::LoadU(words, &leaf.plane[lane])));
+    store(kTriangleFar, far);
+    store(kTriangleSlot, numbers_from(number * kWide + lane));
     out.count += more;
   }
 }
@@ -329,27 +332,27 @@ void drop_idle_leaves(std::vector<std::uint32_t>& roots, Out& table, Add add) {
 }
 
 void find_edge_roots_here(const EdgeInput& in, EdgeTable& table, std::vector<std::uint32_t>& roots) {
-  const From from{in.frame, in.cluster};
-  descend<true>(from, in.cluster.whole, in.tree, roots);
+  const WalkInput walk_input{in.grid, in.cluster};
+  descend<true>(walk_input, in.cluster.whole, in.tree, roots);
   drop_idle_leaves(roots, table, [&](std::uint32_t leaf, EdgeTable& out) { add_edges(in, leaf, out); });
 }
 
 void find_edges_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
                      EdgeTable& edges) {
   edges.count = 0;
-  walk<true>({in.frame, in.cluster}, in.cluster.whole, in.tree.nodes, roots, stack,
+  walk<true>({in.grid, in.cluster}, in.cluster.whole, in.tree.nodes, roots, stack,
              [&](std::uint32_t leaf) { add_edges(in, leaf, edges); });
 }
 
 void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std::vector<std::uint32_t>& roots) {
-  descend<false>({in.frame, in.cluster}, in.shaft, in.tree, roots);
+  descend<false>({in.grid, in.cluster}, in.shaft, in.tree, roots);
   drop_idle_leaves(roots, table, [&](std::uint32_t leaf, TriangleTable& out) { add_triangles(in, leaf, out); });
 }
 
 std::size_t count_leaves_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
                               std::vector<std::uint32_t>& stack, std::size_t most) {
   std::size_t leaves = 0;
-  walk<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots, stack, [&](std::uint32_t) {
+  walk<false>({in.grid, in.cluster}, in.shaft, in.tree.nodes, roots, stack, [&](std::uint32_t) {
     if (++leaves == most) stack.clear();
   });
   return leaves;
@@ -358,7 +361,7 @@ std::size_t count_leaves_here(const TriangleInput& in, const std::vector<std::ui
 void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
                          std::vector<std::uint32_t>& stack, TriangleTable& triangles) {
   triangles.count = 0;
-  walk<false>({in.frame, in.cluster}, in.shaft, in.tree.nodes, roots, stack,
+  walk<false>({in.grid, in.cluster}, in.shaft, in.tree.nodes, roots, stack,
               [&](std::uint32_t leaf) { add_triangles(in, leaf, triangles); });
 }
 

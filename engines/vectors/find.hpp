@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/table.hpp"
 #include "engines/vectors/trees.hpp"
 
@@ -11,9 +11,19 @@
 /// Edges and triangles that may matter to a cluster of view samples.
 namespace penumbra::native {
 
-/// Of an edge, relative to its cluster: ends in the frame's axes; of its two triangles n, n · anchor, the error of
-/// n · p − n · anchor for all of the cluster's p (−1: no triangle), and the plane's number (bits). Then how far its
-/// ends are from the cluster's middle.
+/// The columns of an EdgeTable. One row is one edge, from A to B, with up to two triangles; all positions are relative
+/// to the middle of the cluster that it was found for, in the grid's axes (across, along, axis), n in world axes.
+///
+/// | column | meaning |
+/// | --- | --- |
+/// | kAx, kAy, kAh | A: across, along, height |
+/// | kBx, kBy, kBh | B: across, along, height |
+/// | kNormalIX, Y, Z | normal n of triangle I (I = 1, 2) |
+/// | kOffsetI | n · a for a point a of its plane |
+/// | kOffsetErrorI | what n · p − kOffsetI may be off by for any p of the cluster; −1: there is no triangle I |
+/// | kPlaneI | the plane's number, as bits |
+/// | kFar | the larger of the two ends' distances from the cluster's middle |
+/// | kEdgeSlot | leaf · kWide + lane in the hierarchy, as bits |
 enum EdgeField : std::size_t {
   kAx,
   kAy,
@@ -21,42 +31,44 @@ enum EdgeField : std::size_t {
   kBx,
   kBy,
   kBh,
-  kN1x,
-  kN1y,
-  kN1z,
-  kD1,
-  kE1,
+  kNormal1X,
+  kNormal1Y,
+  kNormal1Z,
+  kOffset1,
+  kOffsetError1,
   kPlane1,
-  kN2x,
-  kN2y,
-  kN2z,
-  kD2,
-  kE2,
+  kNormal2X,
+  kNormal2Y,
+  kNormal2Z,
+  kOffset2,
+  kOffsetError2,
   kPlane2,
   kFar,
-  kEdgeSlot,  ///< of the hierarchy's leaves (bits)
+  kEdgeSlot,
   kEdgeFields
 };
 using EdgeTable = Table<kEdgeFields>;
 
+/// The columns of a TriangleTable, likewise: three corners (across, along, height each), the plane's number as bits,
+/// the largest of the corners' distances from the cluster's middle, leaf · kWide + lane as bits.
 enum TriangleField : std::size_t {
   kCornerA,
   kCornerB = 3,
   kCornerC = 6,
   kTrianglePlane = 9,
   kTriangleFar,
-  kTriangleSlot,  ///< of the hierarchy's leaves (bits)
+  kTriangleSlot,
   kTriangleFields
 };
 using TriangleTable = Table<kTriangleFields>;
 
 struct EdgeInput {
-  const Frame& frame;
+  const LightGrid& grid;
   const WideEdgeTree& tree;
   const Cluster& cluster;
 };
 struct TriangleInput {
-  const Frame& frame;
+  const LightGrid& grid;
   const WideTriangleTree& tree;
   const Cluster& cluster;
   const Shaft& shaft;  ///< one of the cluster's
@@ -69,7 +81,7 @@ void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::
 /// Edges that the shaft to the light meets and that may be silhouettes as seen from the cluster.
 void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
                 EdgeTable& edges);
-/// The same for triangles, and any shaft.
+/// Where the walks for triangles in `shaft` of clusters that are part of this one may begin, as for edges.
 void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots);
 /// Leaves that the shaft meets, at most `most`.
 std::size_t count_leaves(const TriangleInput& input, const std::vector<std::uint32_t>& roots,

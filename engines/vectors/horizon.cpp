@@ -14,24 +14,24 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void cut_at_horizon_here(const Frame& frame, const Placed& at, Open& open, Seen& seen) {
+void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask) {
   const hn::CappedTag<float, 16> d;
-  const std::size_t words = frame.padded_rows / 16;
+  const std::size_t words = grid.padded_rows / 16;
   const auto constant = [&](float x) { return hn::Set(d, x); };
   std::uint32_t visible = 0;
-  const float per_column = at.above.x / frame.half_cells.x, per_row = at.above.y / frame.half_cells.y;
-  for (std::uint32_t first = 0; first < frame.padded_rows; first += static_cast<std::uint32_t>(hn::Lanes(d))) {
+  const float per_column = at.above.x / grid.half_cells.x, per_row = at.above.y / grid.half_cells.y;
+  for (std::uint32_t first = 0; first < grid.padded_rows; first += static_cast<std::uint32_t>(hn::Lanes(d))) {
     const auto rows =
-        hn::Sub(hn::Add(hn::Iota(d, 0.0F), hn::Set(d, static_cast<float>(first))), constant(frame.first_cell.y));
-    const auto shifts = hn::Sub(hn::LoadU(d, &frame.shift[first]), constant(frame.first_cell.x));
+        hn::Sub(hn::Add(hn::Iota(d, 0.0F), hn::Set(d, static_cast<float>(first))), constant(grid.first_cell.y));
+    const auto shifts = hn::Sub(hn::LoadU(d, &grid.shift[first]), constant(grid.first_cell.x));
     const auto value_of_row =
         hn::MulAdd(rows, constant(per_row), hn::MulAdd(shifts, constant(per_column), constant(at.above.z)));
-    for (std::uint32_t column = 0; column < frame.columns; ++column) {
+    for (std::uint32_t column = 0; column < grid.columns; ++column) {
       const auto value = hn::MulAdd(constant(static_cast<float>(column)), constant(per_column), value_of_row);
       std::uint8_t above[8] = {}, not_below[8] = {};
       hn::StoreMaskBits(d, hn::Gt(value, constant(at.above_error)), above);
       hn::StoreMaskBits(d, hn::Ge(value, constant(-at.above_error)), not_below);
-      std::uint16_t& word = seen.mask[column * words + first / 16];
+      std::uint16_t& word = mask.bits[column * words + first / 16];
       const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
       const std::uint32_t is_above = above[0] | std::uint32_t{above[1]} << 8U,
                           may_be = not_below[0] | std::uint32_t{not_below[1]} << 8U;
@@ -39,11 +39,11 @@ void cut_at_horizon_here(const Frame& frame, const Placed& at, Open& open, Seen&
       visible += static_cast<std::uint32_t>(std::popcount(word & lanes << place));
       for (std::uint32_t left = may_be & ~is_above & lanes; left != 0; left &= left - 1) {
         const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(left));
-        if (row < frame.rows) open.samples.push_back(row * frame.columns + column);
+        if (row < grid.rows) open.samples.push_back(row * grid.columns + column);
       }
     }
   }
-  seen.visible = visible;
+  mask.visible = visible;
 }
 
 }  // namespace
@@ -55,26 +55,26 @@ namespace penumbra::native {
 
 HWY_EXPORT(cut_at_horizon_here);
 
-void cut_at_horizon(const Frame& frame, const Placed& at, Open& open, Seen& seen) {
-  HWY_DYNAMIC_DISPATCH(cut_at_horizon_here)(frame, at, open, seen);
+void cut_at_horizon(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask) {
+  HWY_DYNAMIC_DISPATCH(cut_at_horizon_here)(grid, at, open, mask);
 }
 
-void fill(const Frame& frame, bool visible, Seen& seen) {
-  const std::size_t words = frame.padded_rows / 16;
-  for (std::size_t i = 0; i < frame.columns * words; ++i) {
+void fill(const LightGrid& grid, bool visible, SampleMask& mask) {
+  const std::size_t words = grid.padded_rows / 16;
+  for (std::size_t i = 0; i < grid.columns * words; ++i) {
     const std::size_t first = i % words * 16,
-                      rows = std::min<std::size_t>(frame.rows - std::min<std::size_t>(first, frame.rows), 16);
-    seen.mask[i] = visible ? static_cast<std::uint16_t>((1U << rows) - 1) : std::uint16_t{0};
+                      rows = std::min<std::size_t>(grid.rows - std::min<std::size_t>(first, grid.rows), 16);
+    mask.bits[i] = visible ? static_cast<std::uint16_t>((1U << rows) - 1) : std::uint16_t{0};
   }
-  seen.visible = visible ? frame.rows * frame.columns : 0;
+  mask.visible = visible ? grid.rows * grid.columns : 0;
 }
 
-void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen) {
-  seen.visible = frame.rows * frame.columns;
+void see_all(const LightGrid& grid, const GridSample& at, Open& open, OpenJudge& judge, SampleMask& mask) {
+  mask.visible = grid.rows * grid.columns;
   if (!at.straddles && !open.any()) return;
-  fill(frame, true, seen);
-  if (at.straddles) cut_at_horizon(frame, at, open, seen);
-  if (open.any()) judge.decide(at, open, seen);
+  fill(grid, true, mask);
+  if (at.straddles) cut_at_horizon(grid, at, open, mask);
+  if (open.any()) judge.decide(at, open, mask);
 }
 
 }  // namespace penumbra::native

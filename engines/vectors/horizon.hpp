@@ -1,19 +1,20 @@
 #pragma once
 
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/masks.hpp"
 
 #include <cstdint>
 
-/// Masks without casters: all or nothing, and what p's own plane leaves of them. Inside engines/vectors/ only, but for
-/// methods' own stages.
+/// Masks without casters: all or none visible, less what is below p's own plane. For engines/vectors/ and the stages of
+/// methods.
 namespace penumbra::native {
 
 /// All light samples, or none.
-void fill(const Frame& frame, bool visible, Seen& seen);
+void fill(const LightGrid& grid, bool visible, SampleMask& mask);
 /// Light samples that are not strictly above the carrier's plane are not visible. (bound horizon)
-void cut_at_horizon(const Frame& frame, const Placed& at, Open& open, Seen& seen);
-/// Where nothing is before the light but the horizon, and what is open already.
-void see_all(const Frame& frame, const Placed& at, Open& open, Judge& judge, Seen& seen);
+void cut_at_horizon(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask);
+/// The mask of a view sample with no triangle between it and the light: everything above its horizon is visible. What
+/// is open already is decided.
+void see_all(const LightGrid& grid, const GridSample& at, Open& open, OpenJudge& judge, SampleMask& mask);
 
 }  // namespace penumbra::native

@@ -1,4 +1,4 @@
-// What may meet the hull of view samples and the light. Inside engines/vectors/ only, but for methods' own stages.
+// What may meet the hull of view samples and the light. Inside engines/vectors/ only, and in the stages of methods.
 
 #if defined(PENUMBRA_NATIVE_HULL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_NATIVE_HULL_INL_HPP
@@ -7,7 +7,7 @@
 #define PENUMBRA_NATIVE_HULL_INL_HPP
 #endif
 
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 
 #include <array>
@@ -19,7 +19,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One corner of a vectorful of edges or triangles, in the frame's axes relative to the cluster's middle.
+/// One corner of a vectorful of edges or triangles, in the grid's axes relative to the cluster's middle.
 struct Corners {
   V across, along, height;
 };

@@ -39,8 +39,8 @@ constexpr auto kSpots = [] {
 
 /// Buffers of one thread.
 struct Buffers {
-  std::vector<Placed> placed;
-  std::vector<Seen> seen;
+  std::vector<GridSample> samples;
+  std::vector<SampleMask> masks;
 };
 Buffers& buffers() {
   static tbb::enumerable_thread_specific<Buffers> all;
@@ -68,31 +68,31 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   counters_.clear();
-  light_frame_ = visibility::make_light_frame(light, scale_);
-  PENUMBRA_ASSERT(light_frame_.rows, "light {} has no rows that a step describes", light.name);
-  visibility::check_size(light, light_frame_, description_.name);
+  device_light_ = visibility::make_device_light(light, scale_);
+  PENUMBRA_ASSERT(device_light_.rows, "light {} has no rows that a step describes", light.name);
+  visibility::check_size(light, device_light_, description_.name);
   const bool cut = prepare_casters();
   const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale_); };
-  const float reach = visibility::reach_of(*scene_, light_frame_, scale_);
-  frames_.clear();
+  const float reach = visibility::reach_of(*scene_, device_light_, scale_);
+  grids_.clear();
   for (const float side : {1.0F, -1.0F}) {
     if (side < 0 && !light.two_sided) continue;
-    frames_.push_back(make_frame({light_frame_,
-                                  {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
-                                  light.rows,
-                                  light.columns,
-                                  static_cast<std::uint32_t>(light.index),
-                                  side,
-                                  reach,
-                                  cut ? 4 * reach : 0,
-                                  scale_,
-                                  light.points}));
+    grids_.push_back(make_light_grid({device_light_,
+                                      {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                      light.rows,
+                                      light.columns,
+                                      static_cast<std::uint32_t>(light.index),
+                                      side,
+                                      reach,
+                                      cut ? 4 * reach : 0,
+                                      scale_,
+                                      light.points}));
   }
 }
 
 std::uint32_t MaskMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-  const std::size_t fit = kMostMaskBytes / (mask_words(frames_[0]) * 2 * samples_->width);
+  const std::size_t fit = kMostMaskBytes / (mask_words(grids_[0]) * 2 * samples_->width);
   const std::size_t rows = fit >= kRegion ? fit / kRegion * kRegion : fit;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(rows, 1, samples_->height));
 }
@@ -100,7 +100,7 @@ std::uint32_t MaskMethod::max_tile_rows() const {
 void MaskMethod::evaluate(const visibility::Tile& tile) {
   tile_ = tile;
   const std::size_t pixels = std::size_t{tile.row_count} * samples_->width;
-  masks_.resize(std::max(masks_.size(), pixels * mask_words(frames_[0])));
+  masks_.resize(std::max(masks_.size(), pixels * mask_words(grids_[0])));
   visible_.assign(pixels, 0);
   const auto start = std::chrono::steady_clock::now();
   do_tile();
@@ -114,45 +114,46 @@ void MaskMethod::repeat() {
   do_tile();
   open_pixels_ = 0;
   open_pairs_ = 0;
-  std::map<std::string, std::uint64_t> nobody;
-  count(nobody);
+  std::map<std::string, std::uint64_t> discarded;
+  count(discarded);
 }
 
 void MaskMethod::do_tile() {
   const std::uint32_t across = (samples_->width + kRegion - 1) / kRegion,
                       down = (tile_.row_count + kRegion - 1) / kRegion;
   tbb::parallel_for(std::uint32_t{0}, across * down, [&](std::uint32_t region) {
-    for (const Frame& frame : frames_) do_region(frame, region % across * kRegion, region / across * kRegion);
+    for (const LightGrid& grid : grids_) do_region(grid, region % across * kRegion, region / across * kRegion);
   });
 }
 
-void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t top) {
+void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top) {
   const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
-  OpenJudge judge(pairs, frame);
-  const ViewInput view{*scene_, *samples_, light_frame_, frame, normal_is_known_, scale_};
-  std::vector<Placed>& placed = buffers().placed;
+  ExactOpenJudge judge(pairs, grid);
+  const ViewInput view{*scene_, *samples_, device_light_, grid, normal_is_known_, scale_};
+  std::vector<GridSample>& samples = buffers().samples;
   std::array<std::size_t, kRegion * kRegion / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
-  placed.resize(kRegion * kRegion);
+  samples.resize(kRegion * kRegion);
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
     const std::uint32_t x = left + kSpots[i].x, y = top + kSpots[i].y;
     if (x < samples_->width && y < tile_.row_count) {
       const std::size_t pixel = std::size_t{y} * samples_->width + x;
-      Placed& at = placed[count];
-      const Outlook outlook = look(view, static_cast<std::uint32_t>(first_pixel() + pixel), at);
-      if (outlook == Outlook::scattered) ++count;
-      if (outlook == Outlook::all) visible_[pixel] = light_->sample_count();
-      if (outlook == Outlook::open && frame.side > 0 && !do_open(at)) decide_all(at, judge);  // one of two sides asks
+      GridSample& at = samples[count];
+      const SampleClass kind = classify(view, static_cast<std::uint32_t>(first_pixel() + pixel), at);
+      if (kind == SampleClass::in_front) ++count;
+      if (kind == SampleClass::all_visible) visible_[pixel] = light_->sample_count();
+      if (kind == SampleClass::open && grid.side > 0 && !decide_open(at))
+        decide_all(at, judge);  // one of two sides asks
     }
     ends[i / (kSmallBlock * kSmallBlock)] = count;
   }
-  placed.resize(count);
+  samples.resize(count);
   if (count > 0) {
-    const Blocks blocks = begin_region(frame, make_cluster(frame, placed));
+    const Blocks blocks = begin_region(grid, make_cluster(grid, samples));
     const std::size_t step = blocks == Blocks::small ? 1 : kBlock * kBlock / (kSmallBlock * kSmallBlock);
     std::size_t begin = 0;
     for (std::size_t i = step; i <= ends.size(); i += step) {
-      do_block(frame, std::span(placed).subspan(begin, ends[i - 1] - begin), judge);
+      do_block(grid, std::span(samples).subspan(begin, ends[i - 1] - begin), judge);
       begin = ends[i - 1];
     }
   }
@@ -160,32 +161,32 @@ void MaskMethod::do_region(const Frame& frame, std::uint32_t left, std::uint32_t
   open_pairs_ += judge.pairs();
 }
 
-void MaskMethod::do_block(const Frame& frame, std::span<Placed> block, Judge& judge) {
+void MaskMethod::do_block(const LightGrid& grid, std::span<GridSample> block, OpenJudge& judge) {
   if (block.empty()) return;
-  std::vector<Seen>& seen = buffers().seen;
+  std::vector<SampleMask>& masks = buffers().masks;
   std::size_t begin = 0;
   for (const std::size_t end : split_at_gaps(block)) {
     const auto cluster = block.subspan(begin, end - begin);
-    seen.clear();
-    for (const Placed& at : cluster) seen.push_back({mask_of(at), 0});
-    do_cluster(frame, cluster, judge, seen);
-    for (std::size_t i = 0; i < cluster.size(); ++i) visible_[tile_pixel(cluster[i])] = seen[i].visible;
+    masks.clear();
+    for (const GridSample& at : cluster) masks.push_back({mask_of(at), 0});
+    do_cluster(grid, cluster, judge, masks);
+    for (std::size_t i = 0; i < cluster.size(); ++i) visible_[tile_pixel(cluster[i])] = masks[i].visible;
     begin = end;
   }
 }
 
-void MaskMethod::decide_all(const Placed& sample, Judge& judge) {
+void MaskMethod::decide_all(const GridSample& sample, OpenJudge& judge) {
   Open open;
   open.pixel = true;
-  Seen seen{mask_of(sample), 0};
-  std::fill_n(seen.mask, mask_words(frames_[0]), std::uint16_t{0});
-  judge.decide(sample, open, seen);
-  visible_[tile_pixel(sample)] = seen.visible;
+  SampleMask mask{mask_of(sample), 0};
+  std::fill_n(mask.bits, mask_words(grids_[0]), std::uint16_t{0});
+  judge.decide(sample, open, mask);
+  visible_[tile_pixel(sample)] = mask.visible;
 }
 
 void MaskMethod::read_masks(std::span<std::uint32_t> masks) {
   const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count(), columns = light_->columns;
-  const std::size_t own = mask_words(frames_[0]), padded = frames_[0].padded_rows;
+  const std::size_t own = mask_words(grids_[0]), padded = grids_[0].padded_rows;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible_.size(), 256), [&](const auto& range) {
     for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
       const auto mask = masks.subspan(pixel * words, words);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engines/vectors/clusters.hpp"
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/masks.hpp"
 #include "engines/vectors/trees.hpp"
 #include "visibility/method.hpp"
@@ -24,7 +24,7 @@ enum class Blocks : std::uint8_t {
 };
 
 /// A method on all of the processor's cores, one region of pixels after the other, each from its lists to its bits in
-/// one go: for rectangle lights with light samples in rows. What comes before and after the lists is the same for all.
+/// one go: for rectangle lights with light samples in rows. All methods share what comes before and after the lists.
 class MaskMethod : public visibility::Method {
  public:
   /// `pass`: the name of its one stage in the pass times.
@@ -44,22 +44,27 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  protected:
-  /// Of a region, before its clusters, on the same thread. Returns what blocks it is done in.
-  virtual Blocks begin_region(const Frame& frame, const Cluster& all) = 0;
-  /// All view samples of a cluster. Sets how many light samples they see and, unless that is none or all, their masks.
-  virtual void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
-  /// A view sample within rounding of the light's plane. False: exact predicates decide its light samples.
-  virtual bool do_open(const Placed&) { return false; }
-  /// Something cuts what casts shadow at the light's plane: errors grow by that.
+  /// Called once for each region, before its clusters and on the same thread. Returns how large the region's blocks
+  /// are.
+  virtual Blocks begin_region(const LightGrid& grid, const Cluster& all) = 0;
+  /// All view samples of a cluster. Sets how many light samples are visible from each and, unless none or all are,
+  /// which.
+  virtual void do_cluster(const LightGrid& grid, std::span<const GridSample> samples, OpenJudge& judge,
+                          std::span<SampleMask> masks) = 0;
+  /// A view sample within rounding of the light's plane: true if the method has decided it by itself; false if exact
+  /// predicates are to decide each of its light samples.
+  virtual bool decide_open(const GridSample&) { return false; }
+  /// Returns whether triangles are cut at the light's plane, which makes error bounds larger.
   virtual bool prepare_casters() = 0;
-  /// Does the clusters of the tile last evaluated again, for what was not asked for then; counts nothing.
+  /// Runs do_cluster again for the tile last evaluated, for a result that was not asked for the first time. Counters
+  /// stay.
   void repeat();
   /// Adds to the counters after a tile.
   virtual void count(std::map<std::string, std::uint64_t>& counters) = 0;
 
   [[nodiscard]] const visibility::SceneFloats& scene() const { return *scene_; }
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
-  [[nodiscard]] const visibility::LightFrame& light_frame() const { return light_frame_; }
+  [[nodiscard]] const visibility::DeviceLight& device_light() const { return device_light_; }
   [[nodiscard]] const visibility::TriangleTree& tree() const { return tree_; }
   [[nodiscard]] WideTriangleTree& triangles() { return triangles_; }
   [[nodiscard]] const WideTriangleTree& triangles() const { return triangles_; }
@@ -67,14 +72,14 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] float scale() const { return scale_; }
   /// Of the tile.
   [[nodiscard]] std::size_t first_pixel() const { return std::size_t{tile_.first_row} * samples_->width; }
-  [[nodiscard]] std::size_t tile_pixel(const Placed& at) const { return at.pixel - first_pixel(); }
+  [[nodiscard]] std::size_t tile_pixel(const GridSample& at) const { return at.pixel - first_pixel(); }
 
  private:
   void do_tile();
-  void do_region(const Frame& frame, std::uint32_t left, std::uint32_t top);
-  void do_block(const Frame& frame, std::span<Placed> block, Judge& judge);
-  void decide_all(const Placed& sample, Judge& judge);
-  [[nodiscard]] std::uint16_t* mask_of(const Placed& at) { return &masks_[tile_pixel(at) * mask_words(frames_[0])]; }
+  void do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top);
+  void do_block(const LightGrid& grid, std::span<GridSample> block, OpenJudge& judge);
+  void decide_all(const GridSample& sample, OpenJudge& judge);
+  [[nodiscard]] std::uint16_t* mask_of(const GridSample& at) { return &masks_[tile_pixel(at) * mask_words(grids_[0])]; }
 
   visibility::MethodDescription description_;
   std::string pass_;
@@ -84,8 +89,8 @@ class MaskMethod : public visibility::Method {
   WideTriangleTree triangles_;
   std::vector<std::uint8_t> normal_is_known_;  // of each triangle
   const visibility::Light* light_ = nullptr;
-  visibility::LightFrame light_frame_;
-  std::vector<Frame> frames_;  // one a side that it emits to
+  visibility::DeviceLight device_light_;
+  std::vector<LightGrid> grids_;  // one a side that it emits to
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::Tile tile_;
   std::vector<std::uint16_t> masks_;  // of the tile

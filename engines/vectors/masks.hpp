@@ -1,24 +1,24 @@
 #pragma once
 
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-/// Which light samples a view sample sees, and what is not certain of that.
+/// Which light samples are visible from a view sample, and what is not certain of that.
 namespace penumbra::native {
 
 /// Sixteen light samples each: bit column · padded_rows + row.
-inline std::size_t mask_words(const Frame& frame) {
-  return std::size_t{frame.columns} * frame.padded_rows / 16;
+inline std::size_t mask_words(const LightGrid& grid) {
+  return std::size_t{grid.columns} * grid.padded_rows / 16;
 }
 
 /// What float arithmetic left open of a view sample.
 struct Open {
   bool pixel = false;                        ///< all of it
-  bool corner = false;                       ///< how many triangles are before the light's corner
+  bool corner = false;                       ///< how many triangles the segment to the light's corner meets
   std::vector<std::uint32_t> rows, samples;  ///< light samples: row · columns + column; some twice
 
   void clear() {
@@ -29,9 +29,9 @@ struct Open {
   [[nodiscard]] bool any() const { return pixel || !rows.empty() || !samples.empty(); }
 };
 
-/// Visible light samples of a view sample: how many, and, unless all or none are, which.
-struct Seen {
-  std::uint16_t* mask = nullptr;
+/// The visible light samples of a view sample: how many, and, unless all or none are, which (mask_words() words).
+struct SampleMask {
+  std::uint16_t* bits = nullptr;
   std::uint32_t visible = 0;
 };
 
@@ -41,20 +41,20 @@ struct HorizonLine {
   glm::dvec3 error{0};  ///< what they are off by at most
 };
 
-/// Decides what is open by exact predicates.
-class Judge {
+/// Decides by exact predicates what float arithmetic left open.
+class OpenJudge {
  public:
-  virtual ~Judge() = default;
-  /// How many triangles are before a light sample.
-  virtual std::uint32_t depth(const Placed& sample, std::uint32_t light_sample) = 0;
-  /// The same for exactly the point centre + s u + t v of the light's plane. Nothing: double does not know which
-  /// triangles to ask.
-  virtual std::optional<std::uint32_t> depth_in_plane(const Placed& sample, const glm::dvec2& st) = 0;
-  virtual HorizonLine horizon(const Placed& sample) = 0;
+  virtual ~OpenJudge() = default;
+  /// How many triangles the segment from the view sample to a light sample meets.
+  virtual std::uint32_t depth(const GridSample& sample, std::uint32_t light_sample) = 0;
+  /// How many triangles are strictly between the view sample and the point centre + s u + t v of the light's plane,
+  /// taken exactly. Nothing: in double it is not certain which triangles to test.
+  virtual std::optional<std::uint32_t> depth_in_plane(const GridSample& sample, const glm::dvec2& st) = 0;
+  virtual HorizonLine horizon(const GridSample& sample) = 0;
   /// The triangle's normal, of any length, turned to the side that p is on; 0: p is in its plane, or the triangle is so
-  /// thin that double does not know its normal.
-  virtual glm::dvec3 normal_towards(const Placed& sample, std::uint32_t triangle) = 0;
-  virtual void decide(const Placed& sample, const Open& open, Seen& seen) = 0;
+  /// thin that its normal is not certain in double.
+  virtual glm::dvec3 normal_towards(const GridSample& sample, std::uint32_t triangle) = 0;
+  virtual void decide(const GridSample& sample, const Open& open, SampleMask& mask) = 0;
 };
 
 }  // namespace penumbra::native

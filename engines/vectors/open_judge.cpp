@@ -7,23 +7,23 @@
 
 namespace penumbra::native {
 
-std::uint32_t OpenJudge::depth(const Placed& sample, std::uint32_t light_sample) {
+std::uint32_t ExactOpenJudge::depth(const GridSample& sample, std::uint32_t light_sample) {
   ++pairs_;
   return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
 }
 
-std::optional<std::uint32_t> OpenJudge::depth_in_plane(const Placed& sample, const glm::dvec2& st) {
+std::optional<std::uint32_t> ExactOpenJudge::depth_in_plane(const GridSample& sample, const glm::dvec2& st) {
   ++pairs_;
   return judge_.depth_in_plane(sample.pixel, st);
 }
 
-HorizonLine OpenJudge::horizon(const Placed& sample) {
+HorizonLine ExactOpenJudge::horizon(const GridSample& sample) {
   const auto carrier = static_cast<std::uint32_t>(judge_.samples.triangle[sample.pixel]);
   const auto corners = judge_.scene.corners(carrier);
-  const glm::dvec3 a(corners[0]), center(judge_.light.center);
+  const glm::dvec3 a(corners[0]);
+  const auto [center, u, v] = visibility::light_frame(judge_.light);
   const glm::dvec3 e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
   const glm::dvec3 n = glm::cross(e1, e2) * static_cast<double>(judge_.samples.facing[sample.pixel]);
-  const glm::dvec3 u = glm::dvec3(judge_.light.center_u) - center, v = glm::dvec3(judge_.light.center_v) - center;
   const glm::dvec3 from = center - a;
   // A determinant of three differences (certain_meeting.cpp): fewer than 2⁻⁴⁶ of the product of their lengths.
   const double lengths = 0x1p-46 * glm::length(e1) * glm::length(e2);
@@ -31,7 +31,7 @@ HorizonLine OpenJudge::horizon(const Placed& sample) {
           lengths * glm::dvec3(glm::length(u), glm::length(v), glm::length(from))};
 }
 
-glm::dvec3 OpenJudge::normal_towards(const Placed& sample, std::uint32_t triangle) {
+glm::dvec3 ExactOpenJudge::normal_towards(const GridSample& sample, std::uint32_t triangle) {
   const auto corners = judge_.scene.corners(triangle);
   const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
   const glm::dvec3 n = glm::cross(e1, e2);  // off by up to 2⁻⁵⁰ |e1| |e2|: its direction is known to a thousandth
@@ -40,7 +40,7 @@ glm::dvec3 OpenJudge::normal_towards(const Placed& sample, std::uint32_t triangl
   return side == mesh::Side::front ? n : side == mesh::Side::back ? -n : glm::dvec3(0);
 }
 
-void OpenJudge::decide(const Placed& sample, const Open& open, Seen& seen) {
+void ExactOpenJudge::decide(const GridSample& sample, const Open& open, SampleMask& mask) {
   ++pixels_;
   const auto each = [&](const std::vector<std::uint32_t>& numbers, const auto& visit) {
     numbers_ = numbers;
@@ -49,25 +49,25 @@ void OpenJudge::decide(const Placed& sample, const Open& open, Seen& seen) {
     for (const std::uint32_t number : numbers_) visit(number);
   };
   if (open.pixel) {
-    for (std::uint32_t row = 0; row < frame_.rows; ++row) decide_row(sample, row, seen);
+    for (std::uint32_t row = 0; row < grid_.rows; ++row) decide_row(sample, row, mask);
   } else {
-    each(open.rows, [&](std::uint32_t row) { decide_row(sample, row, seen); });
-    each(open.samples, [&](std::uint32_t one) { decide_one(sample, one, seen); });
+    each(open.rows, [&](std::uint32_t row) { decide_row(sample, row, mask); });
+    each(open.samples, [&](std::uint32_t one) { decide_one(sample, one, mask); });
   }
-  seen.visible = 0;
-  for (std::size_t i = 0; i < mask_words(frame_); ++i)
-    seen.visible += static_cast<std::uint32_t>(std::popcount(seen.mask[i]));
+  mask.visible = 0;
+  for (std::size_t i = 0; i < mask_words(grid_); ++i)
+    mask.visible += static_cast<std::uint32_t>(std::popcount(mask.bits[i]));
 }
 
-void OpenJudge::decide_row(const Placed& sample, std::uint32_t row, Seen& seen) {
-  for (std::uint32_t column = 0; column < frame_.columns; ++column)
-    decide_one(sample, row * frame_.columns + column, seen);
+void ExactOpenJudge::decide_row(const GridSample& sample, std::uint32_t row, SampleMask& mask) {
+  for (std::uint32_t column = 0; column < grid_.columns; ++column)
+    decide_one(sample, row * grid_.columns + column, mask);
 }
 
-void OpenJudge::decide_one(const Placed& sample, std::uint32_t light_sample, Seen& seen) {
+void ExactOpenJudge::decide_one(const GridSample& sample, std::uint32_t light_sample, SampleMask& mask) {
   ++pairs_;
-  const std::uint32_t row = light_sample / frame_.columns, column = light_sample % frame_.columns;
-  std::uint16_t& word = seen.mask[(std::size_t{column} * frame_.padded_rows + row) / 16];
+  const std::uint32_t row = light_sample / grid_.columns, column = light_sample % grid_.columns;
+  std::uint16_t& word = mask.bits[(std::size_t{column} * grid_.padded_rows + row) / 16];
   const std::uint32_t bit = 1U << row % 16;
   const bool visible = judge_.is_visible(sample.pixel, judge_.light.points[light_sample]);
   word = static_cast<std::uint16_t>(visible ? word | bit : word & ~bit);

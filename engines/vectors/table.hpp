@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-/// Inside engines/vectors/ only, but for methods' own stages.
+/// Inside engines/vectors/ only, and in the stages of methods.
 namespace penumbra::native {
 
 /// Columns of floats, side by side.

@@ -8,7 +8,7 @@ namespace {
 using visibility::Texel;
 using visibility::TriangleTree;
 
-void put(WidePoints& points, std::size_t lane, const glm::vec3& x) {
+void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
   for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
 }
 
@@ -19,8 +19,8 @@ std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stri
     WideNode& node = nodes[child / kWide];
     const std::size_t lane = child % kWide;
     const auto at = texels.subspan(child * stride, stride);
-    put(node.middle, lane, at[0].value);
-    put(node.half, lane, at[1].value);
+    store(node.middle, lane, at[0].value);
+    store(node.half, lane, at[1].value);
     node.reference[lane] = at[0].number;
     if (at[0].number != TriangleTree::kNoChild) node.used |= 1U << lane;
     if (stride < 3) continue;
@@ -41,12 +41,12 @@ WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::
   for (std::size_t slot = 0; slot < tree.leaves.size() * kWide; ++slot) {
     WideEdges& leaf = tree.leaves[slot / kWide];
     const std::size_t lane = slot % kWide;
-    put(leaf.a, lane, slots[0][slot].value);
-    put(leaf.b, lane, slots[1][slot].value);
+    store(leaf.a, lane, slots[0][slot].value);
+    store(leaf.b, lane, slots[1][slot].value);
     for (std::size_t side = 0; side < 2; ++side) {
       leaf.plane[side][lane] = slots[side][slot].number;
-      put(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
-      put(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
+      store(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
+      store(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
     }
     leaf.cut[lane] = slots[5][slot].number == 0 ? 0 : slots[5][slot].number - 1;
     if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
@@ -80,7 +80,7 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
       const std::uint32_t triangle = tree.leaves[i][lane];
       if (triangle == TriangleTree::kNoTriangle) continue;
       const auto corners = scene.corners(triangle);
-      for (std::size_t corner = 0; corner < 3; ++corner) put(leaf.corner[corner], lane, corners[corner] * scale);
+      for (std::size_t corner = 0; corner < 3; ++corner) store(leaf.corner[corner], lane, corners[corner] * scale);
       leaf.plane[lane] = scene.plane[triangle];
       leaf.emits[lane] = static_cast<std::uint32_t>(scene.emits[triangle]);
       leaf.used |= 1U << lane;

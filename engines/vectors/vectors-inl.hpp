@@ -1,5 +1,5 @@
 // Vectors of floats, as many as the processor has: included once a target by each stage of a method on the processor.
-// Inside engines/vectors/ only, but for methods' own stages.
+// Inside engines/vectors/ only, and in the stages of methods.
 
 #if defined(PENUMBRA_NATIVE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_NATIVE_VECTORS_INL_HPP

@@ -10,7 +10,7 @@ namespace penumbra::scenes {
 /// read_gltf. Throws InputError; std::bad_alloc.
 Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options);
 
-/// The same for its triangles alone, as one mesh: the one reader of glTF, whoever names the file.
+/// Reads only the triangles of a glTF file, as one mesh. Scenes and mesh files share this reader.
 mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside);
 
 /// Whether the file's name says that it is glTF.

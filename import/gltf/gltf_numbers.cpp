@@ -35,7 +35,7 @@ constexpr std::array kNumbers = {
     "/accessors/*/sparse/values/byteOffset",
     "/bufferViews/*/buffer",
 };
-/// The same for those that it keeps in 64 bits.
+/// JSON pointers of the numbers that tinygltf keeps in 64 bits.
 constexpr std::array kSizes = {
     "/accessors/*/byteOffset",   "/accessors/*/count",        "/bufferViews/*/byteOffset",
     "/bufferViews/*/byteLength", "/bufferViews/*/byteStride", "/buffers/*/byteLength",

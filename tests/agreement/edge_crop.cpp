@@ -4,7 +4,7 @@
 #include "tests/agreement/differences.hpp"
 
 #include "scenes/formats/reader.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "volumes/counters/depth_complexity.hpp"
 #include "volumes/edges/edge_lists.hpp"
 
@@ -46,7 +46,7 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
   view.load(whole);
   EdgeLists edges(device, "edge_crop", crops);
   edges.prepare_mesh(stage.floats, tree, scale);
-  edges.prepare_light(stage.light, visibility::make_light_frame(stage.light, scale));
+  edges.prepare_light(stage.light, visibility::make_device_light(stage.light, scale));
   render::Commands commands(device);
   gpu::ScatterPush push{};
   push.rows = push.columns = 2;

@@ -1,5 +1,5 @@
-// Scenes so dense before the light that one block of pixels looks at more of a hierarchy than some drivers' loops may
-// turn (65,535 times a workgroup): every engine comes to an end, with the same bits.
+// Scenes so dense between the view samples and the light that one block of pixels looks at more of a hierarchy than
+// some drivers' loops may turn (65,535 times a workgroup): every engine comes to an end, with the same bits.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"

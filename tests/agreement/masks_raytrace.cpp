@@ -45,8 +45,8 @@ TEST_F(AgreementOn, ParallelogramLights) {
   }
 }
 
-// A lamp's panel in the plane of a tilted light, over all of it or a part: light samples are before it or behind by a
-// unit in the last place. Rays stop short of that; the exact decision is the judge.
+// A lamp's panel in the plane of a tilted light, over all of it or a part: light samples are in front of it or behind
+// by a unit in the last place. Rays stop short of that; the exact decision is the judge.
 TEST_F(AgreementOn, PanelsInTheLightsPlane) {
   const glm::dvec3 center(-2.6, 4.2, 2.4), u(0.5208, 0, 0.6076), v(-0.4416, -0.5498, 0.3784);
   for (const auto& [shift, size] : {std::pair(0.0, 2.0), std::pair(-0.7, 0.6)}) {

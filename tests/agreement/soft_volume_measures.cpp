@@ -24,7 +24,7 @@ class SoftVolumeMeasures : public tests::DeviceTest {
     scene.lights[0].shape =
         scenes::Disk{rectangle.center, glm::cross(rectangle.half_u, rectangle.half_v), glm::length(rectangle.half_u)};
   }
-  /// Each pixel against the twin, whose edges have their own whole weights, where the shader's lean on their
+  /// Each pixel against the twin, whose edges have their own whole weights, where the shader's depend on their
   /// neighbours'. Tolerance: soft_volume_twin.cpp's; and for each edge on the light four walks over texels (the
   /// shader's one, the twin's three), each off by at most 2⁻²⁴ · brightest where it is all but upright
   /// (property/coverage_textures.cpp).

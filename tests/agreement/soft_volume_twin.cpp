@@ -41,7 +41,7 @@ class SoftVolumeTwin : public tests::DeviceTest {
     for (const float v : found) ASSERT_TRUE(v >= 0 && v <= 1) << name << ": " << v;
   }
 
-  /// The same scene with a disk of the light's first half-axis as radius.
+  /// The stage with its light replaced by a disk of the light's first half-axis as radius.
   static scenes::Scene with_disk(scenes::Scene scene) {
     const auto rectangle = std::get<scenes::Rectangle>(scene.lights.at(0).shape);
     scene.lights[0].shape =

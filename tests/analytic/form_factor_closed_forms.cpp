@@ -164,7 +164,7 @@ TEST(FormFactor, PiecesAddUpAndAnEdgeRunBackwardIsTheNegative) {
     for (std::size_t i = 0; i < 4; ++i) {
       sum += form_factor(std::array<glm::dvec3, 3>{whole[i], whole[(i + 1) % 4], middle}, n);
     }
-    // Inner edges cancel exactly but for a dozen additions of numbers below 1/2.
+    // Inner edges cancel up to a dozen additions of numbers below 1/2.
     EXPECT_NEAR(sum, form_factor(whole, n), 12 * kUlp) << "seed " << kSeed << ", round " << round;
     const FormFactorEdge edge{a, b, b - a}, back{b, a, a - b};
     EXPECT_EQ(form_factor_term(edge, n), -form_factor_term(back, n));
@@ -187,7 +187,7 @@ TEST(FormFactor, OfADiskStraightAboveAndAtTheHorizon) {
   for (const double h : {1e-3, 0.5, 2.0, 1e3}) {
     EXPECT_NEAR(form_factor(FormFactorDisk{{0, 0, h}, {0, 0, -1}, 0.5}, kUp), 0.25 / (0.25 + h * h), 8 * kUlp) << h;
   }
-  // Facing the element, which then is on the axis but for rounding; cut by the horizon.
+  // Facing the element, which then is on the axis within rounding; cut by the horizon.
   const glm::dvec3 toward = glm::normalize(glm::dvec3(1, 2, 0.1));
   const FormFactorDisk facing{2.0 * toward, -toward, 0.8};
   EXPECT_NEAR(form_factor(facing, kUp), polygonal(facing, kUp, 20000), 1e-8);

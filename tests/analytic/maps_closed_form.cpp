@@ -40,7 +40,7 @@ TEST_F(MapsClosedForm, AccumulateDiffersOnlyWithinATexelOfTheHalfPlanesEdge) {
   const Masks result = run(maps::make_accumulate, stage, {{"size", "512"}});
   const ParallelSquare exact(stage);
   // From any light point the floor spans 8 / 5 in tangents: a texel is 8 / 510 wide on it. The map is right at the
-  // texel's centre, half a texel from p, but for the rasteriser's own snapping: a whole texel covers both.
+  // texel's centre, half a texel from p, apart from the rasteriser's own snapping: a whole texel covers both.
   const double texel = 8.0 / 510;
   std::size_t differing = 0, near = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {

@@ -36,17 +36,17 @@ class PcssFormulas : public MapsTest {
   /// change in the mean: 2 % more width moves V by (V − 1/2) 2 %, 0.5 % over a penumbra.
   static void expect_predicted(const scenes::Scene& scene, const std::vector<Board>& boards, const std::string& name) {
     const Stage stage(scene, 64, 64, light_samples(1));
-    const maps::LightFrame frame = maps::frame_of(stage.light);
+    const maps::LightBasis basis = maps::light_basis(stage.light);
     std::vector<ParallelCaster> casters;
     for (const Board& board : boards) {
-      const glm::dvec3 a = frame.local(glm::dvec3(board.x0, board.height, -6) - stage.floats.origin),
-                       b = frame.local(glm::dvec3(board.x1, board.height, 6) - stage.floats.origin);
+      const glm::dvec3 a = basis.local(glm::dvec3(board.x0, board.height, -6) - stage.floats.origin),
+                       b = basis.local(glm::dvec3(board.x1, board.height, 6) - stage.floats.origin);
       casters.push_back({a.z, glm::min(glm::dvec2(a), glm::dvec2(b)), glm::max(glm::dvec2(a), glm::dvec2(b))});
     }
     // The window holds the floor (±4 / 5) and what is tapped beside it, as far as half the light's width over the
     // radius of the disk of its area.
     const double radius = std::sqrt(stage.light.area / std::numbers::pi);
-    const glm::dvec2 texel = 2.0 * (0.8 + maps::half_extent(stage.light, frame) / radius) / (kSize - 2.0);
+    const glm::dvec2 texel = 2.0 * (0.8 + maps::half_extent(stage.light, basis) / radius) / (kSize - 2.0);
     const PcssPrediction predicted(stage.light, casters, {kTaps, kTaps, texel, radius});
     const Masks found = run(maps::make_pcss, stage,
                             {{"size", fmt::format("{}", kSize)},
@@ -99,7 +99,7 @@ TEST_F(PcssFormulas, DisksAndPolygons) {
   scenes::Scene scene = under_boards(boards);
   scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
   expect_predicted(scene, boards, "disk");
-  scene.lights.front().shape = scenes::Polygon{{{-1, 5, -0.5}, {1, 5, -0.5}, {0.2, 5, 1}}};  // its frame's u is along x
+  scene.lights.front().shape = scenes::Polygon{{{-1, 5, -0.5}, {1, 5, -0.5}, {0.2, 5, 1}}};  // its basis's u is along x
   expect_predicted(scene, boards, "polygon");
 }
 
@@ -128,7 +128,7 @@ TEST(LightPattern, IsSpreadEvenly) {
     const visibility::Light light = visibility::make_light(scene, 0, floats.origin, light_samples(1));
     glm::dvec2 mean(0);
     double squares = 0;
-    for (const glm::vec2& at : maps::light_pattern(light, maps::frame_of(light), kCount)) {
+    for (const glm::vec2& at : maps::light_pattern(light, maps::light_basis(light), kCount)) {
       mean += glm::dvec2(at) / static_cast<double>(kCount);
       squares += glm::dot(glm::dvec2(at), glm::dvec2(at)) / kCount;
     }

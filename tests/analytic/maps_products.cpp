@@ -19,18 +19,18 @@ constexpr std::uint32_t kSize = 64;
 /// The maps of a stage's light from its centre.
 struct CentreMaps {
   CentreMaps(const render::Device& device, const Stage& stage)
-      : frame(maps::frame_of(stage.light)),
-        centre(frame.center),
-        fitted(maps::fit_views(stage.floats, stage.light, frame, std::span(&centre, 1), {.size = kSize})),
+      : basis(maps::light_basis(stage.light)),
+        centre(basis.center),
+        fitted(maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize})),
         views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
         depths(device, "depths", std::uint64_t{kSize} * kSize * sizeof(float) * fitted.faces) {
     maps::CasterMaps casters(device, kSize);
     casters.upload(stage.floats);
     render::Commands commands(device);
-    casters.record(commands, fitted.views.front(), frame, stage.light.index, depths, 0);
+    casters.record(commands, fitted.views.front(), basis, stage.light.index, depths, 0);
     commands.submit();
   }
-  maps::LightFrame frame;
+  maps::LightBasis basis;
   glm::vec3 centre;
   maps::FittedViews fitted;
   render::Buffer views, depths;
@@ -79,7 +79,7 @@ TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
     ASSERT_EQ(maps.fitted.faces, (wall > 0 ? 5U : 1U) + (two_sided ? (wall > 5 ? 5U : 1U) : 0U));
     maps::NearestCaster product(device());
     render::Commands commands(device());
-    product.record(commands, {maps.views, maps.depths, maps.fitted.faces, kSize, stage.light, maps.frame});
+    product.record(commands, {maps.views, maps.depths, maps.fitted.faces, kSize, stage.light, maps.basis});
     commands.submit();
     std::array<float, 2> found{};
     product.buffer().read<float>(found);

@@ -3,7 +3,7 @@
 // What pcss must answer under casters that are rectangles parallel to the light: its maps are known in closed form, so
 // every tap is, except those within half a texel of an outline. V lies between the answers that those leave open.
 
-#include "maps/light_frame.hpp"
+#include "maps/light_basis.hpp"
 #include "maps/light_shape.hpp"
 #include "tests/analytic/maps_fixture.hpp"
 
@@ -37,13 +37,13 @@ class PcssPrediction {
   PcssPrediction(const visibility::Light& light, std::vector<ParallelCaster> casters, const PcssTaps& taps)
       : casters_(std::move(casters)),
         taps_(taps),
-        frame_(maps::frame_of(light)),
-        search_(maps::light_pattern(light, frame_, taps.blocker)),
-        filter_(maps::light_pattern(light, frame_, taps.filter)) {}
+        basis_(maps::light_basis(light)),
+        search_(maps::light_pattern(light, basis_, taps.blocker)),
+        filter_(maps::light_pattern(light, basis_, taps.filter)) {}
 
   /// For a receiver on a plane parallel to the light, farther than all casters.
   [[nodiscard]] Between operator()(const glm::dvec3& receiver) const {
-    const glm::dvec3 d = frame_.local(receiver);
+    const glm::dvec3 d = basis_.local(receiver);
     const glm::dvec2 at(d.x / d.z, d.y / d.z);
     const double nearest = std::min(d.z, std::max(casters_.front().z, taps_.smallest_near));
     Heights heights;
@@ -131,7 +131,7 @@ class PcssPrediction {
 
   std::vector<ParallelCaster> casters_;
   PcssTaps taps_;
-  maps::LightFrame frame_;
+  maps::LightBasis basis_;
   std::vector<glm::vec2> search_, filter_;
 };
 

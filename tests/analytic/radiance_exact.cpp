@@ -4,7 +4,7 @@
 #include "reference/exact_method.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
 #include "visibility/form_factor.hpp"
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 using tests::area_scene;
 using tests::AreaStage;
 using tests::random_dyadic;
-using visibility::SeenLight;
+using visibility::UnshadowedLight;
 
 /// Sums of a thousand trapezoids of four terms up to 1/4, each off by an ulp or two of that, and ends of edges that
 /// moved by an ulp.
@@ -48,7 +48,7 @@ TEST(ExactRadiance, UnderAParallelSquareTheHiddenPartIsARectangle) {
     int part = 0;
     for (int i = 0; i < 200; ++i) {
       const glm::vec3 p(random_dyadic(random, -1.5, 1.5), 0, random_dyadic(random, -1.5, 1.5));
-      const SeenLight seen(stage.light, p, kUp);
+      const UnshadowedLight seen(stage.light, p, kUp);
       const auto shadow_of = [&](double corner, double at) { return ((corner - at) * kLight / board + at) / kHalf; };
       const glm::dvec2 low(shadow_of(-kHalf, p.x), shadow_of(-kHalf, p.z));
       const glm::dvec2 high(shadow_of(kHalf, p.x), shadow_of(kHalf, p.z));
@@ -70,7 +70,7 @@ TEST(ExactRadiance, UnderAParallelSquareTheHiddenPartIsARectangle) {
   }
 }
 
-/// A light near the floor, upright but for a slant; below y = 0 the horizon cuts it off.
+/// A light near the floor, nearly upright; below y = 0 the horizon cuts it off.
 scenes::AreaLight panel(double bottom) {
   return tests::rectangle_light({0, bottom + 0.75, -1}, {1, 0, 0.25}, {0, 0.75, 0.125});
 }
@@ -113,7 +113,7 @@ Brute brute_force(const AreaStage& stage, const std::vector<tests::Corners>& tri
       sees[index(x, y)] = std::ranges::none_of(triangles, [&](const auto& t) { return blocked(p, l, t); }) ? 1 : 0;
     }
   }
-  const SeenLight seen(stage.light, p, kUp);
+  const UnshadowedLight seen(stage.light, p, kUp);
   Brute result;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -139,7 +139,7 @@ TEST(ExactRadiance, IsWhatBruteForceComesTo) {
     const AreaStage stage(with_light(area_scene(triangles), panel(round % 3 == 0 ? -0.5 : 0.25)));
     const glm::vec3 p(random_dyadic(random, -1, 1), 0, random_dyadic(random, -0.5, 0.75));
     const ExactView exact = view(stage, p);
-    if (exact.visibility == 0 || exact.form_factor.x == SeenLight(stage.light, p, kUp).whole()) continue;
+    if (exact.visibility == 0 || exact.form_factor.x == UnshadowedLight(stage.light, p, kUp).whole()) continue;
     ++part;
     const Brute coarse = brute_force(stage, triangles, p, 32), fine = brute_force(stage, triangles, p, 256);
     // A cell that the boundary crosses is off by no more than all of it, and differs from a neighbour, or the boundary
@@ -147,7 +147,7 @@ TEST(ExactRadiance, IsWhatBruteForceComesTo) {
     EXPECT_NEAR(fine.form_factor, exact.form_factor.x, 0.5 * fine.doubtful + 1e-9) << "seed " << kSeed << " " << round;
     coarse_error += std::abs(coarse.form_factor - exact.form_factor.x);
     fine_error += std::abs(fine.form_factor - exact.form_factor.x);
-    v_error += std::abs(exact.visibility * SeenLight(stage.light, p, kUp).whole() - exact.form_factor.x);
+    v_error += std::abs(exact.visibility * UnshadowedLight(stage.light, p, kUp).whole() - exact.form_factor.x);
   }
   EXPECT_GE(part, 5);
   EXPECT_LT(fine_error, coarse_error / 4);  // cells are 8 times smaller; 65,536 samples
@@ -248,11 +248,11 @@ TEST(ExactRadiance, HalfADiskAndHalfASphere) {
       light.shape = scenes::Disk{{0, 1, 0}, {0, -1, 0}, 0.75};
     }
     const AreaStage stage(with_light(area_scene(tests::quad({-1, 0.5, 0}, {1, 0, 0}, {0, 0, -1})), light));
-    const double whole = SeenLight(stage.light, {0, 0, 0}, kUp).whole();
+    const double whole = UnshadowedLight(stage.light, {0, 0, 0}, kUp).whole();
     EXPECT_NEAR(whole, 0.5625 / 1.5625, 1e-15);
     EXPECT_NEAR(view(stage, {0, 0, 0}).form_factor.x, whole / 2, 3e-7);
     const AreaStage bare(with_light(area_scene({}), light));
-    EXPECT_EQ(view(bare, {8, 0, 0}).form_factor.x, SeenLight(bare.light, {8, 0, 0}, kUp).whole());
+    EXPECT_EQ(view(bare, {8, 0, 0}).form_factor.x, UnshadowedLight(bare.light, {8, 0, 0}, kUp).whole());
   }
 }
 

@@ -1,4 +1,4 @@
-// The ray caster against shadows that can be written down: which light samples are hidden (exactly, but for pairs
+// The ray caster against shadows that can be written down: which light samples are hidden (exactly, except for pairs
 // within rounding of the projected edge, which are counted), and how fast the share approaches the area.
 
 #include "tests/unit/ray_traced_masks.hpp"

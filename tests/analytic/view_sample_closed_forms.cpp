@@ -1,4 +1,4 @@
-// View-sample mapping against shadows that can be written down: exactly the samples that the closed form hides, but for
+// View-sample mapping against shadows that can be written down: exactly the samples that the closed form hides, except
 // pairs within the closed form's own rounding of the projected edge, which are counted; and convergence to the area.
 
 #include "tests/agreement/support.hpp"

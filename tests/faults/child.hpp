@@ -88,7 +88,7 @@ class FaultTest : public testing::Test {
   [[nodiscard]] std::vector<std::string> files() const;
   /// Two triangles over a floor under a square light, 48 × 32 pixels.
   [[nodiscard]] std::string small_scene(const std::string& name = "scene.json") const;
-  /// The same, with a mesh file beside it that keeps its reader busy for a while.
+  /// A scene as above, with a mesh file beside it that keeps its reader busy for a while.
   [[nodiscard]] std::string slow_scene() const;
 
   std::filesystem::path folder_;

@@ -148,8 +148,8 @@ RC_GTEST_PROP(Coverage, IsTheAreaThatSegmentsFromTheReferencePointReachAcrossThe
     const bool between = (cross2(l - c, a - c) > 0) != (cross2(l - c, b - c) > 0);
     across += parted && between ? 1 : 0;
   }
-  // The region is convex but for its notch at c: its boundary, at most 12 long, passes through at most 2 · 12 · 32 + 8
-  // of the cells of side 1/32; each may be counted wrong.
+  // The region is convex except at its notch at c: its boundary, at most 12 long, passes through at most 2 · 12 · 32 +
+  // 8 of the cells of side 1/32; each may be counted wrong.
   const double expected = sign_of(cross2(a - c, b - c)) * 4.0 * across / (kGrid * kGrid);
   RC_ASSERT(std::abs(beyond(outline, c, a, b) - expected) < (2 * 12 * 32 + 8) * 4.0 / (kGrid * kGrid));
 }

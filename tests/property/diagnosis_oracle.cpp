@@ -54,7 +54,7 @@ Corners sorted(Corners t) {
 Corners reversed(const Corners& t) {
   return {t[0], t[2], t[1]};
 }
-/// The same for t however it begins, another one wound the other way.
+/// A key of t that does not depend on its first corner; another one if it is wound the other way.
 Corners rotated(Corners t) {
   std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   return t;

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// mesh/diagnosis/diagnosis.hpp once more, straight from its definitions, in time quadratic or worse. For soups whose
-/// coordinates are small integers: all arithmetic that decides is in integers, but for the winding numbers.
+/// coordinates are small integers: all arithmetic that decides is in integers, except for the winding numbers.
 namespace penumbra::mesh::oracle {
 
 struct Point {
@@ -18,7 +18,7 @@ struct Point {
 using Corners = std::array<Point, 3>;
 using Segment = std::pair<Point, Point>;  // first < second
 
-/// The counts of a Diagnosis, but for needles and self-intersections.
+/// The counts of a Diagnosis without needles and self-intersections.
 struct Counts {
   std::uint64_t vertices = 0, components = 0, boundary_edges = 0, boundary_loops = 0, non_manifold_edges = 0,
                 non_manifold_vertices = 0, inconsistent_windings = 0, duplicate_faces = 0, opposite_faces = 0,

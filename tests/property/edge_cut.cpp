@@ -1,5 +1,5 @@
 // Edges cut at a light's plane inside their hierarchy, on vector units and on the device: what the walk finds is what
-// cutting all records gives, and mending leaves nothing behind.
+// cutting all records gives, and restoring leaves nothing behind.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
@@ -124,7 +124,7 @@ void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
     ASSERT_EQ(whole.size(), all.size());
     for (int turn = 0; turn < 2; ++turn) {  // one light after the other: the second cuts what the first has cut
       const visibility::Light light = visibility::make_light(scene, 0, floats.origin, request);
-      const LightEdges asked = sides.prepare_light(light, visibility::make_light_frame(light, scale), scale);
+      const LightEdges asked = sides.prepare_light(light, visibility::make_device_light(light, scale), scale);
       for (const auto& side : {asked.front, asked.back}) {
         if (!side) continue;
         edges.cut({floats, triangles, sides.casters(), -1, *side});
@@ -137,7 +137,7 @@ void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
       }
       scene.lights[0] = soup.light(request);
     }
-    edges.mend();
+    edges.restore();
     EXPECT_EQ(reachable(edges), whole) << "seed " << seed;
   }
   EXPECT_GT(cut, 3 * soups);

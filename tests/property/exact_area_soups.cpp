@@ -52,7 +52,7 @@ TEST_P(ExactAreaSoups, SplitFacesCoverTheSame) {
   const std::vector<Corners> soup = lattice_soup(random, 16);
   std::vector<Corners> split;
   for (const auto& [a, b, c] : soup) {
-    const glm::dvec3 middle = 0.5 * (a + b);  // exact: a T-junction for whoever shares the edge
+    const glm::dvec3 middle = 0.5 * (a + b);  // exact: a T-junction for triangles that share the edge
     if (random() % 2 == 0) {
       split.push_back({a, b, c});
     } else {

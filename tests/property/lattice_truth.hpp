@@ -27,7 +27,7 @@ inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const vis
   return samples;
 }
 
-/// The same points as a heap of points without rows: the other way through the shaders.
+/// The light with its samples in no rows, so that shaders take the path for samples anywhere.
 inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
   light.pattern = visibility::SamplePattern::sobol;
   light.rows = light.columns = 0;

@@ -59,7 +59,7 @@ TEST_P(LatticeSoupsFull, EveryPairIsTheExactDecision) {
   tests::expect_all_kinds(counts);
 }
 
-/// Found among tens of thousands: an outline along the light's left side, p inside another triangle but for rounding,
+/// Found among tens of thousands: an outline along the light's left side, p inside another triangle within rounding,
 /// an edge at p's own height; light samples stored off the light's plane, which a triangle touches.
 TEST_P(HardScenes, LatticeSoupsThatWereWrong) {
   tests::MethodsByLayout methods([&] { return GetParam().make(device(), {}); });

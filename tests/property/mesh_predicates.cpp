@@ -88,7 +88,7 @@ TEST_P(Predicates, Lattice) {
 }
 
 TEST_P(Predicates, LatticesOfEveryScale) {
-  // The same ties where products of three coordinates leave the range of doubles, below and above.
+  // Such ties where products of three coordinates leave the range of doubles, below and above.
   for (const int exponent : {-1074, -1060, -700, -360, -150, 126, 340, 700, 1020}) {
     Tally tally;
     const double unit = std::ldexp(1.0, exponent);
@@ -132,7 +132,7 @@ TEST_P(Predicates, NearlyCoplanarAndNearlyCollinear) {
       500, tally);
   expect_exact(
       [&] {
-        const double t = std::round(between(-64, 64)) / 16;  // t, 3 t and 5 t exact: collinear but for the ulp
+        const double t = std::round(between(-64, 64)) / 16;  // t, 3 t and 5 t exact: collinear up to the ulp
         return glm::dvec3(t, ulp_off(3 * t), ulp_off(5 * t));
       },
       500, tally);

@@ -178,7 +178,7 @@ TEST(Silhouettes, OfAnOpenSurfaceAreItsBorder) {
 }
 
 TEST(Silhouettes, BooksOfPagesCountTheirPages) {
-  // n triangles around one edge, all on p's side of it but for `behind`: k = n − 2 · behind.
+  // n triangles around one edge, all on p's side of it except `behind` of them: k = n − 2 · behind.
   for (int pages = 1; pages <= 7; ++pages) {
     for (int behind = 0; behind <= pages; ++behind) {
       LatticeSoup soup;

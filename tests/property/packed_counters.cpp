@@ -168,8 +168,8 @@ TEST_F(Packed, BoardsAreExact) {
   }
 }
 
-/// A sheet in shallow pleats, so turned that no view sample is on its plane but for rounding, under light along it:
-/// ways to the light run through planes of carriers, past edges that are no silhouettes.
+/// A sheet in shallow pleats, so turned that view samples are off its planes by more than rounding, under light along
+/// it: ways to the light run through planes of carriers, past edges that are no silhouettes.
 TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
   const glm::dvec3 u = glm::normalize(glm::dvec3(0.8, 0.31, -0.23)),
                    v = glm::normalize(glm::cross(u, glm::dvec3(0.17, 0.9, 0.41))), n = glm::cross(v, u);

@@ -30,11 +30,11 @@ std::string text(const glm::vec3& v) {
 }
 
 /// What the runs saw, so that a test can say that it saw what it is about.
-struct Seen {
+struct Tally {
   int pairs = 0, met = 0, several = 0, zeros = 0, cut_at_light = 0, cut_at_p = 0, cancelled = 0;
 };
 
-int segment_count(const Soup& soup, const CrossingPair& pair, const Light& light, Seen& seen) {
+int segment_count(const Soup& soup, const CrossingPair& pair, const Light& light, Tally& tally) {
   int count = 0;
   bool zero = false;
   for (const mesh::Triangle& t : soup.triangles) {
@@ -43,17 +43,17 @@ int segment_count(const Soup& soup, const CrossingPair& pair, const Light& light
     count += meeting.meets ? 1 : 0;
     zero |= meeting.zero_predicate;
   }
-  seen.zeros += zero ? 1 : 0;
+  tally.zeros += zero ? 1 : 0;
   return count;
 }
 
-void expect_equal(const Soup& soup, const CrossingPair& pair, const Light& light, Seen& seen) {
+void expect_equal(const Soup& soup, const CrossingPair& pair, const Light& light, Tally& tally) {
   const std::vector<glm::dvec3> positions = mesh::widened(soup.positions);
   const mesh::MeshView view{positions, soup.triangles};
   const mesh::EdgeGraph graph = mesh::build_edge_graph(view);
   const std::vector<Side> facings = mesh::facings(view, graph, glm::dvec3(pair.p));
   const SignedCrossings sum = signed_crossings(view, graph, facings, pair, light);
-  const int count = segment_count(soup, pair, light, seen);
+  const int count = segment_count(soup, pair, light, tally);
   std::ostringstream what;
   if (sum.total() != count) {
     what << "p " << text(pair.p) << " l " << text(pair.l) << " light " << text(light.center) << text(light.center_u)
@@ -63,12 +63,12 @@ void expect_equal(const Soup& soup, const CrossingPair& pair, const Light& light
     }
   }
   ASSERT_EQ(sum.total(), count) << what.str();
-  ++seen.pairs;
-  seen.met += count > 0 ? 1 : 0;
-  seen.several += count > 1 ? 1 : 0;
-  seen.cut_at_light += sum.cuts_at_light != 0 ? 1 : 0;
-  seen.cut_at_p += sum.cuts_at_p != 0 ? 1 : 0;
-  seen.cancelled += count == 0 && sum.edges != 0 ? 1 : 0;
+  ++tally.pairs;
+  tally.met += count > 0 ? 1 : 0;
+  tally.several += count > 1 ? 1 : 0;
+  tally.cut_at_light += sum.cuts_at_light != 0 ? 1 : 0;
+  tally.cut_at_p += sum.cuts_at_p != 0 ? 1 : 0;
+  tally.cancelled += count == 0 && sum.edges != 0 ? 1 : 0;
 }
 
 class Draw {
@@ -127,25 +127,25 @@ class SignedCrossingsOnLattice : public testing::TestWithParam<std::uint32_t> {}
 
 TEST_P(SignedCrossingsOnLattice, EqualTheTrianglesMet) {
   Draw draw(GetParam());
-  Seen seen;
+  Tally tally;
   for (int round = 0; round < 6000; ++round) {
     SCOPED_TRACE(testing::Message() << "seed " << GetParam() << " round " << round);
     const int reach = draw.number(1, 3);
     const Light light = draw.frame(reach);
-    ASSERT_NO_FATAL_FAILURE(expect_equal(draw.soup(draw.number(1, 8), reach), draw.pair(light, reach), light, seen));
+    ASSERT_NO_FATAL_FAILURE(expect_equal(draw.soup(draw.number(1, 8), reach), draw.pair(light, reach), light, tally));
   }
-  EXPECT_GT(seen.met, 500);
-  EXPECT_GT(seen.several, 50);
-  EXPECT_GT(seen.zeros, 700);
-  EXPECT_GT(seen.cut_at_light, 200);
-  EXPECT_GT(seen.cut_at_p, 200);
-  EXPECT_GT(seen.cancelled, 100);
+  EXPECT_GT(tally.met, 500);
+  EXPECT_GT(tally.several, 50);
+  EXPECT_GT(tally.zeros, 700);
+  EXPECT_GT(tally.cut_at_light, 200);
+  EXPECT_GT(tally.cut_at_p, 200);
+  EXPECT_GT(tally.cancelled, 100);
 }
 
 TEST_P(SignedCrossingsOnLattice, EveryWayToStraddle) {
   // One triangle across the slab 0 < y < 1 at a time, corners on and beyond both planes: cuts decide most of them.
   Draw draw(GetParam() + 100);
-  Seen seen;
+  Tally tally;
   Light light;
   light.center_u = {1, 0, 0};
   light.center_v = {0, 0, 1};
@@ -155,19 +155,19 @@ TEST_P(SignedCrossingsOnLattice, EveryWayToStraddle) {
     const Soup soup{{corner(), corner(), corner()}, {{0, 1, 2}}};
     const int down = draw.number(0, 1);
     const CrossingPair pair{{draw.number(-1, 1), down, draw.number(-1, 1)}, {0, 1 - down, 0}};
-    ASSERT_NO_FATAL_FAILURE(expect_equal(soup, pair, light, seen));
+    ASSERT_NO_FATAL_FAILURE(expect_equal(soup, pair, light, tally));
   }
-  EXPECT_GT(seen.met, 200);
-  EXPECT_GT(seen.zeros, 200);
-  EXPECT_GT(seen.cut_at_light, 50);
-  EXPECT_GT(seen.cut_at_p, 50);
+  EXPECT_GT(tally.met, 200);
+  EXPECT_GT(tally.zeros, 200);
+  EXPECT_GT(tally.cut_at_light, 50);
+  EXPECT_GT(tally.cut_at_p, 50);
 }
 
 TEST_P(SignedCrossingsOnLattice, LightPointsThatRoundingPutBesideTheirPlane) {
   // No lattice: frames and points in general position and an ulp from it, magnitudes far apart.
   Draw draw(GetParam() + 200);
   std::uniform_real_distribution<float> anywhere(-1, 1);
-  Seen seen;
+  Tally tally;
   for (int round = 0; round < 1000; ++round) {
     SCOPED_TRACE(testing::Message() << "seed " << GetParam() << " round " << round);
     const auto point = [&] {
@@ -187,17 +187,17 @@ TEST_P(SignedCrossingsOnLattice, LightPointsThatRoundingPutBesideTheirPlane) {
       for (std::uint32_t& corner : t) corner = static_cast<std::uint32_t>(draw.number(0, 9));
       soup.triangles.push_back(t);
     }
-    ASSERT_NO_FATAL_FAILURE(expect_equal(soup, pair, light, seen));
+    ASSERT_NO_FATAL_FAILURE(expect_equal(soup, pair, light, tally));
   }
-  EXPECT_GT(seen.met, 50);
-  EXPECT_GT(seen.cut_at_light, 0);
+  EXPECT_GT(tally.met, 50);
+  EXPECT_GT(tally.cut_at_light, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SignedCrossingsOnLattice, testing::Range(0u, 6u));
 
 TEST(SignedCrossings, CutsAloneCanDecide) {
   // A sheet at z = 1 through the whole slab 0 < y < 1, the ray along +z. p's cut is at infinity on the ray. A light
-  // point behind the sheet has nothing else on its ray; before one in front of it there is the light's cut, too.
+  // point behind the sheet has nothing else on its ray; on the ray of one in front of it there is the light's cut, too.
   Light light;
   light.center_u = {0, 0, 1};
   light.center_v = {1, 0, 0};

@@ -15,7 +15,7 @@ struct CrossingPair {
   glm::vec3 p{0}, l{0};
 };
 
-/// Signed crossings of a ray with the edges of clipped triangles. The parts tell how much of the answer hangs on
+/// Signed crossings of a ray with the edges of clipped triangles. The parts tell how much of the answer depends on
 /// clipping; only their sum has a meaning of its own.
 struct SignedCrossings {
   int edges = 0;          ///< Σ over the graph's edges, clipped, each k_e(p) times
@@ -32,7 +32,7 @@ struct SignedCrossings {
 /// docs/signed-crossings.md. The slab is that between the plane through l along the light's frame and the parallel one
 /// through p: a light point that rounding put beside its light's plane is no special case.
 ///
-/// `mesh` and `graph` are the triangles, whoever they are: carriers are left out by the caller. `facings` is
+/// `mesh` and `graph` are the triangles that count: carriers are left out by the caller. `facings` is
 /// mesh::facings(mesh, graph, p). The light must be planar, and p off the plane through l: asserted.
 SignedCrossings signed_crossings(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph,
                                  std::span<const mesh::Side> facings, const CrossingPair& pair, const Light& light);

@@ -2,9 +2,9 @@
 // come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
 
 #include "engines/vectors/clusters.hpp"
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "tests/agreement/support.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/tree_texels.hpp"
 
 #include <fmt/format.h>
@@ -47,18 +47,18 @@ class BoundX {
     const visibility::Light light =
         visibility::make_light(scene, 0, floats.origin, {64, 8, 8, visibility::SamplePattern::rows, 0});
     const float scale = visibility::device_scale(floats);
-    const visibility::LightFrame light_frame = visibility::make_light_frame(light, scale);
+    const visibility::DeviceLight device_light = visibility::make_device_light(light, scale);
     const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale); };
-    const Frame frame = make_frame({light_frame,
-                                    {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
-                                    light.rows,
-                                    light.columns,
-                                    0,
-                                    1,
-                                    visibility::reach_of(floats, light_frame, scale),
-                                    0,
-                                    scale,
-                                    light.points});
+    const LightGrid grid = make_light_grid({device_light,
+                                            {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                            light.rows,
+                                            light.columns,
+                                            0,
+                                            1,
+                                            visibility::reach_of(floats, device_light, scale),
+                                            0,
+                                            scale,
+                                            light.points});
     visibility::ViewSamples samples;
     samples.width = 2;
     samples.height = 1;
@@ -71,18 +71,18 @@ class BoundX {
       samples.facing.push_back(1);
     }
     const std::vector<std::uint8_t> known(floats.triangles.size(), 1);
-    const ViewInput view{floats, samples, light_frame, frame, known, scale};
-    std::array<Placed, 2> placed;
+    const ViewInput view{floats, samples, device_light, grid, known, scale};
+    std::array<GridSample, 2> view_samples;
     for (std::uint32_t i = 0; i < 2; ++i) {
-      if (look(view, i, placed[i]) != Outlook::scattered) return {};
+      if (classify(view, i, view_samples[i]) != SampleClass::in_front) return {};
     }
-    const Cluster cluster = make_cluster(frame, placed);
-    const Sample at = complete(frame, cluster, placed[0]);
+    const Cluster cluster = make_cluster(grid, view_samples);
+    const ClusterSample at = complete(grid, cluster, view_samples[0]);
     // A point over p, on the way to somewhere near the light.
     const glm::dvec3 target = scaled(light.center) + 2 * real() * (scaled(light.center_u) - scaled(light.center)) +
                               2 * real() * (scaled(light.center_v) - scaled(light.center));
     const glm::vec3 x(glm::mix(glm::dvec3(at.p), target, 0.95 * next()));
-    return use_of(frame, cluster, at, x);
+    return use_of(grid, cluster, at, x);
   }
 
  private:
@@ -93,25 +93,26 @@ class BoundX {
     return {x, y, z};
   }
 
-  static Use use_of(const Frame& frame, const Cluster& cluster, const Sample& at, const glm::vec3& x) {
+  static Use use_of(const LightGrid& grid, const Cluster& cluster, const ClusterSample& at, const glm::vec3& x) {
     // As the tables and Projection compute it: one order, nothing fused.
     const glm::vec3 from = x - cluster.middle;
     const auto dot = [&](const glm::vec3& n) { return (from.x * n.x + from.y * n.y) + from.z * n.z; };
-    const float w = at.seen.z - dot(frame.axis), q = at.height / w;
+    const float w = at.in_grid.z - dot(grid.axis), q = at.height / w;
     const float far = glm::length(from) * 1.0001F + at.far;
     if (!(w > 64 * kRound * far)) return {};
-    const glm::vec2 seen = at.foot + q * glm::vec2(dot(frame.across) - at.seen.x, dot(frame.along) - at.seen.y);
-    // The light's plane and axes are those of the stored points (Frame::axes, exact but for 2⁻⁵³).
+    const glm::vec2 place_on_light =
+        at.foot + q * glm::vec2(dot(grid.across) - at.in_grid.x, dot(grid.along) - at.in_grid.y);
+    // The light's plane and axes are those of the stored points (LightGrid::axes, exact up to 2⁻⁵³).
     const auto exact_dot = [](const glm::dvec3& n, const Exact& d) { return n.x * d.x + n.y * d.y + n.z * d.z; };
-    const Exact p(at.p), way = Exact(x) - p, to_p = p - Exact(frame.corner);
-    const long double height = exact_dot(frame.axes[2], to_p), over = -exact_dot(frame.axes[2], way);
+    const Exact p(at.p), way = Exact(x) - p, to_p = p - Exact(grid.corner);
+    const long double height = exact_dot(grid.axes[2], to_p), over = -exact_dot(grid.axes[2], way);
     Use worst;
     for (int axis = 0; axis < 2; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
-      const long double place = exact_dot(frame.axes[i], to_p) + height / over * exact_dot(frame.axes[i], way) - 0.5L;
-      const float from_foot = glm::length(seen - at.foot);
+      const long double place = exact_dot(grid.axes[i], to_p) + height / over * exact_dot(grid.axes[i], way) - 0.5L;
+      const float from_foot = glm::length(place_on_light - at.foot);
       const double bound = far / w * (at.per_way + kPerReach * from_foot) + at.per_foot * from_foot + at.fixed;
-      const auto error = static_cast<double>(std::abs(static_cast<long double>(seen[axis]) - place));
+      const auto error = static_cast<double>(std::abs(static_cast<long double>(place_on_light[axis]) - place));
       if (error / bound > worst.of_bound) worst = {error / bound, error, bound};
     }
     return worst;

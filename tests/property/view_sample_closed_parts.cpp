@@ -72,7 +72,7 @@ TEST_P(ClosedPartsOnDevice, EveryPairIsTheExactDecision) {
     const SceneFloats floats = visibility::make_scene_floats(scene);
     const Light light = visibility::make_light(scene, 0, floats.origin, request);
     const ClosedParts closed = find_closed_parts(floats);
-    with_parts += parts_apart_from(closed, visibility::make_light_frame(light, 1), 1) != 0 ? 1 : 0;
+    with_parts += parts_apart_from(closed, visibility::make_device_light(light, 1), 1) != 0 ? 1 : 0;
     ViewSamples samples = tests::samples_on_triangles(floats, 8, 16, soup.random(), 1);
     tests::append(samples, tests::samples_on_triangles(floats, 8, 2, soup.random(), 0));
     tests::append(samples, tests::samples_on_triangles(floats, 8, 4, soup.random(), 2));

@@ -201,7 +201,7 @@ double inside(const std::array<glm::vec3, 3>& corners, const glm::dvec3& p) {
   return least;
 }
 
-/// The same stored points, each on the piece that it lies on.
+/// View samples with the given stored points, each on the piece that it lies on.
 ViewSamples on_pieces(const ViewSamples& samples, const SceneFloats& before, const SceneFloats& after,
                       const std::vector<std::uint32_t>& whole) {
   ViewSamples result = samples;

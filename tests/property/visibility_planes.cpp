@@ -26,7 +26,7 @@ SceneFloats soup(std::size_t triangles, const Point& point) {
   return make_scene_floats(scene);
 }
 
-/// The same with the floats as they are: no origin is subtracted that would round them.
+/// Takes the floats as they are: no origin is subtracted that would round them.
 SceneFloats plain_soup(std::size_t triangles, const Point& point) {
   SceneFloats floats;
   for (std::uint32_t i = 0; i < triangles; ++i) {

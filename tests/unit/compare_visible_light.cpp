@@ -20,7 +20,7 @@ using visibility::Light;
 using visibility::LightKind;
 using visibility::SamplePattern;
 using visibility::SampleRequest;
-using visibility::SeenLight;
+using visibility::UnshadowedLight;
 
 using Mask = std::vector<std::uint32_t>;
 
@@ -58,7 +58,7 @@ Mask random_mask(const Light& light, std::mt19937& random) {
 }
 
 /// The cell of one sample of a rectangle's rows, from the light sample's own coordinates: half way to its neighbours.
-double cell(const SeenLight& seen, const Light& light, std::uint32_t row, std::uint32_t column) {
+double cell(const UnshadowedLight& seen, const Light& light, std::uint32_t row, std::uint32_t column) {
   const auto s = [&](std::uint32_t c) { return light.coordinates[row * light.columns + c].x; };
   const double low = column == 0 ? -1 : (s(column - 1) + s(column)) / 2;
   const double high = column + 1 == light.columns ? 1 : (s(column) + s(column + 1)) / 2;
@@ -74,7 +74,7 @@ TEST(VisibleLight, ARunIsTheSumOfItsCells) {
       const Light light = light_of(shape("rectangle"), {0, rows, columns, pattern, 0});
       const VisibleLight visible(light);
       for (const glm::vec3& p : points) {
-        const SeenLight seen(light, p, {0, 1, 0});
+        const UnshadowedLight seen(light, p, {0, 1, 0});
         const Mask mask = random_mask(light, random);
         double expected = 0, all = 0;
         for (std::uint32_t j = 0; j < light.sample_count(); ++j) {
@@ -102,7 +102,7 @@ TEST(VisibleLight, AllVisibleIsTheWholeToTheLastBit) {
       const VisibleLight visible(light);
       for (const glm::vec3& n : {up, slanted}) {
         const glm::vec3 p(0.25f, 0, 0);
-        const SeenLight seen(light, p, n);
+        const UnshadowedLight seen(light, p, n);
         EXPECT_EQ(seen.above_horizon(), n == up);
         std::vector<glm::vec3> samples(light.sample_count());
         visibility::light_points_for(light, p, samples.data());
@@ -125,7 +125,7 @@ TEST(VisibleLight, FarFromTheLightItIsVButForTheRowsEnds) {
   const Light light = light_of(shape("rectangle"), {0, 7, 9, SamplePattern::rows, 0});
   const VisibleLight visible(light);
   const glm::vec3 p(0, -3e4f, 0);
-  const SeenLight seen(light, p, {0, 1, 0});
+  const UnshadowedLight seen(light, p, {0, 1, 0});
   std::mt19937 random(9);
   for (int round = 0; round < 50; ++round) {
     const Mask mask = random_mask(light, random);
@@ -146,7 +146,7 @@ TEST(VisibleLight, SamplesOfEveryPatternConvergeToTheHalfThatIsVisible) {
   // The half with x < 0 of a square light beside p, near enough for the halves to differ by far.
   const glm::vec3 p(-0.9f, 1.4f, 0.1f);
   const Light whole = light_of(shape("rectangle"), {1});
-  const SeenLight seen(whole, p, {0, 1, 0});
+  const UnshadowedLight seen(whole, p, {0, 1, 0});
   const double expected = seen.box({-1, -1}, {0, 1});
   ASSERT_GT(expected, 0.8 * seen.whole());
   const auto value = [&](SamplePattern pattern, std::uint32_t count) {
@@ -155,7 +155,7 @@ TEST(VisibleLight, SamplesOfEveryPatternConvergeToTheHalfThatIsVisible) {
     for (std::uint32_t j = 0; j < light.sample_count(); ++j) {
       if (light.points[j].x < 0) mask[j / 32] |= 1u << j % 32;
     }
-    return VisibleLight(light).visible({SeenLight(light, p, {0, 1, 0}), p}, mask).x;
+    return VisibleLight(light).visible({UnshadowedLight(light, p, {0, 1, 0}), p}, mask).x;
   };
   // A grid of an even number of columns has a border at x = 0: its cells are the half itself.
   EXPECT_NEAR(value(SamplePattern::grid, 16), expected, 16 * kUlp);
@@ -171,7 +171,7 @@ TEST(VisibleLight, ATexturesColoursAreWeighedWithTheirSamples) {
   const Light light = light_of(source, {0, 16, 16, SamplePattern::grid, 0});
   const VisibleLight visible(light);
   const glm::vec3 p(0.5f, 0.5f, 0.25f);
-  const SeenLight seen(light, p, {0, 1, 0});
+  const UnshadowedLight seen(light, p, {0, 1, 0});
   const glm::dvec3 all = visible.unshadowed({seen, p});
   // Midpoint rule on cells of 3/32 at a distance of 1.5 or more: relative error below (size / distance)² / 6.
   EXPECT_NEAR(all.x / 4, seen.box({-1, -1}, {0, 1}), 1e-3 * all.x);
@@ -180,11 +180,11 @@ TEST(VisibleLight, ATexturesColoursAreWeighedWithTheirSamples) {
   EXPECT_EQ(visible.visible({seen, p}, full(light)), all);
 }
 
-TEST(SeenLight, OnlyFromWhereItEmits) {
+TEST(UnshadowedLight, OnlyFromWhereItEmits) {
   scenes::AreaLight source = shape("rectangle");
   const auto whole = [&](const glm::vec3& p, const glm::vec3& n) {
     const Light light = light_of(source, {1});
-    return SeenLight(light, p, n).whole();
+    return UnshadowedLight(light, p, n).whole();
   };
   const double below = whole({0.25f, 1, 0.5f}, {0, 1, 0});
   EXPECT_GT(below, 0.1);
@@ -196,7 +196,7 @@ TEST(SeenLight, OnlyFromWhereItEmits) {
   EXPECT_EQ(whole({0.25f, 2, 0.5f}, {0, 1, 0}), 0);
 }
 
-TEST(SeenLight, OnALatticeEveryFormFactorIsOneAndPartsAddUp) {
+TEST(UnshadowedLight, OnALatticeEveryFormFactorIsOneAndPartsAddUp) {
   // Elements on edges, corners and planes of lights, edges through the element, horizons along edges.
   constexpr unsigned kSeed = 11;
   std::mt19937 random(kSeed);
@@ -210,7 +210,7 @@ TEST(SeenLight, OnALatticeEveryFormFactorIsOneAndPartsAddUp) {
     source.two_sided = round % 2 == 0;
     const Light light = light_of(source, {1});
     const glm::vec3 p(vector());
-    const SeenLight seen(light, p, glm::vec3(n));
+    const UnshadowedLight seen(light, p, glm::vec3(n));
     const double whole = seen.whole(), parts = seen.box({-1, -1}, {0, 0}) + seen.box({0, -1}, {1, 0}) +
                                                seen.box({-1, 0}, {0, 1}) + seen.box({0, 0}, {1, 1});
     ASSERT_GE(whole, 0) << "seed " << kSeed << ", round " << round;
@@ -221,12 +221,12 @@ TEST(SeenLight, OnALatticeEveryFormFactorIsOneAndPartsAddUp) {
   EXPECT_GT(lit, 2000);
 }
 
-TEST(SeenLight, ASphereIsItsFacingDisk) {
+TEST(UnshadowedLight, ASphereIsItsFacingDisk) {
   const Light light = light_of(shape("sphere"), {1});
   const glm::vec3 p(0.5f, 0, 0.25f);
   const double squared = 0.25 + 4 + 0.0625;
-  EXPECT_NEAR(SeenLight(light, p, glm::vec3(light.center) - p).whole(), 0.64 / (squared + 0.64), 1e-7);  // 0.8f
-  EXPECT_EQ(SeenLight(light, light.center, {0, 1, 0}).whole(), 0);
+  EXPECT_NEAR(UnshadowedLight(light, p, glm::vec3(light.center) - p).whole(), 0.64 / (squared + 0.64), 1e-7);  // 0.8f
+  EXPECT_EQ(UnshadowedLight(light, light.center, {0, 1, 0}).whole(), 0);
 }
 
 }  // namespace

@@ -328,7 +328,7 @@ TEST_F(GltfReader, EveryTruncationAndManyFlipsAreRefusedOrRead) {
   }
 }
 
-/// Whoever names a glTF file, one reader reads it: of every file of a corpus, both ways tell the same.
+/// One reader reads glTF files for scenes and for meshes: for every file of a corpus both results agree.
 TEST(GltfCorpus, AsAMeshAndAsASceneAreOne) {
   int files = 0, read = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator("/usr/share/assimp/models")) {

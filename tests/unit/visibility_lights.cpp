@@ -132,8 +132,8 @@ TEST(Lights, SphereShowsEachPointADiskThroughItsCentre) {
       EXPECT_LE(glm::length(l - light.center), 0.5f + 1e-6f);
       EXPECT_NEAR(glm::dot(l - light.center, p - light.center), 0, 1e-5);
     }
-    const LightAxes axes = light_axes(light, p);
-    EXPECT_GE(glm::dot(glm::cross(axes.u, axes.v), glm::dvec3(p - light.center)), 0);
+    const LightFrame frame = light_frame_from(light, p);
+    EXPECT_GE(glm::dot(glm::cross(frame.u, frame.v), glm::dvec3(p - light.center)), 0);
     EXPECT_TRUE(in_front_of_light(light, p));
   }
 }

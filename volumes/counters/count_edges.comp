@@ -373,7 +373,7 @@ void main() {
     for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
   }
   const bool touched = (push.touched_low | push.touched_high) != 0 || sees_flat(length(from_center), at.height);
-  // On a triangle, but for rounding: half of all ways from p hang on which side of it p is. (bound on)
+  // On a triangle within rounding: half of all ways from p depend on which side of it p is. (bound on)
   const bool on_some = subgroupAny(side_in_doubt) && subgroupAny(on_triangle);
   if (subgroupAny(open_pixel || cut_off) || on_some || touched || below) {
     settle_whole(pixel, false, !below);

@@ -103,7 +103,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   device::MaskLayout prepare_kernel() override {
     check_shared_memory();
     std::vector<glm::vec2> places;
-    for (const glm::vec2& at : light_frame().coordinates) places.push_back(at + 1.0F);
+    for (const glm::vec2& at : device_light().coordinates) places.push_back(at + 1.0F);
     places_.emplace(render::make_buffer<glm::vec2>(device(), "places of light samples", places));
     build_pass();
     return {.words = light().words_per_mask()};

@@ -10,16 +10,16 @@
 
 namespace penumbra::volumes {
 
-/// `depth-complexity`: an integer counter a light sample says how many triangles are before it. Any planar light, one-
-/// and two-sided, any pattern of light samples. docs/depth-complexity.md.
+/// `depth-complexity`: an integer counter for each light sample: how many triangles are between p and it. Any planar
+/// light, one- and two-sided, any pattern of light samples. docs/depth-complexity.md.
 ///
 /// variant=soup (default; ours): signed multiplicities and a certified reference; any triangle soup, every bit the
 /// truth of its pair. variant=laine (Laine et al. 2005): silhouettes count ±1 and one reference ray a view sample gives
 /// the constant; right for closed meshes, wrong where an open one folds over. variant=forest (Forest et al. 2008): the
 /// silhouettes of the light's centre alone, at most 16 light samples (packed_counters.hpp).
 ///
-/// crop=off (soup and laine): an edge is a candidate wherever it is before the light, be it a silhouette or not; the
-/// same masks, slower (Lehtinen et al. 2006).
+/// crop=off (soup and laine): every edge between p and the light is a candidate, silhouette or not; the masks are
+/// equal, and it is slower (Lehtinen et al. 2006).
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
                                                           const visibility::MethodOptions& options);
 

@@ -6,8 +6,8 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-// Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: the one light sample
-// that `word` is besides, whose ray the whole mask hangs on; `bits` is 0.
+// Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: `word` is the number
+// of the one light sample whose ray the whole mask depends on; `bits` is 0.
 struct DepthQuestion {
   uint pixel;
   uint word;

@@ -59,7 +59,7 @@ LightHull hull_of(const Light& light) {
 
 /// What packed_counters.frag reads of the light.
 std::vector<double> table_of(const Light& light) {
-  const gpu::WedgePush frame = frame_of(light);
+  const gpu::WedgePush frame = wedge_push(light);
   const auto vector = [](const double(&x)[3]) { return glm::dvec3(x[0], x[1], x[2]); };
   glm::dvec2 lower(0), upper(0);  // the centre
   double off = 0;
@@ -277,7 +277,7 @@ void PackedCounters::evaluate(const Tile& tile) {
   if (!faces_) faces_ = faces_of(wedges_, *samples_, WedgeTests::both, glm::dvec3(count_.center()));
   count_.count(tile);
   const std::vector<gpu::WedgeReceiver> receivers = classify();
-  raster_->add(*faces_, receivers, frame_of(*light_), tile, samples_->width);
+  raster_->add(*faces_, receivers, wedge_push(*light_), tile, samples_->width);
   mesh::for_each_index(receivers.size(), [&](std::size_t i) {
     if (receivers[i].counted != 0) resolve(i);
   });

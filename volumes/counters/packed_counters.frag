@@ -11,7 +11,7 @@
 
 // What one silhouette edge changes the counters of light samples by (V. Forest, L. Barthe, M. Paulin 2008): k where the
 // way from the light's centre c to the light sample l crosses it as seen from p, that is where the edge meets the
-// triangle p c l. Five signs of determinants say so; what hangs on one that rounding may have made is for the host.
+// triangle p c l. Five signs of determinants say so; where one of them may be due to rounding, the host decides.
 
 layout(constant_id = 0) const uint kSamples = 16;
 layout(constant_id = 1) const uint kBits = 16;             // of a counter

@@ -9,13 +9,13 @@ namespace penumbra::volumes {
 
 using visibility::TriangleTree;
 
-Place place_of(const LightSide& side, const glm::dvec3& middle, const glm::dvec3& half) {
+PlaneSide place_of(const LightSide& side, const glm::dvec3& middle, const glm::dvec3& half) {
   const glm::dvec3 n = side.sign * glm::cross(side.u, side.v), size = glm::abs(n), from = middle - side.center;
   const double spread = glm::dot(size, half);
   const double rounding = 0x1p-20 * glm::dot(size, glm::abs(middle) + half + glm::abs(side.center));
   const double height = glm::dot(n, from);
-  if (height > spread + rounding) return Place::in_front;
-  return height < -spread - rounding ? Place::behind : Place::across;
+  if (height > spread + rounding) return PlaneSide::in_front;
+  return height < -spread - rounding ? PlaneSide::behind : PlaneSide::across;
 }
 
 std::vector<std::uint32_t> triangles_across(const CutInput& in) {
@@ -27,7 +27,7 @@ std::vector<std::uint32_t> triangles_across(const CutInput& in) {
     for (const TriangleTree::Child& child : node) {
       if (child.reference == TriangleTree::kNoChild) continue;
       const glm::dvec3 lower(child.lower), upper(child.upper);
-      if (place_of(in.side, 0.5 * (lower + upper), 0.5 * (upper - lower)) != Place::across) continue;
+      if (place_of(in.side, 0.5 * (lower + upper), 0.5 * (upper - lower)) != PlaneSide::across) continue;
       if ((child.reference & TriangleTree::kLeafBit) == 0) {
         stack.push_back(child.reference);
         continue;

@@ -23,10 +23,10 @@ struct CutInput {
   bool exact_ends = false;  ///< keep where edges pass through the plane as it is before rounding
 };
 
-enum class Place : std::uint8_t { in_front, behind, across };
+enum class PlaneSide : std::uint8_t { in_front, behind, across };
 /// Of a box, not scaled. Certain of all but what is across: its corners are closer to the plane than rounding here can
 /// be wrong.
-Place place_of(const LightSide& side, const glm::dvec3& middle, const glm::dvec3& half);
+PlaneSide place_of(const LightSide& side, const glm::dvec3& middle, const glm::dvec3& half);
 
 /// Casters whose boxes the plane may cut, ascending.
 std::vector<std::uint32_t> triangles_across(const CutInput& input);
@@ -57,10 +57,10 @@ void cut_hierarchy(Tree& tree, const LightSide& side, CutEnds* ends, std::vector
     for (std::uint32_t child = 0; child < TriangleTree::kWidth; ++child) {
       const std::uint32_t reference = tree.reference(node, child);
       if (reference == TriangleTree::kNoChild) continue;
-      const Place place = place_of(side, glm::dvec3(tree.middle(node, child)) * unscaled,
-                                   glm::dvec3(tree.half(node, child)) * unscaled);
-      if (place == Place::behind) tree.drop_child(node, child);
-      if (place != Place::across) continue;
+      const PlaneSide place = place_of(side, glm::dvec3(tree.middle(node, child)) * unscaled,
+                                       glm::dvec3(tree.half(node, child)) * unscaled);
+      if (place == PlaneSide::behind) tree.drop_child(node, child);
+      if (place != PlaneSide::across) continue;
       if ((reference & TriangleTree::kLeafBit) == 0) {
         stack.push_back(reference);
       } else {

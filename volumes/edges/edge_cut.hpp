@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-/// Edges at a light's plane: what is not before it shades nothing, and would appear anywhere.
+/// Edges at a light's plane: what is behind it shades nothing, and its projection could be anywhere.
 namespace penumbra::volumes {
 
 /// A half-space on one side of a light's plane. The rectangle tells which triangles reach through the light.
@@ -21,7 +21,7 @@ struct LightSide {
   [[nodiscard]] glm::vec3 stored(const glm::vec3& x) const { return x * scale / scale; }
   /// Over the plane, times |u × v|, in double.
   [[nodiscard]] double height_of(const glm::vec3& x) const;
-  /// Its sign: 1 before the plane, 0 in it, −1 behind. Exact.
+  /// The sign of that: 1 in front of the plane, 0 in it, −1 behind. Exact.
   [[nodiscard]] int place_of(const glm::vec3& x) const;
 };
 
@@ -41,7 +41,7 @@ std::vector<EdgeRecord> edges_in_plane(const visibility::SceneFloats& scene, con
                                        std::span<const std::uint32_t> triangles, const LightSide& side,
                                        CutEnds* ends = nullptr);
 
-/// All records before the plane, cut, and the third edges.
+/// All records in front of the plane, cut, and the third edges.
 std::vector<EdgeRecord> cut_records(const visibility::SceneFloats& scene, const EdgeCasters& casters,
                                     const LightSide& side);
 

@@ -49,7 +49,7 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene, const Triangl
   front_ = &*whole_;
 }
 
-void EdgeLists::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame) {
+void EdgeLists::prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   frame_ = frame;
@@ -64,7 +64,7 @@ void EdgeLists::prepare_edges() {
   is_cut_ = edges.front.has_value();
   back_is_used_ = edges.back.has_value();
   const EdgeUpload* before = front_;
-  front_->mend();
+  front_->restore();
   if (edges.has_body && !(without_body_ && without_body_->light == light_->index)) {
     without_body_.emplace(
         WithoutBody{light_->index, EdgeUpload(*device_, edge_texels(sides_.records(std::nullopt), scale_))});

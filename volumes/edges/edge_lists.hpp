@@ -7,7 +7,7 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/light_touch.hpp"
 #include "visibility/method.hpp"
 #include "visibility/triangle_tree.hpp"
@@ -36,9 +36,9 @@ struct EdgeListInput {
   float side;
 };
 
-/// For each cluster of view samples of a block of pixels the edges that may be silhouettes before the light, and the
-/// triangles that may be before one corner of its frame: what find_edges.comp finds, with all that it reads. Any
-/// planar light. Lists that are too short grow; nothing is cut off.
+/// For each cluster of view samples of a block of pixels the edges between it and the light that may be silhouettes,
+/// and the triangles that may be between it and one corner of the light's rectangle: what find_edges.comp finds, and
+/// all that it reads. Any planar light. Lists that are too short grow; nothing is cut off.
 class EdgeLists {
  public:
   /// Head of lists().
@@ -51,8 +51,8 @@ class EdgeLists {
 
   /// `tree`: of the scene's triangles. `scale`: of everything on the device.
   void prepare_mesh(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree, float scale);
-  /// `frame`: make_light_frame(light, scale). Throws InputError where float32 cannot span light and scene together.
-  void prepare_light(const visibility::Light& light, const visibility::LightFrame& frame);
+  /// `frame`: make_device_light(light, scale). Throws InputError where float32 cannot span light and scene together.
+  void prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame);
 
   /// Sets what it knows of `push`. False: the lists would be larger than a storage buffer can be.
   [[nodiscard]] bool find(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input);
@@ -96,7 +96,7 @@ class EdgeLists {
   std::optional<EdgeUpload> back_;           // a copy of it, where the light's plane cuts and it emits to both sides
 
   const visibility::Light* light_ = nullptr;
-  visibility::LightFrame frame_;
+  visibility::DeviceLight frame_;
   bool is_cut_ = false, back_is_used_ = false;
 
   std::unique_ptr<render::Buffer> heads_;

@@ -58,7 +58,7 @@ class EdgeMethod : public device::MaskMethod {
  private:
   device::MaskLayout prepare_casters() override {
     device::MaskLayout layout = prepare_kernel();
-    edges_.prepare_light(light(), light_frame());
+    edges_.prepare_light(light(), device_light());
     return layout;
   }
 

@@ -84,13 +84,13 @@ bool sees_flat(float away, float height) {
   return push.near_plane != 0 && height < farthest / 256.0;
 }
 
-// How far below p's height, in lengths of an edge's farther end, an edge may be where p is, but for rounding. (bound window)
+// How far below p's height, in lengths of an edge's farther end, an edge may pass through p within rounding. (bound window)
 float lift_of(ViewSample at, vec2 window) {
   const vec2 off = abs(at.foot - first_cell);
   return 64.0 * kRound * (1.0 + 0.125 * (max(off.x, off.y) + per_length * at.height) / min(window.x, window.y));
 }
 
-// Is p on the triangle with corners p + da, p + db, p + dc, but for rounding? (bound on)
+// Is p on the triangle with corners p + da, p + db, p + dc, within rounding? (bound on)
 bool is_on_triangle(vec3 da, vec3 db, vec3 dc) {
   const vec3 n = cross(db - da, dc - da);
   const float size = length(n), far = max(length(da), max(length(db), length(dc))), unit = kRound * far;

@@ -8,13 +8,13 @@ namespace penumbra::volumes {
 namespace {
 
 /// The light's plane as its stored points span it, in double, and the frame's rectangle in it.
-LightSide front_of_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale) {
-  const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center;
+LightSide front_of_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale) {
+  const auto [center, u, v] = visibility::light_frame(light);
   const std::array plane{center, glm::dvec3(light.center_u), glm::dvec3(light.center_v)};
   if (light.kind == visibility::LightKind::rectangle) {
-    return {plane, center, to_u, glm::dvec3(light.center_v) - center, 1, scale};
+    return {plane, center, u, v, 1, scale};
   }
-  const glm::dvec3 normal = glm::normalize(glm::cross(to_u, glm::dvec3(light.center_v) - center));
+  const glm::dvec3 normal = glm::normalize(glm::cross(u, v));
   const auto in_plane = [&](const glm::dvec3& d) { return d - normal * glm::dot(normal, d); };
   const double unscaled = 1 / static_cast<double>(scale);
   return {plane,
@@ -33,7 +33,7 @@ void EdgeSides::prepare_mesh(const visibility::SceneFloats& scene) {
   casters_without_ = -1;
 }
 
-LightEdges EdgeSides::prepare_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale) {
+LightEdges EdgeSides::prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale) {
   visibility::check_size(light, frame, method_);
   LightEdges edges;
   edges.has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light.index) != scene_->emits.end();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/edges/edge_cut.hpp"
@@ -27,8 +27,8 @@ class EdgeSides {
   explicit EdgeSides(std::string method) : method_(std::move(method)) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene);
-  /// `frame`: make_light_frame(light, scale). Throws InputError where float32 cannot span light and scene together.
-  LightEdges prepare_light(const visibility::Light& light, const visibility::LightFrame& frame, float scale);
+  /// `frame`: make_device_light(light, scale). Throws InputError where float32 cannot span light and scene together.
+  LightEdges prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale);
 
   /// Of all that casts shadow of the light last prepared; of everything before there is one.
   [[nodiscard]] const EdgeCasters& casters() const { return casters_; }

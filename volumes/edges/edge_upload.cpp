@@ -75,7 +75,7 @@ EdgeUpload::EdgeUpload(const render::Device& device, EdgeTexels texels)
   write_all({}, {});
 }
 
-void EdgeUpload::mend() {
+void EdgeUpload::restore() {
   if (!std::exchange(is_cut_, false)) return;
   root_ = 0;
   texels_.depth = whole_depth_;
@@ -93,7 +93,7 @@ void EdgeUpload::mend() {
 }
 
 void EdgeUpload::cut(const CutInput& input) {
-  mend();
+  restore();
   if (texels_.depth == 0) return;  // nothing casts shadow
   is_cut_ = true;
   std::vector<EdgeRecord> records =

@@ -14,15 +14,15 @@
 
 namespace penumbra::volumes {
 
-/// A hierarchy of edges on the device (EdgeTexels) that is cut at a light's plane, and mended for the next light. Only
-/// what the plane cuts is made anew and written: subtrees behind it are left out, the cut edges are a second tree below
-/// a root of both. The twin of CutEdges on vector units.
+/// A hierarchy of edges on the device (EdgeTexels) that is cut at a light's plane, and restored for the next light.
+/// Only what the plane cuts is made anew and written: subtrees behind it are left out, the cut edges are a second tree
+/// below a root of both. The twin of CutEdges on vector units.
 class EdgeUpload {
  public:
   EdgeUpload(const render::Device& device, EdgeTexels texels);
 
   void cut(const CutInput& input);
-  void mend();
+  void restore();
 
   /// As they are on the device; nodes at the end may be no longer in use.
   [[nodiscard]] const EdgeTexels& texels() const { return texels_; }

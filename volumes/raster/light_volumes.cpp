@@ -24,7 +24,7 @@ struct Agreement {
     down |= value < -bound;
     doubt |= !(value > bound || value < -bound);
   }
-  /// Nothing if it hangs on a sign that rounding may have made.
+  /// Nothing if it depends on a sign that may be due to rounding.
   [[nodiscard]] std::optional<bool> agree() const {
     if (up && down) return false;
     if (doubt) return std::nullopt;

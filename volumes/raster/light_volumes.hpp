@@ -52,8 +52,8 @@ class ShadowCasters {
   /// Seen from `l`, without the body of that light. Exact.
   [[nodiscard]] LightVolumes seen_from(const glm::vec3& l, const visibility::Light& light) const;
 
-  /// What of that needs no facing: for each caster, the sides on which l must be for it to count (bit 0: front, bit 1:
-  /// back).
+  /// The part of that which needs no facing: for each caster, the sides on which l must be for it to count (bit 0:
+  /// front, bit 1: back).
   [[nodiscard]] std::vector<std::uint32_t> counted_sides(const glm::vec3& l, const visibility::Light& light) const;
   /// The rest, given for each caster the side that l is on in bits 0 and 1, those of them that count in bits 2 and 3,
   /// and the edges with k_e(l) ≠ 0 of what counts.
@@ -68,7 +68,7 @@ class ShadowCasters {
   const visibility::SceneFloats* scene_;
   std::vector<glm::dvec3> positions_;
   std::vector<std::uint32_t> casters_;     // into the scene's triangles
-  std::vector<mesh::Triangle> triangles_;  // the same, corners
+  std::vector<mesh::Triangle> triangles_;  // their corners
   mesh::EdgeGraph graph_;
   Layers layers_;
   visibility::ClosedCasters parts_;  // for one_a_solid

@@ -29,7 +29,7 @@ class BoxFinder {
   explicit BoxFinder(const visibility::PinholeCamera& camera);
 
   /// Holds every pixel whose centre is within an eighth of a pixel of the projection of the convex polygon (three or
-  /// four corners, its part behind the eye left out), but for what is not on the screen. Empty: no pixel.
+  /// four corners, its part behind the eye left out), cut to the screen. Empty: no pixel.
   [[nodiscard]] std::optional<ScreenBox> around(std::span<const FaceCorner> polygon) const;
 
   /// Where x appears, in pixels; only for what is in front of the eye.

@@ -7,7 +7,7 @@
 
 // Where does the ray from p away from the eye (z-fail), or the segment from the eye to p (z-pass), go through this face
 // of shadow volumes, and in or out? Signs of determinants in double that must all be one sign; README.md, Counting,
-// derives which. Where it hangs on a sign that rounding may have made, the pixel is marked and the host counts.
+// derives which. Where it depends on a sign that may be due to rounding, the pixel is marked and the host counts.
 //
 // P, A, B: p, a, b from l.  D: p from the eye.  (x, y, z): their determinant.
 
@@ -33,7 +33,7 @@ const uint kUp = 1, kDown = 2, kDoubt = 4;
 
 uint signs(Value v) { return v.value > v.bound ? kUp : v.value < -v.bound ? kDown : kDoubt; }
 
-/// 1 or −1 if all are that sign; 0 if they differ; kUnknown if that hangs on a doubt.
+/// 1 or −1 if all are that sign; 0 if they differ; kUnknown if that depends on a doubtful sign.
 const int kUnknown = 2;
 int agreement(uint seen) {
   if ((seen & (kUp | kDown)) == (kUp | kDown)) return 0;

@@ -76,9 +76,9 @@ std::uint64_t fragments_of(std::span<const gpu::WedgeFace> faces) {
   return static_cast<std::uint64_t>(sum);
 }
 
-gpu::WedgePush frame_of(const visibility::Light& light) {
-  const glm::dvec3 stored(light.center), u = glm::dvec3(light.center_u) - stored,
-                                         v = glm::dvec3(light.center_v) - stored, n = glm::cross(u, v);
+gpu::WedgePush wedge_push(const visibility::Light& light) {
+  const auto [center, u, v] = visibility::light_frame(light);
+  const glm::dvec3 n = glm::cross(u, v);
   const glm::dvec3 across_v = glm::cross(v, n), across_u = glm::cross(n, u);
   gpu::WedgePush push{};
   store(push.c, glm::dvec3(center_of(light)));

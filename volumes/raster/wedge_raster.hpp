@@ -31,8 +31,8 @@ std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const visibility
 /// How many pixels the faces propose, about: the areas of their footprints.
 std::uint64_t fragments_of(std::span<const gpu::WedgeFace> faces);
 
-/// The frame of a planar light, its centre where center_of says.
-gpu::WedgePush frame_of(const visibility::Light& light);
+/// The duals of a planar light's axes (visibility::LightFrame) around center_of, and no tile yet.
+gpu::WedgePush wedge_push(const visibility::Light& light);
 
 /// Does p appear within a sixteenth of a pixel of its pixel's centre? Else footprints may miss it: rounding moved p,
 /// which next to the camera can be pixels.

@@ -44,7 +44,7 @@ class EdgeScatter final : public EdgeMethod {
  private:
   /// As many light rows at a time as the histograms of a subgroup leave room for.
   device::MaskLayout prepare_kernel() override {
-    PENUMBRA_ASSERT(light_frame().rows, "light {} has no rows that a step describes", light().name);
+    PENUMBRA_ASSERT(device_light().rows, "light {} has no rows that a step describes", light().name);
     const std::uint32_t lanes = device().limits().subgroup_size;
     const std::uint32_t room = device().limits().max_shared_memory / (4 * lanes * light().columns);
     if (room == 0) {
@@ -85,7 +85,7 @@ class EdgeScatter final : public EdgeMethod {
     gpu::ScatterPush push{};
     push.rows = light().rows;
     push.columns = light().columns;
-    push.shift_step = light_frame().shift_step;
+    push.shift_step = device_light().shift_step;
     return push;
   }
 

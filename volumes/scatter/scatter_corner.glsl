@@ -1,6 +1,6 @@
-// How many triangles are before the light's corner, from which the changes count on. Part of scatter_edges.comp.
+// The depth at the light's corner, to which the changes are added. Part of scatter_edges.comp.
 
-// Where p is on a triangle, but for rounding, and so may be its side of it: half of all ways from p hang on that, not only
+// Where p is on a triangle within rounding, its side of it is not certain, and half of all ways from p depend on that, not only
 // what is near its edges. Such a triangle is in the list of those that the way to the corner may meet. (bound on)
 void open_where_on(uint head, bool on) {
   uint piece = head;

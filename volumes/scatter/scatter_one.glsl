@@ -164,7 +164,7 @@ void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) 
   const float error_b = error_of(cut ? far : far_b, end.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / end.z * off;
   const bool matters = (k != 0 || open) && from <= to;
   const bool through_p = !settled && min(start.z, end.z) < 64.0 * kRound * far;
-  if (matters && through_p) open_pixel = true;            // it passes through p, but for rounding
+  if (matters && through_p) open_pixel = true;            // it passes through p within rounding
   side_in_doubt = side_in_doubt || open;
   if (matters && !through_p) scatter(seen_a, seen_b, k, error_a, error_b);
 }

@@ -9,7 +9,7 @@ uint mask_word(uint pixel, uint column_word, uint row_word) {
   return (push.first_pixel + pixel) * words_per_mask() + column_word * ((push.rows + 3) / 4) + row_word;
 }
 
-// Depths from changes; a light sample is visible where no triangle is before it.
+// Depths from changes; a light sample is visible where the depth is 0.
 uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   int depth = int(depth_at_corner);
   uint visible = 0;

@@ -8,9 +8,8 @@ namespace penumbra::volumes {
 std::vector<visibility::Light> light_parts(const visibility::Light& light, std::uint32_t n) {
   if (n == 1) return {light};
   PENUMBRA_ASSERT(light.kind == visibility::LightKind::rectangle, "a {} cut in parts", name_of(light.kind));
-  const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
-                                         v = glm::dvec3(light.center_v) - center;
-  const auto at = [&](double s, double t) { return glm::vec3(center + s * u + t * v); };
+  const visibility::LightFrame frame = visibility::light_frame(light);
+  const auto at = [&](double s, double t) { return glm::vec3(frame.center + s * frame.u + t * frame.v); };
   std::vector<visibility::Light> parts;
   for (std::uint32_t row = 0; row < n; ++row) {
     for (std::uint32_t column = 0; column < n; ++column) {

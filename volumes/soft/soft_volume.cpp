@@ -82,8 +82,8 @@ visibility::MethodDescription describe() {
 }
 
 /// The light, or one of the parts it is cut in.
-struct Part {
-  explicit Part(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
+struct LightPart {
+  explicit LightPart(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
 
   VolumeCount count;
   Light light;
@@ -113,7 +113,7 @@ class SoftVolume final : public visibility::Method {
         builder_(device,
                  {.on = options[kWedges], .construction = options[kConstruction], .layers = Layers::one_a_solid}),
         tests_(options[kTests]) {
-    for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<Part>(device));
+    for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<LightPart>(device));
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -176,10 +176,10 @@ class SoftVolume final : public visibility::Method {
 
  private:
   void make_raster(const Light& light);
-  void prepare(Part& part, const Light& light);
-  void add(Part& part);
-  void add_doubtful(Part& part, const std::vector<std::size_t>& pixels);
-  [[nodiscard]] double share_above(const Part& part, std::size_t pixel) const;
+  void prepare(LightPart& part, const Light& light);
+  void add(LightPart& part);
+  void add_doubtful(LightPart& part, const std::vector<std::size_t>& pixels);
+  [[nodiscard]] double share_above(const LightPart& part, std::size_t pixel) const;
 
   visibility::MethodDescription description_;
   const render::Device* device_;
@@ -187,10 +187,10 @@ class SoftVolume final : public visibility::Method {
   bool table_;
   WedgeBuilder builder_;
   WedgeTests tests_;
-  std::vector<gpu::uint> kind_;     // of raster_: shape and measure
-  const Part* prepared_ = nullptr;  // whose table raster_ has
+  std::vector<gpu::uint> kind_;          // of raster_: shape and measure
+  const LightPart* prepared_ = nullptr;  // whose table raster_ has
   std::unique_ptr<WedgeRaster> raster_;
-  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<LightPart>> parts_;
   const SceneFloats* scene_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   Tile tile_;
@@ -198,7 +198,7 @@ class SoftVolume final : public visibility::Method {
   std::uint64_t doubtful_ = 0;
 };
 
-/// What its shader does hangs on the light.
+/// The shader's constants depend on the light's shape and texture.
 void SoftVolume::make_raster(const Light& light) {
   const gpu::uint shape = light.kind == LightKind::disk ? gpu::kDisk : gpu::kRectangle;
   const gpu::uint measure = table_ ? gpu::kTable : light.texture ? gpu::kTexture : gpu::kArea;
@@ -208,7 +208,7 @@ void SoftVolume::make_raster(const Light& light) {
   kind_ = kind;
 }
 
-void SoftVolume::prepare(Part& part, const Light& light) {
+void SoftVolume::prepare(LightPart& part, const Light& light) {
   part.light = light;
   part.outline = light_outline(light);
   part.texture.reset();
@@ -230,7 +230,7 @@ void SoftVolume::prepare(Part& part, const Light& light) {
 }
 
 /// Adds each pixel's V for this part.
-void SoftVolume::add(Part& part) {
+void SoftVolume::add(LightPart& part) {
   using Kind = VolumeCount::Kind;
   if (!(part.weight > 0)) return;
   if (!part.faces) part.faces = faces_of(part.wedges, *samples_, tests_, glm::dvec3(part.count.center()));
@@ -245,7 +245,7 @@ void SoftVolume::add(Part& part) {
     away[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;
     receivers[i] = {p, away[i] == 0 ? 1u : 0u};
   });
-  gpu::WedgePush push = frame_of(part.light);
+  gpu::WedgePush push = wedge_push(part.light);
   if (part.texture) push.texels = part.texture->texels();
   if (prepared_ != &part) raster_->set_table(part.table);
   prepared_ = &part;
@@ -266,10 +266,10 @@ void SoftVolume::add(Part& part) {
 }
 
 /// By exact signs, and from another point of the light where an edge ends at its centre.
-void SoftVolume::add_doubtful(Part& part, const std::vector<std::size_t>& pixels) {
+void SoftVolume::add_doubtful(LightPart& part, const std::vector<std::size_t>& pixels) {
   if (pixels.empty()) return;
   doubtful_ += pixels.size();
-  if (!part.host) part.host = std::make_unique<Part::Host>(*scene_, part.light);
+  if (!part.host) part.host = std::make_unique<LightPart::Host>(*scene_, part.light);
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
     const std::size_t pixel = first + pixels[i];
@@ -280,7 +280,7 @@ void SoftVolume::add_doubtful(Part& part, const std::vector<std::size_t>& pixels
 }
 
 /// Of the part, above the plane of the pixel's carrier.
-double SoftVolume::share_above(const Part& part, std::size_t pixel) const {
+double SoftVolume::share_above(const LightPart& part, std::size_t pixel) const {
   const auto [a, b, c] = scene_->corners(static_cast<std::uint32_t>(samples_->triangle[pixel]));
   const glm::dvec3 n = static_cast<double>(samples_->facing[pixel]) *
                        glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));

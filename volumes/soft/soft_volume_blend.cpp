@@ -228,7 +228,7 @@ void SoftVolumeBlend::add(Occluder& occluder, const Tile& tile) {
     if (!appears_in_place(samples_->camera, p, first + i)) on_host_[i] = 1;
     receivers[i] = {p, on_host_[i] == 0 ? 1u : 0u};
   });
-  raster_.add(*occluder.faces, receivers, frame_of(*light_), tile, samples_->width);
+  raster_.add(*occluder.faces, receivers, wedge_push(*light_), tile, samples_->width);
   mesh::for_each_index(kinds.size(), [&](std::size_t i) {
     if (kinds[i] != Kind::counted) return;
     if (raster_.doubts()[i] != 0) on_host_[i] = 1;

@@ -126,7 +126,7 @@ void WedgeRamp::evaluate(const Tile& tile) {
     on_host[i] = appears_in_place(samples_->camera, p, first + i) ? 0 : 1;
     receivers[i] = {p, on_host[i] == 0 ? 1u : 0u};
   });
-  raster_.add(*faces_, receivers, frame_of(*light_), tile, samples_->width);
+  raster_.add(*faces_, receivers, wedge_push(*light_), tile, samples_->width);
   visibility_.resize(kinds.size());
   mesh::for_each_index(kinds.size(), [&](std::size_t i) {
     visibility_[i] = kinds[i] == Kind::lit ? 1.0F : 0.0F;

@@ -46,7 +46,7 @@ glm::dvec3 homogeneous(const Projected& q) {
 }
 
 /// Convex, counter-clockwise; of a disk, the square around it.
-Polygon frame_of(const LightOutline& outline) {
+Polygon polygon_around(const LightOutline& outline) {
   return outline.corners.empty() ? Polygon{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}} : outline.corners;
 }
 
@@ -122,7 +122,7 @@ Bounds bounds_of(const Polygon& polygon) {
 std::vector<Polygon> projected_layers(const visibility::Light& light, const glm::vec3& p,
                                       std::span<const std::array<glm::vec3, 3>> triangles) {
   const LightProjection projection(light, p);
-  const Polygon frame = frame_of(light_outline(light));
+  const Polygon whole = polygon_around(light_outline(light));
   std::vector<Polygon> layers;
   for (const std::array<glm::vec3, 3>& corners : triangles) {
     std::vector<glm::dvec3> seen;
@@ -131,8 +131,8 @@ std::vector<Polygon> projected_layers(const visibility::Light& light, const glm:
         seen, [](const glm::dvec3& q) { return q.z; }, kMix);
     seen = cut(
         seen, [](const glm::dvec3& q) { return 1 - q.z; }, kMix);
-    for (std::size_t i = 0; i < frame.size(); ++i) {
-      const glm::dvec2 corner = frame[i], side = frame[(i + 1) % frame.size()] - corner;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      const glm::dvec2 corner = whole[i], side = whole[(i + 1) % whole.size()] - corner;
       seen = cut(
           seen, [&](const glm::dvec3& q) { return cross2(side, glm::dvec2(q) - q.z * corner); }, kMix);
     }
@@ -158,10 +158,12 @@ bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3
     sides[i] = mesh::side_of_plane(light.center, light.center_u, light.center_v, triangle[i]);
   }
   if (sides[0] != mesh::Side::on && sides[0] == sides[1] && sides[0] == sides[2]) return false;
-  const glm::dvec3 o = light.center, u = glm::dvec3(light.center_u) - o, v = glm::dvec3(light.center_v) - o;
-  const glm::dvec3 n = glm::cross(u, v);
+  const visibility::LightFrame frame = visibility::light_frame(light);
+  const glm::dvec3 n = glm::cross(frame.u, frame.v);
   const auto in_frame = [&](const glm::dvec3& x) {
-    return glm::dvec2(glm::dot(glm::cross(x - o, v), n), glm::dot(glm::cross(u, x - o), n)) / glm::dot(n, n);
+    return glm::dvec2(glm::dot(glm::cross(x - frame.center, frame.v), n),
+                      glm::dot(glm::cross(frame.u, x - frame.center), n)) /
+           glm::dot(n, n);
   };
   Polygon met;  // of the triangle and the plane: a point, a segment, or the triangle
   for (std::size_t i = 0; i < 3; ++i) {
@@ -169,12 +171,12 @@ bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3
     const mesh::Side at_a = sides[i], at_b = sides[(i + 1) % 3];
     if (at_a == mesh::Side::on) met.push_back(in_frame(a));
     if (at_a == mesh::Side::on || at_b != mesh::opposite(at_a)) continue;
-    const double from = std::abs(glm::dot(n, a - o)), to = std::abs(glm::dot(n, b - o));
+    const double from = std::abs(glm::dot(n, a - frame.center)), to = std::abs(glm::dot(n, b - frame.center));
     met.push_back(in_frame(a + (from + to > 0 ? from / (from + to) : 0.5) * (b - a)));
   }
-  const Polygon frame = frame_of(light_outline(light));
-  for (std::size_t i = 0; i < frame.size() && !met.empty(); ++i) {
-    const glm::dvec2 corner = frame[i], side = frame[(i + 1) % frame.size()] - corner;
+  const Polygon whole = polygon_around(light_outline(light));
+  for (std::size_t i = 0; i < whole.size() && !met.empty(); ++i) {
+    const glm::dvec2 corner = whole[i], side = whole[(i + 1) % whole.size()] - corner;
     met = cut(
         met, [&](const glm::dvec2& q) { return cross2(side, q - corner) + kHair; }, kMix);
   }

@@ -21,8 +21,7 @@ double margin_of(const visibility::Light& light) {
 }
 
 LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
-  const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
-                                         v = glm::dvec3(light.center_v) - center;
+  const auto [center, u, v] = visibility::light_frame(light);
   const double angle = 2 * std::numbers::pi / sides, reach = (1 + margin_of(light)) / std::cos(angle / 2);
   LightHull hull{{}, center, light.radius * (reach - 1), false};
   for (std::uint32_t i = 0; i < sides; ++i) {

@@ -52,7 +52,7 @@ std::vector<glm::dvec3> extreme_rays(const EdgeAndLight& cast, const glm::dvec3&
   std::ranges::sort(rays,
                     [](const Ray& a, const Ray& b) { return a.at.x != b.at.x ? a.at.x < b.at.x : a.at.y < b.at.y; });
   // Andrew's monotone chain: the lower half from left to right, then the upper half back. Rounding may keep a ray that
-  // is not quite extreme or lose one that hardly is: bounding_plane mends or drops what comes of it.
+  // is not quite extreme or lose one that hardly is: bounding_plane repairs or drops what comes of it.
   std::vector<Ray> hull;
   const auto extend = [&](const Ray& ray, std::size_t floor) {
     while (hull.size() >= floor + 2 && cross(hull.back().at - hull[hull.size() - 2].at, ray.at - hull.back().at) <= 0) {

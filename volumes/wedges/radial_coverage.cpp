@@ -91,11 +91,11 @@ LightOutline light_outline(const visibility::Light& light) {
   using visibility::LightKind;
   if (light.kind == LightKind::disk || light.kind == LightKind::sphere) return {{}, std::numbers::pi};
   if (light.kind == visibility::LightKind::rectangle) return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
-  const glm::dvec3 o = light.center, u = glm::dvec3(light.center_u) - o, v = glm::dvec3(light.center_v) - o;
+  const auto [center, u, v] = visibility::light_frame(light);
   const glm::dvec3 n = glm::cross(u, v);
   LightOutline outline;
   for (const glm::vec3& corner : light.outline) {
-    const glm::dvec3 d = glm::dvec3(corner) - o;
+    const glm::dvec3 d = glm::dvec3(corner) - center;
     outline.corners.push_back(glm::dvec2(glm::dot(glm::cross(d, v), n), glm::dot(glm::cross(u, d), n)) /
                               glm::dot(n, n));
   }
@@ -141,8 +141,8 @@ LightProjection::LightProjection(const visibility::Light& light, const glm::vec3
     turn_ = static_cast<int>(mesh::side_of_plane(light.center, light.center_u, light.center_v, p));
   }
   PENUMBRA_ASSERT(turn_ != 0, "({}, {}, {}) is on the plane of light {}", p.x, p.y, p.z, light.name);
-  const auto [u, v] = visibility::light_axes(light, p);
-  const glm::dvec3 r = p_ - glm::dvec3(light.center), n = glm::cross(u, v);
+  const auto [center, u, v] = visibility::light_frame_from(light, p);
+  const glm::dvec3 r = p_ - center, n = glm::cross(u, v);
   double k = glm::dot(n, r);
   if (k * turn_ <= 0) k = turn_ * std::numeric_limits<double>::min();  // so near the plane that double cannot tell
   row_x_ = glm::cross(v, r) / k;

@@ -113,7 +113,7 @@ Cone cone_of(Segment cut, int turn, double size, bool disk) {
     cone.sector = cone.to - cone.from;
     cone.sector += cone.sector > 2.0LF ? -4.0LF : cone.sector < -2.0LF ? 4.0LF : 0.0LF;
   }
-  // Nearly half a turn: which way round is what the count at c hangs on, too, and must be decided by the same sign.
+  // Nearly half a turn: the count at c depends on which way round it is, too, and both must be decided by one sign.
   if (along < 0.0LF && double(turn) * cone.sector < 0.0LF) cone.sector += 2.0LF * half_light * double(turn);
   cone.triangle = 0.5LF * across / weight;
   cone.doubtful = at_center || (along < 0.0LF && turn == kNoTurn) || !(weight > 0.0LF);

@@ -11,7 +11,7 @@
 /// What one edge, as seen from a view sample p, cuts off a planar light L as seen from a point C of it (Assarsson and
 /// Akenine-Möller 2003; derived in docs/coverage.md). All in *frame coordinates* (s, t): centre + s u + t v, with u, v
 /// the light's stored frame; the rectangle is [−1, 1]², the disk the unit disk. A sphere is, at each p, the disk
-/// through its centre that faces p, in visibility::light_axes (what its light samples and `exact` are of). Double
+/// through its centre that faces p, in visibility::light_frame_from (what its light samples and `exact` are of). Double
 /// throughout.
 namespace penumbra::volumes {
 
@@ -43,7 +43,7 @@ class LightProjection {
   LightProjection(const visibility::Light& light, const glm::vec3& p);
 
   [[nodiscard]] Projected operator()(const glm::dvec3& x) const;
-  /// Certainly nothing of the edge appears in this box around a light, but for its border. A third of the work.
+  /// Certainly no point of the edge appears in the interior of this box around a light. A third of the work.
   [[nodiscard]] bool misses(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec2& lower,
                             const glm::dvec2& upper) const;
   /// +1: what is counter-clockwise as seen from p is so in (s, t); −1: p is behind the light. Exact.

@@ -144,8 +144,7 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoi
 /// What bounds the light as p sees it: of a sphere, the square around the disk that faces p, in floats.
 std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
   if (light_.kind != visibility::LightKind::sphere) return light_.outline;
-  const auto [u, v] = visibility::light_axes(light_, p);
-  const glm::dvec3 c = light_.center;
+  const auto [c, u, v] = visibility::light_frame_from(light_, p);
   return {glm::vec3(c - u - v), glm::vec3(c + u - v), glm::vec3(c + u + v), glm::vec3(c - u + v)};
 }
 
@@ -218,9 +217,8 @@ double SoftVisibility::share_above_carrier(const LitPoint& sample) const {
   const auto [a, b, c] = scene_.corners(sample.carrier);
   const glm::dvec3 n =
       static_cast<double>(sample.facing) * glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-  const auto [u, v] = visibility::light_axes(light_, sample.p);
-  return share_above(outline_, glm::dot(n, glm::dvec3(light_.center) - glm::dvec3(a)),
-                     {glm::dot(n, u), glm::dot(n, v)});
+  const auto [center, u, v] = visibility::light_frame_from(light_, sample.p);
+  return share_above(outline_, glm::dot(n, center - glm::dvec3(a)), {glm::dot(n, u), glm::dot(n, v)});
 }
 
 /// Of the light, or with a texture of its weight; with the sign of the turn around the reference point.

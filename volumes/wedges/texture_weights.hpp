@@ -10,7 +10,7 @@
 
 namespace penumbra::volumes {
 
-/// Integrals of a rectangle light's texture over regions of [−1, 1]², exact but for rounding: the texture is constant
+/// Integrals of a rectangle light's texture over regions of [−1, 1]², exact up to rounding: the texture is constant
 /// in each texel. The whole light weighs 1. By Green's theorem: with P(x, y) = ∫ weight from −1 to x, a region weighs
 /// ∮ P dy around it. GLSL twin: texture_weights.glsl.
 class TextureWeights {

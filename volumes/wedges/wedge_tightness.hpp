@@ -18,7 +18,7 @@
 namespace penumbra::volumes {
 
 /// Area of the wedge's cross-section ÷ area of the penumbra's, each on three planes across the penumbra, half, once and
-/// twice as far beyond the edge as the light is before it. In double.
+/// twice as far beyond the edge as the light is on this side of it. In double.
 struct Tightness {
   std::vector<double> ratios;  ///< ascending; of bounded cross-sections
   std::size_t unbounded = 0;   ///< cross-sections that reach beyond 16 times the penumbra's extent: a plane is missing

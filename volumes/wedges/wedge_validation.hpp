@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-/// Proves, by exact signs, that wedges are what they claim to be. Looks at the planes alone: whoever built them, and
-/// how, does not matter.
+/// Proves, by exact signs, that wedges are what they claim to be. Looks at the planes alone, and does not depend on
+/// how they were built.
 namespace penumbra::volumes {
 
 enum class Invariant {

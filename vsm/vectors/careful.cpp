@@ -62,7 +62,7 @@ struct OneTriangle {
 /// With the light sample as it is stored.
 void decide(const OneTriangle& one, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
   if (blocked.test(row, column)) return;
-  const std::uint32_t light_sample = row * one.in.frame.columns + column;
+  const std::uint32_t light_sample = row * one.in.grid.columns + column;
   const glm::dvec3 l = glm::dvec3(one.in.light.points[light_sample]) * static_cast<double>(one.in.scale);
   const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(one.p), l, one.corners);
   if (!meets) open.samples.push_back(light_sample);
@@ -73,10 +73,10 @@ class CarefulTest {
  public:
   CarefulTest(const CarefulInput& input, Blocked& blocked, Open& open)
       : in_(input.in), at_(input.at), p_(input.at.p), corners_(corners_of(input)), blocked_(blocked), open_(open) {
-    const visibility::LightFrame& light = in_.light_frame;
+    const visibility::DeviceLight& light = in_.device_light;
     const glm::dvec3 u(light.u), v(light.v);
-    per_column_ = 2.0 / in_.frame.columns * u;
-    per_row_ = 2.0 / in_.frame.rows * v;
+    per_column_ = 2.0 / in_.grid.columns * u;
+    per_row_ = 2.0 / in_.grid.rows * v;
     first_ = glm::dvec3(light.center) - u - v + 0.5 * per_column_ + 0.5 * per_row_;
     reach_ = size1(first_ - p_) + 2 * size1(u) + 2 * size1(v);
   }
@@ -102,14 +102,14 @@ class CarefulTest {
   [[nodiscard]] HalfPlane half_plane(const glm::dvec3& n, const glm::dvec3& through, double sizes) const {
     return {
         glm::dot(n, first_ - through), glm::dot(n, per_row_), glm::dot(n, per_column_),
-        static_cast<double>(in_.light_frame.deviation) * size1(n) + kSlack * sizes * (reach_ + size1(through - p_))};
+        static_cast<double>(in_.device_light.deviation) * size1(n) + kSlack * sizes * (reach_ + size1(through - p_))};
   }
   static HalfPlane turned(const HalfPlane& f, double sign) {
     return {sign * f.at, sign * f.per_row, sign * f.per_column, f.error};
   }
 
   void mark(const std::array<HalfPlane, 4>& planes, bool certain) {
-    const double last_row = in_.frame.rows - 1.0, last_column = in_.frame.columns - 1.0;
+    const double last_row = in_.grid.rows - 1.0, last_column = in_.grid.columns - 1.0;
     for (const HalfPlane& f : planes) {  // one that has the whole light outside ends it
       const double most =
           std::max(f.per_row, 0.0) * last_row + std::abs(f.per_column) + std::max(f.per_column, 0.0) * last_column;
@@ -117,12 +117,12 @@ class CarefulTest {
     }
     std::array<Crossing, 4> crossings;
     std::transform(planes.begin(), planes.end(), crossings.begin(),
-                   [&](const HalfPlane& f) { return crossing_of(f, in_.frame.columns); });
+                   [&](const HalfPlane& f) { return crossing_of(f, in_.grid.columns); });
     struct Columns {
       double from, to;
     };
-    for (std::uint32_t row = 0; row < in_.frame.rows; ++row) {
-      const auto shift = static_cast<double>(in_.frame.shift[row]);
+    for (std::uint32_t row = 0; row < in_.grid.rows; ++row) {
+      const auto shift = static_cast<double>(in_.grid.shift[row]);
       Columns sure{-1, last_column + 1}, possible{-1, last_column + 1};
       for (const Crossing& c : crossings) {
         const double x = c.at + row * c.per_row + shift * c.per_shift;
@@ -137,7 +137,7 @@ class CarefulTest {
       if (!(possible.from <= possible.to)) continue;
       const auto first = [](double x) { return std::max(static_cast<std::int64_t>(std::ceil(x)), std::int64_t{0}); };
       const auto last = [&](double x) {
-        return std::min(static_cast<std::int64_t>(std::floor(x)), std::int64_t{in_.frame.columns} - 1);
+        return std::min(static_cast<std::int64_t>(std::floor(x)), std::int64_t{in_.grid.columns} - 1);
       };
       std::int64_t sure_from = first(sure.from), sure_to = last(sure.to);
       if (!certain || !(sure.from <= sure.to)) sure_to = sure_from - 1;
@@ -152,7 +152,7 @@ class CarefulTest {
   }
 
   const PairInput& in_;
-  const Sample& at_;
+  const ClusterSample& at_;
   const glm::dvec3 p_;
   const Corners corners_;
   glm::dvec3 first_{0}, per_row_{0}, per_column_{0};  // light samples, without deviation

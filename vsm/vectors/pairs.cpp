@@ -41,8 +41,8 @@ M hull_meets(const Hull& hull, const TriangleTable& table, std::size_t i) {
 }
 
 /// Triangles of the cluster that the group's hull may meet.
-void sort_out(const PairInput& in, std::span<const Sample> group, TriangleTable& near) {
-  const Hull hull = hull_of(in.frame, in.cluster, group);
+void sort_out(const PairInput& in, std::span<const ClusterSample> group, TriangleTable& near) {
+  const Hull hull = hull_of(in.grid, in.cluster, group);
   near.count = 0;
   near.reserve(in.triangles.count);
   for (std::size_t i = 0; i < in.triangles.count; i += hn::Lanes(D())) {
@@ -58,11 +58,11 @@ void sort_out(const PairInput& in, std::span<const Sample> group, TriangleTable&
 
 class SampleTest {
  public:
-  SampleTest(const PairInput& in, PairScratch& scratch, const Sample& at) : in_(in), s_(scratch), at_(at) {}
+  SampleTest(const PairInput& in, PairScratch& scratch, const ClusterSample& at) : in_(in), s_(scratch), at_(at) {}
 
   /// Returns whether anything is hidden or open. Stops where all is hidden.
   bool operator()() {
-    const std::uint32_t all = in_.frame.rows * in_.frame.columns;
+    const std::uint32_t all = in_.grid.rows * in_.grid.columns;
     bool any = false;
     s_.survivors.reserve(kChunk + hn::Lanes(D()));
     for (std::size_t begin = 0; begin < s_.near.count; begin += kChunk) {
@@ -104,30 +104,30 @@ class SampleTest {
   /// Where triangles appear on the light; keeps those that may reach a row.
   void project(std::size_t i, std::size_t end) {
     const D d;
-    const Frame& frame = in_.frame;
+    const LightGrid& grid = in_.grid;
     const TriangleTable& near = s_.near;
     const M live = hn::AndNot(same_bits(column(near, kTrianglePlane, i), bits(at_.plane)), first_lanes(end - i));
-    const V wa = hn::Sub(set(at_.seen.z), column(near, kCornerA + 2, i)),
-            wb = hn::Sub(set(at_.seen.z), column(near, kCornerB + 2, i)),
-            wc = hn::Sub(set(at_.seen.z), column(near, kCornerC + 2, i));
+    const V wa = hn::Sub(set(at_.in_grid.z), column(near, kCornerA + 2, i)),
+            wb = hn::Sub(set(at_.in_grid.z), column(near, kCornerB + 2, i)),
+            wc = hn::Sub(set(at_.in_grid.z), column(near, kCornerC + 2, i));
     const V least = hn::Min(wa, hn::Min(wb, wc)), most = hn::Max(wa, hn::Max(wb, wc));
     const V far = hn::Add(column(near, kTriangleFar, i), set(at_.far));
     const V triangle = hn::BitCast(d, numbers_from(i));
     const M clear = hn::And(hn::Gt(least, hn::Mul(set(256 * kRound), far)),
-                            hn::Lt(most, set(at_.height - 128 * kRound * frame.reach - frame.deviation)));
+                            hn::Lt(most, set(at_.height - 128 * kRound * grid.reach - grid.deviation)));
     const M unclear = hn::AndNot(clear, live);
     if (!hn::AllFalse(d, unclear)) {
-      if (!has_hull_) hull_ = hull_of(in_.frame, in_.cluster, std::span(&at_, 1));
+      if (!has_hull_) hull_ = hull_of(in_.grid, in_.cluster, std::span(&at_, 1));
       has_hull_ = true;
       look_again(hn::And(unclear, hull_meets(hull_, near, i)), triangle);
     }
     const V height = set(at_.height), foot_x = set(at_.foot.x), foot_y = set(at_.foot.y);
     const V qa = hn::Div(height, wa), qb = hn::Div(height, wb), qc = hn::Div(height, wc);
     const auto x_of = [&](std::size_t corner, V q) {
-      return hn::MulAdd(q, hn::Sub(column(near, corner, i), set(at_.seen.x)), foot_x);
+      return hn::MulAdd(q, hn::Sub(column(near, corner, i), set(at_.in_grid.x)), foot_x);
     };
     const auto y_of = [&](std::size_t corner, V q) {
-      return hn::MulAdd(q, hn::Sub(column(near, corner + 1, i), set(at_.seen.y)), foot_y);
+      return hn::MulAdd(q, hn::Sub(column(near, corner + 1, i), set(at_.in_grid.y)), foot_y);
     };
     const V ax = x_of(kCornerA, qa), bx = x_of(kCornerB, qb), cx = x_of(kCornerC, qc);
     const V ay = y_of(kCornerA, qa), by = y_of(kCornerB, qb), cy = y_of(kCornerC, qc);
@@ -139,7 +139,7 @@ class SampleTest {
     const V way = hn::Mul(far, hn::Mul(hn::Max(qa, hn::Max(qb, qc)), set(1.0001F / at_.height)));
     const V error = hn::MulAdd(way, hn::MulAdd(set(kPerReach), from_foot, set(at_.per_way)),
                                hn::MulAdd(set(at_.per_foot), from_foot, set(at_.fixed)));
-    const V last_row = set(static_cast<float>(frame.rows) - 1), right = set(static_cast<float>(frame.columns) - 0.5F);
+    const V last_row = set(static_cast<float>(grid.rows) - 1), right = set(static_cast<float>(grid.columns) - 0.5F);
     const V first = hn::Max(hn::Ceil(hn::Sub(low_y, error)), set(0)),
             last = hn::Min(hn::Floor(hn::Add(high_y, error)), last_row);
     const M before = hn::And(hn::Le(hn::Sub(low_x, error), right), hn::Ge(hn::Add(high_x, error), set(-0.5F)));
@@ -147,31 +147,31 @@ class SampleTest {
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
     SurvivorTable& out = s_.survivors;
-    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
-    put(kX0, ax);
-    put(kY0, ay);
-    put(kX1, bx);
-    put(kY1, by);
-    put(kX2, cx);
-    put(kY2, cy);
-    put(kError, error);
-    put(kTriangle, triangle);
+    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    store(kX0, ax);
+    store(kY0, ay);
+    store(kX1, bx);
+    store(kY1, by);
+    store(kX2, cx);
+    store(kY2, cy);
+    store(kError, error);
+    store(kTriangle, triangle);
     out.count += more;
   }
 
-  struct Place {
+  struct LightPoints {
     V x, y;
   };
-  static void order(Place& a, Place& b) {
+  static void order(LightPoints& a, LightPoints& b) {
     const M turn = hn::Gt(a.y, b.y);
-    const Place upper{hn::IfThenElse(turn, a.x, b.x), hn::Max(a.y, b.y)};
+    const LightPoints upper{hn::IfThenElse(turn, a.x, b.x), hn::Max(a.y, b.y)};
     a = {hn::IfThenElse(turn, b.x, a.x), hn::Min(a.y, b.y)};
     b = upper;
   }
 
   /// Light samples within the error of an edge.
   void ask(M which, std::size_t i, V row, V column) {
-    which = hn::And(which, hn::And(hn::Ge(column, set(0)), hn::Lt(column, set(static_cast<float>(in_.frame.columns)))));
+    which = hn::And(which, hn::And(hn::Ge(column, set(0)), hn::Lt(column, set(static_cast<float>(in_.grid.columns)))));
     HWY_ALIGN float rows[hn::MaxLanes(D())];
     HWY_ALIGN float columns[hn::MaxLanes(D())];
     hn::Store(row, D(), rows);
@@ -186,15 +186,15 @@ class SampleTest {
   std::size_t convert(std::size_t i, std::size_t landed) {
     const D d;
     const I di;
-    const Frame& frame = in_.frame;
+    const LightGrid& grid = in_.grid;
     const SurvivorTable& table = s_.survivors;
     const auto column_of = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
-    Place a{column_of(kX0), column_of(kY0)}, b{column_of(kX1), column_of(kY1)}, c{column_of(kX2), column_of(kY2)};
+    LightPoints a{column_of(kX0), column_of(kY0)}, b{column_of(kX1), column_of(kY1)}, c{column_of(kX2), column_of(kY2)};
     order(a, b);
     order(b, c);
     order(a, b);
-    const V error = column_of(kError), zero = set(0), columns = set(static_cast<float>(frame.columns)),
-            last_row = set(static_cast<float>(frame.rows) - 1);
+    const V error = column_of(kError), zero = set(0), columns = set(static_cast<float>(grid.columns)),
+            last_row = set(static_cast<float>(grid.rows) - 1);
     const auto near_row = [&](V y) {
       const V row = hn::Round(y);
       return hn::And(hn::Le(hn::Abs(hn::Sub(y, row)), error), hn::And(hn::Ge(row, zero), hn::Le(row, last_row)));
@@ -216,7 +216,7 @@ class SampleTest {
       const M low = hn::Lt(row, b.y);
       const V slope = hn::IfThenElse(low, to_b, b_to_c), from_x = hn::IfThenElse(low, a.x, c.x),
               from_y = hn::IfThenElse(low, a.y, c.y);
-      const V shift = hn::GatherIndex(d, frame.shift.data(), hn::ConvertTo(di, hn::IfThenElseZero(active, row)));
+      const V shift = hn::GatherIndex(d, grid.shift.data(), hn::ConvertTo(di, hn::IfThenElseZero(active, row)));
       const V x = hn::Sub(hn::MulAdd(hn::Sub(row, a.y), to_c, a.x), shift),
               y = hn::Sub(hn::MulAdd(hn::Sub(row, from_y), slope, from_x), shift);
       const V slack = hn::Max(slack_long, hn::MulAdd(per_slope, hn::Abs(slope), rounding));
@@ -251,24 +251,24 @@ class SampleTest {
 
   const PairInput& in_;
   PairScratch& s_;
-  const Sample& at_;
+  const ClusterSample& at_;
   Hull hull_;
   bool has_hull_ = false;
 };
 
 /// Rows of columns to the mask's columns of rows.
-void write_mask(const Frame& frame, Blocked& blocked, Seen& seen) {
+void write_mask(const LightGrid& grid, Blocked& blocked, SampleMask& mask) {
   const hn::CappedTag<std::uint16_t, 16> d;
-  fill(frame, true, seen);
+  fill(grid, true, mask);
   HWY_ALIGN std::uint16_t rows[16];
-  for (std::uint32_t row = 0; row < frame.rows; row += 16) {
-    for (std::uint32_t column = 0; column < frame.columns; column += 16) {
+  for (std::uint32_t row = 0; row < grid.rows; row += 16) {
+    for (std::uint32_t column = 0; column < grid.columns; column += 16) {
       for (std::uint32_t i = 0; i < 16; ++i) {
-        const bool there = row + i < frame.rows;
+        const bool there = row + i < grid.rows;
         rows[i] =
             there ? static_cast<std::uint16_t>(blocked.row(row + i)[column / 64] >> column % 64) : std::uint16_t{0};
       }
-      for (std::uint32_t bit = 0; bit < 16 && column + bit < frame.columns; ++bit) {
+      for (std::uint32_t bit = 0; bit < 16 && column + bit < grid.columns; ++bit) {
         const auto which = hn::Set(d, static_cast<std::uint16_t>(1U << bit));
         std::uint32_t hidden = 0;
         for (std::size_t i = 0; i < 16; i += hn::Lanes(d)) {
@@ -276,34 +276,35 @@ void write_mask(const Frame& frame, Blocked& blocked, Seen& seen) {
           hn::StoreMaskBits(d, hn::TestBit(hn::Load(d, rows + i), which), bytes);
           hidden |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << i;
         }
-        std::uint16_t& word = seen.mask[((column + bit) * frame.padded_rows + row) / 16];
+        std::uint16_t& word = mask.bits[((column + bit) * grid.padded_rows + row) / 16];
         word = static_cast<std::uint16_t>(word & ~hidden);
       }
     }
   }
-  seen.visible = frame.rows * frame.columns - blocked.count();
+  mask.visible = grid.rows * grid.columns - blocked.count();
 }
 
-void test_sample(const PairInput& in, PairScratch& scratch, const Sample& at, Judge& judge, Seen& seen) {
-  const Frame& frame = in.frame;
+void test_sample(const PairInput& in, PairScratch& scratch, const ClusterSample& at, OpenJudge& judge,
+                 SampleMask& mask) {
+  const LightGrid& grid = in.grid;
   scratch.open.clear();
-  scratch.blocked.reset(frame.rows, frame.columns);
+  scratch.blocked.reset(grid.rows, grid.columns);
   if (!SampleTest(in, scratch, at)()) {
     scratch.open.clear();
-    see_all(frame, at, scratch.open, judge, seen);
+    see_all(grid, at, scratch.open, judge, mask);
     return;
   }
-  seen.visible = frame.rows * frame.columns - scratch.blocked.count();
-  if (seen.visible == 0) return;
+  mask.visible = grid.rows * grid.columns - scratch.blocked.count();
+  if (mask.visible == 0) return;
   std::erase_if(scratch.open.samples, [&](std::uint32_t light_sample) {
-    return scratch.blocked.test(light_sample / frame.columns, light_sample % frame.columns);
+    return scratch.blocked.test(light_sample / grid.columns, light_sample % grid.columns);
   });
-  write_mask(frame, scratch.blocked, seen);
-  if (at.straddles) cut_at_horizon(frame, at, scratch.open, seen);
-  if (scratch.open.any()) judge.decide(at, scratch.open, seen);
+  write_mask(grid, scratch.blocked, mask);
+  if (at.straddles) cut_at_horizon(grid, at, scratch.open, mask);
+  if (scratch.open.any()) judge.decide(at, scratch.open, mask);
 }
 
-void test_pairs_here(const PairInput& in, PairScratch& scratch, Judge& judge, std::span<Seen> seen) {
+void test_pairs_here(const PairInput& in, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
   if (scratch.to.empty()) {
     scratch.to.resize(4096);
     scratch.row_and_from.resize(4096);
@@ -311,7 +312,7 @@ void test_pairs_here(const PairInput& in, PairScratch& scratch, Judge& judge, st
   for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
     const auto group = in.samples.subspan(first, std::min(kGroup, in.samples.size() - first));
     sort_out(in, group, scratch.near);
-    for (std::size_t i = 0; i < group.size(); ++i) test_sample(in, scratch, group[i], judge, seen[first + i]);
+    for (std::size_t i = 0; i < group.size(); ++i) test_sample(in, scratch, group[i], judge, masks[first + i]);
   }
 }
 
@@ -324,8 +325,8 @@ namespace penumbra::vsm {
 
 HWY_EXPORT(test_pairs_here);
 
-void test_pairs(const PairInput& input, PairScratch& scratch, Judge& judge, std::span<Seen> seen) {
-  HWY_DYNAMIC_DISPATCH(test_pairs_here)(input, scratch, judge, seen);
+void test_pairs(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+  HWY_DYNAMIC_DISPATCH(test_pairs_here)(input, scratch, judge, masks);
 }
 
 }  // namespace penumbra::vsm

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "engines/vectors/find.hpp"
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/masks.hpp"
 #include "engines/vectors/table.hpp"
 #include "engines/vectors/trees.hpp"
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 #include "visibility/light_samples.hpp"
 
 #include <glm/vec3.hpp>
@@ -18,7 +18,24 @@
 /// View-sample mapping on a processor: what its stages hand to one another. Inside vsm/ only.
 namespace penumbra::vsm {
 
-using namespace native;  // NOLINT(google-build-using-namespace): its fields and tables by the dozen
+// From engines/vectors/, by name: what the stages here hand to one another is made of these.
+using native::Cluster;
+using native::ClusterSample;
+using native::GridSample;
+using native::Hull;
+using native::kPerReach;
+using native::kRound;
+using native::kWide;
+using native::LightGrid;
+using native::Open;
+using native::OpenJudge;
+using native::SampleMask;
+using native::Table;
+using native::TriangleTable;
+using native::WidePoints;
+using native::WideTriangles;
+using native::WideTriangleTree;
+using enum native::TriangleField;
 
 /// Of a triangle that may appear at a light row: where its corners appear, the bound of that, and its row in the
 /// group's table (bits).
@@ -26,13 +43,13 @@ enum SurvivorField : std::size_t { kX0, kY0, kX1, kY1, kX2, kY2, kError, kTriang
 using SurvivorTable = Table<kSurvivorFields>;
 
 struct PairInput {
-  const Frame& frame;
+  const LightGrid& grid;
   const visibility::Light& light;
-  const visibility::LightFrame& light_frame;
+  const visibility::DeviceLight& device_light;
   float scale;
   const WideTriangleTree& tree;
   const Cluster& cluster;
-  std::span<const Sample> samples;
+  std::span<const ClusterSample> samples;
   const TriangleTable& triangles;
 };
 
@@ -62,7 +79,7 @@ class Blocked {
 
 /// Buffers of one thread.
 struct PairScratch {
-  std::vector<Sample> samples;
+  std::vector<ClusterSample> samples;
   TriangleTable triangles, near;  // of the cluster, of a group
   SurvivorTable survivors;
   std::vector<std::uint32_t> roots, stack;
@@ -81,14 +98,14 @@ struct PairScratch {
 /// not blocked yet, is open.
 struct CarefulInput {
   const PairInput& in;
-  const Sample& at;
+  const ClusterSample& at;
   std::uint32_t slot;  ///< of the tree's leaves
 };
 void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open);
 /// One light sample of it.
 void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open);
 
-/// `seen`: one a view sample; of its mask all or nothing is written.
-void test_pairs(const PairInput& input, PairScratch& scratch, Judge& judge, std::span<Seen> seen);
+/// `masks`: one for each view sample; of its bits all or none are written.
+void test_pairs(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 
 }  // namespace penumbra::vsm

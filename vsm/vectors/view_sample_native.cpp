@@ -55,44 +55,45 @@ class NativeViewSample final : public native::MaskMethod {
 
  private:
   bool prepare_casters() override {
-    apart_ = parts_apart_from(closed_, light_frame(), scale());
+    apart_ = parts_apart_from(closed_, device_light(), scale());
     return false;
   }
 
-  Blocks begin_region(const Frame& frame, const Cluster& all) override {
+  native::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
     PairScratch& scratch = scratch_.local();
-    find_triangle_roots({frame, triangles(), all, all.whole}, scratch.triangles, scratch.roots);
-    return Blocks::usual;
+    find_triangle_roots({grid, triangles(), all, all.whole}, scratch.triangles, scratch.roots);
+    return native::Blocks::usual;
   }
 
-  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+  void do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                  std::span<SampleMask> masks) override {
     PairScratch& scratch = scratch_.local();
     scratch.triangles.count = 0;
     Cluster cluster;
     if (!scratch.roots.empty()) {
-      cluster = make_cluster(frame, placed);
-      find_triangles({frame, triangles(), cluster, cluster.whole, parts_around(placed)}, scratch.roots, scratch.stack,
-                     scratch.triangles);
+      cluster = make_cluster(grid, view_samples);
+      find_triangles({grid, triangles(), cluster, cluster.whole, parts_around(view_samples)}, scratch.roots,
+                     scratch.stack, scratch.triangles);
     }
     if (scratch.triangles.count == 0) {
-      for (std::size_t i = 0; i < placed.size(); ++i) {
+      for (std::size_t i = 0; i < view_samples.size(); ++i) {
         scratch.open.clear();
-        see_all(frame, placed[i], scratch.open, judge, seen[i]);
+        see_all(grid, view_samples[i], scratch.open, judge, masks[i]);
       }
       return;
     }
     scratch.samples.clear();
-    for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
-    test_pairs({frame, light(), light_frame(), scale(), triangles(), cluster, scratch.samples, scratch.triangles},
-               scratch, judge, seen);
+    for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
+    test_pairs({grid, light(), device_light(), scale(), triangles(), cluster, scratch.samples, scratch.triangles},
+               scratch, judge, masks);
   }
 
   /// Bit k: all these view samples are outside of part k, which does not carry them. On the floats as they are: exact.
-  [[nodiscard]] std::uint32_t parts_around(std::span<const Placed> placed) const {
+  [[nodiscard]] std::uint32_t parts_around(std::span<const GridSample> view_samples) const {
     if (apart_ == 0) return 0;
     std::uint32_t carried = 0;
-    glm::vec3 lower(samples().p[placed.front().pixel]), upper(lower);
-    for (const Placed& at : placed) {
+    glm::vec3 lower(samples().p[view_samples.front().pixel]), upper(lower);
+    for (const GridSample& at : view_samples) {
       carried |= 1U << closed_.part[static_cast<std::size_t>(samples().triangle[at.pixel])];
       lower = glm::min(lower, samples().p[at.pixel]);
       upper = glm::max(upper, samples().p[at.pixel]);
@@ -105,8 +106,8 @@ class NativeViewSample final : public native::MaskMethod {
       for (int axis = 0; axis < 3; ++axis) {
         outside = outside || upper[axis] < part.box.lower[axis] || lower[axis] > part.box.upper[axis];
       }
-      outside = outside || std::all_of(placed.begin(), placed.end(),
-                                       [&](const Placed& at) { return is_outside(part, samples().p[at.pixel]); });
+      outside = outside || std::all_of(view_samples.begin(), view_samples.end(),
+                                       [&](const GridSample& at) { return is_outside(part, samples().p[at.pixel]); });
       if (outside) around |= 1U << k;
     }
     return around;

@@ -1,4 +1,4 @@
-// Edge scatter on a processor: how many triangles are before the light's corner, from which edges count on.
+// Edge scatter on a processor: the depth at the light's corner, to which edges add their changes.
 
 #include "visibility/certain_meeting.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
@@ -25,7 +25,7 @@ using namespace native::HWY_NAMESPACE;
 std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Open& open) {
   std::uint32_t met = 0;
   // Three times a point and two more, with a rounding each.
-  const double off = 0x1p-49 * static_cast<double>(in.frame.reach);
+  const double off = 0x1p-49 * static_cast<double>(in.grid.reach);
   for_each_lane(which, [&](std::size_t lane) {
     if (std::bit_cast<std::uint32_t>(in.triangles[kTrianglePlane][i + lane]) == in.light_plane) return;
     const auto slot = std::bit_cast<std::uint32_t>(in.triangles[kTriangleSlot][i + lane]);
@@ -35,7 +35,7 @@ std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Ope
       const WidePoints& x = leaf.corner[corner];
       corners[corner] = {x[0][slot % kWide], x[1][slot % kWide], x[2][slot % kWide]};
     }
-    const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(in.at.p), in.frame.corner, corners, off);
+    const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(in.at.p), in.grid.corner, corners, off);
     if (!meets) open.corner = true;
     met += meets.value_or(false) ? 1 : 0;
   });
@@ -48,7 +48,7 @@ std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Ope
 std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
   const D d;
   const TriangleTable& table = in.triangles;
-  const Sample& at = in.at;
+  const ClusterSample& at = in.at;
   const glm::vec2 lean = at.lean;
   std::uint32_t met = 0;
   for (std::size_t i = 0; i < table.count && !(in.one_will_do && met > 0); i += hn::Lanes(d)) {
@@ -57,9 +57,9 @@ std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
       V x, y, w;
     };
     const auto corner = [&](std::size_t first) {
-      const V w = hn::Sub(set(at.seen.z), column(first + 2));
-      return Corner{hn::Sub(hn::Sub(column(first), set(at.seen.x)), hn::Mul(set(lean.x), w)),
-                    hn::Sub(hn::Sub(column(first + 1), set(at.seen.y)), hn::Mul(set(lean.y), w)), w};
+      const V w = hn::Sub(set(at.in_grid.z), column(first + 2));
+      return Corner{hn::Sub(hn::Sub(column(first), set(at.in_grid.x)), hn::Mul(set(lean.x), w)),
+                    hn::Sub(hn::Sub(column(first + 1), set(at.in_grid.y)), hn::Mul(set(lean.y), w)), w};
     };
     const Corner a = corner(kCornerA), b = corner(kCornerB), c = corner(kCornerC);
     const auto cross = [&](const Corner& p, const Corner& q) { return hn::Sub(hn::Mul(p.x, q.y), hn::Mul(p.y, q.x)); };
@@ -81,7 +81,7 @@ std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
     const V total = hn::Add(fab, hn::Add(fbc, fca));
     const V meeting = hn::Div(hn::Add(hn::Mul(fbc, a.w), hn::Add(hn::Mul(fca, b.w), hn::Mul(fab, c.w))), total);
     const V near_p = hn::Mul(set(16 * kRound), far),
-            near_light = hn::Mul(set(16 * kRound), hn::Add(far, set(in.frame.reach)));
+            near_light = hn::Mul(set(16 * kRound), hn::Add(far, set(in.grid.reach)));
     const V error_w =
         hn::Add(near_light, hn::Div(hn::Mul(set(6), hn::Mul(error, far)), hn::Max(hn::Abs(total), set(1e-30F))));
     const V height = set(at.height);

@@ -66,7 +66,7 @@ native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float sc
   return texels.depth == 0 ? native::WideEdgeTree{} : native::wide_edge_tree(texels.nodes, texels.slots);
 }
 
-void CutEdges::mend() {
+void CutEdges::restore() {
   if (!is_cut_) return;
   ends_.reset();
   plane_of_light_ = native::Cluster::kSeveral;
@@ -82,7 +82,7 @@ void CutEdges::mend() {
 }
 
 void CutEdges::cut(const CutInput& input) {
-  mend();
+  restore();
   is_cut_ = true;
   roots_ = tree_.roots.size();
   nodes_count_ = tree_.nodes.size();

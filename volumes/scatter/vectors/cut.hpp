@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/trees.hpp"
 #include "volumes/edges/cut_ends.hpp"
 #include "volumes/edges/cut_walk.hpp"
@@ -15,8 +15,8 @@ namespace penumbra::volumes {
 
 native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
 
-/// A hierarchy of edges that is cut at a light's plane, and mended for the next light. Only what the plane cuts is made
-/// anew: subtrees behind it are left out, the cut edges are a second tree beside the first.
+/// A hierarchy of edges that is cut at a light's plane, and restored for the next light. Only what the plane cuts is
+/// made anew: subtrees behind it are left out, the cut edges are a second tree beside the first.
 class CutEdges {
  public:
   CutEdges() = default;
@@ -25,11 +25,11 @@ class CutEdges {
   [[nodiscard]] const native::WideEdgeTree& tree() const { return tree_; }
   /// Of edges with a number (WideEdges::cut); null: none has.
   [[nodiscard]] const CutEnds* ends() const { return ends_ ? &*ends_ : nullptr; }
-  /// The number of the plane (SceneFloats::plane) that the light lies in, if triangles lie in it: nothing of them is
-  /// before the light.
+  /// The number of the plane (SceneFloats::plane) that the light lies in, if triangles lie in it: they are not
+  /// between any p and the light.
   [[nodiscard]] std::uint32_t plane_of_light() const { return plane_of_light_; }
   void cut(const CutInput& input);
-  void mend();
+  void restore();
 
  private:
   class Dropping;

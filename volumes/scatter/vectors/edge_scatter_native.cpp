@@ -5,7 +5,7 @@
 #include "base/assert.hpp"
 #include "engines/vectors/horizon.hpp"
 #include "engines/vectors/mask_method.hpp"
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 #include "volumes/edges/edge_sides.hpp"
 #include "volumes/scatter/vectors/cut.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
@@ -44,8 +44,8 @@ class NativeEdges : public native::MaskMethod {
 
  private:
   bool prepare_casters() override {
-    const LightEdges edges = sides_.prepare_light(light(), light_frame(), scale());
-    front_->mend();
+    const LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
+    front_->restore();
     if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
       without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
     }
@@ -57,38 +57,41 @@ class NativeEdges : public native::MaskMethod {
     touch_ = between_rows_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
     return edges.front.has_value() && !between_rows_;  // whose edges stay whole
   }
-  Blocks begin_region(const Frame& frame, const Cluster& all) override {
+  native::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
     Scratch& scratch = scratch_.local();
-    find_edge_roots({frame, edges_of(frame), all}, scratch.edges, scratch.edge_roots);
-    find_triangle_roots({frame, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
+    find_edge_roots({grid, edges_of(grid), all}, scratch.edges, scratch.edge_roots);
+    find_triangle_roots({grid, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
     scratch.dense =
-        count_leaves({frame, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
+        count_leaves({grid, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
     scratch.dense_regions += scratch.dense ? 1 : 0;
-    return scratch.dense ? Blocks::small : Blocks::usual;
+    return scratch.dense ? native::Blocks::small : native::Blocks::usual;
   }
-  void do_cluster(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) final {
+  void do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                  std::span<SampleMask> masks) final {
     Scratch& scratch = scratch_.local();
-    if (scratch.edge_roots.empty() && scratch.triangle_roots.empty()) return do_free(frame, placed, judge, seen);
-    const Cluster cluster = make_cluster(frame, placed);
-    find_triangles({frame, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
+    if (scratch.edge_roots.empty() && scratch.triangle_roots.empty())
+      return do_unoccluded(grid, view_samples, judge, masks);
+    const Cluster cluster = make_cluster(grid, view_samples);
+    find_triangles({grid, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
                    scratch.triangles);
-    find_edges({frame, edges_of(frame), cluster}, scratch.edge_roots, scratch.stack, scratch.edges);
+    find_edges({grid, edges_of(grid), cluster}, scratch.edge_roots, scratch.stack, scratch.edges);
     scratch.listed += scratch.edges.count;
-    if (scratch.edges.count + scratch.triangles.count == 0) return do_free(frame, placed, judge, seen);
+    if (scratch.edges.count + scratch.triangles.count == 0) return do_unoccluded(grid, view_samples, judge, masks);
     scratch.samples.clear();
-    for (const Placed& at : placed) scratch.samples.push_back(complete(frame, cluster, at));
-    do_lists({frame, touch_, edges_of(frame), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
-              scratch.dense ? kDenseGroup : kGroup, between_rows_, cut_edges(frame).ends(), front_->plane_of_light()},
-             judge, seen);
+    for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
+    do_occluded({grid, touch_, edges_of(grid), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
+                 scratch.dense ? kDenseGroup : kGroup, between_rows_, cut_edges(grid).ends(), front_->plane_of_light()},
+                judge, masks);
   }
 
-  [[nodiscard]] const CutEdges& cut_edges(const Frame& frame) const {
-    return frame.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
+  [[nodiscard]] const CutEdges& cut_edges(const LightGrid& grid) const {
+    return grid.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
   }
-  [[nodiscard]] const WideEdgeTree& edges_of(const Frame& frame) const { return cut_edges(frame).tree(); }
-  /// View samples with nothing before the light.
-  virtual void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) = 0;
-  virtual void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) = 0;
+  [[nodiscard]] const WideEdgeTree& edges_of(const LightGrid& grid) const { return cut_edges(grid).tree(); }
+  /// View samples with nothing between them and the light.
+  virtual void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                             std::span<SampleMask> masks) = 0;
+  virtual void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) = 0;
 
  protected:
   void count(std::map<std::string, std::uint64_t>& counters) override {
@@ -121,19 +124,20 @@ class NativeEdgeScatter final : public NativeEdges {
   explicit NativeEdgeScatter(visibility::MethodDescription given) : NativeEdges(std::move(given), false) {}
 
  private:
-  void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen> seen) override {
+  void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                     std::span<SampleMask> masks) override {
     Open& open = scratch_.local().open;
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      begin(frame, touch_, placed[i], open);
-      see_all(frame, placed[i], open, judge, seen[i]);
+    for (std::size_t i = 0; i < view_samples.size(); ++i) {
+      reset_open(grid, touch_, view_samples[i], open);
+      see_all(grid, view_samples[i], open, judge, masks[i]);
     }
   }
-  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen> seen) override {
-    scatter(input, scratch_.local(), judge, seen);
+  void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
+    scatter(input, scratch_.local(), judge, masks);
   }
 };
 
-/// rows=exact: shares of the light, and their form factors for who asks for them.
+/// rows=exact: shares of the light, and their form factors on request.
 class NativeEdgeRows final : public NativeEdges {
  public:
   explicit NativeEdgeRows(visibility::MethodDescription given) : NativeEdges(std::move(given), true) {}
@@ -157,7 +161,7 @@ class NativeEdgeRows final : public NativeEdges {
     NativeEdges::read_visibility(visibility);
     for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = shares_[i].value_or(visibility[i]);
   }
-  /// Looks at the tile once more: whoever wants V alone does not wait for this.
+  /// Evaluates the tile once more, so that a caller who needs V alone does not wait for this.
   void read_form_factors(std::span<glm::dvec3> form_factors) override {
     std::vector<float> visibility(form_factors.size());
     read_visibility(visibility);
@@ -173,37 +177,38 @@ class NativeEdgeRows final : public NativeEdges {
 
  private:
   [[nodiscard]] double unshadowed(std::size_t pixel) const {
-    return visibility::SeenLight(light(), samples().p[pixel], samples().n[pixel]).whole();
+    return visibility::UnshadowedLight(light(), samples().p[pixel], samples().n[pixel]).whole();
   }
 
-  void do_free(const Frame& frame, std::span<const Placed> placed, Judge& judge, std::span<Seen>) override {
-    RowSum rows(frame, scene(), scale());
-    for (const Placed& at : placed) {
+  void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                     std::span<SampleMask>) override {
+    RowSum rows(grid, scene(), scale());
+    for (const GridSample& at : view_samples) {
       std::optional<double> share = 1;
       if (at.straddles) {
-        rows.begin(at);
+        rows.set_view_sample(at);
         rows.add_horizon(judge.horizon(at));
         share = rows.visible_share(0, nullptr);
       }
       if (!share) {
-        do_exactly(at);
+        use_exact_area(at);
         continue;
       }
       shares_[tile_pixel(at)] = static_cast<float>(*share);
       if (!radiance_.empty()) radiance_[tile_pixel(at)] = unshadowed(at.pixel);
     }
   }
-  bool do_open(const Placed& at) override {
-    do_exactly(at);
+  bool decide_open(const GridSample& at) override {
+    use_exact_area(at);
     return true;
   }
-  void do_exactly(const Placed& at) {
+  void use_exact_area(const GridSample& at) {
     ++scratch_.local().unproven;
     const areas::ExactView exact = areas_.view(samples(), at.pixel);
     shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
     if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor.x;
   }
-  void do_lists(const ScatterInput& input, Judge& judge, std::span<Seen>) override {
+  void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask>) override {
     std::vector<float> shares(input.samples.size());
     std::vector<double> radiance(radiance_.empty() ? 0 : input.samples.size());
     integrate({input, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge, {shares, radiance});

@@ -28,23 +28,23 @@ struct Box3 {
   glm::vec3 low{0}, high{0};
 };
 struct GroupBounds {
-  Box3 seen;  // (across, along, axis)
+  Box3 in_grid;  // (across, along, axis)
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
   float height_low = 0, height_high = 0, far = 0, per_way = 0, per_foot = 0, fixed = 0, per_lean = 0;
 };
 
-GroupBounds bounds_of(std::span<const Sample> samples) {
+GroupBounds bounds_of(std::span<const ClusterSample> samples) {
   GroupBounds g;
-  const Sample& one = samples.front();
-  g.seen = {one.seen, one.seen};
+  const ClusterSample& one = samples.front();
+  g.in_grid = {one.in_grid, one.in_grid};
   Box3 local{one.local, one.local};
   g.foot_low = g.foot_high = one.foot;
   g.height_low = g.height_high = one.height;
   g.lean_low = g.lean_high = one.lean;
-  for (const Sample& at : samples) {
-    g.seen = {glm::min(g.seen.low, at.seen), glm::max(g.seen.high, at.seen)};
+  for (const ClusterSample& at : samples) {
+    g.in_grid = {glm::min(g.in_grid.low, at.in_grid), glm::max(g.in_grid.high, at.in_grid)};
     local = {glm::min(local.low, at.local), glm::max(local.high, at.local)};
     g.foot_low = glm::min(g.foot_low, at.foot);
     g.foot_high = glm::max(g.foot_high, at.foot);
@@ -73,18 +73,17 @@ struct Range {
 class GroupFilter {
  public:
   GroupFilter(const ScatterInput& in, const GroupBounds& g, const Hull& hull) : in_(in), g_(g), hull_(hull) {
-    const glm::vec3 from_light = in.cluster.middle - in.frame.center;
-    foot_ =
-        glm::vec2(glm::dot(in.frame.across, from_light), glm::dot(in.frame.along, from_light)) + in.frame.first_cell;
-    height_ = glm::dot(in.frame.axis, from_light);
+    const glm::vec3 from_light = in.cluster.middle - in.grid.center;
+    foot_ = glm::vec2(glm::dot(in.grid.across, from_light), glm::dot(in.grid.along, from_light)) + in.grid.first_cell;
+    height_ = glm::dot(in.grid.axis, from_light);
   }
 
   void edges(GroupTable& settled, GroupTable& unsettled) const {
     settled.count = unsettled.count = 0;
     settled.reserve(in_.edges.count);
     unsettled.reserve(in_.edges.count);
-    const Frame& frame = in_.frame;
-    const float columns = static_cast<float>(frame.columns) - 0.5F, rows = static_cast<float>(frame.rows) - 0.5F;
+    const LightGrid& grid = in_.grid;
+    const float columns = static_cast<float>(grid.columns) - 0.5F, rows = static_cast<float>(grid.rows) - 0.5F;
     for (std::size_t i = 0; i < in_.edges.count; i += hn::Lanes(D())) {
       M kept = hn::And(first_lanes(in_.edges.count - i), may_be_silhouette(i));
       if (hn::AllFalse(D(), kept)) continue;
@@ -96,11 +95,11 @@ class GroupFilter {
                                hn::And(hn::Le(low_y, set(rows)), hn::Ge(high_y, set(-0.5F))));
       const M crosses = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Ge(hn::Floor(high_y), hn::Ceil(low_y)));
       const M matters = in_.between_rows ? before : hn::And(before, crosses);
-      const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * frame.reach));
+      const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * grid.reach));
       kept = hn::AndNot(behind, kept);
-      put(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));
+      store(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));
       kept = hn::AndNot(bounded, kept);
-      if (!hn::AllFalse(D(), kept)) put(unsettled, i, hn::And(kept, in_hull(i)), set(0));
+      if (!hn::AllFalse(D(), kept)) store(unsettled, i, hn::And(kept, in_hull(i)), set(0));
     }
   }
 
@@ -145,11 +144,11 @@ class GroupFilter {
   /// How far a point is beside the way from p to the light's corner, along one axis.
   [[nodiscard]] Interval beside_way(V x, V h, std::size_t axis) const {
     const auto i = static_cast<glm::length_t>(axis);
-    const V w_low = hn::Sub(set(g_.seen.low.z), h), w_high = hn::Sub(set(g_.seen.high.z), h);
+    const V w_low = hn::Sub(set(g_.in_grid.low.z), h), w_high = hn::Sub(set(g_.in_grid.high.z), h);
     const V low = set(g_.lean_low[i]), high = set(g_.lean_high[i]);
     const V p0 = hn::Mul(low, w_low), p1 = hn::Mul(low, w_high), p2 = hn::Mul(high, w_low), p3 = hn::Mul(high, w_high);
-    return {hn::Sub(hn::Sub(x, set(g_.seen.high[i])), hn::Max(hn::Max(p0, p1), hn::Max(p2, p3))),
-            hn::Sub(hn::Sub(x, set(g_.seen.low[i])), hn::Min(hn::Min(p0, p1), hn::Min(p2, p3)))};
+    return {hn::Sub(hn::Sub(x, set(g_.in_grid.high[i])), hn::Max(hn::Max(p0, p1), hn::Max(p2, p3))),
+            hn::Sub(hn::Sub(x, set(g_.in_grid.low[i])), hn::Min(hn::Min(p0, p1), hn::Min(p2, p3)))};
   }
 
   struct Sides {
@@ -159,18 +158,18 @@ class GroupFilter {
   [[nodiscard]] Sides sides(std::size_t first, std::size_t i) const {
     const V x = column(first, i), y = column(first + 1, i), z = column(first + 2, i);
     const V f = hn::Sub(hn::MulAdd(x, set(g_.middle.x), hn::MulAdd(y, set(g_.middle.y), hn::Mul(z, set(g_.middle.z)))),
-                        column(first + kD1 - kN1x, i));
-    const V error = column(first + kE1 - kN1x, i), ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
+                        column(first + kOffset1 - kNormal1X, i));
+    const V error = column(first + kOffsetError1 - kNormal1X, i), ax = hn::Abs(x), ay = hn::Abs(y), az = hn::Abs(z);
     const V wide =
         hn::MulAdd(ax, set(g_.half_size.x), hn::MulAdd(ay, set(g_.half_size.y), hn::Mul(az, set(g_.half_size.z))));
     const V ones = hn::Add(ax, hn::Add(ay, az));
     const V spread =
-        hn::MulAdd(wide, set(1.001F), hn::MulAdd(error, set(3.2F), hn::Mul(ones, set(4 * kRound * in_.frame.reach))));
+        hn::MulAdd(wide, set(1.001F), hn::MulAdd(error, set(3.2F), hn::Mul(ones, set(4 * kRound * in_.grid.reach))));
     const M none = hn::Lt(error, set(0));
     return {hn::AndNot(none, hn::Gt(f, spread)), hn::AndNot(none, hn::Lt(f, hn::Neg(spread))), none};
   }
   [[nodiscard]] M may_be_silhouette(std::size_t i) const {
-    const Sides s = sides(kN1x, i), t = sides(kN2x, i);
+    const Sides s = sides(kNormal1X, i), t = sides(kNormal2X, i);
     return hn::Not(
         hn::Or(hn::And(s.none, t.none), hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive))));
   }
@@ -182,7 +181,7 @@ class GroupFilter {
     Range r;
     r.level = hn::Add(column(first + 2, i), set(height_));
     const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
-    r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.frame.reach)));
+    r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.grid.reach)));
     const V inverse = hn::Div(set(1), w_low), at_low = hn::Mul(r.level, inverse), at_high = hn::Div(r.level, w_high);
     const auto span = [&](V from, float low, float high) {
       const V e0 = hn::Sub(from, set(high)), e1 = hn::Sub(from, set(low));
@@ -210,7 +209,7 @@ class GroupFilter {
     return r;
   }
 
-  void put(GroupTable& table, std::size_t i, M kept, V error) const {
+  void store(GroupTable& table, std::size_t i, M kept, V error) const {
     const std::size_t more = hn::CountTrue(D(), kept);
     if (more == 0) return;
     for (std::size_t field = 0; field <= kPlane2; ++field) {
@@ -229,9 +228,9 @@ class GroupFilter {
   float height_ = 0;
 };
 
-void sort_out_here(const ScatterInput& in, std::span<const Sample> group, GroupLists& lists) {
+void sort_out_here(const ScatterInput& in, std::span<const ClusterSample> group, GroupLists& lists) {
   const GroupBounds bounds = bounds_of(group);
-  const Hull hull = hull_of(in.frame, in.cluster, group);
+  const Hull hull = hull_of(in.grid, in.cluster, group);
   const GroupFilter filter(in, bounds, hull);
 
   filter.edges(lists.settled, lists.unsettled);
@@ -247,7 +246,7 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(sort_out_here);
 
-void sort_out(const ScatterInput& input, std::span<const Sample> group, GroupLists& lists) {
+void sort_out(const ScatterInput& input, std::span<const ClusterSample> group, GroupLists& lists) {
   HWY_DYNAMIC_DISPATCH(sort_out_here)(input, group, lists);
 }
 

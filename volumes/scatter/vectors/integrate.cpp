@@ -1,7 +1,7 @@
 // Edge scatter on a processor, rows=exact: from edges as they appear to the visible share of the light, without light
 // samples.
 
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 
@@ -24,13 +24,13 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 /// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
-std::optional<std::int32_t> depth_by_other_place(const Frame& frame, const RowSum& rows, const Placed& at,
-                                                 Judge& judge) {
+std::optional<std::int32_t> depth_by_other_place(const LightGrid& grid, const RowSum& rows, const GridSample& at,
+                                                 OpenJudge& judge) {
   constexpr int kTries = 64;
   for (int i = 0; i < kTries; ++i) {
     // Kronecker's sequence with the square roots of 2 and 3: on no lattice.
     const glm::dvec2 share = glm::fract(glm::dvec2(0.4142135623, 0.7320508075) * (i + 1.0));
-    const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(frame.half_cells));
+    const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(grid.half_cells));
     if (!relative) continue;
     const std::optional<std::uint32_t> depth = judge.depth_in_plane(at, 2.0 * share - 1.0);
     return depth ? std::optional(static_cast<std::int32_t>(*depth) - *relative) : std::nullopt;
@@ -46,7 +46,8 @@ struct Rows {
 };
 
 /// Nothing: double cannot prove it.
-std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const Sample& at, Rows& all, Judge& judge) {
+std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, Rows& all,
+                               OpenJudge& judge) {
   RowSum& rows = all.sum;
   all.parts.clear();
   Open& open = scratch.open;
@@ -55,7 +56,7 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
   if (scratch.lists.triangles.count > 0) {
     const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
     depth = static_cast<std::int32_t>(count_to_corner(
-        {in.frame, in.tree, scratch.lists.triangles, at, !edges && !at.straddles, in.light_plane}, open));
+        {in.grid, in.tree, scratch.lists.triangles, at, !edges && !at.straddles, in.light_plane}, open));
   }
   CrossingTable& crossing = scratch.crossing;
   // The vectors only sort out; what they cannot place is looked at as well.
@@ -65,7 +66,7 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
     });
   };
   Projection{in, at, scratch.lists, crossing}(special);
-  rows.begin(at);
+  rows.set_view_sample(at);
   for (std::size_t i = 0; i < crossing.count; ++i) {
     const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
     const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
@@ -73,7 +74,7 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
     if (rows.is_open()) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {
-    const std::optional<std::int32_t> found = depth_by_other_place(in.frame, rows, at, judge);
+    const std::optional<std::int32_t> found = depth_by_other_place(in.grid, rows, at, judge);
     if (!found) return std::nullopt;
     depth = *found;
   }
@@ -86,23 +87,24 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const S
   return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
 }
 
-double form_factor_of(const IntegralInput& in, const Placed& at, const std::vector<Trapezoid>& parts, double share) {
+double form_factor_of(const IntegralInput& in, const GridSample& at, const std::vector<Trapezoid>& parts,
+                      double share) {
   if (share == 0) return 0;
-  const visibility::SeenLight seen(in.light, in.samples.p[at.pixel], in.samples.n[at.pixel]);
-  if (parts.empty() || share == 1) return share * seen.whole();
-  const glm::dvec2 half(in.scatter.frame.half_cells);
+  const visibility::UnshadowedLight unshadowed(in.light, in.samples.p[at.pixel], in.samples.n[at.pixel]);
+  if (parts.empty() || share == 1) return share * unshadowed.whole();
+  const glm::dvec2 half(in.scatter.grid.half_cells);
   double sum = 0;
   for (const auto& [low, high] : parts) {
     const auto corner = [&](double x, double y) { return glm::dvec2(x, y) / half - 1.0; };
-    sum += seen.part(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
-                                corner(high.left, high.y)});
+    sum += unshadowed.part(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
+                                      corner(high.left, high.y)});
   }
   return std::max(sum, 0.0);
 }
 
-void integrate_here(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out) {
+void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
   const ScatterInput& in = input.scatter;
-  Rows rows{RowSum(in.frame, input.scene, input.scale), {}, !out.radiance.empty()};
+  Rows rows{RowSum(in.grid, input.scene, input.scale), {}, !out.radiance.empty()};
   for (std::size_t first = 0; first < in.samples.size(); first += in.group) {
     const auto group = in.samples.subspan(first, std::min(in.group, in.samples.size() - first));
     sort_out(in, group, scratch.lists);
@@ -130,7 +132,7 @@ namespace penumbra::volumes {
 
 HWY_EXPORT(integrate_here);
 
-void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out) {
+void integrate(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
   HWY_DYNAMIC_DISPATCH(integrate_here)(input, scratch, judge, out);
 }
 

@@ -13,25 +13,25 @@ namespace {
 /// A way from p: across, along, and up to the light. It appears at foot + height / w (x, y).
 using Way = glm::vec3;
 
-glm::vec2 appears(const Sample& at, const Way& way) {
+glm::vec2 appears(const ClusterSample& at, const Way& way) {
   const float q = at.height / way.z;
   return {at.foot.x + q * way.x, at.foot.y + q * way.y};
 }
 
 /// (bound X)
-float error_of(const Sample& at, float far, float w, float from_foot) {
+float error_of(const ClusterSample& at, float far, float w, float from_foot) {
   return (far + at.far) / w * (at.per_way + kPerReach * from_foot) + at.per_foot * from_foot + at.fixed;
 }
 
 class Marks {
  public:
-  Marks(const Frame& frame, Open& open) : frame_(frame), open_(open) {}
+  Marks(const LightGrid& grid, Open& open) : grid_(grid), open_(open) {}
 
   void row(float row) {
-    if (row >= 0 && row < static_cast<float>(frame_.rows)) open_.rows.push_back(static_cast<std::uint32_t>(row));
+    if (row >= 0 && row < static_cast<float>(grid_.rows)) open_.rows.push_back(static_cast<std::uint32_t>(row));
   }
   void sample(float row, float column) {
-    open_.samples.push_back(static_cast<std::uint32_t>(row) * frame_.columns + static_cast<std::uint32_t>(column));
+    open_.samples.push_back(static_cast<std::uint32_t>(row) * grid_.columns + static_cast<std::uint32_t>(column));
   }
   void pixel() { open_.pixel = true; }
   void corner() { open_.corner = true; }
@@ -39,48 +39,49 @@ class Marks {
   /// What is open where the changes at (row, x) may be anywhere within `error` of x: the nearest light sample, if it is
   /// that near; the row, if others are too.
   void near(float row, float x, float error) {
-    if (row < 0 || row >= static_cast<float>(frame_.rows)) return;
-    const auto columns = static_cast<float>(frame_.columns);
-    const float column = x - frame_.shift[static_cast<std::size_t>(row)], nearest = std::round(column);
+    if (row < 0 || row >= static_cast<float>(grid_.rows)) return;
+    const auto columns = static_cast<float>(grid_.columns);
+    const float column = x - grid_.shift[static_cast<std::size_t>(row)], nearest = std::round(column);
     const bool wide = error >= 0.5F && column > -1 - error && column < columns + error;
     if (wide) this->row(row);
     if (!wide && nearest >= 0 && nearest < columns && std::abs(column - nearest) < error) sample(row, nearest);
   }
 
  private:
-  const Frame& frame_;
+  const LightGrid& grid_;
   Open& open_;
 };
 
 /// An edge as it appears, from the end nearer to the light's middle, so that far ends' errors, which grow with their
 /// distance, stay small.
-struct Seen2 {
+struct ProjectedEdge {
   glm::vec2 near, far, low, high;
   float error_near, error_far, slope, steep;
   bool turn;
   bool may_be_cut = false;  // at the light's plane: its stored ends are rounded
 };
 
-Seen2 as_seen(const Frame& frame, const glm::vec2& a, const glm::vec2& b, float error_a, float error_b) {
-  const glm::vec2 to_a = glm::abs(a - frame.first_cell), to_b = glm::abs(b - frame.first_cell);
+ProjectedEdge project_edge(const LightGrid& grid, const glm::vec2& a, const glm::vec2& b, float error_a,
+                           float error_b) {
+  const glm::vec2 to_a = glm::abs(a - grid.first_cell), to_b = glm::abs(b - grid.first_cell);
   const bool turn = to_b.x + to_b.y < to_a.x + to_a.y;
-  Seen2 s{turn ? b : a,
-          turn ? a : b,
-          glm::min(a, b),
-          glm::max(a, b),
-          turn ? error_b : error_a,
-          turn ? error_a : error_b,
-          0,
-          0,
-          turn};
+  ProjectedEdge s{turn ? b : a,
+                  turn ? a : b,
+                  glm::min(a, b),
+                  glm::max(a, b),
+                  turn ? error_b : error_a,
+                  turn ? error_a : error_b,
+                  0,
+                  0,
+                  turn};
   const glm::vec2 way = s.far - s.near;
   s.slope = way.x / way.y;
   s.steep = way.y == 0 ? 1e30F : std::abs(s.slope);
   return s;
 }
 
-float row_at_least(const Frame& frame, float y) {
-  return std::clamp(std::ceil(y), 0.0F, static_cast<float>(frame.rows));
+float row_at_least(const LightGrid& grid, float y) {
+  return std::clamp(std::ceil(y), 0.0F, static_cast<float>(grid.rows));
 }
 
 /// On which side of the edge's plane through p is a light sample: > 0 left of the edge a→b as it appears; 0: within
@@ -92,14 +93,14 @@ int side_of_sample(const PreciseInput& in, std::uint32_t light_sample) {
     const std::size_t lane = slot % kWide;
     return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]) - glm::dvec3(in.at.p);
   };
-  const glm::dvec3 l = glm::dvec3(in.scatter.frame.points[light_sample]) - glm::dvec3(in.at.p);
+  const glm::dvec3 l = glm::dvec3(in.scatter.grid.points[light_sample]) - glm::dvec3(in.at.p);
   const glm::dvec3 a = from_p(leaf.a), b = from_p(leaf.b);
   const double side = glm::dot(l, glm::cross(a, b));
   // As in visibility::certainly_meets.
   const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
   if (std::abs(side) <= error) return 0;
-  // From above, where the light is, the frame is turned over.
-  return (side > 0) == (in.scatter.frame.side < 0) ? 1 : -1;
+  // From above, where the light is, the grid is turned over.
+  return (side > 0) == (in.scatter.grid.side < 0) ? 1 : -1;
 }
 
 /// Of the light samples of a row, the first that the edge is left of: between `lowest` and one after `highest`.
@@ -107,7 +108,7 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
   float first = lowest;
   for (; first <= highest; ++first) {
     const int side = side_of_sample(
-        in, static_cast<std::uint32_t>(row) * in.scatter.frame.columns + static_cast<std::uint32_t>(first));
+        in, static_cast<std::uint32_t>(row) * in.scatter.grid.columns + static_cast<std::uint32_t>(first));
     if (side == 0) {
       marks.sample(row, first);
     } else if ((side < 0) == runs_up) {  // right of an edge that runs up
@@ -118,41 +119,42 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
 }
 
 /// Of a crossing's x on any row of the light.
-float error_of_rows(const Frame& frame, const Seen2& s) {
+float error_of_rows(const LightGrid& grid, const ProjectedEdge& s) {
   const float weight =
-      std::min(1.0F, (std::abs(s.near.y - frame.first_cell.y) + 2 * frame.half_cells.y) / std::abs(s.far.y - s.near.y));
+      std::min(1.0F, (std::abs(s.near.y - grid.first_cell.y) + 2 * grid.half_cells.y) / std::abs(s.far.y - s.near.y));
   return 1.2F * (s.error_near + weight * s.error_far) * (1 + s.steep) +
-         8 * kRound * (frame.half_cells.x + std::abs(s.near.x));
+         8 * kRound * (grid.half_cells.x + std::abs(s.near.x));
 }
 
 /// May it pass the light's corner on either side? The depth there is counted in double, which may know better.
-bool passes_corner(const Frame& frame, const Seen2& s) {
+bool passes_corner(const LightGrid& grid, const ProjectedEdge& s) {
   const float around = s.error_near + s.error_far;
   if (s.low.x - around > -0.5F || s.high.x + around < -0.5F) return false;
   if (s.low.y - around > -0.5F || s.high.y + around < -0.5F) return false;
   const float x = std::clamp(s.near.x + (-0.5F - s.near.y) * s.slope, s.low.x, s.high.x);
-  return !(std::abs(x + 0.5F) >= error_of_rows(frame, s));  // level ones too, whose x is not known
+  return !(std::abs(x + 0.5F) >= error_of_rows(grid, s));  // level ones too, whose x is not known
 }
 
-/// Returns the first row above where the edge crosses the light's left side, if it does: told by the same x as the
-/// changes of the rows, so that no row can count it twice, or not at all.
+/// Returns the first row above where the edge crosses the light's left side, if it does. The x that decides it is the
+/// one that changes the rows, so that no row can count the edge twice, or not at all.
 template <typename Counter>
-float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Changes<Counter>& changes, Marks& marks) {
-  const Frame& frame = in.scatter.frame;
-  const auto columns = static_cast<float>(frame.columns);
-  const float error = error_of_rows(frame, s);
+float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, const Changes<Counter>& changes,
+                 Marks& marks) {
+  const LightGrid& grid = in.scatter.grid;
+  const auto columns = static_cast<float>(grid.columns);
+  const float error = error_of_rows(grid, s);
   const bool upper_right = (s.near.y < s.far.y ? s.far.x : s.near.x) >= -0.5F;
   const bool runs_up = (s.near.y < s.far.y) != s.turn;
-  const float end = row_at_least(frame, s.high.y);
+  const float end = row_at_least(grid, s.high.y);
   const auto change = [&](float column, float row, Counter by) {
     if (column >= columns) return;
-    Counter& cell = changes.cells[static_cast<std::size_t>(column) * frame.padded_rows + static_cast<std::size_t>(row)];
+    Counter& cell = changes.cells[static_cast<std::size_t>(column) * grid.padded_rows + static_cast<std::size_t>(row)];
     cell = static_cast<Counter>(cell + by);
   };
   float from = end;
-  for (float row = row_at_least(frame, s.low.y); row < end; ++row) {
+  for (float row = row_at_least(grid, s.low.y); row < end; ++row) {
     const float x = std::clamp(s.near.x + (row - s.near.y) * s.slope, s.low.x, s.high.x);
-    const float column = x - frame.shift[static_cast<std::size_t>(row)];
+    const float column = x - grid.shift[static_cast<std::size_t>(row)];
     const float computed = std::max(std::ceil(column), 0.0F);
     const bool on_light = x >= -0.5F;  // else it is one of those that the left side's depth has in it
     if (on_light == upper_right) from = std::min(from, row);
@@ -170,9 +172,9 @@ float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Cha
         first = first_right_of(in, row, lowest, highest, runs_up, marks);
       }
     }
-    if (on_light && !in.placed) change(first, row, jump);
+    if (on_light && !in.projected) change(first, row, jump);
     const float was = on_light ? computed : 0;
-    if (first == was || (on_light && !in.placed)) continue;
+    if (first == was || (on_light && !in.projected)) continue;
     change(was, row, static_cast<Counter>(-jump));
     change(first, row, jump);
   }
@@ -181,33 +183,33 @@ float cross_rows(const PreciseInput& in, const Seen2& s, Counter jump, const Cha
 
 /// Where it crosses the light's left side: above the corner or below?
 template <typename Counter>
-void cross_left_side(const PreciseInput& in, const Seen2& s, float from, Counter up, const Changes<Counter>& changes,
-                     Marks& marks) {
-  const Frame& frame = in.scatter.frame;
+void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from, Counter up,
+                     const Changes<Counter>& changes, Marks& marks) {
+  const LightGrid& grid = in.scatter.grid;
   const glm::vec2 way = s.far - s.near;
   const float inverse = way.y / way.x;
   const float weight =
-      std::min(1.0F, (std::abs(s.near.x - frame.first_cell.x) + 2 * frame.half_cells.x) / std::abs(way.x));
+      std::min(1.0F, (std::abs(s.near.x - grid.first_cell.x) + 2 * grid.half_cells.x) / std::abs(way.x));
   const float error = 1.2F * (s.error_near + s.error_far * weight) * (1 + std::abs(inverse)) +
-                      8 * kRound * (frame.half_cells.y + std::abs(s.near.y));
+                      8 * kRound * (grid.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
   if (std::abs(y + 0.5F) < error) marks.corner();
   // Beside light rows they know better than the division: only below the first of them is y asked.
   const bool over_corner = from > 0 || y > -0.5F;
-  if (in.placed || !over_corner || from >= static_cast<float>(frame.rows)) return;
+  if (in.projected || !over_corner || from >= static_cast<float>(grid.rows)) return;
   Counter& row = changes.left[static_cast<std::size_t>(from)];
   row = static_cast<Counter>(row + up);
 }
 
 /// The part of an edge in a window of about twice the light. (bound window)
-struct Cut {
+struct WindowPart {
   Way start, end;
-  bool cut = false, nothing = false;
+  bool is_empty = false;
 };
 
-/// Widened by `lift`, so that an edge at p's own height, but for rounding, is not below it.
-Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way& b, float lift) {
-  const glm::vec2 window = 2.0F * frame.half_cells + 2.0F, off = at.foot - frame.first_cell;
+/// Widened by `lift`, so that rounding cannot put an edge at p's own height below the window.
+WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Way& a, const Way& b, float lift) {
+  const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = at.foot - grid.first_cell;
   float from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
     const float xa = a[axis] * at.height + off[axis] * a.z, xb = b[axis] * at.height + off[axis] * b.z;
@@ -219,19 +221,20 @@ Cut cut_to_window(const Frame& frame, const Sample& at, const Way& a, const Way&
       if (inside_a >= 0 && inside_b < 0) to = std::min(to, t);
     }
   }
-  return {from > 0 ? glm::mix(a, b, from) : a, to < 1 ? glm::mix(a, b, to) : b, from > 0 || to<1, from> to};
+  return {.start = from > 0 ? glm::mix(a, b, from) : a, .end = to < 1 ? glm::mix(a, b, to) : b, .is_empty = from > to};
 }
 
 }  // namespace
 
-std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge, const Sample& at, Judge& judge) {
+std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge, const ClusterSample& at,
+                                        OpenJudge& judge) {
   float k = 0;
-  for (const std::size_t first : {std::size_t{kN1x}, std::size_t{kN2x}}) {
-    const auto plane = std::bit_cast<std::uint32_t>(edges[first + kPlane1 - kN1x][edge]);
-    if (edges[first + kE1 - kN1x][edge] < 0 || plane == at.plane) continue;
+  for (const std::size_t first : {std::size_t{kNormal1X}, std::size_t{kNormal2X}}) {
+    const auto plane = std::bit_cast<std::uint32_t>(edges[first + kPlane1 - kNormal1X][edge]);
+    if (edges[first + kOffsetError1 - kNormal1X][edge] < 0 || plane == at.plane) continue;
     const glm::dvec3 n(edges[first][edge], edges[first + 1][edge], edges[first + 2][edge]);
     const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane's number is that of a triangle in it
-    const double side = glm::dot(n, towards);  // cosine ±1 but for a thousandth, unless one of them is not known
+    const double side = glm::dot(n, towards);  // their cosine is ±1 to a thousandth, unless one of them is not known
     if (!(std::abs(side) > 0.5 * glm::length(n) * glm::length(towards))) return std::nullopt;
     k += side > 0 ? 1.0F : -1.0F;
   }
@@ -240,37 +243,39 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
 
 template <typename Counter>
 void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, Open& open) {
-  const Frame& frame = in.scatter.frame;
-  const Sample& at = in.at;
+  const LightGrid& grid = in.scatter.grid;
+  const ClusterSample& at = in.at;
   const EdgeTable& edges = in.scatter.edges;
   const std::size_t edge = in.edge;
   const float k = in.k;
-  Marks marks(frame, open);
-  const Way a(edges[kAx][edge] - at.seen.x, edges[kAy][edge] - at.seen.y, at.seen.z - edges[kAh][edge]);
-  const Way b(edges[kBx][edge] - at.seen.x, edges[kBy][edge] - at.seen.y, at.seen.z - edges[kBh][edge]);
+  Marks marks(grid, open);
+  const Way a(edges[kAx][edge] - at.in_grid.x, edges[kAy][edge] - at.in_grid.y, at.in_grid.z - edges[kAh][edge]);
+  const Way b(edges[kBx][edge] - at.in_grid.x, edges[kBy][edge] - at.in_grid.y, at.in_grid.z - edges[kBh][edge]);
   const float far = edges[kFar][edge], through_p = 64 * kRound * (far + at.far);
-  const Cut part = in.settled ? Cut{a, b} : cut_to_window(frame, at, a, b, at.per_lift * (far + at.far));
-  if (part.nothing || k == 0) return;
+  const WindowPart part = in.settled ? WindowPart{a, b} : cut_to_window(grid, at, a, b, at.per_lift * (far + at.far));
+  if (part.is_empty || k == 0) return;
   if (!in.settled && std::min(part.start.z, part.end.z) < through_p) {
     marks.pixel();
     return;
   }
-  const glm::vec2 seen_a = in.placed ? (*in.placed)[0] : appears(at, part.start);
-  const glm::vec2 seen_b = in.placed ? (*in.placed)[1] : appears(at, part.end);
-  const float foot_a = glm::length(seen_a - at.foot), foot_b = glm::length(seen_b - at.foot);
-  Seen2 seen =
-      as_seen(frame, seen_a, seen_b, error_of(at, far, part.start.z, foot_a), error_of(at, far, part.end.z, foot_b));
+  const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : appears(at, part.start);
+  const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : appears(at, part.end);
+  const float foot_a = glm::length(projected_a - at.foot), foot_b = glm::length(projected_b - at.foot);
+  ProjectedEdge edge_on_light = project_edge(grid, projected_a, projected_b, error_of(at, far, part.start.z, foot_a),
+                                             error_of(at, far, part.end.z, foot_b));
   const float lowest_over_light = at.height - std::max(a.z, b.z);
-  seen.may_be_cut = frame.cut_reach > 0 && lowest_over_light < 256 * kRound * frame.reach;
-  for (const auto& [end, error] : {std::pair(seen.near, seen.error_near), std::pair(seen.far, seen.error_far)}) {
+  edge_on_light.may_be_cut = grid.cut_reach > 0 && lowest_over_light < 256 * kRound * grid.reach;
+  for (const auto& [end, error] : {std::pair(edge_on_light.near, edge_on_light.error_near),
+                                   std::pair(edge_on_light.far, edge_on_light.error_far)}) {
     const float row = std::round(end.y);
-    if (std::abs(end.y - row) < error) marks.near(row, end.x, 1.2F * error * (1 + seen.steep));
+    if (std::abs(end.y - row) < error) marks.near(row, end.x, 1.2F * error * (1 + edge_on_light.steep));
   }
-  const auto jump = static_cast<Counter>((seen.near.y < seen.far.y) == seen.turn ? k : -k);
-  const float from = cross_rows(in, seen, jump, changes, marks);
-  if (passes_corner(frame, seen)) marks.corner();
-  if ((seen_a.x < -0.5F) == (seen_b.x < -0.5F)) return;
-  cross_left_side(in, seen, from, static_cast<Counter>(seen_a.x < seen_b.x ? k : -k), changes, marks);
+  const auto jump = static_cast<Counter>((edge_on_light.near.y < edge_on_light.far.y) == edge_on_light.turn ? k : -k);
+  const float from = cross_rows(in, edge_on_light, jump, changes, marks);
+  if (passes_corner(grid, edge_on_light)) marks.corner();
+  if ((projected_a.x < -0.5F) == (projected_b.x < -0.5F)) return;
+  cross_left_side(in, edge_on_light, from, static_cast<Counter>(projected_a.x < projected_b.x ? k : -k), changes,
+                  marks);
 }
 
 template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>&, Open&);

@@ -23,18 +23,18 @@ struct Multiplicity {
   V k;
   M open;
 };
-[[maybe_unused]] Multiplicity multiplicity(const GroupTable& table, const Sample& at, std::size_t i) {
+[[maybe_unused]] Multiplicity multiplicity(const GroupTable& table, const ClusterSample& at, std::size_t i) {
   const D d;
   Multiplicity m{hn::Zero(d), hn::FirstN(d, 0)};
-  for (const std::size_t first : {std::size_t{kN1x}, std::size_t{kN2x}}) {
+  for (const std::size_t first : {std::size_t{kNormal1X}, std::size_t{kNormal2X}}) {
     const auto column = [&](std::size_t offset) { return hn::Load(d, table[first + offset] + i); };
     const V f = hn::Sub(hn::Add(hn::Add(hn::Mul(column(0), set(at.local.x)), hn::Mul(column(1), set(at.local.y))),
                                 hn::Mul(column(2), set(at.local.z))),
-                        column(kD1 - kN1x));
-    const M counts = hn::AndNot(same_bits(column(kPlane1 - kN1x), bits(at.plane)), hn::Ne(f, set(0)));
+                        column(kOffset1 - kNormal1X));
+    const M counts = hn::AndNot(same_bits(column(kPlane1 - kNormal1X), bits(at.plane)), hn::Ne(f, set(0)));
     m.k = hn::Add(m.k, hn::IfThenElseZero(counts, hn::CopySign(set(1), f)));
-    const M open = hn::Le(hn::Abs(f), column(kE1 - kN1x));
-    m.open = hn::Or(m.open, hn::AndNot(same_bits(column(kPlane1 - kN1x), bits(at.plane)), open));
+    const M open = hn::Le(hn::Abs(f), column(kOffsetError1 - kNormal1X));
+    m.open = hn::Or(m.open, hn::AndNot(same_bits(column(kPlane1 - kNormal1X), bits(at.plane)), open));
   }
   return m;
 }
@@ -51,10 +51,10 @@ struct SpecialEdges {
 /// Fills the table of crossings of one view sample.
 class Projection {
  public:
-  Projection(const ScatterInput& in, const Sample& at, const GroupLists& lists, CrossingTable& out)
+  Projection(const ScatterInput& in, const ClusterSample& at, const GroupLists& lists, CrossingTable& out)
       : in_(in), at_(at), lists_(lists), out_(out) {}
 
-  /// `special` gets edges whose multiplicity is open, and those that pass through p but for rounding.
+  /// `special` gets edges whose multiplicity is open, and those that pass through p within rounding.
   template <typename Special>
   void operator()(Special& special) {
     out_.count = 0;
@@ -72,13 +72,13 @@ class Projection {
   };
   [[nodiscard]] Ways way_to(const GroupTable& table, std::size_t first, std::size_t i) const {
     const auto column = [&](std::size_t field) { return hn::Load(D(), table[first + field] + i); };
-    return {hn::Sub(column(0), set(at_.seen.x)), hn::Sub(column(1), set(at_.seen.y)),
-            hn::Sub(set(at_.seen.z), column(2))};
+    return {hn::Sub(column(0), set(at_.in_grid.x)), hn::Sub(column(1), set(at_.in_grid.y)),
+            hn::Sub(set(at_.in_grid.z), column(2))};
   }
-  struct Place {
+  struct LightPoints {
     V x, y;
   };
-  [[nodiscard]] Place appears(const Ways& way) const {
+  [[nodiscard]] LightPoints appears(const Ways& way) const {
     const V q = hn::Div(set(at_.height), way.w);
     return {hn::Add(set(at_.foot.x), hn::Mul(q, way.x)), hn::Add(set(at_.foot.y), hn::Mul(q, way.y))};
   }
@@ -102,13 +102,13 @@ class Projection {
   template <typename Special>
   void unsettled(std::size_t i, Special& special) {
     const D d;
-    const Frame& frame = in_.frame;
+    const LightGrid& grid = in_.grid;
     const GroupTable& table = lists_.unsettled;
     const Multiplicity m = multiplicity(table, at_, i);
     M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
     if (hn::AllFalse(d, live)) return;
     const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
-    const glm::vec2 window = 2.0F * frame.half_cells + 2.0F, off = at_.foot - frame.first_cell;
+    const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = at_.foot - grid.first_cell;
     // Beyond the table's end there is anything.
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
     const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(64 * kRound), far);
@@ -139,29 +139,29 @@ class Projection {
     const M near_p = hn::Lt(hn::Min(start.w, end.w), through_p);
     const M other = hn::And(live, hn::Or(open_ones(m), near_p));
     if (!hn::AllFalse(d, other)) special({table, i, other, m, false});
-    const Place seen_a = appears(start), seen_b = appears(end);
-    const V error = hn::Mul(set(1.01F), hn::Max(error_of(seen_a, start.w, far), error_of(seen_b, end.w, far)));
-    keep_crossing({seen_a, seen_b, m.k, error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(other, live));
+    const LightPoints place_a = appears(start), place_b = appears(end);
+    const V error = hn::Mul(set(1.01F), hn::Max(error_of(place_a, start.w, far), error_of(place_b, end.w, far)));
+    keep_crossing({place_a, place_b, m.k, error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(other, live));
   }
 
   [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
   /// (bound X)
-  [[nodiscard]] V error_of(const Place& seen, V w, V far) const {
-    const V foot = hn::Add(hn::Abs(hn::Sub(seen.x, set(at_.foot.x))), hn::Abs(hn::Sub(seen.y, set(at_.foot.y))));
+  [[nodiscard]] V error_of(const LightPoints& place, V w, V far) const {
+    const V foot = hn::Add(hn::Abs(hn::Sub(place.x, set(at_.foot.x))), hn::Abs(hn::Sub(place.y, set(at_.foot.y))));
     return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(kPerReach), foot, set(at_.per_way)),
                       hn::MulAdd(set(at_.per_foot), foot, set(at_.fixed)));
   }
 
-  struct SeenEdge {
-    Place a, b;
+  struct ProjectedEdges {
+    LightPoints a, b;
     V k, error, number;
   };
   /// What crosses light rows or the light's left side, or may.
-  void keep_crossing(const SeenEdge& e, M live) {
+  void keep_crossing(const ProjectedEdges& e, M live) {
     const D d;
     const V low_x = hn::Sub(hn::Min(e.a.x, e.b.x), e.error), high_x = hn::Add(hn::Max(e.a.x, e.b.x), e.error);
     const V low_y = hn::Sub(hn::Min(e.a.y, e.b.y), e.error), high_y = hn::Add(hn::Max(e.a.y, e.b.y), e.error);
-    const V rows = set(static_cast<float>(in_.frame.rows)), columns = set(static_cast<float>(in_.frame.columns));
+    const V rows = set(static_cast<float>(in_.grid.rows)), columns = set(static_cast<float>(in_.grid.columns));
     const V first = hn::Max(hn::Ceil(low_y), set(0)), last = hn::Min(hn::Floor(high_y), hn::Sub(rows, set(1)));
     const M left = hn::And(hn::Lt(low_x, set(-0.5F)), hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows)));
     const M before = hn::And(hn::Le(low_x, columns), hn::Ge(high_x, set(-0.5F)));
@@ -170,19 +170,19 @@ class Projection {
     const M kept = hn::And(live, hn::And(before, matters));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
-    const auto put = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out_[field] + out_.count); };
-    put(kX0, e.a.x);
-    put(kY0, e.a.y);
-    put(kX1, e.b.x);
-    put(kY1, e.b.y);
-    put(kK, e.k);
-    put(kError, e.error);
-    put(kEdge, e.number);
+    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out_[field] + out_.count); };
+    store(kX0, e.a.x);
+    store(kY0, e.a.y);
+    store(kX1, e.b.x);
+    store(kY1, e.b.y);
+    store(kK, e.k);
+    store(kError, e.error);
+    store(kEdge, e.number);
     out_.count += more;
   }
 
   const ScatterInput& in_;
-  const Sample& at_;
+  const ClusterSample& at_;
   const GroupLists& lists_;
   CrossingTable& out_;
 };

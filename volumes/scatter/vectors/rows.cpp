@@ -34,15 +34,15 @@ bool passes_corner(const RowEdge& edge, double error) {
 
 }  // namespace
 
-RowSum::RowSum(const Frame& frame, const visibility::SceneFloats& scene, float scale)
-    : frame_(frame),
+RowSum::RowSum(const LightGrid& grid, const visibility::SceneFloats& scene, float scale)
+    : grid_(grid),
       scene_(scene),
       scale_(scale),
-      per_length_(std::max(glm::length(frame.axes[0]), glm::length(frame.axes[1]))),
-      skew_(frame.skew) {}
+      per_length_(std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]))),
+      skew_(grid.skew) {}
 
 /// (bound foot)
-void RowSum::begin(const Placed& at) {
+void RowSum::set_view_sample(const GridSample& at) {
   edges_.clear();
   left_.clear();
   at_corner_ = 0;
@@ -50,13 +50,13 @@ void RowSum::begin(const Placed& at) {
   corner_is_open_ = is_open_ = false;
   p_ = glm::dvec3(at.p);
   plane_ = at.plane;
-  const glm::dvec3 from = p_ - frame_.corner;
-  foot_ = {glm::dot(frame_.axes[0], from), glm::dot(frame_.axes[1], from)};
-  height_ = glm::dot(frame_.axes[2], from);
-  const double away = glm::length(from), off = 8 * kUnit * static_cast<double>(frame_.reach);
+  const glm::dvec3 from = p_ - grid_.corner;
+  foot_ = {glm::dot(grid_.axes[0], from), glm::dot(grid_.axes[1], from)};
+  height_ = glm::dot(grid_.axes[2], from);
+  const double away = glm::length(from), off = 8 * kUnit * static_cast<double>(grid_.reach);
   error_foot_ = per_length_ * (32 * kUnit * skew_ * away + off);
   error_height_ = 16 * kUnit * skew_ * away + off;
-  steepness_ = height_ / (away + 2 * static_cast<double>(frame_.radius));
+  steepness_ = height_ / (away + 2 * static_cast<double>(grid_.radius));
   is_open_ = !(height_ > 8 * error_height_);
 }
 
@@ -83,14 +83,14 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
     if (point(leaf.n[side], lane) == glm::dvec3(0)) continue;
     k += side_of(leaf, side, lane);
   }
-  return frame_.side < 0 ? -k : k;
+  return grid_.side < 0 ? -k : k;
 }
 
 /// (bound way)
 RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
   const glm::dvec3 d = point - p_;
   const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;
-  return {{glm::dot(frame_.axes[0], d), glm::dot(frame_.axes[1], d), -glm::dot(frame_.axes[2], d)},
+  return {{glm::dot(grid_.axes[0], d), glm::dot(grid_.axes[1], d), -glm::dot(grid_.axes[2], d)},
           64 * error * per_length_,
           32 * error,
           length};
@@ -99,12 +99,12 @@ RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
 RowSum::Way RowSum::way_to(const CutEnd& end) const {
   if (!end.place) {
     Way way = way_to(end.point);  // computed from points no farther than `reach`
-    const double off = 16 * kUnit * static_cast<double>(frame_.reach);
+    const double off = 16 * kUnit * static_cast<double>(grid_.reach);
     way.error += off * per_length_;
     way.error_up += off;
     return way;
   }
-  const glm::dvec2 place = *end.place * 2.0 * glm::dvec2(frame_.half_cells), to = place - foot_;
+  const glm::dvec2 place = *end.place * 2.0 * glm::dvec2(grid_.half_cells), to = place - foot_;
   const double size = std::abs(place.x) + std::abs(place.y);
   return {{to.x, to.y, height_},
           error_foot_ + 4 * kUnit * (size + std::abs(foot_.x) + std::abs(foot_.y)),
@@ -121,7 +121,7 @@ RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutE
 
 /// What double makes of how far the end of a way is inside a side of the window.
 double RowSum::error_inside(const Way& way, int axis) const {
-  const double middle = static_cast<double>(frame_.half_cells[axis]), window = 2 * middle + 2;
+  const double middle = static_cast<double>(grid_.half_cells[axis]), window = 2 * middle + 2;
   return 2 * (height_ * way.error + (window + std::abs(foot_[axis] - middle)) * way.error_up +
               error_height_ * std::abs(way.to[axis]) + error_foot_ * std::abs(way.to.z));
 }
@@ -134,14 +134,14 @@ bool RowSum::may_pass_p(const Ways& ways) const {
   const glm::dvec2 lengths = glm::dvec2(1 / per_length_);
   const glm::dvec3 near_a(glm::dvec2(a.to) * lengths, a.to.z), near_b(glm::dvec2(b.to) * lengths, b.to.z);
   const double nearest = glm::length(glm::cross(near_a, near_b)) / std::max(a.length + b.length, 0x1p-300);
-  return !(nearest * steepness_ * static_cast<double>(std::min(frame_.half_cells.x, frame_.half_cells.y)) > 4 * error);
+  return !(nearest * steepness_ * static_cast<double>(std::min(grid_.half_cells.x, grid_.half_cells.y)) > 4 * error);
 }
 
 /// The part of an edge that appears in a window of about twice the light, before any division. (bound window) False:
 /// nothing of it is on the light.
 bool RowSum::cut_to_window(Ways& ways) {
   auto& [a, b] = ways;
-  const glm::dvec2 middle(frame_.half_cells), window = 2.0 * middle + 2.0;
+  const glm::dvec2 middle(grid_.half_cells), window = 2.0 * middle + 2.0;
   double from = 0, to = 1;
   for (int axis = 0; axis < 2; ++axis) {
     const double off = foot_[axis] - middle[axis];
@@ -176,16 +176,16 @@ void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
   const auto& [a, b] = ways;
   const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
                error_up = std::max(a.error_up, b.error_up);
-  if (!(lowest > 8 * error_up)) {  // it passes through p but for rounding
+  if (!(lowest > 8 * error_up)) {  // it passes through p within rounding
     is_open_ = true;
     return;
   }
-  const glm::dvec2 seen_a = height_ / a.to.z * glm::dvec2(a.to), seen_b = height_ / b.to.z * glm::dvec2(b.to);
-  const double far = std::max(std::abs(seen_a.x) + std::abs(seen_a.y), std::abs(seen_b.x) + std::abs(seen_b.y));
+  const glm::dvec2 place_a = height_ / a.to.z * glm::dvec2(a.to), place_b = height_ / b.to.z * glm::dvec2(b.to);
+  const double far = std::max(std::abs(place_a.x) + std::abs(place_a.y), std::abs(place_b.x) + std::abs(place_b.y));
   // (bound place)
   const double off = 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
                           8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
-  const glm::dvec2 from = foot_ + seen_a, to = foot_ + seen_b;
+  const glm::dvec2 from = foot_ + place_a, to = foot_ + place_b;
   add({from.x, from.y, to.x, to.y, k}, off);
 }
 
@@ -198,7 +198,7 @@ void RowSum::add(RowEdge edge, double error) {
   error_ += error;
   largest_error_ = std::max(largest_error_, error);
   if (passes_corner(edge, 2 * error)) corner_is_open_ = true;
-  const double width = frame_.columns, height = frame_.rows;
+  const double width = grid_.columns, height = grid_.rows;
   if (edge.y0 > edge.y1) edge = {edge.x1, edge.y1, edge.x0, edge.y0, -edge.k};
   if ((edge.x0 < 0) != (edge.x1 < 0)) {
     const double y = edge.y0 + (0 - edge.x0) / (edge.x1 - edge.x0) * (edge.y1 - edge.y0);
@@ -233,7 +233,7 @@ void RowSum::add(RowEdge edge, double error) {
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
   const auto [x, y] = std::pair(place.x, place.y);
   // No true edge is nearer than half of this, nor is the rounding of what follows as large.
-  const double near = 4 * largest_error_ + 64 * kUnit * (frame_.columns + frame_.rows);
+  const double near = 4 * largest_error_ + 64 * kUnit * (grid_.columns + grid_.rows);
   std::int32_t depth = 0;
   for (const RowStep& step : left_) {
     if (std::abs(step.y - y) < near) return std::nullopt;
@@ -250,7 +250,7 @@ std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) cons
 }
 
 void RowSum::add_horizon(const HorizonLine& line) {
-  const double width = frame_.columns, height = frame_.rows;
+  const double width = grid_.columns, height = grid_.rows;
   // above · (s, t, 1) as a X + b Y + c, from the light's corner.
   const glm::dvec3& above = line.above;
   const double a = 2 * above.x / width, b = 2 * above.y / height;
@@ -285,7 +285,7 @@ void RowSum::add_horizon(const HorizonLine& line) {
 }
 
 std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts) {
-  const double width = frame_.columns, height = frame_.rows, all = width * height;
+  const double width = grid_.columns, height = grid_.rows, all = width * height;
   if (parts != nullptr) parts->clear();
   if (is_open_) return std::nullopt;
   const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * all;

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-/// The share of a light that a view sample sees, without light samples: rows=exact of edge scatter. Inside volumes/
-/// only.
+/// The share of a light that is visible from a view sample, without light samples: rows=exact of edge scatter. Inside
+/// volumes/ only.
 namespace penumbra::volumes {
 
 /// Of a share of the light: what double must prove it to, so that with the rounding to float V is off by less than a
@@ -21,15 +21,15 @@ constexpr double kProven = 0x1p-26;
 /// "What double proves".
 class RowSum {
  public:
-  RowSum(const Frame& frame, const visibility::SceneFloats& scene, float scale);
+  RowSum(const LightGrid& grid, const visibility::SceneFloats& scene, float scale);
 
-  void begin(const Placed& at);
+  void set_view_sample(const GridSample& at);
   /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
   /// off by what float rounds.
   void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
   /// Rounding hides on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
-  /// The depth at a place of the light, in cells from its corner, but for that at the corner; nothing: an edge is near.
+  /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near.
   [[nodiscard]] std::optional<std::int32_t> relative_depth(const glm::dvec2& place) const;
   /// What lies below the carrier's plane counts as one layer more. After relative_depth.
   void add_horizon(const HorizonLine& line);
@@ -57,7 +57,7 @@ class RowSum {
   [[nodiscard]] bool cut_to_window(Ways& ways);
   void add(RowEdge edge, double error);
 
-  const Frame& frame_;
+  const LightGrid& grid_;
   const visibility::SceneFloats& scene_;
   float scale_;
   double per_length_, skew_;  // the axes: cells a length, and what makes them ill-conditioned

@@ -29,11 +29,11 @@ using namespace native::HWY_NAMESPACE;
 template <typename Counter>
 class SampleScatter {
  public:
-  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, Judge& judge)
+  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, OpenJudge& judge)
       : in_(in), s_(scratch), changes_(changes), judge_(judge) {}
 
   /// Whether the depth changes anywhere on the light, or something is open.
-  bool operator()(const Sample& at) {
+  bool operator()(const ClusterSample& at) {
     at_ = &at;
     const auto special = [&](const SpecialEdges& edges) { precisely(edges); };
     Projection{in_, at, s_.lists, s_.crossing}(special);
@@ -48,9 +48,9 @@ class SampleScatter {
   }
 
  private:
-  void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& placed) {
-    const float turned = in_.frame.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
-    scatter_precisely<Counter>({in_, *at_, edge, turned, is_settled, placed}, changes_, s_.open);
+  void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& projected) {
+    const float turned = in_.grid.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
+    scatter_precisely<Counter>({in_, *at_, edge, turned, is_settled, projected}, changes_, s_.open);
     any_precise_ = true;
   }
   /// Edges of the group that are not for vectors.
@@ -76,16 +76,14 @@ class SampleScatter {
   bool cross(std::size_t i, std::size_t& landed) {
     const D d;
     const I di;
-    const Frame& frame = in_.frame;
+    const LightGrid& grid = in_.grid;
     const CrossingTable& table = s_.crossing;
     const M used = first_lanes(table.count - i);
     const auto column_of = [&](std::size_t field) { return hn::Load(d, table[field] + i); };
     const V x0 = column_of(kX0), y0 = column_of(kY0), x1 = column_of(kX1), y1 = column_of(kY1);
-    const V k = frame.side < 0 ? hn::Neg(column_of(kK)) : column_of(kK), error = column_of(kError);
-    const V to_a =
-        hn::Add(hn::Abs(hn::Sub(x0, set(frame.first_cell.x))), hn::Abs(hn::Sub(y0, set(frame.first_cell.y))));
-    const V to_b =
-        hn::Add(hn::Abs(hn::Sub(x1, set(frame.first_cell.x))), hn::Abs(hn::Sub(y1, set(frame.first_cell.y))));
+    const V k = grid.side < 0 ? hn::Neg(column_of(kK)) : column_of(kK), error = column_of(kError);
+    const V to_a = hn::Add(hn::Abs(hn::Sub(x0, set(grid.first_cell.x))), hn::Abs(hn::Sub(y0, set(grid.first_cell.y))));
+    const V to_b = hn::Add(hn::Abs(hn::Sub(x1, set(grid.first_cell.x))), hn::Abs(hn::Sub(y1, set(grid.first_cell.y))));
     const M turn = hn::Lt(to_b, to_a);
     const V near_x = hn::IfThenElse(turn, x1, x0), near_y = hn::IfThenElse(turn, y1, y0);
     const V far_x = hn::IfThenElse(turn, x0, x1), far_y = hn::IfThenElse(turn, y0, y1);
@@ -94,13 +92,13 @@ class SampleScatter {
     const M flat = hn::Eq(way_y, set(0));
     const V slope = hn::Div(way_x, way_y), steep = hn::IfThenElse(flat, set(1e30F), hn::Abs(slope));
     const V jump = hn::IfThenElse(hn::Xor(hn::Lt(near_y, far_y), turn), hn::Neg(k), k);
-    const V rows = set(static_cast<float>(frame.rows)), columns = set(static_cast<float>(frame.columns));
+    const V rows = set(static_cast<float>(grid.rows)), columns = set(static_cast<float>(grid.columns));
 
     // Coarse: whatever may be open by the group's bound is looked at again, precisely.
     M open = hn::Lt(hn::Abs(hn::Sub(near_y, hn::Round(near_y))), error);
     open = hn::Or(open, hn::Lt(hn::Abs(hn::Sub(far_y, hn::Round(far_y))), error));
     const V error_x = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), steep),
-                                 hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.x), hn::Abs(near_x))));
+                                 hn::Mul(set(8.1F * kRound), hn::Add(set(grid.half_cells.x), hn::Abs(near_x))));
     const auto holds_corner = [&](V low, V high) {
       return hn::And(hn::Le(hn::Sub(low, error), set(-0.5F)), hn::Ge(hn::Add(high, error), set(-0.5F)));
     };
@@ -110,7 +108,7 @@ class SampleScatter {
     open = hn::Or(open, hn::AndNot(beside_corner, hn::And(holds_corner(low_x, high_x), holds_corner(low_y, high_y))));
     V row = hn::Min(hn::Max(hn::Ceil(low_y), set(0)), rows);
     const V end = hn::Min(hn::Max(hn::Ceil(high_y), set(0)), rows);
-    const V stride = set(static_cast<float>(frame.padded_rows));
+    const V stride = set(static_cast<float>(grid.padded_rows));
     const M left = hn::And(used, hn::Xor(hn::Lt(x0, set(-0.5F)), hn::Lt(x1, set(-0.5F))));
     const M upper_right = hn::Ge(hn::IfThenElse(hn::Lt(y0, y1), x1, x0), set(-0.5F));
     V from = end;  // the first row above where it crosses the light's left side
@@ -119,7 +117,7 @@ class SampleScatter {
       if (hn::AllFalse(d, crossed)) break;
       const V x = hn::Min(hn::Max(hn::Add(near_x, hn::Mul(hn::Sub(row, near_y), slope)), low_x), high_x);
       const auto number = hn::ConvertTo(di, hn::IfThenElseZero(crossed, row));
-      const V column = hn::Sub(x, hn::GatherIndex(d, frame.shift.data(), number));
+      const V column = hn::Sub(x, hn::GatherIndex(d, grid.shift.data(), number));
       const V first = hn::Max(hn::Ceil(column), set(0));
       const M right = hn::Ge(x, set(-0.5F)), lands = hn::And(crossed, hn::And(right, hn::Lt(first, columns)));
       from = hn::Min(from, hn::IfThenElse(hn::AndNot(hn::Xor(right, upper_right), crossed), row, end));
@@ -139,7 +137,7 @@ class SampleScatter {
       const V inverse = hn::Div(way_y, way_x);
       const V y = hn::Min(hn::Max(hn::Add(near_y, hn::Mul(hn::Sub(set(-0.5F), near_x), inverse)), low_y), high_y);
       const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
-                                   hn::Mul(set(8.1F * kRound), hn::Add(set(frame.half_cells.y), hn::Abs(near_y))));
+                                   hn::Mul(set(8.1F * kRound), hn::Add(set(grid.half_cells.y), hn::Abs(near_y))));
       open = hn::Or(open, hn::And(left, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y)));
       // Beside light rows they know better than the division: only below the first of them is y asked.
       const M over_corner = hn::Or(hn::Gt(from, set(0)), hn::Gt(y, set(-0.5F)));
@@ -173,16 +171,16 @@ class SampleScatter {
     for_each_lane(which, [&](std::size_t lane) {
       const std::size_t i = first + lane;
       const auto number = std::bit_cast<std::uint32_t>(table[kEdge][i]);
-      const std::array placed{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
-      precisely(number & ~kUnsettled, table[kK][i], (number & kUnsettled) == 0, placed);
+      const std::array projected{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
+      precisely(number & ~kUnsettled, table[kK][i], (number & kUnsettled) == 0, projected);
     });
   }
 
   const ScatterInput& in_;
   Scratch& s_;
   const Changes<Counter>& changes_;
-  Judge& judge_;
-  const Sample* at_ = nullptr;
+  OpenJudge& judge_;
+  const ClusterSample* at_ = nullptr;
   bool any_precise_ = false;
 };
 
@@ -191,45 +189,45 @@ class SampleScatter {
 template <typename Counter>
 using CounterTag = hn::CappedTag<Counter, 16>;
 
-/// Depths from changes; a light sample is visible where no triangle is before it.
+/// Depths from changes; a light sample is visible where the depth is 0.
 template <typename Counter>
-void sum_up(const Frame& frame, const Changes<Counter>& changes, std::uint32_t depth_at_corner, Seen& seen) {
+void sum_up(const LightGrid& grid, const Changes<Counter>& changes, std::uint32_t depth_at_corner, SampleMask& mask) {
   const CounterTag<Counter> d;
   std::int32_t depth = static_cast<std::int32_t>(depth_at_corner);
-  for (std::uint32_t row = 0; row < frame.padded_rows; ++row) {  // left becomes the depth at the light's left side
+  for (std::uint32_t row = 0; row < grid.padded_rows; ++row) {  // left becomes the depth at the light's left side
     depth += changes.left[row];
-    changes.left[row] = row < frame.rows ? static_cast<Counter>(depth) : Counter{1};
+    changes.left[row] = row < grid.rows ? static_cast<Counter>(depth) : Counter{1};
   }
-  const std::size_t words = frame.padded_rows / 16;
+  const std::size_t words = grid.padded_rows / 16;
   std::size_t visible = 0;
-  for (std::size_t row = 0; row < frame.padded_rows; row += hn::Lanes(d)) {
+  for (std::size_t row = 0; row < grid.padded_rows; row += hn::Lanes(d)) {
     auto depths = hn::LoadU(d, changes.left + row);
-    for (std::size_t column = 0; column < frame.columns; ++column) {
-      depths = hn::Add(depths, hn::LoadU(d, changes.cells + column * frame.padded_rows + row));
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      depths = hn::Add(depths, hn::LoadU(d, changes.cells + column * grid.padded_rows + row));
       const auto none = hn::Eq(depths, hn::Zero(d));
       visible += hn::CountTrue(d, none);
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(d, none, bytes);
-      std::uint16_t& word = seen.mask[column * words + row / 16];
+      std::uint16_t& word = mask.bits[column * words + row / 16];
       const std::uint32_t found = (bytes[0] | std::uint32_t{bytes[1]} << 8U) << row % 16;
       word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
     }
   }
-  seen.visible = static_cast<std::uint32_t>(visible);
+  mask.visible = static_cast<std::uint32_t>(visible);
 }
 
 /// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
 template <typename Counter>
-std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& changes, Open& open, const Sample& at,
-                                    Judge& judge) {
-  for (std::uint32_t row = 0, left = 0; row < frame.rows; ++row) {
+std::uint32_t depth_by_other_sample(const LightGrid& grid, const Changes<Counter>& changes, Open& open,
+                                    const ClusterSample& at, OpenJudge& judge) {
+  for (std::uint32_t row = 0, left = 0; row < grid.rows; ++row) {
     left += static_cast<std::uint32_t>(static_cast<std::int32_t>(changes.left[row]));
     if (std::find(open.rows.begin(), open.rows.end(), row) != open.rows.end()) continue;
-    std::uint32_t depth = left;  // but for D(corner); modulo 2³²
-    for (std::uint32_t column = 0; column < frame.columns; ++column) {
+    std::uint32_t depth = left;  // less D(corner), modulo 2³²
+    for (std::uint32_t column = 0; column < grid.columns; ++column) {
       depth += static_cast<std::uint32_t>(
-          static_cast<std::int32_t>(changes.cells[std::size_t{column} * frame.padded_rows + row]));
-      const std::uint32_t sample = row * frame.columns + column;
+          static_cast<std::int32_t>(changes.cells[std::size_t{column} * grid.padded_rows + row]));
+      const std::uint32_t sample = row * grid.columns + column;
       if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
       return judge.depth(at, sample) - depth;
     }
@@ -238,9 +236,9 @@ std::uint32_t depth_by_other_sample(const Frame& frame, const Changes<Counter>& 
   return 0;
 }
 
-/// The same where no edge changes it: at any light sample that is not open.
-std::uint32_t depth_by_any_sample(const Frame& frame, Open& open, const Sample& at, Judge& judge) {
-  for (std::uint32_t sample = 0; sample < frame.rows * frame.columns; ++sample) {
+/// D at the light's corner where no edge changes the depth: that of any light sample that is not open.
+std::uint32_t depth_by_any_sample(const LightGrid& grid, Open& open, const ClusterSample& at, OpenJudge& judge) {
+  for (std::uint32_t sample = 0; sample < grid.rows * grid.columns; ++sample) {
     if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
     return judge.depth(at, sample);
   }
@@ -251,33 +249,33 @@ std::uint32_t depth_by_any_sample(const Frame& frame, Open& open, const Sample& 
 /// One view sample, its group's edges sorted out.
 template <typename Counter>
 void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& histogram,
-                    std::vector<Counter>& left, const Sample& at, Judge& judge, Seen& seen) {
-  const Frame& frame = in.frame;
+                    std::vector<Counter>& left, const ClusterSample& at, OpenJudge& judge, SampleMask& mask) {
+  const LightGrid& grid = in.grid;
   const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
   std::uint32_t depth =
       scratch.lists.triangles.count == 0
           ? 0
-          : count_to_corner({frame, in.tree, scratch.lists.triangles, at, !edges, in.light_plane}, scratch.open);
+          : count_to_corner({grid, in.tree, scratch.lists.triangles, at, !edges, in.light_plane}, scratch.open);
   bool changes_any = false;
   if (edges) {
-    histogram.assign(std::size_t{frame.columns} * frame.padded_rows, 0);
-    left.assign(frame.padded_rows, 0);
+    histogram.assign(std::size_t{grid.columns} * grid.padded_rows, 0);
+    left.assign(grid.padded_rows, 0);
     const Changes<Counter> changes{histogram.data(), left.data()};
     changes_any = SampleScatter<Counter>(in, scratch, changes, judge)(at);
-    if (scratch.open.corner) depth = depth_by_other_sample(frame, changes, scratch.open, at, judge);
-    if (changes_any) sum_up(frame, changes, depth, seen);
+    if (scratch.open.corner) depth = depth_by_other_sample(grid, changes, scratch.open, at, judge);
+    if (changes_any) sum_up(grid, changes, depth, mask);
   } else if (scratch.open.corner) {
-    depth = depth_by_any_sample(frame, scratch.open, at, judge);
+    depth = depth_by_any_sample(grid, scratch.open, at, judge);
   }
   if (!changes_any) {
-    seen.visible = depth == 0 ? frame.rows * frame.columns : 0;
-    if (at.straddles || scratch.open.any()) fill(frame, depth == 0, seen);
+    mask.visible = depth == 0 ? grid.rows * grid.columns : 0;
+    if (at.straddles || scratch.open.any()) fill(grid, depth == 0, mask);
   }
-  if (at.straddles) cut_at_horizon(frame, at, scratch.open, seen);
+  if (at.straddles) cut_at_horizon(grid, at, scratch.open, mask);
 }
 
-void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
-  const std::span<const Sample> samples = in.samples;
+void scatter_here(const ScatterInput& in, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+  const std::span<const ClusterSample> samples = in.samples;
   if (scratch.landing.empty()) {
     scratch.landing.resize(4096);
     scratch.jump.resize(4096);
@@ -288,14 +286,14 @@ void scatter_here(const ScatterInput& in, Scratch& scratch, Judge& judge, std::s
     // Changes of a cell and its depth stay within ±(2 edges + triangles).
     const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      begin(in.frame, in.touch, group[i], scratch.open);
-      Seen& result = seen[first + i];
+      reset_open(in.grid, in.touch, group[i], scratch.open);
+      SampleMask& mask = masks[first + i];
       if (narrow) {
-        scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], judge, result);
+        scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], judge, mask);
       } else {
-        scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, group[i], judge, result);
+        scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, group[i], judge, mask);
       }
-      if (scratch.open.any()) judge.decide(group[i], scratch.open, result);
+      if (scratch.open.any()) judge.decide(group[i], scratch.open, mask);
     }
   }
 }
@@ -307,18 +305,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace penumbra::volumes {
 
-void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed& at, Open& open) {
+void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open) {
   open.clear();
   if (touch.empty()) return;
   open.samples = touch.samples;
-  const float farthest = glm::length(at.p - frame.center) + frame.radius;
+  const float farthest = glm::length(at.p - grid.center) + grid.radius;
   open.pixel = touch.any_near && at.height < static_cast<float>(visibility::LightTouch::kFlat) * farthest;
 }
 
 HWY_EXPORT(scatter_here);
 
-void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen) {
-  HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, seen);
+void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+  HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, masks);
 }
 
 }  // namespace penumbra::volumes

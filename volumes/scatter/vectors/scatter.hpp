@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engines/vectors/find.hpp"
-#include "engines/vectors/frame.hpp"
+#include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/masks.hpp"
 #include "engines/vectors/table.hpp"
 #include "engines/vectors/trees.hpp"
@@ -19,7 +19,30 @@
 /// Edge scatter on a processor: what its stages hand to one another. Inside volumes/ only.
 namespace penumbra::volumes {
 
-using namespace native;  // NOLINT(google-build-using-namespace): its fields and tables by the dozen
+// From engines/vectors/, by name: what the stages here hand to one another is made of these.
+using native::Cluster;
+using native::ClusterSample;
+using native::count_leaves;
+using native::EdgeTable;
+using native::GridSample;
+using native::HorizonLine;
+using native::Hull;
+using native::kPerReach;
+using native::kRound;
+using native::kWide;
+using native::LightGrid;
+using native::Open;
+using native::OpenJudge;
+using native::SampleMask;
+using native::Table;
+using native::TriangleTable;
+using native::WideEdges;
+using native::WideEdgeTree;
+using native::WidePoints;
+using native::WideTriangles;
+using native::WideTriangleTree;
+using enum native::EdgeField;
+using enum native::TriangleField;
 
 /// Of an edge that matters to a group of view samples: the first 18 of EdgeField, then a bound of the error of where
 /// its ends appear, and its row in the EdgeTable (bits).
@@ -32,12 +55,12 @@ constexpr std::uint32_t kUnsettled = 0x80000000U;  ///< in kEdge: it may come ne
 using CrossingTable = Table<kCrossingFields>;
 
 struct ScatterInput {
-  const Frame& frame;
+  const LightGrid& grid;
   const visibility::LightTouch& touch;
   const WideEdgeTree& edge_tree;
   const WideTriangleTree& tree;
   const Cluster& cluster;
-  std::span<const Sample> samples;
+  std::span<const ClusterSample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
   std::size_t group;          ///< view samples that sort out edges together
@@ -45,30 +68,30 @@ struct ScatterInput {
   const CutEnds* ends;        ///< of edges of the tree (WideEdges::cut); null: none is cut
   std::uint32_t light_plane;  ///< CutEdges::plane_of_light
 };
-/// What of a view sample is open before anything is looked at: light samples that something touches.
-void begin(const Frame& frame, const visibility::LightTouch& touch, const Placed& at, Open& open);
+/// Sets what of a view sample is open before any caster is tested: light samples that a triangle touches.
+void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open);
 /// What matters to a group of view samples. Settled edges stay well above all of its p.
 struct GroupLists {
   GroupTable settled, unsettled;
   TriangleTable triangles;
 };
-void sort_out(const ScatterInput& input, std::span<const Sample> group, GroupLists& lists);
+void sort_out(const ScatterInput& input, std::span<const ClusterSample> group, GroupLists& lists);
 
 /// How many triangles the segment from p to the light's lower left corner meets. One is as good as many where no edge
 /// changes the count (`one_will_do`).
 struct CornerInput {
-  const Frame& frame;
+  const LightGrid& grid;
   const WideTriangleTree& tree;
   const TriangleTable& triangles;
-  const Sample& at;
+  const ClusterSample& at;
   bool one_will_do;
-  std::uint32_t light_plane;  ///< of triangles in it nothing is before the light
+  std::uint32_t light_plane;  ///< its number: triangles in it are not between p and the light
 };
 std::uint32_t count_to_corner(const CornerInput& input, Open& open);
 
 /// Buffers of one thread.
 struct Scratch {
-  std::vector<Sample> samples;
+  std::vector<ClusterSample> samples;
   EdgeTable edges;
   TriangleTable triangles;
   GroupLists lists;
@@ -82,8 +105,8 @@ struct Scratch {
   std::uint64_t listed = 0, dense_regions = 0, unproven = 0;  // counted
 };
 
-/// `seen`: one a view sample; of its mask all or nothing is written.
-void scatter(const ScatterInput& input, Scratch& scratch, Judge& judge, std::span<Seen> seen);
+/// `masks`: one for each view sample; of its bits all or none are written.
+void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 
 /// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample whose share double cannot
 /// prove gets it from integers (areas::ExactArea). `radiance`, if there: form factors of what is visible.
@@ -99,6 +122,6 @@ struct IntegralInput {
   AreasOnDemand& areas;
   float scale;  ///< visibility::device_scale
 };
-void integrate(const IntegralInput& input, Scratch& scratch, Judge& judge, const Integral& out);
+void integrate(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out);
 
 }  // namespace penumbra::volumes

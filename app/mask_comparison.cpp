@@ -1,14 +1,14 @@
-#include "app/judge.hpp"
+#include "app/mask_comparison.hpp"
 
 #include "app/interrupt.hpp"
 #include "visibility/pair_truth.hpp"
 
 namespace penumbra::app {
 
-PairJudge::PairJudge(const Session& session, std::span<const std::uint32_t> reference)
+MaskComparison::MaskComparison(const Session& session, std::span<const std::uint32_t> reference)
     : session_(session), reference_(reference) {}
 
-void PairJudge::add(const TileResult& result) {
+void MaskComparison::add(const TileResult& result) {
   const visibility::Light& light = session_.lights.front();
   const std::size_t first = std::size_t{result.tile.first_row} * session_.width;
   const std::size_t count = std::size_t{result.tile.row_count} * session_.width;
@@ -32,7 +32,7 @@ void PairJudge::add(const TileResult& result) {
   });
 }
 
-compare::PairVerdicts PairJudge::decide(Progress& progress) const {
+compare::PairVerdicts MaskComparison::decide(Progress& progress) const {
   compare::PairVerdicts verdicts;
   if (kept_.empty()) return verdicts;
   progress.begin("deciding pairs exactly", kept_.size());

@@ -1,4 +1,4 @@
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -18,8 +18,7 @@ struct Span {
 };
 
 Span span_of(const Light& light) {
-  const glm::dvec3 center(light.center), to_u = glm::dvec3(light.center_u) - center,
-                                         to_v = glm::dvec3(light.center_v) - center;
+  const auto [center, to_u, to_v] = light_frame(light);
   if (light.kind == LightKind::rectangle) return {center, to_u, to_v};
   const glm::dvec3 axis_u = glm::normalize(to_u);
   const glm::dvec3 axis_v = glm::normalize(glm::cross(glm::cross(to_u, to_v), axis_u));
@@ -36,7 +35,7 @@ Span span_of(const Light& light) {
 }
 
 /// (s, t) of one stored point in the frame as rounded. u and v are (nearly) orthogonal, but nothing here needs that.
-glm::vec2 coordinates_of(const LightFrame& frame, const glm::dvec3& point) {
+glm::vec2 coordinates_of(const DeviceLight& frame, const glm::dvec3& point) {
   const glm::dvec3 u(frame.u), v(frame.v), at = point - glm::dvec3(frame.center);
   const double uu = glm::dot(u, u), vv = glm::dot(v, v), uv = glm::dot(u, v), det = uu * vv - uv * uv;
   const double along_u = glm::dot(at, u), along_v = glm::dot(at, v);
@@ -64,10 +63,10 @@ std::optional<std::uint32_t> shift_step_of(const Light& light) {
 
 }  // namespace
 
-LightFrame make_light_frame(const Light& light, float scale) {
+DeviceLight make_device_light(const Light& light, float scale) {
   PENUMBRA_ASSERT(light.kind != LightKind::sphere, "a sphere has no plane");
   const Span span = span_of(light);
-  LightFrame frame{
+  DeviceLight frame{
       glm::vec3(span.center) * scale, glm::vec3(span.u) * scale, glm::vec3(span.v) * scale, false, 0, {}, 0};
   const std::optional<std::uint32_t> step = shift_step_of(light);
   frame.rows = step.has_value();
@@ -93,7 +92,7 @@ LightFrame make_light_frame(const Light& light, float scale) {
   return frame;
 }
 
-float reach_of(const SceneFloats& scene, const LightFrame& frame, float scale) {
+float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale) {
   float reach = 0;
   for (int i = 0; i < 3; ++i) {
     reach = std::max({reach, std::abs(frame.center[i]) + std::abs(frame.u[i]) + std::abs(frame.v[i]),
@@ -102,7 +101,7 @@ float reach_of(const SceneFloats& scene, const LightFrame& frame, float scale) {
   return reach;
 }
 
-void check_size(const Light& light, const LightFrame& frame, const std::string& method) {
+void check_size(const Light& light, const DeviceLight& frame, const std::string& method) {
   const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
   const float largest = size(frame.center) + size(frame.u) + size(frame.v);
   const float smallest = std::min(size(frame.u), size(frame.v));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "visibility/light_frame.hpp"
+#include "visibility/device_light.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -17,8 +17,10 @@ namespace penumbra::native {
 
 constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 
-/// The light as a frame for (X, Y), in cells, as seen from one of its sides.
-struct Frame {
+/// The light as a grid of cells, one a light sample, for one of its two sides. A point x of its plane has the grid
+/// coordinates (X, Y) = (across, along) · (x − center) + first_cell: column and row of the light sample there, before
+/// the row's shift. Made from a DeviceLight and the light's stored points.
+struct LightGrid {
   glm::vec3 center{0}, axis{0}, axis_size{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
   glm::dvec3 corner{0};              ///< of the light, in the plane of its stored points: where rows and columns begin
@@ -31,17 +33,17 @@ struct Frame {
   std::vector<float> shift;       ///< of each (padded) row, in cells
   std::vector<glm::vec3> points;  ///< the light samples as stored, scaled
 };
-struct FrameInput {
-  const visibility::LightFrame& light;
+struct LightGridInput {
+  const visibility::DeviceLight& light;
   std::array<glm::dvec3, 3> plane;  ///< the light's stored points: centre, centre + halfU, centre + halfV, scaled
   std::uint32_t rows, columns, light_index;
   float side, reach, cut_reach, scale;
   std::span<const glm::vec3> points;  ///< light samples
 };
-Frame make_frame(const FrameInput& input);
+LightGrid make_light_grid(const LightGridInput& input);
 
-/// A view sample that the light is, or may be, before.
-struct Placed {
+/// A view sample on the grid's side of the light, in the grid's coordinates.
+struct GridSample {
   glm::vec3 p{0};  ///< scaled
   std::uint32_t pixel = 0, plane = 0;
   float height = 0;  ///< over the light's plane
@@ -53,17 +55,17 @@ struct Placed {
   bool straddles = false;  ///< not all of the light is certainly above it
 };
 
-/// With what is needed once something may be before the light: p relative to its cluster's middle, in world axes and in
-/// the frame's (across, along, axis).
-struct Sample : Placed {
-  glm::vec3 local{0}, seen{0};
+/// A GridSample of a cluster that has casters: p relative to the cluster's middle, in world axes (`local`) and in the
+/// grid's (`in_grid`: across, along, axis), and error bounds.
+struct ClusterSample : GridSample {
+  glm::vec3 local{0}, in_grid{0};
   float away = 0;  ///< bounds |p − the light's centre|
   float far = 0;   ///< bounds |local|
   /// The error of a projected point at height w over p, `far_x` from the cluster's middle, that appears F from the
   /// foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
   float per_way = 0, per_foot = 0, fixed = 0;
   glm::vec2 lean{0};  ///< the way to the light's corner, in cells for a unit of height
-  /// An edge within (far_x + far) · per_lift of p's height may be where p is, but for rounding. (bound window)
+  /// An edge within (far_x + far) · per_lift of p's height may pass through p within rounding. (bound window)
   float per_lift = 0;
   float per_lean = 0;  ///< the error of a corner's place beside that way is (far_x + far) per_lean (bound corner)
 };
@@ -84,15 +86,15 @@ struct Cluster {
   Shaft whole, corner;
   std::uint32_t plane = kSeveral;  ///< that all of their carriers are in: nothing in it hides a light sample
 };
-Cluster make_cluster(const Frame& frame, std::span<const Placed> samples);
-Sample complete(const Frame& frame, const Cluster& cluster, const Placed& at);
+Cluster make_cluster(const LightGrid& grid, std::span<const GridSample> samples);
+ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const GridSample& at);
 
-/// The hull of some of a cluster's view samples and the light, in the frame's axes relative to the cluster's middle:
+/// The hull of some of a cluster's view samples and the light, in the grid's axes relative to the cluster's middle:
 /// between two heights and within four planes ±across (or ±along) − slope · height ≤ beyond. (bound shaft)
 struct Hull {
   std::array<float, 4> slope{}, beyond{};
   float lowest = 0, highest = 0;
 };
-Hull hull_of(const Frame& frame, const Cluster& cluster, std::span<const Sample> samples);
+Hull hull_of(const LightGrid& grid, const Cluster& cluster, std::span<const ClusterSample> samples);
 
 }  // namespace penumbra::native

@@ -20,10 +20,10 @@ struct DifferingPair {
 /// Counts, tile by tile, where the masks of a method differ from those of the reference on the same light samples (of
 /// the first light), and keeps some of the differing pairs for exact decision: all of them while there are few, then
 /// evenly spaced ones.
-class PairJudge {
+class MaskComparison {
  public:
   /// `reference`: masks of the whole image; both must outlive it.
-  PairJudge(const Session& session, std::span<const std::uint32_t> reference);
+  MaskComparison(const Session& session, std::span<const std::uint32_t> reference);
 
   /// For tiles of light 0, with masks.
   void add(const TileResult& result);

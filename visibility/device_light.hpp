@@ -14,7 +14,7 @@ namespace penumbra::visibility {
 
 /// A planar light as device passes see it: its samples lie at center + s·u + t·v with s, t in [−1, 1], up to
 /// `deviation`. u × v points to the emitting side. In float32, scaled by `scale`.
-struct LightFrame {
+struct DeviceLight {
   glm::vec3 center{0}, u{0}, v{0};
   bool rows = false;             ///< the samples form rows of a rectangle (not: disks, polygons, sobol, jittered)
   std::uint32_t shift_step = 0;  ///< rows: a row's shift in cells is (row · shift_step) / 2¹⁶, modulo 1 into [−½, ½)
@@ -22,14 +22,15 @@ struct LightFrame {
   float deviation = 0;                 ///< the largest distance of a stored sample from its place in this frame
 };
 
-/// `scale` is a power of two. Not for spheres.
-LightFrame make_light_frame(const Light& light, float scale);
+/// Of a rectangle its own frame; of a disk or polygon a rectangle around it along the first stored axis. `scale` is a
+/// power of two. Not for spheres.
+DeviceLight make_device_light(const Light& light, float scale);
 
 /// At least the largest coordinate, in size, of anything in scene and light, times `scale`: what rounding errors of
 /// positions grow with.
-float reach_of(const SceneFloats& scene, const LightFrame& frame, float scale);
+float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale);
 
 /// Throws InputError where float32 cannot span light and scene together; `method` names the error.
-void check_size(const Light& light, const LightFrame& frame, const std::string& method);
+void check_size(const Light& light, const DeviceLight& frame, const std::string& method);
 
 }  // namespace penumbra::visibility

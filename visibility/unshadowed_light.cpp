@@ -1,4 +1,4 @@
-#include "visibility/seen_light.hpp"
+#include "visibility/unshadowed_light.hpp"
 
 #include "visibility/form_factor.hpp"
 #include "visibility/pair_truth.hpp"
@@ -11,18 +11,16 @@
 
 namespace penumbra::visibility {
 
-SeenLight::SeenLight(const Light& light, const glm::vec3& p, const glm::vec3& n)
+UnshadowedLight::UnshadowedLight(const Light& light, const glm::vec3& p, const glm::vec3& n)
     : light_(light), p_(p), n_(glm::normalize(glm::dvec3(n))), center_(glm::dvec3(light.center) - p_) {
+  const LightFrame frame = light_frame_from(light, p);
+  u_ = frame.u;
+  v_ = frame.v;
   if (light.kind == LightKind::sphere) {
-    const LightAxes axes = light_axes(light, p);
-    u_ = axes.u;
-    v_ = axes.v;
     const double distance = glm::length(center_);
     side_ = distance > 0 ? 1 : 0;
     if (side_ != 0) along_ = center_ / distance;
   } else {
-    u_ = glm::dvec3(light.center_u) - glm::dvec3(light.center);
-    v_ = glm::dvec3(light.center_v) - glm::dvec3(light.center);
     const glm::dvec3 front = glm::normalize(glm::cross(u_, v_));
     // Which side is exact, as for a pair; a point of the plane itself is on neither.
     const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
@@ -35,7 +33,7 @@ SeenLight::SeenLight(const Light& light, const glm::vec3& p, const glm::vec3& n)
   height_v_ = glm::dot(n_, v_);
 }
 
-bool SeenLight::above_horizon() const {
+bool UnshadowedLight::above_horizon() const {
   if (light_.kind == LightKind::rectangle) return height_ > std::abs(height_u_) + std::abs(height_v_);
   if (light_.kind == LightKind::polygon) {
     return std::ranges::all_of(light_.outline,
@@ -44,7 +42,7 @@ bool SeenLight::above_horizon() const {
   return height_ > std::hypot(height_u_, height_v_);
 }
 
-double SeenLight::whole() const {
+double UnshadowedLight::whole() const {
   if (!shines()) return 0;
   switch (light_.kind) {
     case LightKind::rectangle:
@@ -64,7 +62,7 @@ double SeenLight::whole() const {
   return std::abs(loop.sum());  // an outline may run either way around
 }
 
-double SeenLight::part(std::span<const glm::dvec2> corners) const {
+double UnshadowedLight::part(std::span<const glm::dvec2> corners) const {
   if (!shines() || corners.empty()) return 0;
   const auto point = [&](const glm::dvec2& st) { return center_ + st.x * u_ + st.y * v_; };
   const auto height = [&](const glm::dvec2& st) { return height_ + st.x * height_u_ + st.y * height_v_; };
@@ -84,7 +82,7 @@ double SeenLight::part(std::span<const glm::dvec2> corners) const {
   return -side_ * loop.sum();  // counter-clockwise in (s, t) is what is seen from the front
 }
 
-double SeenLight::box(const glm::dvec2& low, const glm::dvec2& high) const {
+double UnshadowedLight::box(const glm::dvec2& low, const glm::dvec2& high) const {
   const std::array<glm::dvec2, 4> corners{low, {high.x, low.y}, high, {low.x, high.y}};
   return std::max(0.0, part(corners));
 }

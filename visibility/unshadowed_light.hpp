@@ -15,10 +15,10 @@ namespace penumbra::visibility {
 ///
 /// Errors beside form_factor.hpp's: a point of the light is c + s u + t v in double, relative to p, off by a few 2⁻⁵³
 /// of its distance. A disk is a circle with its stored radius: its stored axes are off that by float32's 6e-8.
-class SeenLight {
+class UnshadowedLight {
  public:
   /// `light` must outlive it.
-  SeenLight(const Light& light, const glm::vec3& p, const glm::vec3& n);
+  UnshadowedLight(const Light& light, const glm::vec3& p, const glm::vec3& n);
 
   /// Does p lie strictly on an emitting side?
   [[nodiscard]] bool shines() const { return side_ != 0; }

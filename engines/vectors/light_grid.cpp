@@ -1,0 +1,168 @@
+#include "engines/vectors/light_grid.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::native {
+namespace {
+
+float size1(const glm::dvec3& x) {
+  return static_cast<float>(std::abs(x.x) + std::abs(x.y) + std::abs(x.z));
+}
+
+/// Of a row in cells, as device passes compute it: (row · step) / 2¹⁶ modulo 1 into [−½, ½).
+float shift_of(std::uint32_t row, std::uint32_t step) {
+  return static_cast<float>(static_cast<int>((row * step + 32768U) & 0xffffU) - 32768) / 65536.0F;
+}
+
+/// across, along (X and Y of a point are products with them, in cells), axis (of unit length, to the side).
+std::array<glm::dvec3, 3> axes_of(const glm::dvec3& u, const glm::dvec3& v, float side, const glm::vec2& half_cells) {
+  const glm::dvec3 n = glm::cross(u, v);
+  const double squared = glm::dot(n, n);
+  return {glm::cross(v, n) / squared * static_cast<double>(half_cells.x),
+          glm::cross(n, u) / squared * static_cast<double>(half_cells.y),
+          static_cast<double>(side) * n / std::sqrt(squared)};
+}
+
+}  // namespace
+
+LightGrid make_light_grid(const LightGridInput& input) {
+  const glm::dvec3 u(input.light.u), v(input.light.v), n = glm::cross(u, v);
+  const double squared = glm::dot(n, n);
+  LightGrid grid;
+  grid.center = input.light.center;
+  grid.corner = 3.0 * input.plane[0] - input.plane[1] - input.plane[2];
+  grid.radius = (glm::length(input.light.u) + glm::length(input.light.v)) * 1.0001F + input.light.deviation;
+  grid.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
+  grid.first_cell = grid.half_cells - 0.5F;
+  const std::array axes = axes_of(u, v, input.side, grid.half_cells);
+  grid.across = glm::vec3(axes[0]);
+  grid.along = glm::vec3(axes[1]);
+  grid.axis = glm::vec3(axes[2]);
+  grid.axes = axes_of(input.plane[1] - input.plane[0], input.plane[2] - input.plane[0], input.side, grid.half_cells);
+  grid.axis_size = glm::abs(grid.axis);
+  grid.per_length = std::max(glm::length(grid.across), glm::length(grid.along)) * 1.00001F;
+  grid.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
+  grid.deviation = input.light.deviation;
+  grid.reach = input.reach;
+  grid.cut_reach = input.cut_reach;
+  grid.side = input.side;
+  grid.rows = input.rows;
+  grid.columns = input.columns;
+  grid.light = input.light_index;
+  grid.padded_rows = (input.rows + 15) / 16 * 16;
+  for (std::uint32_t row = 0; row < grid.padded_rows; ++row) {
+    grid.shift.push_back(row < input.rows ? shift_of(row, input.light.shift_step) : 0);
+  }
+  for (const glm::vec3& point : input.points) grid.points.push_back(point * input.scale);
+  return grid;
+}
+
+namespace {
+
+/// How fast the hull of view samples and a rectangle in the light's plane (`low`, `high`: in cells from its middle)
+/// opens to the right, left, along and back, in cells for a unit of height.
+template <typename At>
+std::array<float, 4> slopes_of(const LightGrid& grid, std::span<const At> samples, const glm::vec2& low,
+                               const glm::vec2& high) {
+  std::array<float, 4> slopes;
+  slopes.fill(-1e18F);
+  for (const GridSample& at : samples) {
+    const glm::vec2 from = at.foot - grid.first_cell;
+    const float inverse = 1 / at.height;
+    const std::array over{from.x - high.x, low.x - from.x, from.y - high.y, low.y - from.y};
+    for (std::size_t i = 0; i < 4; ++i) slopes[i] = std::max(slopes[i], over[i] * inverse);
+  }
+  return slopes;
+}
+
+Shaft make_shaft(const LightGrid& grid, std::span<const GridSample> samples, const glm::vec2& low,
+                 const glm::vec2& high) {
+  const std::array<float, 4> slopes = slopes_of(grid, samples, low, high);
+  float height = 0;
+  for (const GridSample& at : samples) height = std::max(height, at.height);
+  const float widest = std::max(grid.half_cells.x, grid.half_cells.y);
+  const std::array beyond{high.x, -low.x, high.y, -low.y};
+  Shaft shaft;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::vec3 side = (i < 2 ? grid.across : grid.along) * (i % 2 == 0 ? 1.0F : -1.0F);
+    const glm::vec3 n = side - slopes[i] * grid.axis;
+    const float size = size1(n) + size1(side);
+    shaft.n[i] = n;
+    shaft.size[i] = glm::abs(n);
+    shaft.beyond[i] = glm::dot(n, grid.center) + beyond[i] +
+                      64 * kRound * (2 * grid.reach * size + grid.skew * widest) + size * grid.deviation;
+  }
+  const float slack = 128 * kRound * grid.reach + grid.deviation, light = glm::dot(grid.axis, grid.center);
+  shaft.highest = light + height + slack;
+  shaft.lowest = light - slack;
+  return shaft;
+}
+
+}  // namespace
+
+Cluster make_cluster(const LightGrid& grid, std::span<const GridSample> samples) {
+  glm::vec3 lower(samples.front().p), upper(lower);
+  for (const GridSample& at : samples) {
+    lower = glm::min(lower, at.p);
+    upper = glm::max(upper, at.p);
+  }
+  Cluster cluster;
+  const std::uint32_t plane = samples.front().plane;
+  const bool one = std::all_of(samples.begin(), samples.end(), [&](const GridSample& at) { return at.plane == plane; });
+  if (one) cluster.plane = plane;
+  cluster.middle = 0.5F * lower + 0.5F * upper;
+  cluster.half_size = glm::max(upper - cluster.middle, cluster.middle - lower) * (1 + 8 * kRound);
+  cluster.whole = make_shaft(grid, samples, -grid.half_cells, grid.half_cells);
+  cluster.corner = make_shaft(grid, samples, -grid.half_cells, -grid.half_cells);
+  return cluster;
+}
+
+ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const GridSample& placed) {
+  ClusterSample at{placed, {}, {}, 0, 0, 0, 0, 0, {}, 0, 0};
+  at.local = at.p - cluster.middle;
+  // As dot() of find.cpp: one order, nothing fused.
+  const auto dot = [&](const glm::vec3& n) { return (at.local.x * n.x + at.local.y * n.y) + at.local.z * n.z; };
+  at.in_grid = {dot(grid.across), dot(grid.along), dot(grid.axis)};
+  at.far = glm::length(at.local) * 1.0001F;
+  at.away = glm::length(at.p - grid.center) * 1.0001F;
+  constexpr float kMore = 1.05F;  // for what is of second order
+  const float cells = 16 * kRound * grid.skew * (grid.half_cells.x + grid.half_cells.y);
+  const float lengths = at.away / at.height;
+  at.per_way = kMore * (8 * kRound * grid.per_length * at.height + cells);
+  at.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
+  at.fixed =
+      kMore * (kRound * grid.per_length * (4 * at.away + grid.cut_reach) + cells + grid.per_length * grid.deviation);
+  // A way is off by 8 ε of its lengths, and aside by as many cells: seen from a small light's height, that is more.
+  const glm::vec2 off = glm::abs(at.foot - grid.first_cell), window = 2.0F * grid.half_cells + 2.0F;
+  at.per_lift = 64 * kRound *
+                (1 + 0.125F * (std::max(off.x, off.y) + grid.per_length * at.height) / std::min(window.x, window.y));
+  at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
+  at.per_lean = kRound * (8 * grid.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
+  return at;
+}
+
+Hull hull_of(const LightGrid& grid, const Cluster& cluster, std::span<const ClusterSample> samples) {
+  Hull hull;
+  hull.slope = slopes_of(grid, samples, -grid.half_cells, grid.half_cells);
+  hull.highest = -3e38F;
+  for (const ClusterSample& at : samples) hull.highest = std::max(hull.highest, at.in_grid.z);
+  const glm::vec3 to_middle = cluster.middle - grid.center;
+  const float height = glm::dot(grid.axis, to_middle), widest = std::max(grid.half_cells.x, grid.half_cells.y);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::vec3& side = i < 2 ? grid.across : grid.along;
+    const float sign = i % 2 == 0 ? 1.0F : -1.0F, half = i < 2 ? grid.half_cells.x : grid.half_cells.y;
+    const float size = 2 * size1(side) + std::abs(hull.slope[i]) * size1(grid.axis);
+    hull.beyond[i] = half - sign * glm::dot(side, to_middle) + hull.slope[i] * height +
+                     96 * kRound * (2 * grid.reach * size + grid.skew * widest) + size * grid.deviation;
+  }
+  const float slack = 128 * kRound * grid.reach + grid.deviation;
+  hull.highest += slack;
+  hull.lowest = -height - slack;
+  return hull;
+}
+
+}  // namespace penumbra::native
