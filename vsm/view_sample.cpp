@@ -1,31 +1,17 @@
+// `view-sample`: which of its two engines does a light.
+
 #include "vsm/view_sample.hpp"
 
-#include "base/error.hpp"
-#include "engines/device/mask_method.hpp"
+#include "base/assert.hpp"
 #include "engines/engine_choice.hpp"
-#include "render/compute_pass.hpp"
 #include "visibility/device_light.hpp"
-#include "vsm/leaf_lists.hpp"
-#include "vsm/resolve.comp.spv.hpp"
-#include "vsm/test_pairs.comp.spv.hpp"
-#include "vsm/uploads.hpp"
-#include "vsm/view_sample.shared.h"
+#include "vsm/vectors/view_sample_native.hpp"
 #include "vsm/view_sample_vulkan.hpp"
 
-#include <glm/common.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
 #include <utility>
 
 namespace penumbra::vsm {
 namespace {
-
-using visibility::TriangleTree;
-
-constexpr std::uint32_t kSharedBudget = 16 * 1024;  // bytes of shared memory for row masks
-constexpr std::uint32_t kMostChunk = 32;            // leaves that one workgroup tests
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
@@ -34,7 +20,76 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
-const visibility::MethodDescription& describe() {
+/// Rows of a rectangle light on the processor, whatever else on the device. An engine is made, and given the mesh, when
+/// a light first needs it; the processor's with the mesh.
+class ViewSample final : public visibility::Method {
+ public:
+  explicit ViewSample(const render::Device& device) : device_(&device) {
+    native_.method = make_native_view_sample(view_sample_description());
+  }
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override {
+    return native_.method->description();
+  }
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    scene_ = &scene;
+    native_.has_mesh = vulkan_.has_mesh = false;
+    give_mesh(native_);
+  }
+  void prepare_light(const visibility::Light& light) override {
+    PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
+    const bool rows = light.kind == visibility::LightKind::rectangle && visibility::make_device_light(light, 1).rows;
+    current_ = rows ? &native_ : &vulkan_;
+    if (!current_->method) current_->method = make_vulkan_view_sample(*device_);
+    give_mesh(*current_);
+    current_->method->prepare_light(light);
+    if (samples_ != nullptr) give_view(*current_);
+  }
+  void prepare_view(const visibility::ViewSamples& samples) override {
+    samples_ = &samples;
+    native_.has_view = vulkan_.has_view = false;
+    if (current_ != nullptr) give_view(*current_);
+  }
+  [[nodiscard]] std::uint32_t max_tile_rows() const override { return current().max_tile_rows(); }
+  void evaluate(const visibility::Tile& tile) override { current().evaluate(tile); }
+  void read_masks(std::span<std::uint32_t> masks) override { current().read_masks(masks); }
+  void read_visibility(std::span<float> visibility) override { current().read_visibility(visibility); }
+  std::vector<visibility::PassTime> take_pass_times() override {
+    return current_ == nullptr ? std::vector<visibility::PassTime>{} : current().take_pass_times();
+  }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
+    return current_ == nullptr ? std::map<std::string, std::uint64_t>{} : current().counters();
+  }
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    return native_.method->memory_bytes() + (vulkan_.method ? vulkan_.method->memory_bytes() : 0);
+  }
+
+ private:
+  struct Engine {
+    std::unique_ptr<visibility::Method> method;
+    bool has_mesh = false, has_view = false;
+  };
+  void give_mesh(Engine& engine) {
+    if (!std::exchange(engine.has_mesh, true)) engine.method->prepare_mesh(*scene_);
+  }
+  void give_view(Engine& engine) {
+    if (!std::exchange(engine.has_view, true)) engine.method->prepare_view(*samples_);
+  }
+  [[nodiscard]] visibility::Method& current() const {
+    PENUMBRA_ASSERT(current_ != nullptr, "{}: prepare_light comes first", description().name);
+    return *current_->method;
+  }
+
+  const render::Device* device_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::ViewSamples* samples_ = nullptr;
+  Engine native_, vulkan_;
+  Engine* current_ = nullptr;
+};
+
+}  // namespace
+
+const visibility::MethodDescription& view_sample_description() {
   static const visibility::MethodDescription description{
       .name = "view-sample",
       .family = visibility::Family::geometry,
@@ -48,190 +103,11 @@ const visibility::MethodDescription& describe() {
   return description;
 }
 
-class ViewSampleMapping final : public device::MaskMethod {
- public:
-  explicit ViewSampleMapping(const render::Device& device)
-      : MaskMethod(device, describe(), sizeof(gpu::OpenQuestion)),
-        resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
-        lists_(device, describe().name) {}
-
- private:
-  device::TriangleNotes note_triangles() override {
-    if (scene().triangles.size() >> kPartShift != 0) {
-      throw ResourceError("view-sample handles up to 2^{} triangles; this scene has {}", kPartShift,
-                          scene().triangles.size());
-    }
-    lists_.prepare_mesh(scene(), scale());
-    return lists_.notes();
-  }
-
-  device::MaskLayout prepare_casters() override {
-    check_proportions();
-    const visibility::Light& light = this->light();
-    const std::uint32_t words_per_row = (light.columns + 31) / 32;
-    const bool rows = device_light().rows && light.rows * words_per_row * lanes() * 4 <= kSharedBudget;
-    SampleTable table = make_sample_table(device_light(), rows);
-    table_.emplace(render::make_buffer<std::byte>(device(), "light samples", table.bytes));
-
-    // Some processors' drivers end loops after 65535 turns a workgroup; a triangle takes about a turn a row or point.
-    const std::uint32_t turns = TriangleTree::kWidth * ((rows ? light.rows : light.sample_count()) + 8);
-    shape_ = {.scattered = !rows,
-              .words_per_row = std::max(words_per_row, 1U),
-              .shared_words = rows ? light.rows * words_per_row : light.words_per_mask(),
-              .chunk = std::clamp(40000 / turns, 1U, kMostChunk)};
-    build_passes();
-    lists_.prepare_light(tree(), device_light(), scale(), triangles());
-    if (std::ranges::is_sorted(table.bit_of)) return {.words = light.words_per_mask()};
-    table.bit_of.resize(std::size_t{32} * light.words_per_mask(), device::MaskLayout::kNone);
-    return {.words = light.words_per_mask(), .light_sample = std::move(table.bit_of)};
-  }
-
-  /// The shader multiplies up to six lengths; with the scene scaled to 1, float32 holds that for lights from 2⁻²⁸ to
-  /// 2²⁸.
-  void check_proportions() const {
-    const visibility::DeviceLight& frame = device_light();
-    const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
-    const float largest = size(frame.center) + size(frame.u) + size(frame.v);
-    const float smallest = std::min(size(frame.u), size(frame.v));
-    if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
-    throw InputError(
-        "light \"{}\": view-sample handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size "
-        "{:.3g} "
-        "and reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in "
-        "scale",
-        light().name, smallest, largest);
-  }
-
-  /// How the kernels are specialised for a light.
-  struct Shape {
-    bool scattered = false;
-    std::uint32_t words_per_row = 1, shared_words = 1, chunk = 1;
-  };
-
-  /// Blocks as square as the subgroup allows: 4×2, 4×4, 8×4, 8×8.
-  [[nodiscard]] std::uint32_t lanes() const { return device().limits().subgroup_size; }
-  [[nodiscard]] std::uint32_t block_width() const { return lanes() >= 32 ? 8 : 4; }
-  [[nodiscard]] std::uint32_t block_height() const { return lanes() / block_width(); }
-
-  void build_passes() {
-    // Depth first, `teams` nodes at a time, each leaves at most seven more than it takes; rounded up, so that not every
-    // scene needs passes of its own.
-    const std::uint32_t teams = lanes() / TriangleTree::kWidth, levels = (tree().depth + 3) / 4 * 4 + 2,
-                        stack = teams * TriangleTree::kWidth * levels;
-    const std::vector<std::uint32_t> constants{
-        lanes(),      lanes(), shape_.scattered ? 1U : 0U, shape_.words_per_row, shape_.shared_words, block_width(),
-        shape_.chunk, stack};
-    if (test_pairs_ && constants == constants_) return;
-    lists_.build_pass(constants);
-    test_pairs_.emplace(device(), render::ComputePassOptions{.name = "test pairs",
-                                                             .spirv = shaders::kTestPairsComp,
-                                                             .push_bytes = sizeof(gpu::ViewSamplePush),
-                                                             .constants = constants,
-                                                             .full_subgroups = true});
-    constants_ = constants;
-  }
-
-  [[nodiscard]] gpu::ViewSamplePush make_push(const visibility::Tile& band) {
-    const visibility::DeviceLight& frame = device_light();
-    gpu::ViewSamplePush push{};
-    for (int i = 0; i < 3; ++i) {
-      push.center[i] = frame.center[i];
-      push.u[i] = frame.u[i];
-      push.v[i] = frame.v[i];
-    }
-    push.deviation = frame.deviation;
-    push.reach = visibility::reach_of(scene(), frame, scale());
-    push.two_sided = light().two_sided ? 1 : 0;
-    push.light = light().index;
-    push.width = samples().width;
-    push.first_row = view().place_of(tile().first_row);
-    push.band_first = band.first_row;
-    push.band_rows = band.row_count;
-    push.sample_count = light().sample_count();
-    push.rows = light().rows;
-    push.columns = light().columns;
-    push.shift_step = frame.shift_step;
-    push.question_capacity = questions().capacity();
-    push.empty_tree = tree().nodes.empty() ? 1 : 0;
-    return push;
-  }
-
-  device::Attempt run(const visibility::Tile& band) override {
-    gpu::ViewSamplePush push = make_push(band);
-    const std::uint64_t blocks = std::uint64_t{(samples().width + block_width() - 1) / block_width()} *
-                                 ((band.row_count + block_height() - 1) / block_height());
-    const device::Attempt found = lists_.find(
-        commands(), push, {view().buffer(), *table_, masks(), questions().buffer(), triangles().nodes()}, blocks);
-    times().add(lists_.times());
-    if (found == device::Attempt::again) ++(lists_.was_cut_off() ? loop_retries_ : list_retries_);
-    if (found != device::Attempt::done) return found;
-    chunks_ = push.chunk_capacity;
-    test_pairs_->record(commands(), push,
-                        {view().buffer(), *table_, masks(), questions().buffer(), lists_.chunks(),
-                         triangles().corners(0), triangles().corners(1), triangles().corners(2)},
-                        chunks_);
-    return found;
-  }
-
-  void shorten_loops() override {
-    if (shape_.chunk == 1)
-      throw ResourceError("view-sample: {} cuts off loops over the light samples", device().info().name);
-    shape_.chunk = std::max(shape_.chunk / 4, 1U);
-    build_passes();
-  }
-
-  std::vector<device::OpenBits> open_bits(std::uint32_t count) override {
-    std::vector<gpu::OpenQuestion> asked(count);
-    questions().read(std::span(asked));
-    open_questions_ = count;
-    std::vector<device::OpenBits> open;
-    open.reserve(count);
-    for (const gpu::OpenQuestion& question : asked) {
-      const std::uint32_t sample = question.light_sample;
-      if (sample != gpu::kAllSamples) {
-        open.push_back({question.pixel, sample / 32, 1U << (sample % 32), question.hider});
-        continue;
-      }
-      for (std::uint32_t word = 0; word < light().words_per_mask(); ++word) {
-        const std::uint32_t left = light().sample_count() - 32 * word;
-        open.push_back({question.pixel, word, left >= 32 ? ~0U : (1U << left) - 1, question.hider});
-      }
-    }
-    return open;
-  }
-
-  /// Each pixel's number of visible light samples, of the finished masks.
-  void finish() override {
-    const auto pixels = static_cast<std::uint32_t>(tile_pixels());
-    resolve_.record(commands(), gpu::ResolvePush{pixels, light().sample_count()}, {masks(), counts()},
-                    (pixels + 63) / 64);
-    submit();
-  }
-
-  void count(std::map<std::string, std::uint64_t>& counters) override {
-    counters["leafChunks"] += chunks_;
-    counters["openQuestions"] += std::exchange(open_questions_, 0);
-    if (list_retries_ > 0) counters["listRetries"] += std::exchange(list_retries_, 0);
-    if (loop_retries_ > 0) counters["loopRetries"] += std::exchange(loop_retries_, 0);
-  }
-
-  render::ComputePass resolve_;
-  LeafLists lists_;
-  std::optional<render::ComputePass> test_pairs_;
-  Shape shape_;
-  std::vector<std::uint32_t> constants_;
-  std::optional<render::Buffer> table_;
-  std::uint64_t chunks_ = 0, open_questions_ = 0, list_retries_ = 0, loop_retries_ = 0;  // to be counted
-};
-
-}  // namespace
-
-const visibility::MethodDescription& view_sample_description() {
-  return describe();
-}
-
-std::unique_ptr<visibility::Method> make_vulkan_view_sample(const render::Device& device) {
-  return std::make_unique<ViewSampleMapping>(device);
+std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
+                                                     const visibility::MethodOptions& given) {
+  const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
+  if (engines::runs_on_vectors(device, options[engines::kEngine])) return std::make_unique<ViewSample>(device);
+  return make_vulkan_view_sample(device);
 }
 
 }  // namespace penumbra::vsm
