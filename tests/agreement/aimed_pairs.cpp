@@ -51,7 +51,7 @@ class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<
 };
 
 TEST_P(AimedPairs, EveryPairIsTheExactDecision) {
-  look(0, on_device() ? 8 : 100);
+  look(0, on_device() ? 24 : 100);
 }
 TEST_P(AimedPairs, ThousandsFull) {
   for (std::uint32_t first = 1000; first < 4000 && !HasFailure(); first += 500) look(first, 500);
