@@ -73,7 +73,7 @@ KnownDiagnosis known_of(const BrokenShape& shape) {
   KnownDiagnosis known;
   for (const std::string& name : shape.defects) {
     broken::add(known, find_defect(name).known(shape.size));
-    builder::check_count(known.triangles);
+    builder::checked({known.triangles, known.vertices});  // each time, so that no sum overflows
   }
   return known;
 }
@@ -130,7 +130,13 @@ std::span<const DefectName> broken_defects() {
   return names;
 }
 
+ShapeSize shape_size(const BrokenShape& shape) {
+  const KnownDiagnosis known = known_of(shape);
+  return {known.triangles, known.vertices};
+}
+
 BrokenMesh make_broken_mesh(const BrokenShape& shape) {
+  builder::require_room(shape_size(shape));
   BrokenMesh result;
   result.known = known_of(shape);
   std::vector<Part> parts(shape.defects.size());
@@ -153,8 +159,12 @@ BrokenMesh make_broken_mesh(const BrokenShape& shape) {
   return result;
 }
 
+ShapeSize shape_size(const LatticeSoup& soup) {
+  return builder::checked({soup.triangles, 3ull * soup.triangles});
+}
+
 TriangleSoup make_lattice_soup(const LatticeSoup& soup) {
-  builder::check_count(soup.triangles, 3);
+  builder::require_room(shape_size(soup));
   if (soup.cells == 0) throw InputError("a lattice soup needs at least 1 cell");
   const Placement placement(glm::dvec3(0), glm::dvec3(soup.cells), soup.center, soup.half_extent);
   std::mt19937 random(soup.seed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/diagnosis/diagnosis.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "mesh/triangle_soup.hpp"
 
 #include <glm/vec3.hpp>
@@ -51,6 +52,8 @@ inline constexpr std::uint32_t kMaxBrokenSize = 2048;
 /// Throws InputError for an unknown name (and says which exist), for no name, a size of 0 or above kMaxBrokenSize, and
 /// more triangles than kMaxShapeTriangles.
 BrokenMesh make_broken_mesh(const BrokenShape& shape);
+/// Of the vertices only the different ones. Throws as make_broken_mesh.
+ShapeSize shape_size(const BrokenShape& shape);
 
 struct LatticeSoup {
   std::uint32_t triangles = 64;
@@ -62,5 +65,6 @@ struct LatticeSoup {
 /// Random triangles whose corners are drawn from a tiny lattice: duplicates, overlaps, T-junctions, zero areas and
 /// non-manifold edges are the rule.
 TriangleSoup make_lattice_soup(const LatticeSoup& soup);
+ShapeSize shape_size(const LatticeSoup& soup);
 
 }  // namespace penumbra::mesh

@@ -15,13 +15,18 @@ namespace penumbra::mesh::builder {
 
 inline constexpr double kTau = 2 * std::numbers::pi;
 
-/// Says no before the memory is asked for. Most shapes have a vertex for two triangles; lone triangles have three each.
-inline void check_count(std::uint64_t triangles, double vertices_per_triangle = 0.5) {
-  if (triangles > kMaxShapeTriangles) {
-    throw InputError("the shape would have {} triangles; at most {} are generated", triangles, kMaxShapeTriangles);
+/// The size, unless it is more than any shape may have.
+inline ShapeSize checked(const ShapeSize& size) {
+  if (size.triangles > kMaxShapeTriangles) {
+    throw InputError("the shape would have {} triangles; at most {} are generated", size.triangles, kMaxShapeTriangles);
   }
-  const auto vertices = static_cast<std::uint64_t>(vertices_per_triangle * static_cast<double>(triangles));
-  require_memory(soup_bytes(triangles, vertices), fmt::format("a shape of {} triangles", triangles), "make it smaller");
+  return size;
+}
+
+/// Says no before the memory is asked for.
+inline void require_room(const ShapeSize& size) {
+  require_memory(soup_bytes(size.triangles, size.vertices), fmt::format("a shape of {} triangles", size.triangles),
+                 "make it smaller");
 }
 
 inline std::uint32_t add_vertex(TriangleSoup& soup, const glm::dvec3& position) {

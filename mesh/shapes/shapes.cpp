@@ -63,9 +63,13 @@ TriangleSoup make_quad(const glm::dvec3& center, const glm::dvec3& half_u, const
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const GridShape& grid) {
+  return checked({2ull * grid.cells_u * grid.cells_v, (grid.cells_u + 1ull) * (grid.cells_v + 1ull)});
+}
+
 TriangleSoup make_grid(const GridShape& grid) {
   PENUMBRA_ASSERT(grid.cells_u > 0 && grid.cells_v > 0, "{} x {}", grid.cells_u, grid.cells_v);
-  check_count(2ull * grid.cells_u * grid.cells_v);
+  require_room(shape_size(grid));
   TriangleSoup soup;
   for (std::uint32_t j = 0; j <= grid.cells_v; ++j) {
     for (std::uint32_t i = 0; i <= grid.cells_u; ++i) {
@@ -89,10 +93,15 @@ TriangleSoup make_box(const glm::dvec3& center, const glm::dvec3& half_size) {
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const SphereShape& sphere) {
+  const std::uint64_t around = std::uint64_t{sphere.segments} * (sphere.rings - 1);
+  return checked({2 * around, around + 2});
+}
+
 TriangleSoup make_sphere(const SphereShape& sphere) {
   const std::uint32_t segments = sphere.segments, rings = sphere.rings;
   PENUMBRA_ASSERT(segments >= 3 && rings >= 2, "{} segments, {} rings", segments, rings);
-  check_count(2ull * segments * (rings - 1));
+  require_room(shape_size(sphere));
   TriangleSoup soup;
   const std::uint32_t top = add_vertex(soup, sphere.center + glm::dvec3(0, sphere.radius, 0));
   for (std::uint32_t i = 1; i < rings; ++i) {
@@ -122,9 +131,14 @@ TriangleSoup make_sphere(const SphereShape& sphere) {
   return finish(std::move(soup));
 }
 
-TriangleSoup make_icosphere(const glm::dvec3& center, double radius, std::uint32_t subdivisions) {
+ShapeSize icosphere_size(std::uint32_t subdivisions) {
   PENUMBRA_ASSERT(subdivisions < 16, "{}", subdivisions);
-  check_count(20ull << (2 * subdivisions));
+  const std::uint64_t parts = 1ull << (2 * subdivisions);  // of each of the icosahedron's sides
+  return checked({20 * parts, 10 * parts + 2});
+}
+
+TriangleSoup make_icosphere(const glm::dvec3& center, double radius, std::uint32_t subdivisions) {
+  require_room(icosphere_size(subdivisions));
   // The icosahedron's corners are the cyclic permutations of (0, ±1, ±golden ratio).
   const double g = std::numbers::phi;
   TriangleSoup soup;
@@ -154,10 +168,15 @@ TriangleSoup make_icosphere(const glm::dvec3& center, double radius, std::uint32
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const CylinderShape& cylinder) {
+  const std::uint64_t segments = cylinder.segments;
+  return checked(cylinder.capped ? ShapeSize{4 * segments, 2 * segments + 2} : ShapeSize{2 * segments, 2 * segments});
+}
+
 TriangleSoup make_cylinder(const CylinderShape& cylinder) {
   const std::uint32_t segments = cylinder.segments;
   PENUMBRA_ASSERT(segments >= 3, "{}", segments);
-  check_count(4ull * segments);
+  require_room(shape_size(cylinder));
   TriangleSoup soup;
   const glm::dvec3 up(0, cylinder.height / 2, 0);
   for (std::uint32_t j = 0; j < segments; ++j) {
@@ -181,10 +200,14 @@ TriangleSoup make_cylinder(const CylinderShape& cylinder) {
   return finish(std::move(soup));
 }
 
+ShapeSize cone_size(const CylinderShape& cone) {
+  return checked({2ull * cone.segments, cone.segments + 2ull});
+}
+
 TriangleSoup make_cone(const CylinderShape& cone) {
   const std::uint32_t segments = cone.segments;
   PENUMBRA_ASSERT(segments >= 3 && cone.capped, "{}", segments);
-  check_count(2ull * segments);
+  require_room(cone_size(cone));
   TriangleSoup soup;
   const glm::dvec3 up(0, cone.height / 2, 0);
   for (std::uint32_t j = 0; j < segments; ++j) {
@@ -200,9 +223,13 @@ TriangleSoup make_cone(const CylinderShape& cone) {
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const TorusShape& torus) {
+  return checked({2ull * torus.segments * torus.sides, std::uint64_t{torus.segments} * torus.sides});
+}
+
 TriangleSoup make_torus(const TorusShape& torus) {
   PENUMBRA_ASSERT(torus.segments >= 3 && torus.sides >= 3, "{} x {}", torus.segments, torus.sides);
-  check_count(2ull * torus.segments * torus.sides);
+  require_room(shape_size(torus));
   TriangleSoup soup;
   for (std::uint32_t i = 0; i < torus.segments; ++i) {
     const double around = kTau * i / torus.segments;

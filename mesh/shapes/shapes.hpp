@@ -16,6 +16,11 @@ namespace penumbra::mesh {
 
 inline constexpr std::uint64_t kMaxShapeTriangles = 50'000'000;
 
+/// How large a shape will be. shape_size(…) says so before anything is made of it, so that a budget can be drawn up.
+struct ShapeSize {
+  std::uint64_t triangles = 0, vertices = 0;
+};
+
 /// 2 triangles, facing half_u × half_v.
 TriangleSoup make_quad(const glm::dvec3& center, const glm::dvec3& half_u, const glm::dvec3& half_v);
 
@@ -25,6 +30,7 @@ struct GridShape {
 };
 /// A quad cut into cells: 2 · cells_u · cells_v triangles.
 TriangleSoup make_grid(const GridShape& grid);
+ShapeSize shape_size(const GridShape& grid);
 
 /// 12 triangles, closed.
 TriangleSoup make_box(const glm::dvec3& center, const glm::dvec3& half_size);
@@ -37,9 +43,11 @@ struct SphereShape {
 };
 /// Latitudes and longitudes: 2 · segments · (rings − 1) triangles, closed.
 TriangleSoup make_sphere(const SphereShape& sphere);
+ShapeSize shape_size(const SphereShape& sphere);
 
 /// A subdivided icosahedron: 20 · 4^subdivisions triangles, closed.
 TriangleSoup make_icosphere(const glm::dvec3& center, double radius, std::uint32_t subdivisions);
+ShapeSize icosphere_size(std::uint32_t subdivisions);
 
 struct BlobShape {
   glm::dvec3 center{0};
@@ -50,6 +58,7 @@ struct BlobShape {
 };
 /// A bumpy icosphere that shadows itself: 20 · 4^subdivisions triangles, closed, star-shaped about its centre.
 TriangleSoup make_blob(const BlobShape& blob);
+ShapeSize shape_size(const BlobShape& blob);
 
 struct CylinderShape {
   glm::dvec3 center{0};  ///< the middle of the axis
@@ -59,9 +68,11 @@ struct CylinderShape {
 };
 /// Along Y: 4 · segments triangles and closed, or 2 · segments without caps.
 TriangleSoup make_cylinder(const CylinderShape& cylinder);
+ShapeSize shape_size(const CylinderShape& cylinder);
 
 /// Along Y, tip up; `center` is the middle of the axis. 2 · segments triangles, closed (`capped` must be true).
 TriangleSoup make_cone(const CylinderShape& cone);
+ShapeSize cone_size(const CylinderShape& cone);
 
 struct TorusShape {
   glm::dvec3 center{0};
@@ -70,6 +81,7 @@ struct TorusShape {
 };
 /// Around the Y axis: 2 · segments · sides triangles, closed.
 TriangleSoup make_torus(const TorusShape& torus);
+ShapeSize shape_size(const TorusShape& torus);
 
 struct KnotShape {
   glm::dvec3 center{0};
@@ -79,6 +91,7 @@ struct KnotShape {
 };
 /// A torus knot: 2 · segments · sides triangles, closed.
 TriangleSoup make_knot(const KnotShape& knot);
+ShapeSize shape_size(const KnotShape& knot);
 
 struct TerrainShape {
   glm::dvec3 center{0};
@@ -90,6 +103,7 @@ struct TerrainShape {
 };
 /// Fractal hills around the height of `center`: 2 · cells.x · cells.y triangles, open, facing up.
 TriangleSoup make_terrain(const TerrainShape& terrain);
+ShapeSize shape_size(const TerrainShape& terrain);
 
 struct FenceShape {
   glm::dvec3 base{0};            ///< the middle of its bottom
@@ -99,6 +113,7 @@ struct FenceShape {
 };
 /// Posts in front of rails, each a closed box: 12 · (posts + rails) triangles.
 TriangleSoup make_fence(const FenceShape& fence);
+ShapeSize shape_size(const FenceShape& fence);
 
 struct HairShape {
   glm::dvec3 base{0};             ///< the middle of the patch that it grows from
@@ -109,6 +124,7 @@ struct HairShape {
 };
 /// Curved strips, open on all sides: 2 · strands · segments triangles.
 TriangleSoup make_hair(const HairShape& hair);
+ShapeSize shape_size(const HairShape& hair);
 
 struct RoomShape {
   glm::dvec3 base{0};                                                 ///< the middle of the floor, inside
@@ -120,6 +136,7 @@ struct RoomShape {
 };
 /// One watertight solid with a window through it, 44 triangles, and the window's bars, 12 triangles each.
 TriangleSoup make_room(const RoomShape& room);
+ShapeSize shape_size(const RoomShape& room);
 
 struct BarsShape {
   glm::dvec3 center{0};
@@ -129,5 +146,6 @@ struct BarsShape {
 };
 /// Round bars side by side along X, as a grate or monkey bars: 4 · segments · count triangles, each closed.
 TriangleSoup make_bars(const BarsShape& bars);
+ShapeSize shape_size(const BarsShape& bars);
 
 }  // namespace penumbra::mesh

@@ -9,9 +9,14 @@ namespace penumbra::mesh {
 
 using namespace builder;
 
+ShapeSize shape_size(const FenceShape& fence) {
+  const std::uint64_t boxes = std::uint64_t{fence.posts} + fence.rails;
+  return checked({12 * boxes, 8 * boxes});
+}
+
 TriangleSoup make_fence(const FenceShape& fence) {
   PENUMBRA_ASSERT(fence.posts >= 2, "{}", fence.posts);
-  check_count(12ull * fence.posts + 12ull * fence.rails);
+  require_room(shape_size(fence));
   TriangleSoup soup;
   const double left = fence.base.x - fence.width / 2, half = fence.thickness / 2;
   for (std::uint32_t i = 0; i < fence.posts; ++i) {
@@ -26,8 +31,13 @@ TriangleSoup make_fence(const FenceShape& fence) {
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const RoomShape& room) {
+  const std::uint64_t bars = std::uint64_t{room.vertical_bars} + room.horizontal_bars;
+  return checked({44 + 12 * bars, 24 + 8 * bars});
+}
+
 TriangleSoup make_room(const RoomShape& room) {
-  check_count(44 + 12ull * room.vertical_bars + 12ull * room.horizontal_bars);
+  require_room(shape_size(room));
   if (room.window_width >= room.size.x || room.window_sill + room.window_height >= room.size.y) {
     throw InputError("the window ({} wide, {} high, sill at {}) does not fit into a wall {} wide and {} high",
                      room.window_width, room.window_height, room.window_sill, room.size.x, room.size.y);
@@ -78,8 +88,13 @@ TriangleSoup make_room(const RoomShape& room) {
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const BarsShape& bars) {
+  const std::uint64_t segments = bars.segments, count = bars.count;
+  return checked({4 * segments * count, (2 * segments + 2) * count});
+}
+
 TriangleSoup make_bars(const BarsShape& bars) {
-  check_count(4ull * bars.segments * bars.count);
+  require_room(shape_size(bars));
   TriangleSoup soup;
   TriangleSoup bar =
       make_cylinder({.center = glm::dvec3(0), .radius = bars.radius, .height = bars.length, .segments = bars.segments});

@@ -43,6 +43,10 @@ double value_noise(std::uint64_t seed, double x, double y) {
 
 }  // namespace
 
+ShapeSize shape_size(const BlobShape& blob) {
+  return icosphere_size(blob.subdivisions);
+}
+
 TriangleSoup make_blob(const BlobShape& blob) {
   PENUMBRA_ASSERT(std::abs(blob.bump) < 1, "{}", blob.bump);
   TriangleSoup soup = make_icosphere(glm::dvec3(0), 1, blob.subdivisions);
@@ -55,9 +59,13 @@ TriangleSoup make_blob(const BlobShape& blob) {
   return soup;
 }
 
+ShapeSize shape_size(const KnotShape& knot) {
+  return checked({2ull * knot.segments * knot.sides, std::uint64_t{knot.segments} * knot.sides});
+}
+
 TriangleSoup make_knot(const KnotShape& knot) {
   PENUMBRA_ASSERT(knot.segments >= 3 && knot.sides >= 3, "{} x {}", knot.segments, knot.sides);
-  check_count(2ull * knot.segments * knot.sides);
+  require_room(shape_size(knot));
   TriangleSoup soup;
   const double core = knot.radius * 2 / 3, swing = knot.radius / 3;  // the torus that the knot winds around
   const double turns = knot.turns, windings = knot.windings;
@@ -82,6 +90,10 @@ TriangleSoup make_knot(const KnotShape& knot) {
   return finish(std::move(soup));
 }
 
+ShapeSize shape_size(const TerrainShape& terrain) {
+  return shape_size(GridShape{.cells_u = terrain.cells.x, .cells_v = terrain.cells.y});
+}
+
 TriangleSoup make_terrain(const TerrainShape& terrain) {
   const double longer = std::max(terrain.half_size.x, terrain.half_size.y);
   TriangleSoup soup = make_grid({.center = terrain.center,
@@ -104,9 +116,13 @@ TriangleSoup make_terrain(const TerrainShape& terrain) {
   return soup;
 }
 
+ShapeSize shape_size(const HairShape& hair) {
+  return checked({2ull * hair.strands * hair.segments, 2ull * hair.strands * (hair.segments + 1ull)});
+}
+
 TriangleSoup make_hair(const HairShape& hair) {
   PENUMBRA_ASSERT(hair.segments >= 1, "{}", hair.segments);
-  check_count(2ull * hair.strands * hair.segments);
+  require_room(shape_size(hair));
   TriangleSoup soup;
   for (std::uint32_t strand = 0; strand < hair.strands; ++strand) {
     const auto draw = [&](std::uint64_t what) { return chance(hair.seed, strand, what); };

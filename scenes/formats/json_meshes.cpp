@@ -1,8 +1,10 @@
 #include "scenes/formats/json_meshes.hpp"
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "mesh/import.hpp"
 #include "mesh/shapes/shapes.hpp"
+#include "mesh/soup_memory.hpp"
 #include "scenes/formats/package_files.hpp"
 
 #include <fcntl.h>
@@ -154,7 +156,37 @@ Affine read_affine(const json& transform, const Place& place) {
   return affine;
 }
 
+mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place) {
+  if (mesh.contains("triangles")) return {mesh["triangles"].size(), 3 * mesh["triangles"].size()};
+  if (mesh.contains("shape")) return at_place(place / "shape", [&] { return size_of_shape(mesh["shape"]); });
+  if (mesh.contains("quad")) return {2, 4};
+  return {};
+}
+
 }  // namespace
+
+void require_room_for_meshes(const json& meshes, const Place& place) {
+  mesh::ShapeSize all, largest;
+  std::size_t number_of_largest = 0;
+  std::uint64_t most = 0;  // bytes, at the moment that needs the most
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const mesh::ShapeSize size = size_of_mesh(meshes[i], place / i);
+    all.triangles += size.triangles;
+    all.vertices += size.vertices;
+    // The first becomes the scene's; of the others there are two until they have been copied into it.
+    const std::uint64_t twice = i == 0 ? 0 : mesh::soup_bytes(size.triangles, size.vertices);
+    most = std::max(most, mesh::soup_bytes(all.triangles, all.vertices) + twice);
+    if (size.triangles <= largest.triangles) continue;
+    largest = size;
+    number_of_largest = i;
+  }
+  at_place(place, [&] {
+    require_memory(most,
+                   fmt::format("a scene of {} triangles ({} of them in /meshes/{}, the largest of {})", all.triangles,
+                               largest.triangles, number_of_largest, meshes.size()),
+                   "make its meshes smaller");
+  });
+}
 
 SceneFile open_scene_file(const std::string& name, const Place& place, const ReadOptions& options) {
   const std::filesystem::path folder = std::filesystem::path(place.file).parent_path();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/input_file.hpp"
+#include "mesh/shapes/shapes.hpp"
 #include "mesh/triangle_soup.hpp"
 #include "scenes/formats/json_document.hpp"
 #include "scenes/formats/reader.hpp"
@@ -30,8 +31,15 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
 /// `scene.warnings`, the files that were read to `scene.sources`.
 mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
 
+/// What the whole document's "meshes" say of their own size must fit into memory together; asked before the first of
+/// them is made. Files count nothing here: how much is in them is known when they are read. Throws ResourceError with
+/// the figures, and InputError for a shape that cannot be.
+void require_room_for_meshes(const nlohmann::json& meshes, const Place& place);
+
 /// Generates the mesh of a "shape".
 mesh::TriangleSoup read_shape(const nlohmann::json& shape);
+/// How large it will be.
+mesh::ShapeSize size_of_shape(const nlohmann::json& shape);
 
 /// Applies "transform" (an object or a row-major matrix) to every position.
 void apply_transform(const nlohmann::json& transform, const Place& place, mesh::TriangleSoup& soup);

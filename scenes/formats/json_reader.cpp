@@ -184,6 +184,7 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
   }
   scene.cameras = read_cameras(document, root);
   scene.lights = read_lights(document, root, options, scene);
+  require_room_for_meshes(document["meshes"], root / "meshes");
   for (const json& value : document["meshes"]) {
     const std::size_t index = scene.objects.size();
     const Place place = root / "meshes" / index;

@@ -43,34 +43,38 @@ class Keys {
   const json& shape_;
 };
 
-TriangleSoup sphere(const Keys& keys) {
+mesh::SphereShape sphere(const Keys& keys) {
   mesh::SphereShape options;
   keys.read("center", options.center);
   keys.read("radius", options.radius);
   keys.read("segments", options.segments);
   options.rings = std::max(2u, options.segments / 2);
   keys.read("rings", options.rings);
-  return make_sphere(options);
+  return options;
+}
+
+std::uint32_t subdivisions(const Keys& keys) {
+  std::uint32_t count = 3;
+  keys.read("subdivisions", count);
+  return count;
 }
 
 TriangleSoup icosphere(const Keys& keys) {
   glm::dvec3 center(0);
   double radius = 1;
-  std::uint32_t subdivisions = 3;
   keys.read("center", center);
   keys.read("radius", radius);
-  keys.read("subdivisions", subdivisions);
-  return mesh::make_icosphere(center, radius, subdivisions);
+  return mesh::make_icosphere(center, radius, subdivisions(keys));
 }
 
-TriangleSoup blob(const Keys& keys) {
+mesh::BlobShape blob(const Keys& keys) {
   mesh::BlobShape options;
   keys.read("center", options.center);
   keys.read("radius", options.radius);
   keys.read("subdivisions", options.subdivisions);
   keys.read("bump", options.bump);
   keys.read("frequency", options.frequency);
-  return make_blob(options);
+  return options;
 }
 
 TriangleSoup box(const Keys& keys) {
@@ -80,7 +84,7 @@ TriangleSoup box(const Keys& keys) {
   return mesh::make_box(center, half_size);
 }
 
-mesh::CylinderShape cylinder_options(const Keys& keys) {
+mesh::CylinderShape cylinder(const Keys& keys) {
   mesh::CylinderShape options;
   keys.read("center", options.center);
   keys.read("radius", options.radius);
@@ -90,25 +94,17 @@ mesh::CylinderShape cylinder_options(const Keys& keys) {
   return options;
 }
 
-TriangleSoup cylinder(const Keys& keys) {
-  return make_cylinder(cylinder_options(keys));
-}
-
-TriangleSoup cone(const Keys& keys) {
-  return make_cone(cylinder_options(keys));
-}
-
-TriangleSoup torus(const Keys& keys) {
+mesh::TorusShape torus(const Keys& keys) {
   mesh::TorusShape options;
   keys.read("center", options.center);
   keys.read("radius", options.radius);
   keys.read("tube", options.tube);
   keys.read("segments", options.segments);
   keys.read("sides", options.sides);
-  return make_torus(options);
+  return options;
 }
 
-TriangleSoup knot(const Keys& keys) {
+mesh::KnotShape knot(const Keys& keys) {
   mesh::KnotShape options;
   keys.read("center", options.center);
   keys.read("radius", options.radius);
@@ -117,19 +113,19 @@ TriangleSoup knot(const Keys& keys) {
   keys.read("windings", options.windings);
   keys.read("segments", options.segments);
   keys.read("sides", options.sides);
-  return make_knot(options);
+  return options;
 }
 
-TriangleSoup grid(const Keys& keys) {
+mesh::GridShape grid(const Keys& keys) {
   mesh::GridShape options;
   keys.read("center", options.center);
   keys.read("halfU", options.half_u);
   keys.read("halfV", options.half_v);
   keys.read("cells", options.cells_u, options.cells_v);
-  return make_grid(options);
+  return options;
 }
 
-TriangleSoup terrain(const Keys& keys) {
+mesh::TerrainShape terrain(const Keys& keys) {
   mesh::TerrainShape options;
   keys.read("center", options.center);
   keys.read("halfSize", options.half_size);
@@ -138,10 +134,10 @@ TriangleSoup terrain(const Keys& keys) {
   keys.read("features", options.features);
   keys.read("octaves", options.octaves);
   keys.read("seed", options.seed);
-  return make_terrain(options);
+  return options;
 }
 
-TriangleSoup fence(const Keys& keys) {
+mesh::FenceShape fence(const Keys& keys) {
   mesh::FenceShape options;
   keys.read("base", options.base);
   keys.read("width", options.width);
@@ -149,10 +145,10 @@ TriangleSoup fence(const Keys& keys) {
   keys.read("thickness", options.thickness);
   keys.read("posts", options.posts);
   keys.read("rails", options.rails);
-  return make_fence(options);
+  return options;
 }
 
-TriangleSoup hair(const Keys& keys) {
+mesh::HairShape hair(const Keys& keys) {
   mesh::HairShape options;
   keys.read("base", options.base);
   keys.read("radius", options.radius);
@@ -162,10 +158,10 @@ TriangleSoup hair(const Keys& keys) {
   keys.read("strands", options.strands);
   keys.read("segments", options.segments);
   keys.read("seed", options.seed);
-  return make_hair(options);
+  return options;
 }
 
-TriangleSoup room(const Keys& keys) {
+mesh::RoomShape room(const Keys& keys) {
   mesh::RoomShape options;
   keys.read("base", options.base);
   keys.read("size", options.size);
@@ -176,10 +172,10 @@ TriangleSoup room(const Keys& keys) {
   keys.read("verticalBars", options.vertical_bars);
   keys.read("horizontalBars", options.horizontal_bars);
   keys.read("bar", options.bar);
-  return make_room(options);
+  return options;
 }
 
-TriangleSoup bars(const Keys& keys) {
+mesh::BarsShape bars(const Keys& keys) {
   mesh::BarsShape options;
   keys.read("center", options.center);
   keys.read("length", options.length);
@@ -187,52 +183,79 @@ TriangleSoup bars(const Keys& keys) {
   keys.read("radius", options.radius);
   keys.read("count", options.count);
   keys.read("segments", options.segments);
-  return make_bars(options);
+  return options;
 }
 
-TriangleSoup broken(const Keys& keys) {
+mesh::BrokenShape broken(const Keys& keys) {
   mesh::BrokenShape options;
   keys.read("defects", options.defects);
   keys.read("size", options.size);
   keys.read("center", options.center);
   keys.read("halfExtent", options.half_extent);
-  return make_broken_mesh(options).soup;
+  return options;
 }
 
-TriangleSoup lattice_soup(const Keys& keys) {
+mesh::LatticeSoup lattice_soup(const Keys& keys) {
   mesh::LatticeSoup options;
   keys.read("triangles", options.triangles);
   keys.read("cells", options.cells);
   keys.read("seed", options.seed);
   keys.read("center", options.center);
   keys.read("halfExtent", options.half_extent);
-  return make_lattice_soup(options);
+  return options;
 }
 
 struct Generator {
   std::string_view type;
   TriangleSoup (*make)(const Keys&);
+  mesh::ShapeSize (*size)(const Keys&);
 };
 
+template <auto options, auto make>
+constexpr Generator generator(std::string_view type) {
+  return {type, [](const Keys& keys) { return make(options(keys)); },
+          [](const Keys& keys) { return mesh::shape_size(options(keys)); }};
+}
+
 constexpr std::array kGenerators{
-    Generator{"sphere", sphere},     Generator{"icosphere", icosphere},
-    Generator{"blob", blob},         Generator{"box", box},
-    Generator{"cylinder", cylinder}, Generator{"cone", cone},
-    Generator{"torus", torus},       Generator{"knot", knot},
-    Generator{"grid", grid},         Generator{"terrain", terrain},
-    Generator{"fence", fence},       Generator{"hair", hair},
-    Generator{"room", room},         Generator{"bars", bars},
-    Generator{"broken", broken},     Generator{"lattice-soup", lattice_soup},
+    generator<sphere, mesh::make_sphere>("sphere"),
+    Generator{"icosphere", icosphere, [](const Keys& keys) { return mesh::icosphere_size(subdivisions(keys)); }},
+    generator<blob, mesh::make_blob>("blob"),
+    Generator{"box", box,
+              [](const Keys&) {
+                return mesh::ShapeSize{12, 8};
+              }},
+    generator<cylinder, mesh::make_cylinder>("cylinder"),
+    Generator{"cone", [](const Keys& keys) { return mesh::make_cone(cylinder(keys)); },
+              [](const Keys& keys) { return mesh::cone_size(cylinder(keys)); }},
+    generator<torus, mesh::make_torus>("torus"),
+    generator<knot, mesh::make_knot>("knot"),
+    generator<grid, mesh::make_grid>("grid"),
+    generator<terrain, mesh::make_terrain>("terrain"),
+    generator<fence, mesh::make_fence>("fence"),
+    generator<hair, mesh::make_hair>("hair"),
+    generator<room, mesh::make_room>("room"),
+    generator<bars, mesh::make_bars>("bars"),
+    Generator{"broken", [](const Keys& keys) { return make_broken_mesh(broken(keys)).soup; },
+              [](const Keys& keys) { return mesh::shape_size(broken(keys)); }},
+    generator<lattice_soup, mesh::make_lattice_soup>("lattice-soup"),
 };
+
+const Generator& generator_of(const json& shape) {
+  const std::string type = shape["type"].get<std::string>();
+  const auto* const found = std::ranges::find(kGenerators, type, &Generator::type);
+  PENUMBRA_ASSERT(found != kGenerators.end(), "the schema knows a shape \"{}\" that has no generator", type);
+  return *found;
+}
 
 }  // namespace
 
 TriangleSoup read_shape(const json& shape) {
-  const std::string type = shape["type"].get<std::string>();
-  for (const Generator& generator : kGenerators) {
-    if (generator.type == type) return generator.make(Keys(shape));
-  }
-  PENUMBRA_ASSERT(false, "the schema knows a shape \"{}\" that has no generator", type);
+  return generator_of(shape).make(Keys(shape));
+}
+
+mesh::ShapeSize size_of_shape(const json& shape) {
+  return generator_of(shape).size(Keys(shape));
 }
 
 }  // namespace penumbra::scenes

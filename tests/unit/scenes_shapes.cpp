@@ -84,6 +84,37 @@ TEST(Shapes, HaveTheTrianglesTheyPromise) {
   }
 }
 
+TEST(Shapes, SayBeforehandHowLargeTheyAre) {
+  const auto expect_size = [](const mesh::ShapeSize& size, const TriangleSoup& soup) {
+    EXPECT_EQ(size.triangles, soup.triangles.size());
+    EXPECT_EQ(size.vertices, soup.positions.size());
+  };
+  using nlohmann::json;
+  for (const char* text :
+       {R"({"type": "sphere", "segments": 7, "rings": 5})", R"({"type": "sphere", "segments": 9})",
+        R"({"type": "icosphere", "subdivisions": 0})", R"({"type": "icosphere"})",
+        R"({"type": "blob", "subdivisions": 2})", R"({"type": "box"})", R"({"type": "cylinder", "segments": 5})",
+        R"({"type": "cylinder", "segments": 5, "capped": false})", R"({"type": "cone", "segments": 6})",
+        R"({"type": "torus", "segments": 5, "sides": 4})", R"({"type": "knot", "segments": 11, "sides": 3})",
+        R"({"type": "grid", "cells": [2, 5]})", R"({"type": "terrain", "cells": [3, 4]})",
+        R"({"type": "fence", "posts": 4, "rails": 3})", R"({"type": "hair", "strands": 5, "segments": 3})",
+        R"({"type": "room", "verticalBars": 2, "horizontalBars": 3})", R"({"type": "bars", "count": 3, "segments": 5})",
+        R"({"type": "lattice-soup", "triangles": 9})"}) {
+    SCOPED_TRACE(text);
+    const json shape = json::parse(text);
+    expect_size(scenes::size_of_shape(shape), scenes::read_shape(shape));
+  }
+  expect_size({2, 4}, mesh::make_quad({}, {1, 0, 0}, {0, 0, -1}));
+  for (const mesh::DefectName& defect : mesh::broken_defects()) {
+    SCOPED_TRACE(defect.name);
+    const json shape = {{"type", "broken"}, {"defects", {"hole", std::string(defect.name)}}, {"size", 3}};
+    const mesh::ShapeSize size = scenes::size_of_shape(shape);
+    const TriangleSoup soup = scenes::read_shape(shape);
+    EXPECT_EQ(size.triangles, soup.triangles.size());
+    EXPECT_LE(size.vertices, soup.positions.size()) << "only the different ones are known";
+  }
+}
+
 TEST(Shapes, UseEveryVertexAndHaveNoDegenerateTriangle) {
   for (const Shape& shape : shapes()) {
     std::vector<bool> used(shape.soup.positions.size(), false);
