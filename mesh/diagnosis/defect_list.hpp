@@ -17,6 +17,9 @@ class DefectList {
  public:
   explicit DefectList(std::size_t limit) : limit_(limit) {}
 
+  /// There are so many more, all behind `limit` of those that are added.
+  void count(std::uint64_t more) { count_ += more; }
+
   /// Both in the order in which they shall be listed; the triangles ascending, and at least one.
   void add(std::span<const std::uint32_t> triangles, std::span<const std::uint32_t> vertices) {
     ++count_;

@@ -1,5 +1,8 @@
 // The cases by shared vertices are those of CGAL's polygon mesh processing, self_intersections(); the predicates are
 // its kernel's (LGPL).
+//
+// Whether two triangles meet is a matter of their vertices alone. So those with the same three are searched as one
+// surface, and what is found of it counts for all of them: n triangles in one place cost n log n, not n².
 
 #include "mesh/diagnosis/self_intersections.hpp"
 
@@ -15,6 +18,9 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace penumbra::mesh {
 namespace {
@@ -22,6 +28,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
+/// Do two triangles meet that have at most two vertices in common?
 class PairTest {
  public:
   PairTest(const MeshView& mesh, const EdgeGraph& graph) : mesh_(mesh), graph_(graph) {}
@@ -37,7 +44,6 @@ class PairTest {
       std::iter_swap(match, b.begin() + static_cast<std::ptrdiff_t>(shared));
       ++shared;
     }
-    if (shared == 3) return true;
     const std::array<Point, 3> p = points(a), q = points(b);
     if (shared == 2) return fold_onto_one_another(p[0], p[1], p[2], q[2]);
     if (shared == 1) return meet_away_from_vertex(p, q);
@@ -72,38 +78,114 @@ class PairTest {
   const EdgeGraph& graph_;
 };
 
+/// Triangles with the same three vertices, ascending.
+using Copies = std::span<const std::uint32_t>;
+
+/// All triangles with an area, those with the same three vertices side by side.
+class Surfaces {
+ public:
+  Surfaces(const MeshView& mesh, const EdgeGraph& graph) {
+    std::vector<std::pair<Triangle, std::uint32_t>> sorted;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (graph.kind[t] != TriangleKind::proper) continue;
+      Triangle corners = graph.corners(mesh.triangles[t]);
+      std::ranges::sort(corners);
+      sorted.emplace_back(corners, t);
+    }
+    std::ranges::sort(sorted);
+    triangles_.reserve(sorted.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      if (i == 0 || sorted[i].first != sorted[i - 1].first) first_.push_back(i);
+      triangles_.push_back(sorted[i].second);
+    }
+    first_.push_back(sorted.size());
+  }
+
+  [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
+  Copies operator[](std::size_t surface) const {
+    return Copies(triangles_).subspan(first_[surface], first_[surface + 1] - first_[surface]);
+  }
+
+ private:
+  std::vector<std::uint32_t> triangles_;
+  std::vector<std::size_t> first_;  ///< of each surface, in `triangles_`; one more at the end
+};
+
+/// The pairs that meet: all counted, the first ones listed.
+class PairList {
+ public:
+  PairList(const MeshView& mesh, const EdgeGraph& graph, std::size_t limit)
+      : mesh_(mesh), graph_(graph), limit_(limit), list_(limit) {}
+
+  /// Every triangle of one surface with every one of another.
+  void add(Copies a, Copies b) {
+    const std::uint64_t all = std::uint64_t{a.size()} * b.size();
+    std::size_t listed = 0;
+    while (listed < limit_ && !a.empty() && !b.empty()) {  // in their order, as many as the whole list can take
+      if (a.front() > b.front()) std::swap(a, b);
+      listed += add_first(a.front(), b.first(std::min(b.size(), limit_ - listed)));
+      a = a.subspan(1);
+    }
+    list_.count(all - listed);
+  }
+  /// Every two triangles of one surface.
+  void add(Copies same) {
+    const std::uint64_t all = std::uint64_t{same.size()} * (same.size() - 1) / 2;
+    std::size_t listed = 0;
+    while (listed < limit_ && same.size() > 1) {
+      const Copies later = same.subspan(1);
+      listed += add_first(same.front(), later.first(std::min(later.size(), limit_ - listed)));
+      same = later;
+    }
+    list_.count(all - listed);
+  }
+  [[nodiscard]] DefectList take() && { return std::move(list_); }
+
+ private:
+  std::size_t add_first(std::uint32_t t, Copies later) {
+    const Triangle a = graph_.corners(mesh_.triangles[t]);
+    for (const std::uint32_t u : later) {
+      const Triangle b = graph_.corners(mesh_.triangles[u]);
+      list_.add({t, u}, {a[0], a[1], a[2], b[0], b[1], b[2]});
+    }
+    return later.size();
+  }
+
+  const MeshView& mesh_;
+  const EdgeGraph& graph_;
+  std::size_t limit_;
+  DefectList list_;
+};
+
 }  // namespace
 
 Defect find_self_intersections(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit,
                                const Progress& progress) {
-  std::vector<std::uint32_t> proper;
-  std::vector<Box> boxes;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (graph.kind[t] != TriangleKind::proper) continue;
-    proper.push_back(t);
-    Box& box = boxes.emplace_back();
-    for (const std::uint32_t v : graph.corners(mesh.triangles[t])) box.include(mesh.positions[v]);
+  const Surfaces surfaces(mesh, graph);
+  std::vector<Box> boxes(surfaces.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (const std::uint32_t v : graph.corners(mesh.triangles[surfaces[i].front()]))
+      boxes[i].include(mesh.positions[v]);
   }
   const BoxTree tree(boxes);
   const PairTest meet(mesh, graph);
-  tbb::enumerable_thread_specific<DefectList> found(list_limit);
-  Progress::Counter counter(progress, proper.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, proper.size(), 64), [&](const auto& range) {
-    DefectList& list = found.local();
+  tbb::enumerable_thread_specific<PairList> found([&] { return PairList(mesh, graph, list_limit); });
+  Progress::Counter counter(progress, surfaces.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surfaces.size(), 64), [&](const auto& range) {
+    PairList& list = found.local();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const std::uint32_t item = tree.order()[i];
+      const Copies copies = surfaces[item];
+      list.add(copies);
       const auto visit = [&](std::uint32_t other) {
-        if (other <= item || !meet(proper[item], proper[other])) return;
-        const Triangle a = graph.corners(mesh.triangles[proper[item]]),
-                       b = graph.corners(mesh.triangles[proper[other]]);
-        list.add({proper[item], proper[other]}, {a[0], a[1], a[2], b[0], b[1], b[2]});
+        if (other > item && meet(copies.front(), surfaces[other].front())) list.add(copies, surfaces[other]);
       };
       tree.find([&](const Box& box) { return box.meets(boxes[item]); }, visit);
       counter.done_one();
     }
   });
   DefectList all(list_limit);
-  for (DefectList& list : found) all.add_all(std::move(list));
+  for (PairList& list : found) all.add_all(std::move(list).take());
   return std::move(all).finish(mesh);
 }
 

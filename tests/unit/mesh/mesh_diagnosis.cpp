@@ -346,6 +346,21 @@ TEST(Diagnosis, SelfIntersections) {
             1);
 }
 
+TEST(Diagnosis, ManyTrianglesInOnePlaceAreCountedAsOneSurface) {
+  // n times one triangle and m times one that crosses it, in turn: pairs of 60,000 triangles, which nobody can visit.
+  constexpr std::uint32_t n = 40'000, m = 20'000;
+  TriangleSoup heap = soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 0}}, {});
+  for (std::uint32_t i = 0; i < n; ++i) {
+    heap.triangles.push_back(i % 3 == 0 ? Triangle{1, 0, 2} : Triangle{2, 0, 1});
+    if (i % 2 == 0) heap.triangles.push_back({3, 4, 5});
+  }
+  const Diagnosis d = diagnosis_of(heap, {.list_limit = 7});
+  EXPECT_EQ(d.self_intersections->count,
+            std::uint64_t{n} * m + std::uint64_t{n} * (n - 1) / 2 + std::uint64_t{m} * (m - 1) / 2);
+  ASSERT_EQ(d.self_intersections->first.size(), 7u);
+  for (std::uint32_t i = 0; i < 7; ++i) EXPECT_THAT(d.self_intersections->first[i].triangles, ElementsAre(0, i + 1));
+}
+
 TEST(Diagnosis, FarFromTheOriginAndTinyDetailsAreLostInFloat) {
   // Around 2²⁵ with a spread of 2: relative to the centre nothing is lost.
   const glm::dvec3 far(0x1p25, 0, 0);
