@@ -59,6 +59,10 @@ class PackageReader {
       auto& list = reference.part ? parts_[*reference.part].children : roots_;
       list.push_back({target->second, reference.placement});
     }
+    if (roots_.empty() && !parts_.empty()) {
+      throw InputError("{}: {}: its <build> lists no <item>, so that none of its {} objects is made; list them", file_,
+                       start, parts_.size());
+    }
     ImportedMesh mesh = assemble(parts_, roots_, file_);
     if (lattices_ > 0) mesh.notes.push_back(fmt::format("{} beam lattices skipped", lattices_));
     return mesh;

@@ -56,7 +56,7 @@ class ObjReader {
  private:
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-    throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
+    throw InputError("{}: line {}: {}", file_, line_number_, text_for_people(format, std::forward<Args>(args)...));
   }
 
   [[nodiscard]] std::uint64_t vertices() const { return mesh_.soup.positions.size(); }

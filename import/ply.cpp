@@ -41,7 +41,7 @@ class AsciiNumbers {
 
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-    throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
+    throw InputError("{}: line {}: {}", file_, line_number_, text_for_people(format, std::forward<Args>(args)...));
   }
 
  private:
@@ -85,7 +85,7 @@ class BinaryNumbers {
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
     throw InputError("{}: byte {} after the header: {}", file_, size_ - bytes_.size(),
-                     fmt::format(format, std::forward<Args>(args)...));
+                     text_for_people(format, std::forward<Args>(args)...));
   }
 
  private:

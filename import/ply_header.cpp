@@ -41,8 +41,14 @@ class HeaderReader {
     header_.body = content;
     bool ended = false;
     std::string_view line;
+    bool ends_are_returns = false;  // a carriage return alone: what the first line ends with, all lines do
     while (!ended && header_.lines < kMostLines && take_line(header_.body, line)) {
       ++header_.lines;
+      const std::string_view end(line.end(), header_.body.begin());
+      if (header_.lines == 1) ends_are_returns = end == "\r";
+      // Then a line feed behind a return is no part of the end: it is a binary body's first byte.
+      if (ends_are_returns && end == "\r\n")
+        header_.body = std::string_view(header_.body.begin() - 1, header_.body.end());
       std::string_view rest = line;
       const std::string_view keyword = take_word(rest);
       if (header_.lines == 1 && keyword != "ply" && keyword != "PLY")
@@ -62,7 +68,7 @@ class HeaderReader {
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
     throw InputError("{}: PLY header: line {}: {}", file_, header_.lines,
-                     fmt::format(format, std::forward<Args>(args)...));
+                     text_for_people(format, std::forward<Args>(args)...));
   }
 
   void format(std::string_view word) {
@@ -124,7 +130,7 @@ class HeaderReader {
         throw InputError(
             "{}: PLY header: it promises {} elements '{}' of {} bytes or more, but only {} bytes follow; the file is "
             "truncated or damaged",
-            file_, element.count, element.name, bytes, left);
+            file_, element.count, printable(element.name), bytes, left);
       }
       left -= element.count * bytes;
     }

@@ -111,7 +111,7 @@ class AsciiStl {
  private:
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-    throw InputError("{}: line {}: {}", file_, line_number_, fmt::format(format, std::forward<Args>(args)...));
+    throw InputError("{}: line {}: {}", file_, line_number_, text_for_people(format, std::forward<Args>(args)...));
   }
 
   /// A solid's name runs to the end of its line, except where a writer puts a whole solid on one line.

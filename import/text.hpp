@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "mesh/import_wire.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace penumbra::mesh {
 
@@ -20,6 +22,12 @@ bool take_line(std::string_view& text, std::string_view& line);
 
 /// Takes the next blank-separated word off `line`; empty at its end.
 std::string_view take_word(std::string_view& line);
+
+/// A message with words of the file in it, printable: a zero byte among them would end the message there.
+template <typename... Args>
+std::string text_for_people(fmt::format_string<Args...> format, Args&&... args) {
+  return printable(fmt::format(format, std::forward<Args>(args)...));
+}
 
 /// The whole of `word` as a number; nothing if it is not one (or an integer is too large for its type). Accepts a
 /// leading '+', which from_chars does not. A real that is too large becomes infinite: the caller refuses that by name.

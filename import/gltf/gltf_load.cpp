@@ -1,6 +1,7 @@
 #include "import/gltf/gltf_load.hpp"
 
 #include "base/error.hpp"
+#include "mesh/import_wire.hpp"
 #include "mesh/opened_files.hpp"
 #include "import/gltf/gltf_numbers.hpp"
 
@@ -99,7 +100,7 @@ std::string_view check_glb(std::string_view bytes, const std::string& file) {
 std::string without_line_ends(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
   std::ranges::replace(text, '\n', ' ');
-  return text;
+  return mesh::printable(text);
 }
 
 }  // namespace
@@ -133,7 +134,7 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
   }
   if (!confinement.refused.empty() && !loaded) {
     throw InputError("{}: it refers to {}, which is outside its folder; copy it there or pass --allow-outside", name,
-                     confinement.refused);
+                     mesh::printable(confinement.refused));
   }
   for (const std::string& extension : model.extensionsRequired) {
     if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression") {

@@ -37,7 +37,10 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   bool number_integer(number_integer_t value) override { return add(value); }
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
-  bool string(string_t& value) override { return add(std::move(value)); }
+  bool string(string_t& value) override {
+    refuse_zero(value, "string", open_.size());
+    return add(std::move(value));
+  }
   bool binary(binary_t&) override { return false; }  // not in JSON text
 
   bool start_object(std::size_t) override { return open(json::object()); }
@@ -46,6 +49,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
 
   bool key(string_t& name) override {
+    refuse_zero(name, "key", open_.size() - 1);
     if (open_.back().container->contains(name)) {
       throw InputError("{}: the key \"{}\" stands twice; remove one", place_under(open_.size() - 1).str(), name);
     }
@@ -66,6 +70,12 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
     json* container;
     std::string key;  ///< of the value that comes next, in an object
   };
+
+  /// No name of anything holds it, and a file's name or a message would end there.
+  void refuse_zero(const std::string& text, const char* what, std::size_t levels) const {
+    if (text.find('\0') == std::string::npos) return;
+    throw InputError("{}: the {} holds the character U+0000; expected printable text", place_under(levels).str(), what);
+  }
 
   json* place_value(json value) {
     if (open_.empty()) {

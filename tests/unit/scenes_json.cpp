@@ -61,6 +61,9 @@ const BadScene kSyntax[] = {
      "/camera/eye/1: the number -1e400 is beyond"},
     {"KeyTwice", mesh(R"("quad": {"center": [0,0,0], "center": [1,0,0]})"),
      "/meshes/0/quad: the key \"center\" stands twice"},
+    {"ZeroInAString", mesh(R"("file": "floor.off\u0000.png")"),
+     "/meshes/0/file: the string holds the character U+0000"},
+    {"ZeroInAKey", mesh(R"("a\u0000b": 1)"), "/meshes/0: the key holds the character U+0000"},
     {"AbsurdNesting", std::string(100000, '['), "/0/0/0"},
     {"NotAnObject", "[]", "expected an object, found an array of 0 values"},
 };

@@ -224,6 +224,39 @@ TEST_F(MeshReaders, PlyStripsHaveOneWinding) {
   }
 }
 
+TEST_F(MeshReaders, PlyLinesThatEndInReturnsAlone) {
+  // The first byte of the body is a line feed, which must not be taken for a part of the header's last line end.
+  const std::string body = bytes_of(std::uint8_t{10}, std::uint8_t{10}) +
+                           bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, std::uint8_t{3}, 0, 1, 2);
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string header;
+    for (const char* line : {"ply", "format binary_little_endian 1.0", "element extra 2", "property uchar value",
+                             "element vertex 3", "property float x", "property float y", "property float z",
+                             "element face 1", "property list uchar int vertex_indices", "end_header"}) {
+      header += line + end;
+    }
+    SCOPED_TRACE(testing::PrintToString(end));
+    const ImportedMesh mesh = read("ends.ply", header + body);
+    ASSERT_EQ(mesh.soup.triangles.size(), 1u);
+    EXPECT_EQ(corner(mesh.soup, 0, 1), glm::dvec3(1, 0, 0));
+  }
+}
+
+TEST_F(MeshReaders, AZeroByteDoesNotEndAMessage) {
+  const auto with_zero = [](std::string text) {
+    std::ranges::replace(text, '@', '\0');
+    return text;
+  };
+  expect_refused("zero.obj", with_zero("v 0 0 0\nv 1 0@7 0\n"), {"'0?7' is not a number"});
+  expect_refused("zero.off", with_zero("OFF\n3@1 1 0\n"), {"'3?1' is no number of vertices"});
+  expect_refused("zero.stl", with_zero("solid a\nfacet\nvertex 0 1@2 0\n"), {"'1?2' is not a coordinate"});
+  expect_refused("zero.ply", with_zero("ply\nformat as@cii 1.0\nend_header\n"), {"'as?cii' is no format"});
+  expect_refused("zeros.ply",
+                 ply_header("ascii", "face 1\nproperty list int int vertex_index") +
+                     with_zero("0 0@1 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n"),
+                 {"line 10", "'0?1' is not a number"});
+}
+
 TEST_F(MeshReaders, PlyHeadersThatDoNotSay) {
   expect_refused("format.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n",
                  {"line 2", "binary_middle_endian"});
@@ -348,6 +381,8 @@ TEST_F(MeshReaders, ThreeMfRefusals) {
   EXPECT_THAT(refusal(model("<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
                             "<item objectid=\"1\"/>")),
               HasSubstr("object '1' is made of itself"));
+  EXPECT_THAT(refusal(model(object("1") + object("2"), "")),
+              HasSubstr("<build> lists no <item>, so that none of its 2"));
   expect_refused("plain.3mf", "<model/>", {"no zip archive"});
   expect_refused("cut.3mf", "PK\x03\x04 and no more", {"truncated or damaged"});
   // Doubling forty times would be a thousand billion triangles: an end, and a message that says what is too much.
