@@ -119,15 +119,10 @@ class Comparison {
     outputs_.add("-o", run_.out / "metrics.json");
     outputs_.add("-o", run_.out / "report.html");
     outputs_.add("--stats", options_.stats);
-    std::vector<std::string> names = {"reference"};
+    for (const std::filesystem::path& file : files_of("reference")) outputs_.add("-o", file);
     for (const MethodEntry& entry : options_.methods) {
-      names.push_back(entry.label);
+      for (const std::filesystem::path& file : files_of(entry.label)) outputs_.add("-o", file);
       outputs_.add("-o", file_of(entry.label, "-error.png"));
-    }
-    for (const std::string& name : names) {
-      outputs_.add("-o", file_of(name, ".exr"));
-      if (options_.png) outputs_.add("-o", file_of(name, ".png"));
-      if (options_.bits) outputs_.add("-o", file_of(name, ".bits"));
     }
     outputs_.refuse_inputs({&run_.scene, 1});
     outputs_.require_writable();
@@ -225,6 +220,19 @@ class Comparison {
     report_.metrics.methods.push_back(std::move(result));
     report_.methods.emplace_back().description = entry.description;
     visibility_.emplace_back();
+    remove_files(entry);
+  }
+
+  /// What lies there is of an earlier run, or of one that did not end: it would pass for what this report speaks of.
+  /// Other files are not touched: they may be anything.
+  void remove_files(const Entry& entry) {
+    std::vector<std::filesystem::path> files = files_of(entry.label);
+    files.push_back(file_of(entry.label, "-error.png"));
+    for (const std::filesystem::path& file : files) {
+      std::error_code error;
+      std::filesystem::remove(file, error);
+      if (error) warn(fmt::format("{} is of an earlier run and cannot be removed: {}", file.string(), error.message()));
+    }
   }
 
   void run_entry(const Entry& entry) {
@@ -331,6 +339,14 @@ class Comparison {
     report_.sampled_pixels = options_.sample_pixels == "all" ? 0 : judged_.size();
     report_.machine = compare::this_machine();
     report_.warnings = warnings_;
+  }
+
+  /// What a run of that name writes, but for the error picture.
+  [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::string& name) const {
+    std::vector<std::filesystem::path> files = {file_of(name, ".exr")};
+    if (options_.png) files.push_back(file_of(name, ".png"));
+    if (options_.bits) files.push_back(file_of(name, ".bits"));
+    return files;
   }
 
   [[nodiscard]] std::filesystem::path file_of(const std::string& name, const char* ending) const {
