@@ -1,23 +1,10 @@
 #include "areas/back_projection.hpp"
 
+#include "areas/integer_vector.hpp"
 #include "base/assert.hpp"
 
 namespace penumbra::areas {
 namespace {
-
-using Integers = std::array<mpz_class, 3>;
-
-Integers difference(const Integers& a, const Integers& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Integers cross(const Integers& a, const Integers& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-mpz_class dot(const Integers& a, const Integers& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 void negate(Integers& a) {
   for (mpz_class& value : a) value = -value;

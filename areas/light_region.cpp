@@ -1,5 +1,6 @@
 #include "areas/light_region.hpp"
 
+#include "areas/integer_vector.hpp"
 #include "base/assert.hpp"
 
 #include <algorithm>
@@ -8,16 +9,6 @@
 
 namespace penumbra::areas {
 namespace {
-
-using Integers = std::array<mpz_class, 3>;
-
-Integers difference(const Integers& a, const Integers& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-mpz_class determinant(const Integers& a, const Integers& b, const Integers& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
 
 mpq_class ratio(const mpz_class& over, const mpz_class& under) {
   mpq_class value(over, under);

@@ -1,4 +1,5 @@
 #include "app/device_source.hpp"
+#include "app/output_files.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "bench/cpu.hpp"
@@ -59,7 +60,9 @@ void run_frames(const bench::Options& options, Output& output) {
 }
 
 void run_methods(const bench::Options& options, Output& output) {
-  app::require_writable(options.picture);
+  app::OutputFiles outputs;
+  outputs.add("--picture", options.picture);
+  outputs.require_writable();
   app::DeviceSource devices(options.device);
   fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
              options.commit.empty() ? "unknown" : options.commit, options.runs);

@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
+#include "mesh/union_find.hpp"
 
 #include <tbb/parallel_sort.h>
 
@@ -42,11 +43,6 @@ std::vector<std::uint32_t> merge_equal(std::span<const glm::dvec3> positions) {
     vertex[places[i].position] = first;
   }
   return vertex;
-}
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
 }
 
 /// Joins vertices within `weld` of each other, and chains of them: the roots are the first of each chain. Sweeps along

@@ -1,5 +1,7 @@
 #include "mesh/half_edge_choice.hpp"
 
+#include "mesh/union_find.hpp"
+
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -115,11 +117,6 @@ class Winder {
   std::vector<bool> seen_, crowded_;
 };
 
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 }  // namespace
 
 HeldTriangles choose_held(const EdgeGraph& graph) {
@@ -130,7 +127,7 @@ HeldTriangles choose_held(const EdgeGraph& graph) {
   return held;
 }
 
-Fans find_fans(const MeshView& mesh, const EdgeGraph& graph, const HeldTriangles& held) {
+HeldFans find_held_fans(const MeshView& mesh, const EdgeGraph& graph, const HeldTriangles& held) {
   std::vector<std::uint32_t> parent(3 * mesh.triangles.size());
   std::iota(parent.begin(), parent.end(), 0u);
   const auto corner_at = [&](std::uint32_t t, std::uint32_t point) {
@@ -148,7 +145,7 @@ Fans find_fans(const MeshView& mesh, const EdgeGraph& graph, const HeldTriangles
       parent[std::max(a, b)] = std::min(a, b);
     }
   }
-  Fans fans;
+  HeldFans fans;
   fans.of_corner.assign(parent.size(), kNotHeld);
   for (std::uint32_t corner = 0; corner < parent.size(); ++corner) {
     if (held.patch[corner / 3] == kNotHeld) continue;

@@ -21,11 +21,11 @@ HeldTriangles choose_held(const EdgeGraph& graph);
 
 /// For each corner (3 · triangle + corner) of a held triangle, its fan: corners at one point that hang together through
 /// edges of two held triangles. Fans are numbered in the order of their first corners.
-struct Fans {
+struct HeldFans {
   std::vector<std::uint32_t> of_corner;  ///< kNotHeld where the triangle is not held
   std::vector<std::uint32_t> point;      ///< for each fan, the edge graph's vertex
 };
 
-Fans find_fans(const MeshView& mesh, const EdgeGraph& graph, const HeldTriangles& held);
+HeldFans find_held_fans(const MeshView& mesh, const EdgeGraph& graph, const HeldTriangles& held);
 
 }  // namespace penumbra::mesh

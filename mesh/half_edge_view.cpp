@@ -59,7 +59,7 @@ struct HalfEdgeView::Surface {
 
 void HalfEdgeView::Surface::add_faces(const MeshView& soup, const EdgeGraph& graph) {
   const HeldTriangles held = choose_held(graph);
-  Fans fans = find_fans(soup, graph, held);
+  HeldFans fans = find_held_fans(soup, graph, held);
   listed = held.listed;
   face_of_triangle.assign(soup.triangles.size(), kNone);
   const std::size_t face_count = soup.triangles.size() - listed.size();

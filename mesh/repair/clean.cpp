@@ -94,12 +94,12 @@ bool is_even(const Triangle& t) {
   return (t[0] < t[1]) == ((t[1] < t[2]) == (t[0] < t[2]));
 }
 
-struct Face {
+struct WoundTriangle {
   Triangle sorted;
   bool even;  // winding: an even permutation of the sorted vertices
   std::uint32_t triangle;
 
-  friend auto operator<=>(const Face&, const Face&) = default;
+  friend auto operator<=>(const WoundTriangle&, const WoundTriangle&) = default;
 };
 
 class Duplicates {
@@ -109,7 +109,7 @@ class Duplicates {
     for (std::uint32_t edge = 0; edge < graph.edges.size(); ++edge) {
       triangles_at_[edge] = graph.around(edge).size();
     }
-    std::vector<Face> faces;
+    std::vector<WoundTriangle> faces;
     for (std::uint32_t t = 0; t < soup.triangles.size(); ++t) {
       Triangle corners = graph.corners(soup.triangles[t]);
       const bool even = is_even(corners);

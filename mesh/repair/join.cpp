@@ -2,6 +2,7 @@
 #include "mesh/edge_graph.hpp"
 #include "mesh/predicates.hpp"
 #include "mesh/repair/steps.hpp"
+#include "mesh/union_find.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -18,11 +19,6 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;  // of CGAL, its kernel alone (LGPL)
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 /// Are c and d on the same side of the line through a and b, all four on one plane?
 bool same_half_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {

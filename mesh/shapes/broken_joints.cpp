@@ -14,10 +14,6 @@ Sheet wall(int s) {
   return {{0, 0, 0}, kX, kY, s, s};
 }
 
-void box(LatticeMesh& mesh, int s, const glm::ivec3& low = {0, 0, 0}) {
-  mesh.add_box(low, {s, s, s});
-}
-
 Known twice(Known known) {
   add(known, Known(known));
   return known;

@@ -75,6 +75,14 @@ class LatticeMesh {
   std::unordered_map<glm::ivec3, std::uint32_t, Hash> numbers_;
 };
 
+/// A closed cube of s cells a side; `low` is its corner at the lowest coordinates, by default the lattice's zero.
+inline void box(LatticeMesh& mesh, int s, const glm::ivec3& low) {
+  mesh.add_box(low, {s, s, s});
+}
+inline void box(LatticeMesh& mesh, int s) {
+  box(mesh, s, {0, 0, 0});
+}
+
 inline constexpr glm::ivec3 kX = {kCell, 0, 0}, kY = {0, kCell, 0}, kZ = {0, 0, kCell};
 
 /// The top of a cube of n cells at the lattice's zero. Its first row of cells lies along the cube's edge at x = 0: the

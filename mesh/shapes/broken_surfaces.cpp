@@ -16,10 +16,6 @@ Number patch(Number s) {
   return (s + 1) / 2;
 }
 
-void box(LatticeMesh& mesh, int s) {
-  mesh.add_box({0, 0, 0}, {s, s, s});
-}
-
 void build_hole(LatticeMesh& mesh, int s) {
   mesh.add_sheet(top(s), [h = patch(s)](int i, int j) { return i >= h || j >= h; });
   mesh.add_open_box({0, 0, 0}, {s, s, s});

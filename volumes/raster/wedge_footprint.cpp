@@ -3,6 +3,8 @@
 
 #include "volumes/raster/wedge_footprint.hpp"
 
+#include "volumes/wedges/planar.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -15,10 +17,6 @@ namespace {
 
 /// An eighth of a pixel is what callers may rely on; the rest is for the rasteriser, as in screen_box.cpp.
 constexpr double kPad = 0.25;
-
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 double cross(const glm::dvec2& u, const glm::dvec2& v) {
   return u.x * v.y - u.y * v.x;

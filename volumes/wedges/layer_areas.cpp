@@ -1,6 +1,7 @@
 #include "volumes/wedges/layer_areas.hpp"
 
 #include "mesh/predicates.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -12,20 +13,6 @@
 
 namespace penumbra::volumes {
 namespace {
-
-using Polygon = std::vector<glm::dvec2>;
-
-double cross2(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-double area_of(const Polygon& polygon) {
-  double doubled = 0;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    doubled += cross2(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-  }
-  return doubled / 2;
-}
 
 /// What is left of a convex polygon where `height`, which is affine, is not negative.
 template <typename Point, typename Height, typename Mix>

@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "mesh/predicates.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -22,22 +23,10 @@ namespace {
 
 constexpr std::array kSquare = {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)};
 
-double cross2(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
 /// |a × b| before anything cancels.
 glm::dvec3 cross_size(const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 x = glm::abs(a), y = glm::abs(b);
   return {x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x};
-}
-
-double area_of(const std::vector<glm::dvec2>& corners) {
-  double doubled = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    doubled += cross2(corners[i] - corners[0], corners[(i + 1) % corners.size()] - corners[0]);
-  }
-  return doubled / 2;
 }
 
 /// A part [from, to] of an edge's parameter.

@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -16,10 +17,6 @@ namespace penumbra::volumes {
 namespace {
 
 using mesh::Side;
-
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 /// The side of (a, b, apex) that all corners are strictly on; `on` if there is none.
 Side strict_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& apex, const LightHull& light) {

@@ -1,6 +1,7 @@
 #include "volumes/wedges/wedge_plane.hpp"
 
 #include "mesh/predicates.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -11,10 +12,6 @@
 
 namespace penumbra::volumes {
 namespace {
-
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
 
 /// Is n · (x − l) ≥ 0 for both ends and all corners?
 bool leads_away(const glm::dvec3& n, const EdgeAndLight& cast) {

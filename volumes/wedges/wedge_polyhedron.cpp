@@ -5,6 +5,7 @@
 #include "volumes/wedges/wedge_polyhedron.hpp"
 
 #include "base/assert.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -29,10 +30,6 @@ Vector cross(const Vector& u, const Vector& v) {
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
-double largest(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 /// The largest coordinate of a face's corners.
 double size_of(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   double size = 0;
@@ -41,7 +38,7 @@ double size_of(const Polyhedron& polyhedron, const PolyhedronFace& face) {
 }
 
 /// Twice the area of a loop as a vector along its normal, by a fan.
-Vector area_of(const Polyhedron& polyhedron, const PolyhedronFace& face) {
+Vector face_area(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   Vector sum{0, 0, 0};
   const ExactPoint& first = polyhedron.corners[face.loop[0]];
   for (std::size_t i = 1; i + 1 < face.loop.size(); ++i) {
@@ -64,7 +61,7 @@ bool runs_outward(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   const double value = glm::dot(sum, n), size = size_of(polyhedron, face);
   const double error = 0x1p-44 * static_cast<double>(face.loop.size()) * size * size * largest(n);
   if (std::abs(value) > error) return value < 0;
-  const Vector area = area_of(polyhedron, face);
+  const Vector area = face_area(polyhedron, face);
   return sgn(mpq_class(area[0] * mpq_class(n.x) + area[1] * mpq_class(n.y) + area[2] * mpq_class(n.z))) < 0;
 }
 

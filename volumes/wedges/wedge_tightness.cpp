@@ -1,6 +1,7 @@
 #include "volumes/wedges/wedge_tightness.hpp"
 
 #include "base/parallel.hpp"
+#include "volumes/wedges/planar.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -17,25 +18,11 @@ namespace {
 constexpr double kReach = 16;  // times the penumbra's extent: where a cross-section counts as unbounded
 constexpr std::array kDepths = {0.5, 1.0, 2.0};
 
-using Polygon = std::vector<glm::dvec2>;
-
-double cross(const glm::dvec2& u, const glm::dvec2& v) {
-  return u.x * v.y - u.y * v.x;
-}
-
-double area_of(const Polygon& polygon) {
-  double doubled = 0;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    doubled += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-  }
-  return doubled / 2;
-}
-
 Polygon hull_of(Polygon points) {
   std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   Polygon hull;
   const auto extend = [&](const glm::dvec2& p, std::size_t floor) {
-    while (hull.size() >= floor + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) {
+    while (hull.size() >= floor + 2 && cross2(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) {
       hull.pop_back();
     }
     hull.push_back(p);
