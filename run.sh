@@ -7,7 +7,7 @@ build=$root/build
 source "$root/cmake/bootstrap.sh"
 
 install_packages
-build penumbra
+build OFF penumbra
 if (($# == 0)); then
   set -- compare "$root/scenes/bunny.json" -o out
   say "no arguments: running the main job, penumbra $*"

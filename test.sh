@@ -6,8 +6,8 @@ root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 build=$root/build
 source "$root/cmake/bootstrap.sh"
 
-install_packages
-build all
+install_packages all
+build ON all
 if (($# == 0)); then set -- -L quick; fi
 # GPU tests on the processor already use all cores: more than two at once only make each slower.
 exec ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel 2 "$@"

@@ -4,7 +4,8 @@
 say() { printf 'penumbra: %s\n' "$*" >&2; }
 die() { say "$1"; exit 4; }
 
-# Installs what packages.txt lists and this machine does not have.
+# Installs what packages.txt lists and this machine does not have. Its first paragraph is what the program needs to be
+# built and run; `install_packages all` installs the second, too: what tests and developers need.
 install_packages() {
   local missing=() package
   # Ask for all packages at once: dpkg-query answers in milliseconds, apt would take seconds.
@@ -12,7 +13,9 @@ install_packages() {
   installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' 2>/dev/null | sed -n 's/^ii  *//p') ||
     die "cannot ask dpkg what is installed; this script is for Debian 12 and its kin"
   while read -r package _; do
-    case $package in '' | '#'*) continue ;; esac
+    if [[ -z $package ]]; then
+      if [[ ${1-} == all ]]; then continue; else break; fi
+    fi
     grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
   done <"$root/packages.txt"
   if ((${#missing[@]} == 0)); then return; fi
@@ -33,15 +36,19 @@ install_packages() {
   fi
 }
 
-# build TARGET…: configures once (ninja itself notices later changes of the build rules) and builds.
+# build TESTS TARGET…: configures once (ninja itself notices later changes of the build rules), with tests where TESTS is ON,
+# and builds. A folder that has been configured with tests stays so.
 build() {
+  local tests=$1
+  shift
   mkdir -p "$build"
   # Two runs at once from one clone must not build into the same folder at the same time.
   exec 9>"$build/.lock"
   flock 9
-  if [[ ! -f $build/build.ninja ]]; then
+  if [[ ! -f $build/build.ninja ]] || { [[ $tests == ON ]] && grep -q '^PENUMBRA_TESTS:BOOL=OFF' "$build/CMakeCache.txt"; }; then
     say "configuring build/"
-    cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="${PENUMBRA_BUILD_TYPE:-Release}" >"$build/configure.log" 2>&1 || {
+    cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="${PENUMBRA_BUILD_TYPE:-Release}" \
+      -DPENUMBRA_TESTS="$tests" >"$build/configure.log" 2>&1 || {
       cat "$build/configure.log" >&2
       die "configuring failed (see above)"
     }
