@@ -341,7 +341,7 @@ class Comparison {
     report_.warnings = warnings_;
   }
 
-  /// What a run of that name writes, but for the error picture.
+  /// What a run of that name writes, without the error picture.
   [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::string& name) const {
     std::vector<std::filesystem::path> files = {file_of(name, ".exr")};
     if (options_.png) files.push_back(file_of(name, ".png"));

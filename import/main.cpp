@@ -26,14 +26,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PENUMBRA_SHADOW_MEMORY 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define PENUMBRA_SHADOW_MEMORY 1
-#endif
-#endif
-
 #if defined(PENUMBRA_SHADOW_MEMORY)
 // Sanitizers reserve terabytes of addresses, so that the limit must be on resident memory instead. Leaks are Assimp's
 // (on eleven of its own test files), and end with this process.

@@ -23,7 +23,7 @@ Span span_of(const Light& light) {
   const glm::dvec3 axis_u = glm::normalize(to_u);
   const glm::dvec3 axis_v = glm::normalize(glm::cross(glm::cross(to_u, to_v), axis_u));
   glm::dvec2 lower(0), upper(0);
-  const auto include = [&](const glm::vec3& point) {
+  const auto include = [&, &center = center](const glm::vec3& point) {  // clang 14 captures no binding by itself
     const glm::dvec2 at(glm::dot(glm::dvec3(point) - center, axis_u), glm::dot(glm::dvec3(point) - center, axis_v));
     lower = glm::min(lower, at);
     upper = glm::max(upper, at);

@@ -196,7 +196,7 @@ TEST_P(HostileLamps, AreTheExactAreas) {
 INSTANTIATE_TEST_SUITE_P(Kinds, HostileLamps, testing::ValuesIn(tests::kHostilities),
                          [](const auto& it) { return tests::name_of(it.param); });
 
-/// A hundred thousand of each kind, in ten parts: whoever stops half-way can go on from there.
+/// A hundred thousand of each kind, in ten parts, so that a run that was stopped can go on.
 class ManyHostileLamps : public LooksAtHostileLamps,
                          public testing::WithParamInterface<std::tuple<tests::Hostility, std::uint32_t>> {};
 TEST_P(ManyHostileLamps, AreTheExactAreasFull) {

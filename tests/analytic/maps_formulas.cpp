@@ -59,7 +59,7 @@ class PcssFormulas : public MapsTest {
       if (triangle < 0 || stage.floats.object[static_cast<std::size_t>(triangle)] != 0) continue;
       const Between v = predicted(glm::dvec3(stage.samples.p[i]));
       const double is = found.visibility[i], off = std::max(v.low - is, is - v.high);
-      wrong += off > 1e-6 ? 1 : 0;  // V is a float, and so are the bounds' sums but for rounding
+      wrong += off > 1e-6 ? 1 : 0;  // V is a float, and the bounds are sums of floats
       beyond = std::max(beyond, off);
       if (v.low == 1 || v.high == 0) continue;
       ++penumbra;

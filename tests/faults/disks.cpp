@@ -28,7 +28,7 @@ std::ostream& operator<<(std::ostream& stream, const DiskFault& fault) {
 class DiskFaults : public FaultTest, public testing::WithParamInterface<DiskFault> {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PENUMBRA_SHADOW_MEMORY)
     GTEST_SKIP() << "a sanitizer has to come first, and so has the library that makes calls fail";
 #endif
   }

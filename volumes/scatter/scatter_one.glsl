@@ -103,7 +103,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   } while (++row < end);
   cut_off = cut_off || row < end;
 
-  // An outline that may pass the light's corner on either side, be it along the left side: D is counted there.
+  // An outline that may pass the light's corner on either side, also along the left side: D is counted there.
   const float around = error_near + error_far, at_corner = clamp(near.x + (-0.5 - near.y) * slope, low.x, high.x);
   const bool holds_corner = all(lessThanEqual(low - around, vec2(-0.5))) && all(greaterThanEqual(high + around, vec2(-0.5)));
   if (holds_corner && !(abs(at_corner + 0.5) >= error_x)) open_pixel = true;
