@@ -22,9 +22,9 @@
 #include "volumes/soft/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
-#include "maps/accumulate.hpp"
-#include "maps/pcss.hpp"
-#include "maps/shadow_map.hpp"
+#include "maps/sampling/accumulate.hpp"
+#include "maps/filters/pcss.hpp"
+#include "maps/filters/shadow_map.hpp"
 #endif
 #ifdef PENUMBRA_HAS_REFERENCE
 #include "reference/exact_method.hpp"

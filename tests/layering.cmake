@@ -26,17 +26,20 @@ set(may_volumes/soft volumes/raster volumes/edges volumes/wedges render visibili
 set(may_volumes/counters volumes/raster volumes/edges volumes/wedges engines/device render visibility scenes mesh base)
 set(may_volumes/scatter areas volumes/edges engines engines/device engines/vectors render visibility scenes mesh base)
 set(may_vsm engines engines/device engines/vectors render visibility scenes mesh base)
-set(may_maps render visibility scenes mesh base)
+set(may_maps/host render visibility scenes mesh base)
+set(may_maps/products maps/host render visibility scenes mesh base)
+set(may_maps/filters maps/products maps/host render visibility scenes mesh base)
+set(may_maps/sampling maps/products maps/host render visibility scenes mesh base)
 set(may_reference areas visibility scenes mesh base)
 set(may_compare visibility scenes mesh base)
-set(may_app compare reference areas maps vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render visibility
+set(may_app compare reference areas maps/filters maps/sampling vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render visibility
     scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
 set(may_app/inspect ${may_app} app)
 set(may_app/wedges ${may_app} app)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility areas render engines/device engines/vectors engines
-    volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps reference compare
-    app app/inspect app/wedges bench)
+    volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products
+    maps/filters maps/sampling reference compare app app/inspect app/wedges bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
@@ -82,8 +85,9 @@ endfunction()
 function(check root result)
   set(complaints)
   set(folders ${rooms})
-  list(FILTER folders EXCLUDE REGEX /)  # those inside others come with them
-  foreach(top ${folders} volumes)
+  list(TRANSFORM folders REPLACE "/.*" "")  # those inside others come with them
+  list(REMOVE_DUPLICATES folders)
+  foreach(top ${folders})
     file(GLOB_RECURSE files RELATIVE ${root} ${root}/${top}/*.hpp ${root}/${top}/*.cpp ${root}/${top}/*.h
          ${root}/${top}/*.comp ${root}/${top}/*.vert ${root}/${top}/*.frag ${root}/${top}/*.glsl)
     foreach(file ${files})
@@ -131,10 +135,10 @@ endfunction()
 if(SELF_TEST)
   file(REMOVE_RECURSE ${SELF_TEST})
   file(WRITE ${SELF_TEST}/base/a.hpp "#include \"mesh/soup.hpp\"\n")            # against the arrow
-  file(WRITE ${SELF_TEST}/vsm/a.cpp "#include \"maps/pcss.hpp\"\n")             # one family on another
+  file(WRITE ${SELF_TEST}/vsm/a.cpp "#include \"maps/filters/pcss.hpp\"\n")             # one family on another
   file(WRITE ${SELF_TEST}/mesh/a.cpp "#include \"soup.hpp\"\n")                 # not from the root
   file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"app/runner.hpp\"\n")       # in a shader
-  file(WRITE ${SELF_TEST}/maps/a.cpp "#include <vulkan/vulkan_raii.hpp>\n")     # a library outside its room
+  file(WRITE ${SELF_TEST}/maps/host/a.cpp "#include <vulkan/vulkan_raii.hpp>\n")     # a library outside its room
   file(WRITE ${SELF_TEST}/reference/a.hpp "#include <embree3/rtcore.h>\n")      # a library in a header
   file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/repair/repair.hpp\"\n")     # a room on one inside it that depends on it
   file(WRITE ${SELF_TEST}/volumes/edges/a.hpp "#include \"volumes/scatter/a.hpp\"\n")  # one room of a family on another

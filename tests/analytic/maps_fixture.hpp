@@ -2,9 +2,9 @@
 
 // How tests make a method of maps/ and run it.
 
-#include "maps/accumulate.hpp"
-#include "maps/pcss.hpp"
-#include "maps/shadow_map.hpp"
+#include "maps/sampling/accumulate.hpp"
+#include "maps/filters/pcss.hpp"
+#include "maps/filters/shadow_map.hpp"
 #include "tests/agreement/support.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "tests/analytic/maps_parallel_square.hpp"
 
 #include "base/error.hpp"
-#include "maps/caster_maps.hpp"
+#include "maps/host/caster_maps.hpp"
 
 #include <bit>
 

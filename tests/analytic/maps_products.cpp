@@ -1,10 +1,10 @@
 // What maps are made of and made into, against a few lines of C++: the depths of two planes, and products against their
 // twins on maps read back from the device.
 
-#include "maps/caster.frag.spv.hpp"
-#include "maps/caster.vert.spv.hpp"
-#include "maps/map_fit.hpp"
-#include "maps/nearest_caster.hpp"
+#include "maps/host/caster.frag.spv.hpp"
+#include "maps/host/caster.vert.spv.hpp"
+#include "maps/host/map_fit.hpp"
+#include "maps/products/nearest_caster.hpp"
 #include "tests/analytic/maps_fixture.hpp"
 
 #include <array>

@@ -3,8 +3,8 @@
 // What pcss must answer under casters that are rectangles parallel to the light: its maps are known in closed form, so
 // every tap is, except those within half a texel of an outline. V lies between the answers that those leave open.
 
-#include "maps/light_basis.hpp"
-#include "maps/light_shape.hpp"
+#include "maps/host/light_basis.hpp"
+#include "maps/products/light_shape.hpp"
 #include "tests/analytic/maps_fixture.hpp"
 
 #include <algorithm>

@@ -1,9 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
-#include "maps/look_up.glsl"
-
-// Heckbert and Herf 1997: the mean of hard shadows, kept apart as bits.
-bool sees(LightView view, uint first_map, vec3 d, vec3 m) { return light_point_is_seen(view, first_map, d, m); }
-
-#include "maps/mask_main.glsl"

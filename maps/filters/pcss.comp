@@ -1,0 +1,59 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/filters/pcss.shared.h"
+#define OWN_PUSH PcssPush
+#include "maps/host/look_up.glsl"
+
+// Percentage-closer soft shadows (Fernando 2005), in the light's basis: centre at 0, scene at z > 0. The ray from a
+// receiver p to the light point s passes height z at p z/p.z + s (1 - z/p.z): on the map (x/z, y/z), the light as seen
+// through height z is an image of the light's own shape, scaled by 1/z - 1/p.z, around the receiver. So both windows have
+// the light's shape, and Fernando's width of the penumbra over the receiver, w (p.z - z)/z, is the same thing.
+
+layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
+layout(scalar, binding = 5) readonly buffer Pattern { vec2 pattern[]; };  // light points in its basis
+
+// The map at the light point s seen through height z; see above.
+Tap tap_at(LightView view, vec3 d, vec2 s, float z) {
+  const float height = abs(d.z);
+  const vec2 at = d.xy / height + s * (1.0 / z - 1.0 / height);
+  return fetch(view, 0, lookup.size, vec3(at * height, d.z));
+}
+
+// Something is between receiver and light only if it is nearer to the light's plane than the receiver.
+bool tap_blocks(Tap tap, vec3 d, vec3 m) {
+  const float limit = d.z / tap.direction.z;
+  const float h = dot(m, d);
+  // Where the light's centre is below the receiver's horizon its plane says nothing about the centre's map.
+  if (h <= 0.0) return tap.depth < limit - lookup.bias * tap.texel * tap.along;
+  return blocks(tap, m, h, limit, lookup.bias);
+}
+
+float visibility_of(LightView view, vec3 d, vec3 m) {
+  const float height = abs(d.z);
+
+  // 1. Blockers in the light–receiver pyramid where it passes the near plane.
+  const float near = min(max(nearest[d.z < 0.0 ? 1 : 0], own.smallest_near), height);
+  float sum = 0.0;
+  uint blockers = 0;
+  for (uint k = 0; k < own.blocker_samples; ++k) {
+    const Tap tap = tap_at(view, d, pattern[k], near);
+    if (tap_blocks(tap, d, m)) {
+      sum += tap.depth * abs(tap.direction.z);
+      ++blockers;
+    }
+  }
+
+  // 2, 3. As if all blockers were one plane at their mean height: share of the light seen past it. A light point that is
+  // below the receiver's horizon is hidden whatever the map says.
+  const float blocker = blockers == 0 ? height : sum / float(blockers);
+  uint visible = 0;
+  for (uint k = 0; k < own.filter_samples; ++k) {
+    const vec2 s = pattern[own.blocker_samples + k];
+    const bool above = dot(m, d - vec3(s, 0.0)) > 0.0;
+    if (above && (blockers == 0 || !tap_blocks(tap_at(view, d, s, blocker), d, m))) ++visible;
+  }
+  return float(visible) / float(own.filter_samples);
+}
+
+#include "maps/host/scalar_main.glsl"

@@ -1,0 +1,68 @@
+// Fernando 2005, "Percentage-closer soft shadows". Departures: windows have the light's own shape in place of a
+// square's, the near plane stands at the nearest depth of the map, every tap is compared with the receiver's plane, and
+// a tap whose light point is below the receiver's horizon counts as hidden, as in every other method here.
+
+#include "maps/filters/pcss.hpp"
+
+#include "maps/products/light_shape.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/nearest_caster.hpp"
+#include "maps/filters/pcss.comp.spv.hpp"
+#include "maps/filters/pcss.shared.h"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::IntegerOption kBlockerSamples{"blockerSamples", 1, 1024, 64, "taps of the blocker search"};
+constexpr visibility::IntegerOption kFilterSamples{"filterSamples", 1, 1024, 64, "taps of the filter"};
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("one map, and one mean height for all that shades a pixel", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "pcss",
+      .family = visibility::Family::image,
+      .paper = "Fernando 2005",
+      .output = visibility::Output::scalar,
+      .exact_for =
+          "nothing; in the limit of large maps and many samples, where all blockers lie in one plane parallel to "
+          "the light and cover the search window or none of it",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(),
+      .verdict_on = verdict_on};
+  description.options.push_back(kBlockerSamples.description());
+  description.options.push_back(kFilterSamples.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription pcss_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options) {
+  MapRecipe recipe{.description = describe(), .look_up_name = "pcss look-up", .look_up = shaders::kPcssComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  const std::uint32_t blocker_samples = parsed[kBlockerSamples], filter_samples = parsed[kFilterSamples];
+  recipe.products.push_back(std::make_unique<NearestCaster>(device));
+  recipe.products.push_back(
+      std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{blocker_samples, filter_samples}));
+  // Taps at height z over the light lie 1/z times the light's outline around the receiver, and z is half the light's
+  // width at least (smallest_near).
+  recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
+    return half_extent(light, basis) / half_width(light);
+  };
+  recipe.push_words = sizeof(gpu::PcssPush) / sizeof(std::uint32_t);
+  recipe.push = [blocker_samples, filter_samples](const visibility::Light& light) {
+    return push_words(gpu::PcssPush{blocker_samples, filter_samples, static_cast<float>(half_width(light))});
+  };
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

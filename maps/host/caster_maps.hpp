@@ -1,0 +1,62 @@
+#pragma once
+
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_view.shared.h"
+#include "render/buffer.hpp"
+#include "render/commands.hpp"
+#include "render/device.hpp"
+#include "render/raster_pass.hpp"
+#include "visibility/scene_floats.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// Renders depth maps of everything that casts shadow, all but the body of the light itself.
+class CasterMaps {
+ public:
+  /// `size`: texels on a side. Throws ResourceError for more than the device's images can have.
+  CasterMaps(const render::Device& device, std::uint32_t size);
+
+  void upload(const visibility::SceneFloats& scene);
+
+  /// Records the faces of one light point of light number `light_index` and copies them, one after the other, to
+  /// `maps`, the first at `first_face` · size² floats.
+  void record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis, std::int32_t light_index,
+              const render::Buffer& maps, std::uint64_t first_face) const;
+
+  [[nodiscard]] std::uint64_t caster_count() const { return emits_.size(); }
+  [[nodiscard]] std::uint64_t memory_bytes() const;
+
+ private:
+  /// Triangles that fit into one storage buffer.
+  struct Batch {
+    render::Buffer corners;
+    std::uint32_t first, count;
+  };
+  struct Range {
+    std::uint32_t first, count;
+  };
+  /// The casters of a batch without the body of that light.
+  [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
+
+  const render::Device* device_;
+  std::uint32_t size_;
+  render::RasterPass pass_;
+  render::DepthTarget target_;
+  std::vector<Batch> batches_;
+  std::vector<std::int32_t> emits_;  // of each caster as uploaded, ascending: a light's body is one range
+};
+
+/// How many faces of size² floats one storage buffer of this device can hold.
+std::uint64_t faces_per_buffer(const render::Device& device, std::uint32_t size);
+
+/// Throws ResourceError, saying which size would do, if `faces` do not fit into one storage buffer.
+void check_faces_fit(const render::Device& device, std::uint32_t size, std::uint32_t faces);
+
+/// Faces in one recording: each is two passes, and Commands times 256.
+inline constexpr std::uint32_t kFacesPerSubmission = 96;
+
+}  // namespace penumbra::maps

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "maps/host/map_view.shared.h"
+#include "visibility/light_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+namespace penumbra::maps {
+
+/// Axes of a planar light: orthonormal, n toward its emitting side, u along its first stored axis.
+struct LightBasis {
+  glm::dvec3 center{0};  ///< the light's centroid (a polygon's is not Light::center)
+  glm::dvec3 u{0}, v{0}, n{0};
+
+  /// Coordinates of x in this basis.
+  [[nodiscard]] glm::dvec3 local(const glm::dvec3& x) const;
+  [[nodiscard]] gpu::LightBasis rounded() const { return {glm::vec3(u), glm::vec3(v), glm::vec3(n)}; }
+};
+
+/// The light must be planar (no sphere).
+LightBasis light_basis(const visibility::Light& light);
+
+}  // namespace penumbra::maps

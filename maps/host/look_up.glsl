@@ -1,0 +1,34 @@
+// What every look-up shader begins with: its bindings, and taps into the maps. A shader of its own push constants
+// defines OWN_PUSH, the struct's name, before it includes this. Products are its own bindings, from 4 on. It then
+// defines one function and includes the main that calls it:
+//   scalar_main.glsl   float visibility_of(LightView view, vec3 d, vec3 m)
+//   mask_main.glsl     bool sees(LightView view, uint first_map, vec3 d, vec3 m)
+// d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is on
+// an emitting side.
+#include "maps/host/map_view.shared.h"
+
+layout(local_size_x = kLookupGroup) in;
+layout(scalar, binding = 0) readonly buffer Receivers { Receiver receivers[]; };
+layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
+layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
+layout(scalar, binding = 3) buffer Results { uint results[]; };  // masks, or the bits of V
+layout(scalar, push_constant) uniform Push {
+  LookupPush lookup;
+#ifdef OWN_PUSH
+  OWN_PUSH own;
+#endif
+};
+
+#include "maps/host/taps.glsl"
+
+// The receiver of this invocation, counted from the part's first.
+uint this_receiver() {
+  return (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+}
+
+bool on_emitting_side(vec3 d) { return d.z > 0.0 || (lookup.two_sided != 0 && d.z < 0.0); }
+
+// Williams 1978: is the light point seen? Not from below the receiver's own horizon.
+bool light_point_is_seen(LightView view, uint first_map, vec3 d, vec3 m) {
+  return dot(m, d) > 0.0 && !hard_shadow(view, first_map, lookup.size, d, m, lookup.bias);
+}

@@ -1,0 +1,225 @@
+// Where the maps of a light point look. A light emits into a half space, but one perspective image cannot hold 180°.
+// Receivers are finite, and whatever stands between a receiver and the light point is seen in the receiver's direction:
+// a window that holds every receiver's direction misses no shadow. Its bounds, min and max of x/z and of y/z over the
+// receivers' corners, are reached on the convex hulls of the corners seen along y and along x; those hulls are the same
+// for all points of the light, so that thousands of points can be fitted one by one. If a receiver reaches up to the
+// light's plane, or the window becomes wider than kWidestTangent allows, a hemicube takes its place (Cohen and
+// Greenberg 1985): one face along the normal, [−1, 1]², and four sideways, [−1, 1] × [0, 1], upper halves of a cube's
+// faces.
+
+#include "maps/host/map_fit.hpp"
+
+#include "visibility/receivers.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+/// tan 76°: up to 152° wide a window has, texel for texel, about the resolution of a hemicube at a fifth of its cost.
+constexpr double kWidestTangent = 4;
+constexpr std::uint32_t kHemicubeFaces = 5;
+/// Casters nearer to the light point than this share of the scene are not seen; see docs/accumulate.md.
+constexpr float kNearOfFar = 0x1p-20f;
+
+double cross(const glm::dvec2& o, const glm::dvec2& a, const glm::dvec2& b) {
+  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+/// Andrew's monotone chain. Its decisions may be rounded: a corner that is off the hull by rounding moves a window's
+/// bound by as little, and the window is a texel wider than its contents.
+std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
+  const auto less = [](const glm::dvec2& a, const glm::dvec2& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); };
+  std::sort(points.begin(), points.end(), less);
+  if (points.size() < 3) return points;
+  std::vector<glm::dvec2> hull;
+  const auto chain = [&hull](auto first, auto last) {
+    const std::size_t start = hull.size();
+    for (; first != last; ++first) {
+      while (hull.size() >= start + 2 && cross(hull[hull.size() - 2], hull.back(), *first) <= 0) hull.pop_back();
+      hull.push_back(*first);
+    }
+    hull.pop_back();  // the other chain begins with it
+  };
+  chain(points.begin(), points.end());
+  chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+struct Window {
+  glm::dvec2 lower, upper;
+};
+
+/// The receivers, or the casters, on one side of the light's plane, as far as fitting needs them.
+struct SideTriangles {
+  bool any = false;
+  bool reach_plane = false;                // some triangle crosses or touches the light's plane
+  std::vector<glm::dvec2> hull_x, hull_y;  // (x, z) and (y, z), basis coordinates, z > 0
+};
+
+bool receives(const visibility::SceneFloats& scene, std::size_t triangle) {
+  return visibility::is_receiver(scene, static_cast<std::uint32_t>(triangle)) &&
+         scene.plane[triangle] != visibility::SceneFloats::kNoPlane;
+}
+
+template <typename Counts>
+SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std::vector<glm::dvec3>& local, double sign,
+                                const Counts& counts) {
+  SideTriangles side;
+  std::vector<std::uint8_t> used(local.size(), 0);
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    if (!counts(i)) continue;
+    const visibility::Triangle& corners = scene.triangles[i];
+    const auto in_front = std::count_if(corners.begin(), corners.end(), [&](auto c) { return sign * local[c].z > 0; });
+    if (in_front == 0) continue;
+    side.any = true;
+    if (in_front < 3) side.reach_plane = true;
+    for (const std::uint32_t corner : corners) used[corner] = 1;
+  }
+  if (!side.any || side.reach_plane) return side;
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    if (used[i] == 0) continue;
+    side.hull_x.emplace_back(local[i].x, sign * local[i].z);
+    side.hull_y.emplace_back(local[i].y, sign * local[i].z);
+  }
+  side.hull_x = convex_hull(std::move(side.hull_x));
+  side.hull_y = convex_hull(std::move(side.hull_y));
+  return side;
+}
+
+/// Bounds of (coordinate − origin) / z; infinite if the light point is not below the whole hull.
+std::pair<double, double> tangents(const std::vector<glm::dvec2>& hull, double origin, double origin_z) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double lower = kInfinity, upper = -kInfinity;
+  for (const glm::dvec2& corner : hull) {
+    const double z = corner.y - origin_z;  // light points are stored in float32: up to rounding off their plane
+    if (!(z > 0)) return {-kInfinity, kInfinity};
+    lower = std::min(lower, (corner.x - origin) / z);
+    upper = std::max(upper, (corner.x - origin) / z);
+  }
+  return {lower, upper};
+}
+
+/// What a window has to hold.
+struct Contents {
+  const SideTriangles& receivers;
+  const SideTriangles& casters;  ///< where they are not more than `beside` beside the receivers
+  glm::dvec2 beside;
+};
+
+/// The window of one light point with a texel to spare on every side, or nothing if it would be too wide.
+std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& origin, double sign, std::uint32_t size) {
+  const auto& [receivers, casters, beside] = contents;
+  if (receivers.reach_plane) return std::nullopt;
+  Window window{};
+  for (int axis = 0; axis < 2; ++axis) {
+    const double origin_z = sign * origin.z;
+    auto [lower, upper] = tangents(axis == 0 ? receivers.hull_x : receivers.hull_y, origin[axis], origin_z);
+    if (!(std::max(-lower, upper) <= kWidestTangent)) return std::nullopt;
+    if (casters.any && beside[axis] > 0) {
+      // Casters that reach the light's plane are seen in every direction.
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      const auto [first, last] = casters.reach_plane
+                                     ? std::pair(-kInfinity, kInfinity)
+                                     : tangents(axis == 0 ? casters.hull_x : casters.hull_y, origin[axis], origin_z);
+      lower = std::min(lower, std::max(first, lower - beside[axis]));
+      upper = std::max(upper, std::min(last, upper + beside[axis]));
+    }
+    // A receiver seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
+    const double texel = std::max((upper - lower) / (size - 2), kWidestTangent * 0x1p-20);
+    window.lower[axis] = lower - texel;
+    window.upper[axis] = upper + texel;
+  }
+  return window;
+}
+
+/// No corner of the scene is farther from x.
+double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
+  const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(scene.lower) - x), glm::abs(glm::dvec3(scene.upper) - x));
+  return glm::length(reach);
+}
+
+}  // namespace
+
+FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
+                      std::span<const glm::vec3> points, const FitOptions& options) {
+  std::vector<glm::dvec3> local(scene.positions.size());
+  std::transform(scene.positions.begin(), scene.positions.end(), local.begin(),
+                 [&](const glm::vec3& x) { return basis.local(x); });
+
+  FittedViews fitted;
+  fitted.views.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    fitted.views[i].point = points[i];
+    // Strictly beyond everything: a depth of 1 means that there is nothing.
+    fitted.views[i].far = static_cast<float>(std::max(farthest(scene, points[i]) * 1.0625, 1e-30));
+  }
+  for (int s = 0; s < (light.two_sided ? 2 : 1); ++s) {
+    const double sign = s == 0 ? 1 : -1;
+    const SideTriangles receivers =
+        triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, i); });
+    if (!receivers.any) continue;
+    const bool beside = options.beside != glm::dvec2(0);
+    const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {
+      return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
+    });
+    const Contents contents{receivers, casters, options.beside};
+    bool windows = true;  // for all points of the light or for none
+    for (gpu::LightView& view : fitted.views) {
+      const std::optional<Window> window = fit_window(contents, basis.local(view.point), sign, options.size);
+      if (!window) {
+        windows = false;
+        break;
+      }
+      view.side[s].lower = window->lower;
+      view.side[s].upper = window->upper;
+    }
+    for (gpu::LightView& view : fitted.views) {
+      view.side[s].first_face = fitted.faces;
+      view.side[s].face_count = windows ? 1 : kHemicubeFaces;
+    }
+    fitted.faces += windows ? 1 : kHemicubeFaces;
+  }
+  return fitted;
+}
+
+gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {
+  const int s = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
+  const gpu::SideView& side = view.side[s];
+  const glm::dvec3 up = s == 0 ? basis.n : -basis.n;
+  // The face's axes: across a, b and along w. taps.glsl chooses faces and coordinates in the same way.
+  struct Axes {
+    glm::dvec3 a, b, w;
+  };
+  const std::array<Axes, kHemicubeFaces> hemicube{{{basis.u, basis.v, up},
+                                                   {basis.v, up, basis.u},
+                                                   {basis.v, up, -basis.u},
+                                                   {basis.u, up, basis.v},
+                                                   {basis.u, up, -basis.v}}};
+  const std::uint32_t k = face - side.first_face;
+  const Axes& axes = hemicube[k];
+  glm::dvec2 lower{-1, k == 0 ? -1 : 0}, upper{1, 1};
+  if (side.face_count == 1) {
+    lower = side.lower;
+    upper = side.upper;
+  }
+  // clip.x / clip.w runs from −1 to 1 while a / w runs over the window.
+  const glm::dvec2 scale = 2.0 / (upper - lower), shift = (lower + upper) / (upper - lower);
+  gpu::CasterPush push{};
+  push.point = view.point;
+  push.near = view.far * kNearOfFar;
+  push.far = view.far;
+  push.row_x = scale.x * axes.a - shift.x * axes.w;
+  push.row_y = scale.y * axes.b - shift.y * axes.w;
+  push.row_w = axes.w;
+  return push;
+}
+
+}  // namespace penumbra::maps

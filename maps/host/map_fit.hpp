@@ -1,0 +1,38 @@
+#pragma once
+
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_view.shared.h"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// The views of several points of one light. All have the same faces, so that their maps are equally large.
+struct FittedViews {
+  std::vector<gpu::LightView> views;
+  std::uint32_t faces = 0;  ///< of one light point: 0 … 10
+};
+
+struct FitOptions {
+  std::uint32_t size = 0;  ///< texels on a side of a face
+  /// How far beside a receiver's direction a look-up taps the map, in x/z and y/z: windows hold casters that far beside
+  /// the receivers, too. Where there is no caster a tap beside the window finds nothing, and nothing is there.
+  glm::dvec2 beside{0};
+};
+
+/// Fits each point's maps to the receivers of the scene, so that no receiver on an emitting side is ever outside.
+/// Depends on mesh and light only, not on the camera.
+FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
+                      std::span<const glm::vec3> points, const FitOptions& options);
+
+/// What caster.vert needs for one face of a view; `first_vertex` is the caller's.
+gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face);
+
+}  // namespace penumbra::maps

@@ -1,0 +1,224 @@
+// What all methods of this family do alike. Maps of many light points together would not fit into memory, so evaluate
+// renders them in batches and asks each batch at once. A batch is a power of two of light points, at most 32: no batch
+// lies across two words of a mask.
+
+#include "maps/host/map_method.hpp"
+
+#include "base/assert.hpp"
+#include "maps/host/receivers.hpp"
+#include "render/compute_pass.hpp"
+#include "visibility/visible_share.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr std::uint32_t kBitsPerWord = 32;
+/// No batch of several light points takes more, and no tile's masks.
+constexpr std::uint64_t kBatchBytes = std::uint64_t{128} << 20, kMaskBytes = std::uint64_t{256} << 20;
+
+class MapMethod final : public visibility::Method {
+ public:
+  MapMethod(const render::Device& device, MapRecipe recipe, const MapOptions& options)
+      : device_(&device),
+        recipe_(std::move(recipe)),
+        options_(options),
+        casters_(device, options.size),
+        look_up_(device, {.name = recipe_.look_up_name,
+                          .spirv = recipe_.look_up,
+                          .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) + 4 * recipe_.push_words),
+                          .constants = {}}) {
+    PENUMBRA_ASSERT(!gives_masks() || recipe_.points == MapPoints::light_samples,
+                    "{}: masks are answers of light samples' own maps", recipe_.description.name);
+  }
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return recipe_.description; }
+  void prepare_mesh(const visibility::SceneFloats& scene) override;
+  void prepare_light(const visibility::Light& light) override;
+  void prepare_view(const visibility::ViewSamples& samples) override;
+  [[nodiscard]] std::uint32_t max_tile_rows() const override;
+  void evaluate(const visibility::Tile& tile) override;
+  void read_masks(std::span<std::uint32_t> masks) override;
+  void read_visibility(std::span<float> visibility) override;
+
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ private:
+  [[nodiscard]] bool gives_masks() const { return recipe_.description.output == visibility::Output::mask; }
+  /// Words of results that a pixel has: its mask, or V.
+  [[nodiscard]] std::uint32_t words_per_pixel() const { return gives_masks() ? light_->words_per_mask() : 1; }
+  [[nodiscard]] std::uint32_t point_count() const { return static_cast<std::uint32_t>(fitted_.views.size()); }
+
+  /// Records maps of light points first … first + count − 1, in submissions that can be timed.
+  void render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count);
+  /// Records the look-ups of a tile in the maps of these light points.
+  void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count);
+
+  const render::Device* device_;
+  MapRecipe recipe_;
+  MapOptions options_;
+  CasterMaps casters_;
+  render::ComputePass look_up_;
+  Receivers receivers_;
+  visibility::PassTimes times_;
+  std::map<std::string, std::uint64_t> counters_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::Light* light_ = nullptr;
+  LightBasis basis_;
+  FittedViews fitted_;
+  std::vector<std::uint32_t> own_push_;
+  std::uint32_t batch_ = 1;        ///< light points at a time
+  std::uint32_t tile_pixels_ = 0;  ///< of the tile last evaluated
+  std::unique_ptr<render::Buffer> views_, depths_, results_;
+};
+
+void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
+  scene_ = &scene;
+  casters_.upload(scene);
+}
+
+void MapMethod::prepare_light(const visibility::Light& light) {
+  visibility::check_light(recipe_.description, light);
+  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
+  light_ = &light;
+  basis_ = light_basis(light);
+  const glm::vec3 centre(basis_.center);
+  const bool many = recipe_.points == MapPoints::light_samples;
+  const FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
+  fitted_ = fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span(&centre, 1), fit);
+  const std::uint32_t faces = std::max(fitted_.faces, 1u);
+  check_faces_fit(*device_, options_.size, faces);
+
+  const std::uint64_t point_bytes = std::uint64_t{faces} * options_.size * options_.size * sizeof(float);
+  const std::uint64_t most = std::min(kBatchBytes, device_->limits().max_storage_buffer_range) / point_bytes;
+  batch_ = std::bit_floor(std::clamp(static_cast<std::uint32_t>(most), 1u, kBitsPerWord));
+  batch_ = std::min(batch_, std::bit_ceil(point_count()));
+  render::grow(*device_, depths_, "map depths", point_bytes * batch_);
+  render::grow(*device_, views_, "map views", fitted_.views.size() * sizeof(gpu::LightView));
+  views_->write<gpu::LightView>(fitted_.views);
+  own_push_ = recipe_.push ? recipe_.push(light) : std::vector<std::uint32_t>();
+  PENUMBRA_ASSERT(own_push_.size() == recipe_.push_words, "{}: {} words of push constants", recipe_.description.name,
+                  own_push_.size());
+  counters_ = {{"maps", 0}, {"mapFaces", 0}, {"casters", casters_.caster_count()}};
+  if (many) {
+    counters_["mapsPerBatch"] = batch_;
+    return;
+  }
+  render::Commands commands(*device_);
+  render_maps(commands, 0, 1);
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
+    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, basis_});
+  }
+  times_.add(commands.submit());
+}
+
+void MapMethod::prepare_view(const visibility::ViewSamples& samples) {
+  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_view before prepare_mesh", recipe_.description.name);
+  receivers_.upload(*device_, *scene_, samples);
+}
+
+std::uint32_t MapMethod::max_tile_rows() const {
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: max_tile_rows before prepare_light", recipe_.description.name);
+  const std::uint64_t pixel_bytes = words_per_pixel() * sizeof(std::uint32_t);
+  const std::uint32_t possible = receivers_.max_rows(*device_, pixel_bytes);
+  if (recipe_.points == MapPoints::centre) return possible;
+  // Every tile renders all maps again: tiles are as high as memory allows.
+  const std::uint64_t row_bytes = std::max(receivers_.width(), 1u) * pixel_bytes;
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMaskBytes / row_bytes, 1, possible));
+}
+
+void MapMethod::render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count) {
+  std::uint32_t recorded = 0;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (recorded + fitted_.faces > kFacesPerSubmission && recorded > 0) {
+      times_.add(commands.submit());
+      recorded = 0;
+    }
+    casters_.record(commands, fitted_.views[first + k], basis_, light_->index, *depths_,
+                    std::uint64_t{k} * fitted_.faces);
+    recorded += fitted_.faces;
+  }
+  counters_["maps"] += count;
+  counters_["mapFaces"] += std::uint64_t{count} * fitted_.faces;
+}
+
+void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first,
+                    std::uint32_t count) {
+  for (const Receivers::Part& part : receivers_.parts(tile)) {
+    const gpu::LookupPush push{.basis = basis_.rounded(),
+                               .bias = static_cast<float>(options_.bias),
+                               .size = options_.size,
+                               .two_sided = light_->two_sided ? 1u : 0u,
+                               .first_receiver = part.first_receiver,
+                               .receiver_count = part.count,
+                               .first_result = part.first_result,
+                               .words_per_pixel = words_per_pixel(),
+                               .first_point = first,
+                               .point_count = count,
+                               .faces = fitted_.faces};
+    std::vector<std::uint32_t> words = push_words(push);
+    words.insert(words.end(), own_push_.begin(), own_push_.end());
+    std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
+    for (const std::unique_ptr<MapProduct>& product : recipe_.products) buffers.emplace_back(product->buffer());
+    look_up_.record(commands, std::as_bytes(std::span(words)), buffers, part.groups());
+  }
+}
+
+void MapMethod::evaluate(const visibility::Tile& tile) {
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", recipe_.description.name);
+  tile_pixels_ = tile.row_count * receivers_.width();
+  if (tile_pixels_ == 0) return;
+  render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility",
+               std::uint64_t{tile_pixels_} * words_per_pixel() * sizeof(std::uint32_t));
+  render::Commands commands(*device_);
+  for (std::uint32_t first = 0; first < point_count(); first += batch_) {
+    const std::uint32_t count = std::min(batch_, point_count() - first);
+    if (recipe_.points == MapPoints::light_samples) render_maps(commands, first, count);
+    ask(commands, tile, first, count);
+    times_.add(commands.submit());
+  }
+}
+
+void MapMethod::read_masks(std::span<std::uint32_t> masks) {
+  const std::size_t words = std::size_t{tile_pixels_} * (light_ == nullptr ? 0 : words_per_pixel());
+  PENUMBRA_ASSERT(gives_masks() && masks.size() == words, "{} words for masks of {}", masks.size(), words);
+  if (!masks.empty()) results_->read(masks);
+}
+
+void MapMethod::read_visibility(std::span<float> visibility) {
+  PENUMBRA_ASSERT(visibility.size() == tile_pixels_, "{} values for a tile of {} pixels", visibility.size(),
+                  tile_pixels_);
+  if (visibility.empty()) return;
+  if (!gives_masks()) return results_->read(visibility);
+  std::vector<std::uint32_t> masks(visibility.size() * words_per_pixel());
+  read_masks(masks);
+  visibility::visible_shares(*light_, masks, visibility);
+}
+
+std::uint64_t MapMethod::memory_bytes() const {
+  std::uint64_t bytes = casters_.memory_bytes() + receivers_.memory_bytes();
+  for (const auto* buffer : {&views_, &depths_, &results_}) bytes += *buffer ? (*buffer)->bytes() : 0;
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) bytes += product->buffer().bytes();
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<visibility::LightKind> planar_lights() {
+  return {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon};
+}
+
+std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,
+                                                    const visibility::MethodOptions& options) {
+  const MapOptions chosen =
+      map_options(device, recipe.description, visibility::parse_options(recipe.description, options));
+  return std::make_unique<MapMethod>(device, std::move(recipe), chosen);
+}
+
+}  // namespace penumbra::maps

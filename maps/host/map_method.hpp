@@ -1,0 +1,85 @@
+#pragma once
+
+#include "maps/host/caster_maps.hpp"
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_fit.hpp"
+#include "maps/host/options.hpp"
+#include "render/buffer.hpp"
+#include "render/commands.hpp"
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+/// A method of this family is a recipe: where maps are looked from, what is made of them, and one function in GLSL that
+/// asks them for a view sample. MapMethod does everything else, for all of them.
+namespace penumbra::maps {
+
+/// Where a method's maps are looked from.
+enum class MapPoints : std::uint8_t {
+  centre,         ///< the light's centroid: one map, rendered when the light is prepared
+  light_samples,  ///< every light sample: maps are rendered in batches, again for every tile
+};
+
+/// The maps of one light, as products and look-ups read them.
+struct MapSet {
+  const render::Buffer& views;   ///< a LightView for each light point
+  const render::Buffer& depths;  ///< `faces` · size² floats for each light point of the batch
+  std::uint32_t faces, size;
+  const visibility::Light& light;
+  const LightBasis& basis;
+};
+
+/// What a light's maps are made into before they are asked (a minimum, a pyramid), or what a look-up needs of the light
+/// itself (points on it): one buffer on the device. A file pair, its shader, and a twin in C++ in the tests.
+class MapProduct {
+ public:
+  MapProduct() = default;
+  MapProduct(const MapProduct&) = delete;
+  MapProduct& operator=(const MapProduct&) = delete;
+  virtual ~MapProduct() = default;
+
+  /// Records what makes it of maps whose rendering is recorded before. Once a light, for maps from its centre.
+  virtual void record(render::Commands& commands, const MapSet& maps) = 0;
+  [[nodiscard]] virtual const render::Buffer& buffer() const = 0;
+};
+
+/// A struct of 32-bit numbers as the words that a shader's push constants take.
+template <typename Push>
+std::vector<std::uint32_t> push_words(const Push& push) {
+  static_assert(sizeof(Push) % sizeof(std::uint32_t) == 0);
+  const auto words = std::bit_cast<std::array<std::uint32_t, sizeof(Push) / sizeof(std::uint32_t)>>(push);
+  return {words.begin(), words.end()};
+}
+
+struct MapRecipe {
+  /// Output::mask: the look-up answers for each light point (points must be light_samples); scalar: it gives V.
+  visibility::MethodDescription description;
+  MapPoints points = MapPoints::centre;
+  /// The look-up: a shader that includes look_up.glsl, defines one function, and includes scalar_main.glsl or
+  /// mask_main.glsl. It reads receivers, views, depths, results and then the products' buffers, in this order.
+  std::string look_up_name;
+  std::span<const std::uint32_t> look_up{};
+  std::vector<std::unique_ptr<MapProduct>> products{};
+  /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
+  std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};
+  /// What the shader's push constants have behind LookupPush: `push_words` of them, for a light.
+  std::uint32_t push_words = 0;
+  std::function<std::vector<std::uint32_t>(const visibility::Light&)> push{};
+};
+
+/// `options` are MapOptions' and whatever else the recipe's description declares; unknown ones are a UsageError.
+std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,
+                                                    const visibility::MethodOptions& options);
+
+/// The shapes that methods of this family can do: all planar ones.
+std::vector<visibility::LightKind> planar_lights();
+
+}  // namespace penumbra::maps

@@ -1,0 +1,21 @@
+#include "maps/host/options.hpp"
+
+#include "base/error.hpp"
+
+namespace penumbra::maps {
+
+std::vector<visibility::OptionDescription> map_option_descriptions() {
+  return {kMapSize.description(), kBias.description()};
+}
+
+MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,
+                       const visibility::ParsedOptions& options) {
+  const MapOptions chosen{options[kMapSize], options[kBias]};
+  if (chosen.size > device.limits().max_image_size) {
+    throw UsageError("method {}: option {} is {}; this device draws images of up to {} texels a side", method.name,
+                     kMapSize.name(), chosen.size, device.limits().max_image_size);
+  }
+  return chosen;
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,62 @@
+#include "maps/host/receivers.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "visibility/receivers.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace penumbra::maps {
+
+void Receivers::upload(const render::Device& device, const visibility::SceneFloats& scene,
+                       const visibility::ViewSamples& samples) {
+  width_ = samples.width;
+  height_ = samples.height;
+  bands_.clear();
+  const std::uint32_t band_rows = max_rows(device, sizeof(gpu::Receiver));
+  std::vector<gpu::Receiver> receivers;
+  for (std::uint32_t row = 0; row < height_; row += band_rows) {
+    const std::uint32_t rows = std::min(band_rows, height_ - row);
+    receivers.assign(std::size_t{rows} * width_, {});
+    const std::size_t first = std::size_t{row} * width_;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+      if (visibility::is_receiver(scene, samples, first + i))
+        receivers[i] = {samples.p[first + i], samples.n[first + i]};
+    }
+    bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});
+  }
+}
+
+std::vector<Receivers::Part> Receivers::parts(const visibility::Tile& tile) const {
+  PENUMBRA_ASSERT(tile.first_row + tile.row_count <= height_, "tile of rows {} + {} in a picture of {}", tile.first_row,
+                  tile.row_count, height_);
+  std::vector<Part> parts;
+  for (const Band& band : bands_) {
+    const std::uint32_t first = std::max(tile.first_row, band.first_row);
+    const std::uint32_t last = std::min(tile.first_row + tile.row_count, band.first_row + band.row_count);
+    if (first >= last) continue;
+    parts.push_back({&band.receivers, (first - band.first_row) * width_, (last - first) * width_,
+                     (first - tile.first_row) * width_});
+  }
+  return parts;
+}
+
+std::uint64_t Receivers::memory_bytes() const {
+  return std::accumulate(bands_.begin(), bands_.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const Band& band) { return sum + band.receivers.bytes(); });
+}
+
+std::uint32_t Receivers::max_rows(const render::Device& device, std::uint64_t bytes_per_pixel) const {
+  const std::uint64_t row_bytes = std::max<std::uint64_t>(width_, 1) * bytes_per_pixel;
+  const std::uint64_t rows = device.limits().max_storage_buffer_range / row_bytes;
+  if (rows == 0) {
+    throw ResourceError(
+        "one row of {} pixels needs {} bytes, more than a buffer of {} can hold; take a narrower --size or "
+        "fewer --light-samples",
+        width_, row_bytes, device.info().name);
+  }
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(rows, std::max(height_, 1u)));
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "maps/host/map_view.shared.h"
+#include "render/buffer.hpp"
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// View samples on the device, in bands of rows that fit into one storage buffer each.
+class Receivers {
+ public:
+  void upload(const render::Device& device, const visibility::SceneFloats& scene,
+              const visibility::ViewSamples& samples);
+
+  /// The part of a tile that lies in one band.
+  struct Part {
+    const render::Buffer* receivers;
+    std::uint32_t first_receiver;  ///< in that buffer
+    std::uint32_t count;
+    std::uint32_t first_result;  ///< of the tile's pixels
+    [[nodiscard]] std::uint64_t groups() const {
+      return (std::uint64_t{count} + gpu::kLookupGroup - 1) / gpu::kLookupGroup;
+    }
+  };
+  [[nodiscard]] std::vector<Part> parts(const visibility::Tile& tile) const;
+
+  [[nodiscard]] std::uint32_t width() const { return width_; }
+  [[nodiscard]] std::uint32_t height() const { return height_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const;
+
+  /// The most rows of this picture whose results, so many bytes a pixel, fit into one storage buffer; at least 1.
+  [[nodiscard]] std::uint32_t max_rows(const render::Device& device, std::uint64_t bytes_per_pixel) const;
+
+ private:
+  struct Band {
+    render::Buffer receivers;
+    std::uint32_t first_row, row_count;
+  };
+  std::uint32_t width_ = 0, height_ = 0;
+  std::vector<Band> bands_;
+};
+
+}  // namespace penumbra::maps

@@ -1,0 +1,90 @@
+#include "maps/products/light_shape.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+/// The R2 sequence (Roberts 2018): the two-dimensional golden ratio's multiples, modulo 1.
+glm::dvec2 r2_point(std::uint32_t i) {
+  constexpr double kPlastic = 1.32471795724474602596;  // x³ = x + 1
+  const glm::dvec2 step{1 / kPlastic, 1 / (kPlastic * kPlastic)};
+  return glm::fract(glm::dvec2(0.5) + static_cast<double>(i) * step);
+}
+
+/// Point i of the R2 sequence, mapped onto the unit disk without changing areas.
+glm::dvec2 disk_point(std::uint32_t i) {
+  const glm::dvec2 at = r2_point(i);
+  const double radius = std::sqrt(at.x), angle = 2 * std::numbers::pi * at.y;
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// Area-preserving, from the unit square onto a flat convex polygon: a fan around its first corner.
+class Fan {
+ public:
+  explicit Fan(std::vector<glm::dvec2> corners) : corners_(std::move(corners)), area_up_to_(corners_.size() - 1, 0.0) {
+    for (std::size_t i = 1; i + 1 < corners_.size(); ++i) {
+      const glm::dvec2 b = corners_[i] - corners_[0], c = corners_[i + 1] - corners_[0];
+      area_up_to_[i] = area_up_to_[i - 1] + std::abs(b.x * c.y - b.y * c.x);
+    }
+  }
+  [[nodiscard]] glm::dvec2 at(const glm::dvec2& unit) const {
+    const double along = unit.x * area_up_to_.back();
+    std::size_t i = 1;
+    while (i + 1 < area_up_to_.size() && along >= area_up_to_[i]) ++i;
+    const double width = area_up_to_[i] - area_up_to_[i - 1];
+    const double share = width > 0 ? std::clamp((along - area_up_to_[i - 1]) / width, 0.0, 1.0) : 0.5;
+    return glm::mix(corners_[0], glm::mix(corners_[i], corners_[i + 1], share), std::sqrt(unit.y));
+  }
+
+ private:
+  std::vector<glm::dvec2> corners_;
+  std::vector<double> area_up_to_;
+};
+
+}  // namespace
+
+std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count) {
+  std::vector<glm::dvec2> outline;
+  for (const glm::vec3& corner : light.outline) outline.emplace_back(basis.local(corner));
+  const Fan fan(std::move(outline));
+  std::vector<glm::vec2> pattern(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    pattern[i] = light.kind == visibility::LightKind::disk ? light.radius * disk_point(i) : fan.at(r2_point(i));
+  }
+  return pattern;
+}
+
+LightPattern::LightPattern(const render::Device& device, std::initializer_list<std::uint32_t> counts)
+    : counts_(counts),
+      points_(device, "light pattern",
+              std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}) * sizeof(glm::vec2)) {}
+
+void LightPattern::record(render::Commands& /*commands*/, const MapSet& maps) {
+  std::vector<glm::vec2> points;
+  for (const std::uint32_t count : counts_) {
+    const std::vector<glm::vec2> part = light_pattern(maps.light, maps.basis, count);
+    points.insert(points.end(), part.begin(), part.end());
+  }
+  points_.write<glm::vec2>(points);
+}
+
+double half_width(const visibility::Light& light) {
+  return std::sqrt(light.area / std::numbers::pi);
+}
+
+glm::dvec2 half_extent(const visibility::Light& light, const LightBasis& basis) {
+  if (light.kind == visibility::LightKind::disk) return glm::dvec2(light.radius);
+  glm::dvec2 extent(0);
+  for (const glm::vec3& corner : light.outline) extent = glm::max(extent, glm::abs(glm::dvec2(basis.local(corner))));
+  return extent;
+}
+
+}  // namespace penumbra::maps

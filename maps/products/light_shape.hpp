@@ -1,0 +1,37 @@
+#pragma once
+
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_method.hpp"
+#include "visibility/light_samples.hpp"
+
+#include <glm/vec2.hpp>
+
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// `count` points spread evenly over a planar light, in its basis: always the same ones. Any first part of them is
+/// spread evenly too. (Unlike Light::points their number is the caller's.)
+std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count);
+
+/// light_pattern of several counts, one behind the other, on the device: what look-ups that filter need of the light.
+class LightPattern final : public MapProduct {
+ public:
+  LightPattern(const render::Device& device, std::initializer_list<std::uint32_t> counts);
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return points_; }
+
+ private:
+  std::vector<std::uint32_t> counts_;
+  render::Buffer points_;
+};
+
+/// Half the light's width: the radius of the disk of its area.
+double half_width(const visibility::Light& light);
+
+/// How far the light reaches from its centroid along the basis's u and v, on the farther side.
+glm::dvec2 half_extent(const visibility::Light& light, const LightBasis& basis);
+
+}  // namespace penumbra::maps

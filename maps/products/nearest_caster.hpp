@@ -1,0 +1,21 @@
+#pragma once
+
+#include "maps/host/map_method.hpp"
+#include "render/compute_pass.hpp"
+
+namespace penumbra::maps {
+
+/// The smallest distance from the light's plane of what the maps of the light's centre hold: two floats, for the side
+/// where its normal points and for the other; infinite where the maps of a side are empty.
+class NearestCaster final : public MapProduct {
+ public:
+  explicit NearestCaster(const render::Device& device);
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return nearest_; }
+
+ private:
+  render::ComputePass pass_;
+  render::Buffer nearest_;
+};
+
+}  // namespace penumbra::maps

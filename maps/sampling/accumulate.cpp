@@ -1,0 +1,47 @@
+// Heckbert and Herf 1997, "Simulating soft shadows with graphics hardware": V is the mean of hard shadows from points
+// of the light. Departures: they draw the blended shadow into a texture a receiver polygon; here each light sample has
+// a shadow map (Williams 1978), looked up at the view samples, and its answer is kept as a bit of its own.
+
+#include "maps/sampling/accumulate.hpp"
+
+#include "maps/sampling/accumulate.comp.spv.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+
+namespace penumbra::maps {
+namespace {
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("each pair within half a texel of a shadow's edge may be wrong", mesh);
+}
+
+visibility::MethodDescription describe() {
+  return {.name = "accumulate",
+          .family = visibility::Family::image,
+          .paper = "Heckbert and Herf 1997",
+          .output = visibility::Output::mask,
+          .exact_for =
+              "nothing; in the limit of large maps every pair of view sample and light sample, any soup of "
+              "triangles that can be rasterised",
+          .lights = planar_lights(),
+          .options = map_option_descriptions(),
+          .verdict_on = verdict_on};
+}
+
+}  // namespace
+
+visibility::MethodDescription accumulate_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_accumulate(const render::Device& device,
+                                                    const visibility::MethodOptions& options) {
+  return make_map_method(device,
+                         {.description = describe(),
+                          .points = MapPoints::light_samples,
+                          .look_up_name = "accumulate look-up",
+                          .look_up = shaders::kAccumulateComp},
+                         options);
+}
+
+}  // namespace penumbra::maps

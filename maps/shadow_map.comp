@@ -1,9 +1,0 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
-#include "maps/look_up.glsl"
-
-// Williams 1978: V is 1 where the light's centre is seen, else 0.
-float visibility_of(LightView view, vec3 d, vec3 m) { return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0; }
-
-#include "maps/scalar_main.glsl"
