@@ -3,12 +3,12 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/threads.hpp"
+#include "render/physical_device.hpp"
 #include "render/vulkan.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -78,153 +78,6 @@ ResourceError no_instance(const vk::raii::Context& context, const vk::SystemErro
       "no Vulkan: the loader makes no instance ({}); it says: {}; check VK_DRIVER_FILES and VK_ICD_FILENAMES, or "
       "whether memory is short",
       error.what(), log.messages.empty() ? "nothing more" : fmt::format("{}", fmt::join(log.messages, "; ")));
-}
-
-const char* kind_of(vk::PhysicalDeviceType type) {
-  switch (type) {
-    case vk::PhysicalDeviceType::eDiscreteGpu:
-      return "discrete";
-    case vk::PhysicalDeviceType::eIntegratedGpu:
-      return "integrated";
-    case vk::PhysicalDeviceType::eVirtualGpu:
-      return "virtual";
-    case vk::PhysicalDeviceType::eCpu:
-      return "cpu";
-    default:
-      return "other";
-  }
-}
-
-std::string version_text(std::uint32_t version) {
-  return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
-                     VK_API_VERSION_PATCH(version));
-}
-
-std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& physical) {
-  const auto families = physical.getQueueFamilyProperties();
-  const auto wanted = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
-  for (std::uint32_t i = 0; i < families.size(); ++i) {
-    if ((families[i].queueFlags & wanted) == wanted) return i;
-  }
-  return std::nullopt;
-}
-
-/// Each feature that Penumbra needs: how it is read from the device, and what it is for.
-std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& physical) {
-  const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
-                                           vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();
-  const auto& core = chain.get<vk::PhysicalDeviceFeatures2>().features;
-  const auto& v12 = chain.get<vk::PhysicalDeviceVulkan12Features>();
-  const auto& v13 = chain.get<vk::PhysicalDeviceVulkan13Features>();
-  std::vector<std::string> missing;
-  const auto need = [&](vk::Bool32 has, const char* what) {
-    if (has == VK_FALSE) missing.emplace_back(what);
-  };
-  need(core.shaderFloat64, "no shaderFloat64 (view samples are decided in double precision)");
-  need(core.shaderInt64, "no shaderInt64 (the visibility buffer orders double distances as 64-bit integers)");
-  need(v12.shaderBufferInt64Atomics,
-       "no shaderBufferInt64Atomics (the visibility buffer takes the nearest by atomicMin)");
-  need(core.fragmentStoresAndAtomics, "no fragmentStoresAndAtomics (the visibility buffer is a storage buffer)");
-  need(v12.scalarBlockLayout, "no scalarBlockLayout (structs are shared between C++ and GLSL)");
-  need(v13.dynamicRendering, "no dynamicRendering");
-  need(v13.synchronization2, "no synchronization2");
-  need(v13.maintenance4, "no maintenance4");
-  need(v13.subgroupSizeControl, "no subgroupSizeControl");
-  return missing;
-}
-
-DeviceInfo describe(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
-  const auto properties = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties,
-                                                  vk::PhysicalDeviceDriverProperties>();
-  const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
-  const auto& subgroup = properties.get<vk::PhysicalDeviceSubgroupProperties>();
-  const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
-  DeviceInfo info;
-  info.index = index;
-  info.name = core.deviceName.data();
-  info.kind = kind_of(core.deviceType);
-  info.driver = fmt::format("{} {}", driver.driverName.data(), driver.driverInfo.data());
-  info.api_version = version_text(core.apiVersion);
-  info.max_storage_buffer_range = core.limits.maxStorageBufferRange;
-  info.subgroup_size = subgroup.subgroupSize;
-  const auto memory = physical.getMemoryProperties();
-  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
-    if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal) {
-      info.memory_bytes = std::max<std::uint64_t>(info.memory_bytes, memory.memoryHeaps[i].size);
-    }
-  }
-  if (core.apiVersion < VK_API_VERSION_1_3) {
-    info.refusals.push_back(fmt::format("Vulkan {} is older than 1.3", info.api_version));
-    return info;  // the feature structs below are 1.3's
-  }
-  info.refusals = missing_features(physical);
-  const auto wanted = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eBallot |
-                      vk::SubgroupFeatureFlagBits::eShuffle | vk::SubgroupFeatureFlagBits::eArithmetic |
-                      vk::SubgroupFeatureFlagBits::eVote;
-  if ((subgroup.supportedOperations & wanted) != wanted) {
-    info.refusals.emplace_back("no subgroup ballot, shuffle, vote or arithmetic operations");
-  }
-  if (info.subgroup_size < 8 || info.subgroup_size > 64) {
-    info.refusals.push_back(fmt::format("subgroups of {} lanes (8 to 64 are supported)", info.subgroup_size));
-  }
-  if (!find_queue_family(physical)) info.refusals.emplace_back("no queue with graphics and compute");
-  return info;
-}
-
-std::vector<vk::raii::PhysicalDevice> physical_devices(const vk::raii::Instance& instance) {
-  try {
-    vk::raii::PhysicalDevices devices(instance);
-    return {std::make_move_iterator(devices.begin()), std::make_move_iterator(devices.end())};
-  } catch (const vk::SystemError&) {
-    return {};  // a loader without a driver that works
-  }
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-bool is_wanted(const DeviceInfo& info, const std::string& wanted) {
-  if (wanted.empty()) return true;
-  if (std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
-    return fmt::format("{}", info.index) == wanted;
-  }
-  if (lower(wanted) == "cpu") return info.kind == "cpu";
-  return lower(info.name).find(lower(wanted)) != std::string::npos;
-}
-
-int preference(const DeviceInfo& info) {
-  if (info.kind == "discrete") return 0;
-  if (info.kind == "integrated") return 1;
-  if (info.kind == "virtual") return 2;
-  return info.kind == "cpu" ? 3 : 4;
-}
-
-ResourceError no_driver() {
-  return ResourceError(
-      "no Vulkan device: the loader found no driver; install one (mesa-vulkan-drivers runs on any processor) and check "
-      "VK_DRIVER_FILES and VK_ICD_FILENAMES");
-}
-
-/// The best usable wanted device, or a ResourceError that says of each device why not.
-DeviceInfo choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::string& wanted) {
-  std::optional<DeviceInfo> best;
-  std::string reasons;
-  for (std::uint32_t i = 0; i < devices.size(); ++i) {
-    const DeviceInfo info = describe(devices[i], i);
-    if (!is_wanted(info, wanted)) {
-      reasons += fmt::format("\n  {} {}: not what --device {} asks for", i, info.name, wanted);
-    } else if (!info.usable()) {
-      reasons += fmt::format("\n  {} {}: {}", i, info.name, fmt::join(info.refusals, "; "));
-    } else if (!best || preference(info) < preference(*best)) {
-      best = info;
-    }
-  }
-  if (best) return *best;
-  if (devices.empty()) throw no_driver();
-  throw ResourceError("no usable Vulkan device:{}", reasons);
 }
 
 std::filesystem::path cache_path(const vk::PhysicalDeviceProperties& properties) {
@@ -297,21 +150,6 @@ unsigned driver_threads() {
 /// What that driver takes for its compiler and its threads' stacks before the first pass runs, with some to spare. It
 /// does not look whether it got them.
 constexpr std::uint64_t kDriverBytes = std::uint64_t{256} << 20;
-
-Limits read_limits(const vk::raii::PhysicalDevice& physical, std::uint32_t timestamp_bits) {
-  const auto& limits = physical.getProperties().limits;
-  Limits out;
-  out.max_storage_buffer_range = limits.maxStorageBufferRange;
-  out.subgroup_size = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
-                          .get<vk::PhysicalDeviceSubgroupProperties>()
-                          .subgroupSize;
-  out.max_shared_memory = limits.maxComputeSharedMemorySize;
-  out.max_workgroup_count = limits.maxComputeWorkGroupCount[0];
-  out.max_image_size = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
-  out.max_texel_buffer_elements = limits.maxTexelBufferElements;
-  out.timestamp_period = timestamp_bits == 0 ? 0.0 : static_cast<double>(limits.timestampPeriod);
-  return out;
-}
 
 }  // namespace
 

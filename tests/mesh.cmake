@@ -17,6 +17,7 @@ penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
   unit/mesh/mesh_half_edge_view.cpp
   unit/mesh/mesh_import.cpp
   unit/mesh/mesh_readers.cpp
+  unit/mesh/mesh_readers_xml.cpp
   unit/mesh/mesh_repair.cpp
   unit/mesh/mesh_soup_ply.cpp
   # GMP's rationals are the judge of the exact predicates: another library, another formula.

@@ -2,7 +2,6 @@
 
 #include "tests/agreement/aimed_scene.hpp"
 #include "tests/agreement/mask_methods.hpp"
-#include "volumes/counters/depth_complexity.hpp"
 
 #include <fmt/format.h>
 
@@ -12,14 +11,6 @@ namespace penumbra {
 namespace {
 
 using tests::Aim;
-
-std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
-                                                          const visibility::MethodOptions& options) {
-  return volumes::make_depth_complexity(device, options);
-}
-constexpr std::array kMethods{tests::kViewSample, tests::kNativeViewSample, tests::kEdgeScatter,
-                              tests::kNativeEdgeScatter,
-                              tests::MaskMethod{"depth_complexity", make_depth_complexity, false}};
 
 class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<std::tuple<Aim, tests::MaskMethod>> {
  protected:
@@ -56,7 +47,8 @@ TEST_P(AimedPairs, EveryPairIsTheExactDecision) {
 TEST_P(AimedPairs, ThousandsFull) {
   for (std::uint32_t first = 1000; first < 4000 && !HasFailure(); first += 500) look(first, 500);
 }
-INSTANTIATE_TEST_SUITE_P(At, AimedPairs, testing::Combine(testing::ValuesIn(tests::kAims), testing::ValuesIn(kMethods)),
+INSTANTIATE_TEST_SUITE_P(At, AimedPairs,
+                         testing::Combine(testing::ValuesIn(tests::kAims), testing::ValuesIn(tests::kAllMaskMethods)),
                          [](const auto& it) {
                            return fmt::format("{}_{}", std::get<1>(it.param).name, name_of(std::get<0>(it.param)));
                          });

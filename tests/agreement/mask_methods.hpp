@@ -2,6 +2,7 @@
 
 #include "render/device.hpp"
 #include "visibility/method.hpp"
+#include "volumes/counters/depth_complexity.hpp"
 #include "volumes/scatter/edge_scatter.hpp"
 #include "vsm/view_sample.hpp"
 
@@ -39,7 +40,16 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
 inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false>, false};
 inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, false};
 
-/// All of them.
+inline std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
+                                                                 const visibility::MethodOptions& options) {
+  return volumes::make_depth_complexity(device, options);
+}
+inline constexpr MaskMethod kDepthComplexity{"depth_complexity", make_depth_complexity, false};
+
+/// Those of the two fast methods, on both engines.
 inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter};
+/// All of them.
+inline constexpr std::array kAllMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter,
+                                            kDepthComplexity};
 
 }  // namespace penumbra::tests

@@ -4,7 +4,6 @@
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
-#include "volumes/counters/depth_complexity.hpp"
 
 #include <fmt/format.h>
 
@@ -16,14 +15,6 @@ namespace penumbra {
 namespace {
 
 using tests::Hostility;
-
-std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
-                                                          const visibility::MethodOptions& options) {
-  return volumes::make_depth_complexity(device, options);
-}
-constexpr std::array kMethods{tests::kViewSample, tests::kNativeViewSample, tests::kEdgeScatter,
-                              tests::kNativeEdgeScatter,
-                              tests::MaskMethod{"depth_complexity", make_depth_complexity, false}};
 
 class MaskLamps : public tests::DeviceTest,
                   public testing::WithParamInterface<std::tuple<Hostility, tests::MaskMethod>> {
@@ -68,7 +59,8 @@ TEST_P(MaskLamps, TensOfThousandsFull) {
   for (std::uint32_t first = 1000; first < last && !HasFailure(); first += 2000) look(first, 2000);
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, MaskLamps,
-                         testing::Combine(testing::ValuesIn(tests::kHostilities), testing::ValuesIn(kMethods)),
+                         testing::Combine(testing::ValuesIn(tests::kHostilities),
+                                          testing::ValuesIn(tests::kAllMaskMethods)),
                          [](const auto& it) {
                            return fmt::format("{}_{}", std::get<1>(it.param).name, name_of(std::get<0>(it.param)));
                          });

@@ -85,7 +85,10 @@ TEST_P(ClosedPartsOnDevice, EveryPairIsTheExactDecision) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Range, ClosedPartsOnDevice,
-                         testing::Combine(testing::Values(4, 8, 16), testing::Values("vulkan", "native")));
+                         testing::Combine(testing::Values(4, 8, 16), testing::Values("vulkan", "native")),
+                         [](const auto& it) {
+                           return fmt::format("{}_{}", std::get<1>(it.param), std::get<0>(it.param));
+                         });
 
 SceneFloats floats_of(const mesh::TriangleSoup& soup, const std::vector<tests::Corners>& more = {}) {
   scenes::Scene scene;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -56,9 +57,11 @@ class NamedParts {
 
 TEST(AtomicFile, HasNoNameUntilItIsWhole) {
   const TemporaryFolder folder;
+  const int nameless = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);  // not every file system
+  if (nameless >= 0) ::close(nameless);
   AtomicFile file(folder / "out.txt");
   file.write(std::string_view("half"));
-  if (!folder.names().empty()) GTEST_SKIP() << "this file system has no files without names";
+  EXPECT_EQ(folder.names().empty(), nameless >= 0);
   file.commit();
   EXPECT_EQ(read_file(folder / "out.txt"), "half");
 }

@@ -1,16 +1,33 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "mesh/import.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
 namespace penumbra::test {
+
+/// The message of the InputError that `call` throws; "" with a failure if it throws none.
+template <typename Call>
+std::string input_error(Call call) {
+  try {
+    call();
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const InputError& error) {
+    return error.what();
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "not an InputError: " << error.what();
+  }
+  return "";
+}
 
 /// A test with a folder of its own, which goes with it.
 class FileTest : public ::testing::Test {
@@ -27,8 +44,22 @@ class FileTest : public ::testing::Test {
     std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
     return path;
   }
+  /// A mesh file of this content is refused with a message that has its path and these words.
+  void expect_refused(const std::string& name, std::string_view content,
+                      std::initializer_list<std::string> words) const {
+    SCOPED_TRACE(name);
+    const auto path = write(name, content);
+    const std::string message = input_error([&] { mesh::import_mesh(path); });
+    EXPECT_THAT(message, ::testing::HasSubstr(path.string()));
+    for (const std::string& word : words) EXPECT_THAT(message, ::testing::HasSubstr(word));
+  }
   std::filesystem::path folder_;
 };
+
+/// The position of a corner of the soup's triangle.
+inline glm::dvec3 corner(const mesh::TriangleSoup& soup, std::size_t triangle, std::size_t i) {
+  return soup.positions[soup.triangles[triangle][i]];
+}
 
 /// Little-endian bytes of numbers, one after the other; Swap turns them big-endian.
 template <bool Swap = false, typename... Numbers>
@@ -40,20 +71,6 @@ std::string bytes_of(Numbers... numbers) {
   };
   (append(numbers), ...);
   return all;
-}
-
-/// The message of the InputError that `call` throws; "" with a failure if it throws none.
-template <typename Call>
-std::string input_error(Call call) {
-  try {
-    call();
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const InputError& error) {
-    return error.what();
-  } catch (const std::exception& error) {
-    ADD_FAILURE() << "not an InputError: " << error.what();
-  }
-  return "";
 }
 
 }  // namespace penumbra::test

@@ -51,14 +51,6 @@ class MeshImport : public test::FileTest {
     EXPECT_EQ(mesh.soup.object, std::vector<std::uint32_t>(4, 0));
     EXPECT_EQ(mesh.soup.source_face, (std::vector<std::uint32_t>{0, 1, 2, 3}));
   }
-  void expect_refused(const std::string& name, std::string_view content,
-                      std::initializer_list<std::string> words) const {
-    SCOPED_TRACE(name);
-    const auto path = write(name, content);
-    const std::string message = test::input_error([&] { import_mesh(path); });
-    EXPECT_THAT(message, HasSubstr(path.string()));
-    for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word));
-  }
 };
 
 /// PLY with doubles, an unused property before and after, and a list of unusual types; big-endian if Swap.

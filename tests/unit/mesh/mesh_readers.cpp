@@ -4,16 +4,12 @@
 #include "tests/unit/mesh/import_files.hpp"
 
 #include <gmock/gmock.h>
-#include <minizip/zip.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
 
 namespace penumbra::mesh {
 namespace {
 
 using test::bytes_of;
+using test::corner;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -23,38 +19,7 @@ class MeshReaders : public test::FileTest {
   [[nodiscard]] ImportedMesh read(const std::string& name, std::string_view content) const {
     return import_mesh(write(name, content));
   }
-  void expect_refused(const std::string& name, std::string_view content,
-                      std::initializer_list<std::string> words) const {
-    SCOPED_TRACE(name);
-    const auto path = write(name, content);
-    const std::string message = test::input_error([&] { import_mesh(path); });
-    EXPECT_THAT(message, HasSubstr(path.string()));
-    for (const std::string& word : words) EXPECT_THAT(message, HasSubstr(word));
-  }
-  /// A zip archive of the given entries.
-  [[nodiscard]] std::filesystem::path write_zip(const std::string& name,
-                                                const std::map<std::string, std::string>& entries) const {
-    const auto path = folder_ / name;
-    const zipFile archive = zipOpen64(path.c_str(), APPEND_STATUS_CREATE);
-    for (const auto& [entry, content] : entries) {
-      const zip_fileinfo info{};
-      EXPECT_EQ(zipOpenNewFileInZip(archive, entry.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, 6), 0);
-      EXPECT_EQ(zipWriteInFileInZip(archive, content.data(), static_cast<unsigned>(content.size())), 0);
-      EXPECT_EQ(zipCloseFileInZip(archive), 0);
-    }
-    EXPECT_EQ(zipClose(archive, nullptr), 0);
-    return path;
-  }
 };
-
-/// The position of a corner of the soup's triangle.
-glm::dvec3 corner(const TriangleSoup& soup, std::size_t triangle, std::size_t i) {
-  return soup.positions[soup.triangles[triangle][i]];
-}
-
-double distance(const glm::dvec3& a, const glm::dvec3& b) {
-  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
-}
 
 // -------------------------------------------------------------------------------------------------------------- OBJ
 
@@ -272,133 +237,6 @@ TEST_F(MeshReaders, PlyHeadersThatDoNotSay) {
                  {"line 14", "vertex 1.5"});
 }
 
-// -------------------------------------------------------------------------------------------------------------- AMF
-
-std::string amf_object(const std::string& id, int volumes) {
-  std::string object = "<object id=\"" + id + "\"><mesh><vertices>";
-  for (const char* p : {"<x>0</x><y>0</y><z>0</z>", "<x>1</x><y>0</y><z>0</z>", "<x>0</x><y>1</y><z>0</z>"}) {
-    object += std::string("<vertex><coordinates>") + p + "</coordinates></vertex>";
-  }
-  object += "</vertices>";
-  for (int i = 0; i < volumes; ++i) object += "<volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume>";
-  return object + "</mesh></object>";
-}
-
-TEST_F(MeshReaders, AmfWithEveryVolume) {
-  EXPECT_EQ(read("volumes.amf", "<?xml version=\"1.0\"?><amf>" + amf_object("1", 3) + "</amf>").soup.triangles.size(),
-            3u);
-  const auto zipped = write_zip("zipped.amf", {{"model.amf", "<amf>" + amf_object("1", 2) + "</amf>"}});
-  EXPECT_EQ(import_mesh(zipped).soup.triangles.size(), 2u);
-}
-
-TEST_F(MeshReaders, AmfConstellationsTurnAndMove) {
-  const ImportedMesh mesh =
-      read("constellation.amf",
-           "<amf>" + amf_object("a", 1) + amf_object("alone", 1) +
-               "<constellation id=\"c\"><instance objectid=\"a\"><deltax>10</deltax><rx>90</rx><rz>90</rz>"
-               "</instance><instance objectid=\"a\"/></constellation></amf>");
-  ASSERT_EQ(mesh.soup.triangles.size(), 3u);  // what nobody places is where it is, then both copies
-  // (0 1 0): around x by 90° it is (0 0 1), around z still; then moved.
-  EXPECT_LT(distance(corner(mesh.soup, 1, 2), {10, 0, 1}), 1e-15);
-  EXPECT_LT(distance(corner(mesh.soup, 1, 1), {10, 1, 0}), 1e-15);
-  EXPECT_EQ(corner(mesh.soup, 2, 2), glm::dvec3(0, 1, 0));
-}
-
-TEST_F(MeshReaders, AmfRefusalsSayTheLine) {
-  const std::string object = amf_object("1", 1);
-  expect_refused("syntax.amf", "<amf>\n<object>\n</amf>", {"line 3", "malformed XML"});
-  expect_refused("other.amf", "<html/>", {"<html>", "expected <amf>"});
-  std::string high = object;
-  high.replace(high.find("<v3>2"), 5, "<v3>3");
-  expect_refused("high.amf", "<amf>\n" + high + "</amf>", {"line 2", "vertex 3", "only 3"});
-  std::string wrong = object;
-  wrong.replace(wrong.find("<x>1"), 4, "<x>one");
-  expect_refused("number.amf", "<amf>\n\n" + wrong + "</amf>", {"line 3", "x is 'one'"});
-  expect_refused("unknown.amf",
-                 "<amf>" + object + "<constellation id=\"2\"><instance objectid=\"7\"/></constellation></amf>",
-                 {"id '7'"});
-  expect_refused("circle.amf",
-                 "<amf><constellation id=\"1\"><instance objectid=\"2\"/></constellation>"
-                 "<constellation id=\"2\"><instance objectid=\"1\"/></constellation></amf>",
-                 {"made of itself"});
-}
-
-// -------------------------------------------------------------------------------------------------------------- 3MF
-
-std::string model(const std::string& objects, const std::string& items) {
-  return "<?xml version=\"1.0\"?>\n<model unit=\"millimeter\" "
-         "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/"
-         "2015/02\" xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"><resources>" +
-         objects + "</resources><build>" + items + "</build></model>";
-}
-
-std::string object(const std::string& id) {
-  return "<object id=\"" + id +
-         "\" name=\"same name\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
-         "<vertex x=\"0\" y=\"1\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" "
-         "v3=\"2\"/></triangles></mesh></object>";
-}
-
-TEST_F(MeshReaders, ThreeMfComponentsInSeveralModels) {
-  const std::string relationships =
-      "<Relationships><Relationship Target=\"/3D/start.model\" "
-      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
-  const std::string start =
-      model(object("1") + object("2") +
-                "<object id=\"3\"><components><component objectid=\"1\"/><component objectid=\"2\" "
-                "transform=\"0 1 0 -1 0 0 0 0 1 5 6 7\"/><component p:path=\"/3D/other.model\" "
-                "objectid=\"1\"/></components></object>",
-            "<item objectid=\"3\" transform=\"2 0 0 0 2 0 0 0 2 0 0 0\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 "
-            "0 0 -1 0 0 0\"/>");
-  const ImportedMesh mesh = import_mesh(write_zip("parts.3mf", {{"_rels/.rels", relationships},
-                                                                {"3D/a.model", "not this one"},
-                                                                {"3D/start.model", start},
-                                                                {"3D/other.model", model(object("1"), "")}}));
-  ASSERT_EQ(mesh.soup.triangles.size(), 4u);
-  // (1 0 0) by the rows of the transform: (0 1 0) + (5 6 7), then twice that.
-  EXPECT_EQ(corner(mesh.soup, 1, 1), glm::dvec3(10, 14, 14));
-  EXPECT_EQ(corner(mesh.soup, 3, 1), glm::dvec3(0, 1, 0)) << "mirrored, so wound the other way";
-  EXPECT_THAT(mesh.notes, Contains(HasSubstr("1 objects mirrored")));
-}
-
-TEST_F(MeshReaders, ThreeMfSaysWhatItDoesNotShow) {
-  const ImportedMesh mesh = import_mesh(
-      write_zip("one.3mf", {{"3D/3dmodel.model", model(object("1") + object("2"), "<item objectid=\"2\"/>")}}));
-  EXPECT_EQ(mesh.soup.triangles.size(), 1u);
-  EXPECT_THAT(mesh.notes, Contains("1 of 2 objects skipped: nothing places them"));
-}
-
-TEST_F(MeshReaders, ThreeMfRefusals) {
-  const auto refusal = [&](const std::string& content) {
-    const auto path = write_zip("bad.3mf", {{"3D/3dmodel.model", content}});
-    return test::input_error([&] { import_mesh(path); });
-  };
-  EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"9\"/>")), HasSubstr("no object with the id '9'"));
-  EXPECT_THAT(refusal(model(object("1") + object("1"), "")), HasSubstr("line 2: the id '1' stands twice"));
-  EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"1\" transform=\"1 2 3\"/>")),
-              HasSubstr("number 4 of the transform"));
-  EXPECT_THAT(refusal(model("", "<item p:path=\"/x.model\" objectid=\"1\"/>")), HasSubstr("x.model: no such entry"));
-  EXPECT_THAT(refusal(model("<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
-                            "<item objectid=\"1\"/>")),
-              HasSubstr("object '1' is made of itself"));
-  EXPECT_THAT(refusal(model(object("1") + object("2"), "")),
-              HasSubstr("<build> lists no <item>, so that none of its 2"));
-  expect_refused("plain.3mf", "<model/>", {"no zip archive"});
-  expect_refused("cut.3mf", "PK\x03\x04 and no more", {"truncated or damaged"});
-  // Doubling forty times would be a thousand billion triangles: an end, and a message that says what is too much.
-  std::string doubled = object("0");
-  for (int i = 1; i <= 40; ++i) {
-    doubled += fmt::format(
-        "<object id=\"{0}\"><components><component objectid=\"{1}\"/><component "
-        "objectid=\"{1}\"/></components></object>",
-        i, i - 1);
-  }
-  const auto bomb = write_zip("bomb.3mf", {{"3D/3dmodel.model", model(doubled, "<item objectid=\"40\"/>")}});
-  ImportLimits limits;
-  limits.memory_bytes = std::uint64_t{256} << 20;
-  EXPECT_THAT(test::input_error([&] { import_mesh(bomb, limits); }), HasSubstr("repeats what it holds too often"));
-}
-
 // ------------------------------------------------------------------------------------------------------- other texts
 
 std::string utf16(std::string_view text, bool big_endian) {
@@ -418,8 +256,12 @@ TEST_F(MeshReaders, TextOfAnyUnicode) {
       "world\nkids "
       "1\nOBJECT poly\nnumvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids "
       "0\n";
-  for (const auto& [name, text] :
-       {std::pair{"text.obj", obj}, {"text.ac", ac}, {"text.amf", "<amf>" + amf_object("1", 1) + "</amf>"}}) {
+  const std::string amf =
+      "<amf><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>"
+      "<vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates><x>0</x><y>1</y>"
+      "<z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume>"
+      "</mesh></object></amf>";
+  for (const auto& [name, text] : {std::pair{"text.obj", obj}, {"text.ac", ac}, {"text.amf", amf}}) {
     for (const bool big_endian : {false, true})
       EXPECT_EQ(read(name, utf16(text, big_endian)).soup.triangles.size(), 1u) << name;
     EXPECT_EQ(read(name, "\xEF\xBB\xBF" + text).soup.triangles.size(), 1u) << name;
