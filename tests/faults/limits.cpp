@@ -37,7 +37,7 @@ class LimitFaults : public FaultTest {
 
 TEST_F(LimitFaults, FilesThatMayNotGrow) {
   (void)small_scene();
-  for (const rlim_t bytes : {0, 1, 512, 4096, 8192, 1 << 20}) {
+  for (const rlim_t bytes : {0ul, 1ul, 512ul, 4096ul, 8192ul, 1ul << 20}) {
     const int code = check({.arguments = render(), .limits = {{RLIMIT_FSIZE, bytes}}}, std::to_string(bytes));
     EXPECT_EQ(code, bytes < (1 << 20) ? 4 : 0) << bytes;
   }
@@ -83,7 +83,7 @@ TEST_F(LimitFaults, FewThreadsForTheImportHelper) {
 
 TEST_F(LimitFaults, FewDescriptors) {
   (void)small_scene();
-  for (const rlim_t files : {4, 5, 6, 8, 10, 12, 16, 20, 64}) {
+  for (const rlim_t files : {4ul, 5ul, 6ul, 8ul, 10ul, 12ul, 16ul, 20ul, 64ul}) {
     const Conditions conditions{.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}};
     // Where this process has files open of its own, too few are left to load the program: that is no answer of ours.
     if (files < 8 && run_under(conditions).err.find("while loading shared libraries") != std::string::npos) continue;
@@ -93,7 +93,7 @@ TEST_F(LimitFaults, FewDescriptors) {
 
 TEST_F(LimitFaults, FewAddresses) {
   (void)small_scene();
-  for (const rlim_t mebibytes : {200, 300, 400, 500, 600, 800, 1200}) {
+  for (const rlim_t mebibytes : {200ul, 300ul, 400ul, 500ul, 600ul, 800ul, 1200ul}) {
     check({.arguments = render(), .limits = {{RLIMIT_AS, mebibytes << 20}}}, std::to_string(mebibytes) + " MiB");
   }
 }

@@ -1,7 +1,6 @@
 #include "volumes/scatter/vectors/cut.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 namespace penumbra::volumes {
 namespace {
@@ -71,8 +70,8 @@ void CutEdges::restore() {
   ends_.reset();
   plane_of_light_ = native::Cluster::kSeveral;
   // Backwards: of one that was changed more than once, the first is what it was.
-  for (const auto& [node, used] : std::views::reverse(nodes_)) tree_.nodes[node].used = used;
-  for (const auto& [leaf, used] : std::views::reverse(leaves_)) tree_.leaves[leaf].used = used;
+  for (auto it = nodes_.rbegin(); it != nodes_.rend(); ++it) tree_.nodes[it->number].used = it->used;
+  for (auto it = leaves_.rbegin(); it != leaves_.rend(); ++it) tree_.leaves[it->number].used = it->used;
   nodes_.clear();
   leaves_.clear();
   tree_.roots.resize(roots_);
