@@ -5,6 +5,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps_formulas.cpp
   analytic/maps_method.cpp
   analytic/maps_products.cpp
+  analytic/maps_pyramids.cpp
   analytic/maps_resolution_table.cpp
   LIBRARIES penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)

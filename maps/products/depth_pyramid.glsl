@@ -1,0 +1,35 @@
+// Asking a DepthPyramid. Before this is included, PYRAMID_BINDING says where its buffer is.
+#include "maps/products/depth_pyramid.shared.h"
+
+layout(scalar, binding = PYRAMID_BINDING) readonly buffer Pyramid {
+  PyramidHeader header;
+  vec2 nodes[];
+} pyramid;
+
+// The smallest and the largest depth of a node that stands at this cell: stored depths, 1 where there is nothing.
+vec2 pyramid_node(uint level, uint face, uvec2 cell) {
+  const uint shift = pyramid_shift(level, pyramid.header.whole);
+  const uint side = pyramid_nodes(pyramid.header.cells, shift);
+  const uvec2 node = cell >> shift;
+  return pyramid.nodes[pyramid.header.first[level] + (face * side + node.y) * side + node.x];
+}
+
+// At least the range of the cells lower … upper; exactly theirs in an MSSM.
+vec2 depth_range_of_cells(uint face, uvec2 lower, uvec2 upper) {
+  const PyramidQuery query = pyramid_query(lower, upper, pyramid.header.whole, pyramid.header.top);
+  vec2 range = vec2(1.0, 0.0);
+  for (uint y = query.from.y;; y = min(y + query.step, query.to.y + 1 - query.step)) {
+    for (uint x = query.from.x;; x = min(x + query.step, query.to.x + 1 - query.step)) {
+      const vec2 part = pyramid_node(query.level, face, uvec2(x, y) << query.shift);
+      range = vec2(min(range.x, part.x), max(range.y, part.y));
+      if (x + query.step > query.to.x) break;
+    }
+    if (y + query.step > query.to.y) break;
+  }
+  return range;
+}
+
+// At least the range of the texels lower … upper; exactly theirs in an MSSM if they are two or more a side.
+vec2 depth_range(uint face, uvec2 lower, uvec2 upper) {
+  return depth_range_of_cells(face, lower + 1, max(upper, lower + 1));
+}

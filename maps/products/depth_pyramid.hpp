@@ -1,0 +1,53 @@
+#pragma once
+
+#include "maps/host/map_method.hpp"
+#include "maps/products/depth_pyramid.shared.h"
+#include "render/compute_pass.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace penumbra::maps {
+
+/// Where a pyramid has its nodes; see depth_pyramid.shared.h.
+enum class PyramidKind : std::uint8_t { hsm, mssm, ysm };
+
+/// A pyramid over `faces` maps of size² texels. An MSSM or a YSM whose upper levels would not fit into `most_bytes`
+/// does without them: rectangles and walks then take more nodes of the coarsest level that there is. Throws
+/// ResourceError, saying which size would do, where not even that fits.
+gpu::PyramidHeader pyramid_header(PyramidKind kind, std::uint32_t size, std::uint32_t faces, std::uint64_t most_bytes);
+
+/// The bytes of its nodes.
+std::uint64_t pyramid_bytes(const gpu::PyramidHeader& header, std::uint32_t faces);
+
+/// Smallest and largest stored depths over squares of the maps of one light point: a PyramidHeader, and behind it pairs
+/// of floats. Asked in depth_pyramid.glsl.
+class DepthPyramid final : public MapProduct {
+ public:
+  DepthPyramid(const render::Device& device, PyramidKind kind);
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return *nodes_; }
+
+ private:
+  const render::Device* device_;
+  PyramidKind kind_;
+  render::ComputePass pass_;
+  std::unique_ptr<render::Buffer> nodes_;
+};
+
+/// How a method bounds the depths in a view sample's kernel.
+enum class Search : std::uint8_t { none, hsm, mssm, ysm };
+
+/// The option `search` of methods that look for a kernel's depths.
+constexpr visibility::ChoiceOption<Search, 4> search_option(Search otherwise) {
+  return {"search",
+          {{"none", Search::none}, {"hsm", Search::hsm}, {"mssm", Search::mssm}, {"ysm", Search::ysm}},
+          otherwise,
+          "depths that bound where a view sample looks: the map's nearest alone, or those in its own kernel, from a "
+          "min-max pyramid (hsm), a multi-scale one (mssm), or both (ysm)"};
+}
+
+/// `search` must not be none.
+PyramidKind pyramid_of(Search search);
+
+}  // namespace penumbra::maps
