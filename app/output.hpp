@@ -61,7 +61,8 @@ struct MethodLabel {
   std::string device;  ///< where it ran
 };
 
-/// Which device a method runs on: the Vulkan device, or the processor's name.
+/// Which device a method runs on: the Vulkan device (also for engine=native of a method that may run there, where that
+/// device is the processor), or the processor's name.
 std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device);
 
 /// OUT.exr with all channels and attributes.
@@ -71,7 +72,7 @@ void write_picture(const std::filesystem::path& path, const Session& session, st
 compare::Stats make_stats(const Session& session, std::span<const visibility::Light> lights, const MethodLabel& label,
                           const MethodRun& run);
 
-/// One line a method for people: "view-sample: 256 light samples, light 0.01 s, evaluate 0.52 s".
+/// One line a method for people: its name, the picture's size, triangles, light samples, seconds of `shadow`, device.
 std::string summary(const compare::Stats& stats);
 
 }  // namespace penumbra::app

@@ -37,7 +37,6 @@ struct HelperAnswer {
 
 /// Runs `penumbra-import` on a foreign file, in a process of its own, and returns its answer.
 ///
-///
 /// The helper stands beside the running program, or where the environment's PENUMBRA_IMPORT_HELPER says. It is started
 /// with posix_spawn, not forked: this program has threads (TBB, Vulkan drivers), whose locks a forked copy would
 /// inherit locked. It ends with this process at the latest, and with the thread that called this one. InputError: the

@@ -1,5 +1,5 @@
-// tinygltf's code, compiled once, here, and under another namespace (gltf.cmake says why). Images are left out: nobody
-// here looks at them.
+// tinygltf's code, compiled once, here, and under another namespace (import/CMakeLists.txt says why). Images are left
+// out: nobody here looks at them.
 #include <nlohmann/json.hpp>
 
 #define TINYGLTF_IMPLEMENTATION

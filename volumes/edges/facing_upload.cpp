@@ -1,6 +1,6 @@
 // The host's half of the filter: normals in double, rounded once, and what they and the device's arithmetic may be
-// wrong by. A change of an expression here or in silhouette_facing.comp needs one of its derivation in README.md
-// (Bounds).
+// wrong by. A change of an expression here or in silhouette_facing.comp needs one of its derivation in
+// volumes/README.md (Bounds).
 
 #include "volumes/edges/facing_upload.hpp"
 

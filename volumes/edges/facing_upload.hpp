@@ -10,7 +10,8 @@
 
 namespace penumbra::volumes {
 
-/// Triangles and points as silhouette_facing.comp reads them, with the error bounds of README.md (Bounds) beside them.
+/// Triangles and points as silhouette_facing.comp reads them, with the error bounds of volumes/README.md (Bounds)
+/// beside them.
 class FacingUpload {
  public:
   /// `positions`: of the mesh; fixes the power of two that brings their largest coordinate into [1, 2).

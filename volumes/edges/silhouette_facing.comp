@@ -5,7 +5,7 @@
 #include "volumes/edges/silhouette.shared.h"
 
 // On which side of every triangle is one point? One lane for each triangle. A sign counts only beyond its error bound
-// (README.md, Bounds); a triangle whose sign is within it gets both bits and goes on a list for the host. No branch on
+// (volumes/README.md, Bounds); a triangle whose sign is within it gets both bits and goes on a list for the host. No branch on
 // the way.
 
 layout(local_size_x = 64) in;

@@ -1,4 +1,4 @@
-// Determinants in double with a bound of their error (README.md, Doubt).
+// Determinants in double with a bound of their error (volumes/README.md, Doubt).
 
 struct Value {
   double value, bound;

@@ -23,7 +23,8 @@ struct ScreenBox {
   std::array<glm::vec2, 4> corners;
 };
 
-/// Where the rasteriser has to look for the pixels of a face. It only proposes: shaders decide (README.md, Counting).
+/// Where the rasteriser has to look for the pixels of a face. It only proposes: shaders decide (volumes/README.md,
+/// Counting).
 class BoxFinder {
  public:
   explicit BoxFinder(const visibility::PinholeCamera& camera);

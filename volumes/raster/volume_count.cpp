@@ -2,7 +2,7 @@
 // real time, 1991; beyond the pixel's surface (B. Bilodeau, M. Songy 1999; J. Carmack 2000) and out to infinity
 // (C. Everitt, M. Kilgard, Practical and robust stenciled shadow volumes, 2002). Departures: integers in a buffer in
 // place of a stencil, which wraps; any soup, by signed multiplicity; the far end is a fan a silhouette edge, not a cap
-// a triangle; the rasteriser proposes, and signs in double decide (README.md, Counting).
+// a triangle; the rasteriser proposes, and signs in double decide (volumes/README.md, Counting).
 
 #include "volumes/raster/volume_count.hpp"
 

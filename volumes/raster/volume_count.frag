@@ -6,7 +6,7 @@
 #include "volumes/raster/determinant.glsl"
 
 // Where does the ray from p away from the eye (z-fail), or the segment from the eye to p (z-pass), go through this face
-// of shadow volumes, and in or out? Signs of determinants in double that must all be one sign; README.md, Counting,
+// of shadow volumes, and in or out? Signs of determinants in double that must all be one sign; volumes/README.md, Counting,
 // derives which. Where it depends on a sign that may be due to rounding, the pixel is marked and the host counts.
 //
 // P, A, B: p, a, b from l.  D: p from the eye.  (x, y, z): their determinant.

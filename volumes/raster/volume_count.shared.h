@@ -13,8 +13,8 @@ using glm::vec3;
 #define DOUBLE3(name) f64vec3 name
 #endif
 
-/// |error| of a 3 × 3 determinant of differences, relative to the product of its rows' 1-norms (README.md, Bounds):
-/// 2⁻⁴⁸.
+/// |error| of a 3 × 3 determinant of differences, relative to the product of its rows' 1-norms (volumes/README.md,
+/// Doubt): 2⁻⁴⁸.
 const double kDeterminantError = 1.0 / 281474976710656.0;
 
 /// A face of shadow volumes: a side (edge a b, k_e in weight), its fan at the far end (the same), or a cap (a, b, c).
