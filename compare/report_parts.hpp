@@ -18,7 +18,7 @@ std::string escape_html(std::string_view text);
 
 std::string count_text(std::uint64_t count);               ///< 1 234 567, with narrow no-break spaces
 std::string error_text(double error);                      ///< three significant digits: 0, 0.0123, 1.2e-5
-std::string signed_text(double error);                     ///< the same with its sign: +0.0123
+std::string signed_text(double error);                     ///< an error with its sign: +0.0123
 std::string percent_text(double share);                    ///< 1.23 %
 std::string seconds_text(const std::optional<double>& s);  ///< 12.3 ms, 1.23 s, – if not measured
 std::string bytes_text(std::uint64_t bytes);               ///< 12.3 MiB

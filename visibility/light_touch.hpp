@@ -10,8 +10,8 @@
 namespace penumbra::visibility {
 
 /// What lies on a light. Light samples are stored in float32, up to a unit in the last place off the light's plane:
-/// before or behind a triangle that lies in that plane, or ends in it. Methods that leave out what is not before the
-/// plane cannot know which; they leave such light samples to the exact decision.
+/// in front of or behind a triangle that lies in that plane, or ends in it. Methods that leave out what is not in front
+/// of the plane cannot know which; they leave such light samples to the exact decision.
 struct LightTouch {
   /// A view sample whose height over the light's plane is less than this share of its distance from the farthest light
   /// sample sees what is near the plane from so flat that any light sample may be concerned, if something is near.

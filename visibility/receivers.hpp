@@ -13,7 +13,7 @@ namespace penumbra::visibility {
   return scene.emits[triangle] < 0 && scene.receives_shadow[triangle] != 0;
 }
 
-/// The same of what a pixel sees; background is none.
+/// Does the surface that a pixel shows receive shadow? Background does not.
 [[nodiscard]] inline bool is_receiver(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel) {
   const std::int32_t carrier = samples.triangle[pixel];
   return carrier != ViewSamples::kBackground && is_receiver(scene, static_cast<std::uint32_t>(carrier));

@@ -4,8 +4,8 @@
 #include "volumes/edges/edge_scatter.glsl"
 #include "volumes/counters/depth_complexity.shared.h"
 
-// Second pass of depth complexity, a workgroup a view sample: one counter a light sample. D, the number of triangles before
-// a light point, is counted triangle by triangle at the corner c0 of the light's frame. On the straight way from c0 to a
+// Second pass of depth complexity, a workgroup a view sample: one counter a light sample. D, the number of triangles
+// between p and a light point, is counted triangle by triangle at the corner c0 of the light's frame. On the straight way from c0 to a
 // light sample it changes by k_e(p) wherever the way crosses a projected edge. One lane an edge while edges are projected,
 // one lane a light sample while they are counted. Light samples as near to an edge as rounding reaches are asked about.
 // What is right about this, and every bound: docs/depth-complexity.md.

@@ -4,7 +4,7 @@
 #include "volumes/edges/edge_scatter.glsl"
 
 // Second pass of edge scatter, a workgroup a few neighbouring view samples (one a lane) and a band of light rows: how many
-// triangles stand before each light sample. D at the light's lower left corner is counted triangle by triangle. From
+// triangles are between p and each light sample. D at the light's lower left corner is counted triangle by triangle. From
 // there it changes by ∓k_e(p) at each projected edge: up the light's left side, then along each row. Edges are scattered
 // into a histogram [column][row] of such changes, in bytes; one running sum makes depths of them.
 // Derivation, bounds and what becomes of light rows that rounding leaves open: docs/edge-scatter.md.

@@ -19,7 +19,7 @@ inline constexpr double kSingleLayer = 1e-7;
 struct CoveragePoint {
   LitPoint sample;
   double center = 0, receiver = 0;  ///< `blocked` by the centre's silhouettes, by the receiver's own
-  double layers = 0;                ///< the same of the receiver, each triangle by itself (layer_areas.hpp)
+  double layers = 0;                ///< the receiver's `blocked`, summed triangle by triangle (layer_areas.hpp)
   double overlap = 0;               ///< of layers; beyond `kMostOverlap` it was not summed further
   double tolerance = kCoverageTolerance;
   bool touches_light = false;  ///< something meets the light itself: nothing is held against anything

@@ -45,7 +45,7 @@ struct CoveredEdge {
 struct LayerSum {
   bool in_front = false;       ///< of the light; if not, nothing else is set, and V = 0
   glm::vec3 reference{0};      ///< the point of the light that areas are seen from: its centre, unless edges end there
-  glm::dvec2 reference_at{0};  ///< the same in frame coordinates
+  glm::dvec2 reference_at{0};  ///< the reference point in frame coordinates
   bool moved = false;          ///< it is not the centre
   std::int32_t constant = 0;   ///< layers at the reference point. Exact
   std::vector<CoveredEdge> edges;  ///< by their numbers; those that appear on the light

@@ -33,7 +33,8 @@ class TextureWeights {
   };
   [[nodiscard]] double beyond(const Edge& edge, const glm::dvec2& reference) const;
 
-  /// The same with those ways: what lies beyond the edge weighs just that, whatever other edges do.
+  /// As beyond(), but with the ways from the ends to the rim: the weight of what lies beyond this edge, whatever other
+  /// edges add.
   [[nodiscard]] double weight_beyond(const Edge& edge, const glm::dvec2& reference) const;
 
   /// Of a polygon within the light, counter-clockwise.
