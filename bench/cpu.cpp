@@ -64,7 +64,7 @@ std::vector<CpuEntry> measure_edges(std::uint64_t triangles, std::uint32_t runs)
   return entries;
 }
 
-/// A knot of at least so many edges: 3 · segments · sides.
+/// A knot with at least this many edges; a knot has 3 · segments · sides of them.
 mesh::TriangleSoup knot_with_edges(std::uint64_t edges) {
   const double sides = std::max(3.0, std::floor(std::sqrt(static_cast<double>(edges) / 12)));
   mesh::KnotShape knot;

@@ -15,10 +15,10 @@ namespace penumbra::bench {
 struct CpuEntry {
   std::string name;  ///< stable: "cpu/edge-graph/triangles=5000", "cpu/wedges/tight/edges=1000000"
   std::uint64_t triangles = 0, edges = 0;
-  std::uint64_t items = 0;           ///< that were made: edges, records, wedges
+  std::uint64_t items = 0;           ///< how many were made: edges, records, wedges
   std::vector<double> seconds;       ///< of the timed runs, in order
   std::optional<double> growth;      ///< median ÷ that of the mesh before
-  std::optional<double> host_ratio;  ///< of a device: its twin's median on the processor ÷ its own
+  std::optional<double> host_ratio;  ///< only of a device: the median of its twin on the processor ÷ its own
   std::string device;                ///< empty: the processor
   std::map<std::string, std::uint64_t> counts;
   std::map<std::string, double> passes;  ///< of a device: milliseconds of each, as `seconds`

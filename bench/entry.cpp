@@ -22,16 +22,16 @@ app::MethodEntry oracle_entry() {
   return entry;
 }
 
-/// A contestant and what it was asked: which light samples.
+/// A contestant, and which light samples it is asked about.
 struct Rival {
   std::unique_ptr<Runner> runner;
   std::string name;
   bool jittered = false;
   bool adaptive = false;
-  bool left_out = false;  ///< of the present question
+  bool left_out = false;  ///< for the present question
 };
 
-/// All who are asked about one subject.
+/// All contestants that are asked about one subject.
 class Field {
  public:
   Field(const Ground& ground, const Options& options)
@@ -110,7 +110,7 @@ std::vector<Contestant> Field::answer(std::uint32_t samples, const ReferenceVisi
   };
   std::vector<Rival*> running;
   for (Rival& rival : rivals_) {
-    rival.left_out = rival.adaptive && samples <= 64;  // what it would ask first is all there is
+    rival.left_out = rival.adaptive && samples <= 64;  // its first step would already be all of them
     attempt_on(rival, [&] {
       rival.runner->ask(rival.jittered ? jittered : question);
       rival.runner->run(false);

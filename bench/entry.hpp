@@ -44,22 +44,22 @@ struct Contestant {
 
 struct Entry {
   std::string subject;                                   ///< stable name
-  std::string name;                                      ///< the same with "/n=N" where N was asked for
+  std::string name;                                      ///< the subject's name, with "/n=N" where N was asked for
   std::uint64_t triangles = 0, pixels = 0, samples = 0;  ///< pixels with A = 1; light samples
   std::uint32_t width = 0, height = 0;
-  double load_before = 0;  ///< of the machine, mean of the last minute: above what this process itself makes, distrust
+  double load_before = 0;  ///< the machine's, mean of the last minute; above this process's own: distrust the times
   std::string reference;   ///< what error_to_reference is against, over how many pixels; empty: nothing
   std::uint64_t reference_pixels = 0;
   std::vector<Contestant> contestants;  ///< methods, peers, raytrace
 };
 
-/// Of that name, or nothing.
+/// The contestant of that name, or null.
 const Contestant* find_contestant(const Entry& entry, const std::string& name);
 
 /// Asks all contestants about one subject, once for each number of light samples, on the same view samples and (except
 /// for jittered peers) light samples. They take turns: a run of each, then the next run of each, so that whatever else
-/// the machine does meets them alike. The first run of each is discarded. Contestants that fail are left out and said
-/// so on stderr.
+/// the machine does affects all of them equally. The first run of each is discarded. Contestants that fail are left
+/// out, with a line on stderr.
 void measure(const Subject& subject, const Options& options, const render::Device& device,
              const std::function<void(const Entry&)>& sink);
 

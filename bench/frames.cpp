@@ -19,9 +19,9 @@ namespace {
 using volumes::WedgeBuilder;
 using volumes::WedgesOn;
 
-constexpr std::uint32_t kFrames = 8;  // of a run
+constexpr std::uint32_t kFrames = 8;  // in one run
 
-/// The knot's light on a circle around where it was.
+/// The knot's light at places on a circle around its original place.
 std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, const glm::dvec3& origin) {
   scenes::Scene scene = still;
   std::vector<visibility::Light> lights;
@@ -35,7 +35,7 @@ std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, con
   return lights;
 }
 
-/// One of the two that take turns.
+/// One of the two that take turns: the host and the device.
 struct Rival {
   Rival(const char* called, WedgesOn on, const render::Device& device, const visibility::SceneFloats& floats)
       : name(called), builder(device, {.on = on}) {

@@ -8,10 +8,10 @@
 
 namespace penumbra::bench {
 
-/// --wedges-per-frame: what a light that moves needs anew each frame (volumes/raster/wedge_builder.hpp: facings,
-/// silhouettes, wedges, and the lists that volumes are counted by), built by the device and by its twin on the
-/// processor, in turns on the same places of the light; on knots of growing size. Seconds are those of one frame.
-/// Throws std::logic_error if the two find different silhouettes.
+/// --wedges-per-frame: what has to be built again in each frame for a light that moves
+/// (volumes/raster/wedge_builder.hpp: facings, silhouettes, wedges, and the lists that volumes are counted by). The
+/// device and its twin on the processor build it in turns, for the same places of the light, on knots of growing size.
+/// Seconds are those of one frame. Throws std::logic_error if the two find different silhouettes.
 void measure_frames(const Options& options, const render::Device& device,
                     const std::function<void(const CpuEntry&)>& sink);
 

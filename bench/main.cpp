@@ -19,8 +19,8 @@ namespace {
 
 using namespace penumbra;
 
-/// The table on stdout and, if wanted, the lines in a file: each as soon as there is something to say, since a long run
-/// is watched and may be cut short.
+/// The table on stdout and, if wanted, the lines in a file. Both are written as soon as there is a result, since a long
+/// run is watched and may be stopped.
 class Output {
  public:
   explicit Output(const bench::Options& options) : path_(options.json) {

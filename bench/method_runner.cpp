@@ -14,8 +14,8 @@ namespace {
 
 using visibility::PixelClass;
 
-/// Pairs over a tile's pixels with A = 1. Emitters and what receives no shadow are visible by the host's rule, whatever
-/// a method made of them: their pairs count, and none differs.
+/// Pairs over a tile's pixels with A = 1. Emitters and surfaces that receive no shadow are visible by the host's rule,
+/// whatever a method computes for them: their pairs are counted, and none of them differs.
 compare::PairCounts count_pairs(const Question& question, const visibility::Tile& tile,
                                 std::span<const std::uint32_t> masks) {
   const std::size_t width = question.ground.samples.width, first = tile.first_row * width;
@@ -91,7 +91,7 @@ Runner::Seconds MethodRunner::run_once(const Question& question, std::vector<flo
   app::Stopwatch watch;
   method_->prepare_light(question.light);
   seconds.light = watch.seconds();
-  method_->prepare_view(question.ground.samples);  // shared by all methods, in none's time
+  method_->prepare_view(question.ground.samples);  // shared by all methods, so in no method's time
   method_->take_pass_times();
   const std::uint32_t step = method_->max_tile_rows(), height = question.ground.samples.height;
   const std::size_t width = question.ground.samples.width;

@@ -34,7 +34,7 @@ const char* const kHelp =
                        of raytrace: 1 to 1048576 (default 16384)
   --sample-pixels N    of exact: how many pixels in penumbra (default 2000), or all
   --runs N             timed runs after one that is discarded (default 5)
-  --budget SECONDS     who has used as much in timed runs gets no other
+  --budget SECONDS     a contestant whose timed runs have used as much gets no further run
   --cpu                instead of methods: edge graphs, edge records, hierarchies and penumbra wedges on the processor
   --wedges-per-frame   instead of methods: silhouettes and wedges of a light that moves, built anew on the device and,
                        in turns with it, on the processor
@@ -102,7 +102,7 @@ void add_methods(std::vector<app::MethodEntry>& methods, const std::string& text
   }
 }
 
-/// Command line as it is read; what was not given gets its default at the end.
+/// The command line while it is read; set_defaults fills in what was not given.
 struct Reading {
   Options options;
   SubjectRequest subjects;

@@ -10,7 +10,7 @@
 
 namespace penumbra::bench {
 
-/// What a ray caster is asked to do (README.md, peers).
+/// What a ray caster is asked to do (bench/README.md, "What is measured").
 enum class RayWork {
   all,         ///< "plain-rays": every view sample
   nontrivial,  ///< "nontrivial-rays": those of blocks in which V is neither 0 nor 1 throughout
@@ -31,19 +31,19 @@ struct Options {
   std::vector<app::MethodEntry> methods;     ///< their labels are contestants' names, with options as given
   std::vector<Peer> peers;                   ///< beside plain-rays, which always runs
   std::vector<std::uint32_t> light_samples;  ///< 256 if none were asked for
-  bool samples_in_name = false;              ///< they were asked for
+  bool samples_in_name = false;              ///< the user asked for them
   Reference reference = Reference::none;
   std::uint32_t reference_samples = 16384;
   std::string sample_pixels = "2000";  ///< of the exact reference
-  std::uint32_t runs = 5;              ///< timed ones, after one that is discarded
-  double budget = 0;                   ///< seconds: who has used as many in timed runs gets no other; 0: no limit
-  std::string device;                  ///< as `penumbra --device` takes it
+  std::uint32_t runs = 5;              ///< timed runs, after one that is discarded
+  double budget = 0;   ///< seconds; a contestant whose timed runs have used as much gets no further run; 0: no limit
+  std::string device;  ///< as `penumbra --device` takes it
   std::filesystem::path json, picture;
   std::string commit;
-  bool cpu = false;                      ///< the parts that run on the processor, not methods
-  bool frames = false;                   ///< silhouettes and wedges of a moving light, on device and processor
+  bool cpu = false;                      ///< time the parts that run on the processor, not methods
+  bool frames = false;                   ///< time silhouettes and wedges of a moving light, on device and processor
   std::vector<std::uint64_t> triangles;  ///< --cpu, --wedges-per-frame: of the knots
-  std::uint64_t edges = 1'000'000;       ///< --cpu: that get wedges
+  std::uint64_t edges = 1'000'000;       ///< --cpu: how many edges get wedges
   bool help = false;
 };
 

@@ -12,7 +12,7 @@ namespace penumbra::bench {
 namespace {
 
 constexpr double kWidth = 420, kHeight = 340;                       // of a panel, in pixels
-constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46;  // of it, around the plot
+constexpr double kLeft = 62, kRight = 14, kTop = 30, kBottom = 46;  // a panel's margins around its plot
 constexpr std::size_t kAcross = 3;                                  // panels side by side
 constexpr double kLegendLine = 18, kTitle = 58;                     // heights
 constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -33,7 +33,7 @@ struct Panel {
   std::vector<Curve> curves;
 };
 
-/// Whole decades.
+/// An axis over whole decades.
 struct Axis {
   int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
 
@@ -126,7 +126,7 @@ std::string text(double x, double y, const std::string& words, std::string_view 
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", x, y, more, escaped(words));
 }
 
-/// Where a value lies in the panel.
+/// Where a value is drawn in a panel.
 struct Frame {
   const Picture& picture;
 
@@ -167,7 +167,7 @@ std::string draw_curve(const Frame& frame, const Curve& curve, const std::string
                          kColours[curve.contestant % kColours.size()],
                          escaped(fmt::format("{}, {} light samples: {:.4g} s, RMSE {:.3g}", name, point.samples,
                                              point.seconds, point.rmse)));
-    if (curve.contestant == 0 || name == "plain-rays")  // all in a row would hide one another
+    if (curve.contestant == 0 || name == "plain-rays")  // labels of all contestants would cover one another
       marks += text(x + 5, y - 4, std::to_string(point.samples), " class=\"small\"");
   }
   if (line.empty()) return "";

@@ -62,7 +62,7 @@ bool asks(PixelClass c) {
   return c == PixelClass::judged || c == PixelClass::horizon || c == PixelClass::behind;
 }
 
-/// Does V of those view samples of a block that ask settle on one number, 0 or 1?
+/// Do all view samples of a block that are evaluated (asks) have one V, which is 0 or 1?
 bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top) {
   const visibility::ViewSamples& samples = question.ground.samples;
   bool lit = false, dark = false;

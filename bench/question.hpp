@@ -26,27 +26,28 @@ Ground make_ground(const Subject& subject, const render::Device& device);
 visibility::Light light_of(const Ground& ground, std::uint32_t samples,
                            visibility::SamplePattern pattern = visibility::SamplePattern::rows, std::uint32_t seed = 0);
 
-/// What all contestants are asked, and what the oracle (`raytrace`) says to it.
+/// What all contestants are asked, and what the oracle (`raytrace`) answers.
 struct Question {
   const Ground& ground;
   const visibility::Light& light;
   std::vector<float> truth;          ///< V of each pixel; empty until the oracle has run
-  std::vector<std::uint32_t> masks;  ///< its masks; empty where nobody compares pairs
+  std::vector<std::uint32_t> masks;  ///< the oracle's masks; empty if no pairs are compared
 };
 
-/// V that owes nothing to the light samples of a question.
+/// V that does not depend on the light samples of a question.
 struct ReferenceVisibility {
   std::string name;                   ///< "raytrace at 16384 light samples", "exact"
-  std::vector<float> visibility;      ///< of each pixel
-  std::vector<std::uint32_t> pixels;  ///< that are compared
+  std::vector<float> visibility;      ///< one for each pixel
+  std::vector<std::uint32_t> pixels;  ///< those that are compared
 };
 /// raytrace: Owen-scrambled Sobol samples in passes of up to 4096, each with a seed of its own, over judged pixels.
 /// exact: over the pixels chosen among those that are judged and in penumbra by 64 light samples.
 ReferenceVisibility make_reference(const Ground& ground, const Options& options);
 
-/// The pixels that the fair peer must still ask about: those of 8 × 8 blocks in which V is 0 < V < 1 somewhere or
-/// differs, among the view samples that ask at all (no background, emitter or receiver without shadow). Elsewhere a
-/// block is lit or dark throughout, as far as the light samples know. One entry a pixel, 1 where it must.
+/// The pixels that the fair peer must still trace: those of the 8 × 8 blocks in which V is between 0 and 1 somewhere,
+/// or is not the same everywhere, among the view samples that are evaluated at all (no background, emitter or receiver
+/// without shadow). All other blocks are lit or dark throughout, as far as the light samples can tell. One entry for
+/// each pixel, 1 where it must be traced.
 std::vector<std::uint8_t> nontrivial_pixels(const Question& question);
 
 }  // namespace penumbra::bench

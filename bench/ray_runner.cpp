@@ -12,7 +12,7 @@ namespace {
 
 using visibility::ViewSamples;
 
-constexpr std::uint32_t kFewSamples = 64;  // what the adaptive peer asks everywhere
+constexpr std::uint32_t kFewSamples = 64;  // what the adaptive peer traces everywhere
 
 }  // namespace
 
@@ -92,7 +92,7 @@ Runner::Seconds RayRunner::run_once(const Question& question, std::vector<float>
   watch.restart();
   rays_.rays().evaluate(chosen_, visibility);
   seconds.evaluate = watch.seconds();
-  if (peer_.work == RayWork::nontrivial) {  // the rest was known to it, and is in no time
+  if (peer_.work == RayWork::nontrivial) {  // it was told the rest, which costs it no time
     for (std::size_t i = 0; i < visibility.size(); ++i) {
       if (chosen_.triangle[i] == ViewSamples::kBackground) visibility[i] = question.truth[i];
     }

@@ -15,7 +15,7 @@
 
 namespace penumbra::bench {
 
-/// Something that answers questions and is timed. `question` outlives its runs.
+/// A contestant: it answers questions and is timed. `question` must outlive its runs.
 class Runner {
  public:
   virtual ~Runner() = default;
@@ -28,7 +28,7 @@ class Runner {
   [[nodiscard]] std::span<const float> visibility() const { return visibility_; }
   /// `light` + `evaluate` of all timed runs.
   [[nodiscard]] double spent() const;
-  /// All but errors.
+  /// Everything but the errors.
   [[nodiscard]] virtual Contestant result() const = 0;
 
  protected:
@@ -45,14 +45,14 @@ class Runner {
   std::vector<float> visibility_;
 };
 
-/// A method of the program, on a Vulkan device of its own (if it needs one): a device knows the memory that it gave,
-/// not to whom.
+/// A method of the program, on a Vulkan device of its own (if it needs one), because a device knows how much memory it
+/// gave, but not to whom.
 class MethodRunner final : public Runner {
  public:
   MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device);
 
   [[nodiscard]] Contestant result() const override;
-  /// For the oracle: its masks go there in the discarded run, and no pairs are counted.
+  /// For the oracle: in the discarded run its masks are stored there, and no pairs are counted.
   void keep_masks(std::vector<std::uint32_t>& masks) { kept_ = &masks; }
 
  private:
@@ -83,7 +83,7 @@ class FastestRays {
   double mesh_ = 0;
 };
 
-/// A peer.
+/// A ray caster that methods are compared with.
 class RayRunner final : public Runner {
  public:
   RayRunner(Peer peer, const Ground& ground, FastestRays& rays);
@@ -98,9 +98,9 @@ class RayRunner final : public Runner {
 
   Peer peer_;
   FastestRays& rays_;
-  visibility::ViewSamples chosen_;  ///< those to ask about; the others are background
-  visibility::Light few_;           ///< what the adaptive one asks first
-  std::vector<float> all_samples_;  ///< adaptive: V where it asked again
+  visibility::ViewSamples chosen_;  ///< the view samples to ask about; the others are set to background
+  visibility::Light few_;           ///< adaptive: the light samples of its first step
+  std::vector<float> all_samples_;  ///< adaptive: V from all light samples
   std::uint64_t asked_ = 0;         ///< view samples that got all light samples
 };
 

@@ -51,7 +51,7 @@ Subject find_subject(const std::string& scene) {
   if (scene.starts_with(kKnot)) {
     const auto triangles = app::parse_integer<std::uint64_t>(std::string_view(scene).substr(kKnot.size()));
     if (!triangles) throw UsageError("--scene {}: expected a number of triangles, such as knot:5000", scene);
-    static_cast<void>(knot_of(*triangles));  // says now if there is none
+    static_cast<void>(knot_of(*triangles));  // throws now if there is no such knot
     subject.knot = *triangles;
     subject.name = fmt::format("knot-{}", *triangles);
   } else {
@@ -122,7 +122,8 @@ scenes::Scene read_subject(const Subject& subject) {
 }
 
 mesh::KnotShape knot_of(std::uint64_t triangles) {
-  // Of the ways to share the triangles between sides and segments, the one nearest to four times as many segments.
+  // Of the ways to divide the triangles into sides and segments, the one whose number of segments is nearest to four
+  // times that of its sides.
   constexpr std::uint64_t kFewest = 3;
   const double wanted = std::sqrt(static_cast<double>(triangles) / 8);
   std::uint64_t best = 0;

@@ -38,7 +38,7 @@ scenes::Scene read_subject(const Subject& subject);
 /// knot has 2 · segments · sides.
 mesh::KnotShape knot_of(std::uint64_t triangles);
 
-/// That knot above a floor under a square light, seen as the default scene is.
+/// That knot above a floor under a square light, seen by a camera like that of the default scene.
 scenes::Scene knot_scene(std::uint64_t triangles);
 
 }  // namespace penumbra::bench
