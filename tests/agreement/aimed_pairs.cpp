@@ -1,4 +1,5 @@
-// Bounds of error, aimed at: every pair of scenes where all that casts shadow passes pairs within float rounding.
+// Error bounds, tested where they matter: every pair of scenes in which all casters pass segments of pairs within float
+// rounding.
 
 #include "tests/agreement/aimed_scene.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -32,8 +33,8 @@ class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<
                under_test.name, name_of(aim), counts.pairs, counts.visible, counts.blocked, counts.zero, open);
     EXPECT_GT(counts.visible, counts.pairs / 20);
     EXPECT_GT(aim == Aim::horizon ? counts.horizon : counts.blocked, counts.pairs / 100);
-    // What is aimed at within rounding cannot all be certain. (View-sample on vector units does not count the light
-    // samples that it asks double about.)
+    // Not every pair that is aimed at within rounding can be certain. (View-sample on vector units does not count the
+    // light samples that it decides in double.)
     EXPECT_TRUE(open > 0 || under_test.make == tests::kNativeViewSample.make);
   }
   [[nodiscard]] static bool on_device() {

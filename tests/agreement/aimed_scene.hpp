@@ -1,8 +1,8 @@
 #pragma once
 
 // Scenes in which everything happens within float rounding of a pair: each view sample has a triangle of its own that
-// is aimed at one of its light samples. What a bound of error is too small for is decided wrongly here, and exact
-// predicates tell.
+// is aimed at one of its light samples. Where an error bound is too small, some pair is decided wrongly, and exact
+// predicates show it.
 
 #include "tests/agreement/support.hpp"
 
@@ -16,7 +16,7 @@
 
 namespace penumbra::tests {
 
-/// What passes a pair's segment, or what else it comes near.
+/// What of a triangle passes a pair's segment, or what else the segment comes near.
 enum class Aim : std::uint8_t {
   edge,     ///< an edge through the light sample, as seen from p
   corner,   ///< an edge through the light's corner, where rows and columns begin
@@ -24,7 +24,7 @@ enum class Aim : std::uint8_t {
   vertex,   ///< a vertex on the light sample
   row,      ///< a vertex at the height of a row
   sliver,   ///< p in the triangle's plane, and near the triangle's edges or in it
-  grazing,  ///< an edge just above p, seen far off
+  grazing,  ///< an edge just above p, which appears far away
   horizon,  ///< p's own plane through the light sample
 };
 inline constexpr std::array kAims{Aim::edge, Aim::corner, Aim::left,    Aim::vertex,
@@ -70,7 +70,8 @@ class AimedScene {
       places.push_back(st);
       const glm::dvec3 a = rounded(carrier[0]), b = rounded(carrier[1]), c = rounded(carrier[2]);
       points.emplace_back(glm::vec3(a + st.x * (b - a) + st.y * (c - a)));
-      // Not at all of them: where view samples are near one another each has all triangles before it.
+      // Not at all of them: where view samples are near one another, all triangles are between each of them and the
+      // light.
       const std::uint32_t every = aim_ == Aim::sliver || aim_ == Aim::grazing ? 8 : 3;
       if (aim_ != Aim::horizon && i % every == 0)
         casters.push_back(aimed(glm::dvec3(points.back()), glm::dvec3(l), size));
@@ -94,7 +95,7 @@ class AimedScene {
   glm::dvec3 vector() { return glm::dvec3(real(), real(), real()) + glm::dvec3(0x1p-30); }
   static glm::dvec3 rounded(const glm::dvec3& x) { return glm::dvec3(glm::vec3(x)); }
 
-  /// The triangle of a pair.
+  /// The triangle that is aimed at a pair.
   Corners aimed(const glm::dvec3& p, glm::dvec3 l, double light_size) {
     const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
                                            v = glm::dvec3(light.center_v) - center;
@@ -103,10 +104,10 @@ class AimedScene {
     if (aim_ == Aim::left) l -= (1 + s) * u;
     if (aim_ == Aim::row) l += 2 * real() * u;
     const glm::dvec3 way = l - p;
-    // As seen from p it covers a few light samples, and now and then much more.
+    // As seen from p it covers a few light samples, and sometimes many more.
     const double share = 0.05 + 0.9 * positive();
     double size = share * light_size * (random_() % 8 == 0 ? 4 : std::exp2(-0.5 - 2.5 * positive()));
-    // Where an edge passes the corner matters most if no light row crosses it: half a cell is an eighth of the light.
+    // An edge that passes the corner matters most if no light row crosses it: half a cell is an eighth of the light.
     if (aim_ == Aim::corner && random_() % 2 == 0) size /= 16;
     const glm::dvec3 at = p + share * way, e = glm::normalize(vector()), f = glm::normalize(vector());
     switch (aim_) {
@@ -119,7 +120,7 @@ class AimedScene {
         const double alpha = inside ? -positive() : positive(), beta = inside ? -positive() : real();
         return {a, b, p + alpha * (a - p) + beta * (b - p)};
       }
-      case Aim::grazing: {  // low over p: its places are far off, or as near as a small height lets them
+      case Aim::grazing: {  // low over p: its ends appear far away, or as near as a small height allows
         const double low = std::exp2(-4 - 16 * positive());
         const glm::dvec3 near = p + low * way, along = glm::normalize(glm::cross(way, e));
         const double wide = 16 * low / share * size;

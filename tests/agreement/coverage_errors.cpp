@@ -76,7 +76,8 @@ TEST(CoverageErrors, OfACubeAreLarge) {
       record(fmt::format("cube {}, light of half-size {}", below ? "below" : "beside", half), errors);
       EXPECT_LT(errors.receiver_max, 1e-9);
       EXPECT_GT(errors.partly, 30);
-      // Right below it, a light no larger than the cube looks past its top alone, as every p does.
+      // If the cube is right below the light, and the light is no larger than it, the centre's silhouette is the
+      // outline of the cube's top alone, as it is for every p.
       const bool sees_top_alone = below && half <= 0.5;
       EXPECT_EQ(errors.center_max > 0.05, !sees_top_alone);
       EXPECT_LT(errors.center_max, sees_top_alone ? 1e-9 : 0.35);
@@ -85,7 +86,8 @@ TEST(CoverageErrors, OfACubeAreLarge) {
 }
 
 TEST(CoverageErrors, OfConvexSheetsInOnePlaneAreNone) {
-  // A quad and a hexagon that do not overlap, on a plane that misses the light: right by the centre's silhouettes.
+  // A quad and a hexagon that do not overlap, on a plane that misses the light: the centre's silhouettes give the right
+  // answer.
   std::mt19937 random(11);
   int partly = 0;
   for (int i = 0; i < 60; ++i) {
@@ -111,8 +113,8 @@ TEST(CoverageErrors, OfConvexSheetsInOnePlaneAreNone) {
   EXPECT_GT(partly, 300);
 }
 
-/// What triangles that p and the light's centre see from one side hide, each by itself: of closed parts once, of open
-/// ones twice (docs/coverage.md, Centre silhouettes).
+/// What is hidden by the triangles that p and the light's centre see from the same side, each by itself: of closed
+/// parts once, of open ones twice (docs/coverage.md, Centre silhouettes).
 double predicted_error(const CoverageStage& stage, const glm::vec3& p, int times) {
   std::vector<std::array<glm::vec3, 3>> same_side;
   for (const std::uint32_t triangle : stage.casters.triangle) {
@@ -258,7 +260,8 @@ TEST(CoverageErrors, SolidsThatShadowThemselvesAddUpToTheirLayers) {
 }
 
 TEST(CoverageErrors, WhatCrossesTheLightIsSetApart) {
-  // A board that stands across the light's plane: within the light it is not judged, beside it it is.
+  // A board that crosses the light's plane: if it crosses within the light nothing is judged, if it crosses beside the
+  // light everything is.
   for (const double at : {0.25, 1.5}) {
     scenes::Scene scene = still_life();
     tests::add_object(scene, "board", tests::quad({0.5 + at, 4, 0.5}, {0, 0.5, 0}, {0.125, 0, 0.25}));
@@ -272,7 +275,7 @@ TEST(CoverageErrors, WhatCrossesTheLightIsSetApart) {
 TEST(CoverageErrors, AWrongEdgeIsFound) {
   const tests::Stage stage(still_life(), 32, 24);
   const Casters casters = casters_of(stage.floats, stage.light);
-  // The sheet's four open edges: one of them the other way around.
+  // Each of the sheet's four open edges is turned around, one at a time.
   for (std::uint32_t edge = 0; edge < casters.graph.edges.size(); ++edge) {
     const auto around = casters.graph.around(edge);
     if (around.size() != 1 || stage.floats.object[casters.triangle[around[0].triangle]] != 4) continue;
@@ -287,7 +290,7 @@ TEST(CoverageErrors, AMissingTriangleIsFound) {
   visibility::SceneFloats without = stage.floats;
   const auto sheet = std::ranges::find(without.object, 4U) - without.object.begin();
   without.casts_shadow[static_cast<std::size_t>(sheet)] = 0;
-  // Edges and triangles agree about what is left; only the union knows better.
+  // Edges and triangles agree about what is left; only the union shows the error.
   const Checked checked = check(stage, casters_of(without, stage.light));
   EXPECT_FALSE(checked.report.violations.empty());
 }

@@ -42,7 +42,7 @@ struct Found {
   double most = 0;
 };
 
-/// As CoverageAgreement.TheReceiversSilhouettesAddUpToItsLayers, with `tolerance` of each.
+/// Checks as CoverageAgreement.TheReceiversSilhouettesAddUpToItsLayers does, each sum to within `tolerance`.
 void expect_layers(const CoverageStage& stage, std::mt19937& random, double tolerance, Found& found) {
   const TextureWeights* texture = stage.soft.texture();
   for (int j = 0; j < 20; ++j) {
@@ -94,8 +94,8 @@ TEST(CoverageLights, SpheresAreDisksThatFaceTheReceiver) {
   EXPECT_LT(found.most, 1e-9);
 }
 
-/// A vertex that appears at a sphere's centre: areas are seen from a point of the facing disk that floats only nearly
-/// hold.
+/// A vertex appears at a sphere's centre, so areas are seen from another point of the facing disk, which floats hold
+/// only nearly.
 TEST(CoverageLights, ASpheresReferencePointMoves) {
   const tests::Corners triangle{glm::dvec3(0.25, 0.75, 0), {1.25, 0.75, 0.25}, {0.5, 1, 1.25}};
   const CoverageStage stage(tests::soup_scene({triangle}, Lamp::sphere));
@@ -157,7 +157,7 @@ TEST(CoverageLights, ASphereIsTouchedByWhatReachesTheBall) {
   EXPECT_TRUE(touched({c, c + glm::dvec3(0.25, 0, 0), c + glm::dvec3(0, 0.25, 0)})) << "within it";
 }
 
-/// A wrong sum is found: the silhouettes of a scene with a board less are held against all of its triangles.
+/// A wrong sum is found: the silhouettes of a scene that lacks one board are held against all triangles.
 TEST(CoverageLights, TheInvariantIsCheckedOfThem) {
   std::mt19937 random(24);
   for (const bool sphere : {false, true}) {

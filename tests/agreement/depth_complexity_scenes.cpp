@@ -1,5 +1,5 @@
-// Depth complexity on the shipped scenes: every bit that of edge scatter and of view-sample mapping, which share hardly
-// any arithmetic with it, and hardly a bit other than the ray caster's.
+// Depth complexity on the shipped scenes: every bit equals that of edge scatter and of view-sample mapping, which share
+// hardly any arithmetic with it, and hardly any bit differs from the ray caster's.
 
 #include "tests/agreement/differences.hpp"
 

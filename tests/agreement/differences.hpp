@@ -93,7 +93,7 @@ class BothMethods {
   std::unique_ptr<visibility::Method> map_, trace_;
 };
 
-/// A floor under a rectangle light and, as an object of its own, the soup as it stands.
+/// A floor under a rectangle light and, as an object of its own, the soup without any change.
 inline scenes::Scene with_a_floor(const mesh::TriangleSoup& soup) {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));

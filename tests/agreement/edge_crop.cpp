@@ -33,7 +33,8 @@ struct ClusterList {
   std::vector<std::uint32_t> slots, pixels;
 };
 
-/// By number of cluster. Nothing of the scene may be behind the light or its body: slots are those of `records`.
+/// The lists, by number of cluster. Nothing in the scene may be behind the light or be its body, so that slots are
+/// those of `records`.
 std::vector<ClusterList> lists_of(const render::Device& device, const CropStage& stage, bool crops) {
   constexpr std::uint32_t kBlock = 8, kClusters = 4, kNone = 0xffffffffU, kHead = 2;  // as in edge_scatter.glsl
   const float scale = visibility::device_scale(stage.floats);
@@ -76,7 +77,7 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
   return lists;
 }
 
-/// k_e(p) of a record, in float: to be counted, not to be relied on.
+/// k_e(p) of a record, in float: good enough to be counted, not to decide anything.
 int multiplicity(const EdgeTexels& texels, std::uint32_t slot, const glm::vec3& p) {
   int sum = 0;
   for (const std::size_t side : {2U, 4U}) {
@@ -113,7 +114,7 @@ class EdgeCropBase : public tests::DeviceTest, public testing::WithParamInterfac
         GetParam(), size, size, pixels, reached / pixels, kept / pixels, silhouettes / pixels);
   }
 
-  /// Masks and V are the same.
+  /// Cropping changes neither masks nor V.
   void compare(std::uint32_t size, const std::vector<const char*>& variants) {
     const CropStage stage(device(), GetParam(), size);
     for (const char* variant : variants) {

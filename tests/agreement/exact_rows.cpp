@@ -21,8 +21,8 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// Both round to float once, which is 2⁻²⁵ of numbers up to 1; before it rows=exact is right to 2⁻²⁶
-/// (volumes::kProven), exact areas to 10⁻¹².
+/// Both round V to float once, by at most 2⁻²⁵ for numbers up to 1. Before that rows=exact is right to 2⁻²⁶
+/// (volumes::kProven), and the exact areas to 10⁻¹².
 constexpr double kTolerance = 2 * 0x1p-25 + 0x1p-26 + 1e-12;
 
 class ExactRows : public tests::DeviceTest {
@@ -56,8 +56,8 @@ class ExactRows : public tests::DeviceTest {
     std::size_t pixels = 0, partly = 0, unproven = 0, wrong = 0, wrong_form_factors = 0;
     double largest = 0, largest_form_factor = 0;
   };
-  /// As much of the light as V may be off by, seen from no nearer than the light is, and the rounding of some hundred
-  /// doubles.
+  /// The form factor of as much of the light as V may be off by, seen from no nearer than the light is, and the
+  /// rounding of some hundred doubles.
   static double form_factor_tolerance(const Light& light, const glm::vec3& p) {
     const glm::dvec3 center(light.center), d = glm::dvec3(p) - center;
     const glm::dvec3 u = glm::dvec3(light.center_u) - center, v = glm::dvec3(light.center_v) - center;
@@ -66,7 +66,7 @@ class ExactRows : public tests::DeviceTest {
     const glm::dvec3 nearest = d - s * u - t * v;
     return kTolerance * light.area / (std::numbers::pi * glm::dot(nearest, nearest)) + 1e-13;
   }
-  /// Adds what differs from the exact areas.
+  /// Adds to `found` what differs from the exact areas.
   static void compare(const SceneFloats& floats, const Light& light, const ViewSamples& samples, double tolerance,
                       Found& found) {
     const auto rows = make();
@@ -141,7 +141,7 @@ TEST_F(ExactRows, LatticeSoups) {
   EXPECT_GT(found.partly, found.pixels / 20);
 }
 
-/// Lamps that were wrong: black where the light is visible, or off by a few in a million.
+/// Lamps for which the answer was once wrong: black where the light is visible, or off by a few millionths.
 class ExactRowsOfLamps : public ExactRows, public testing::WithParamInterface<const char*> {};
 
 TEST_P(ExactRowsOfLamps, AreTheExactAreas) {
@@ -236,7 +236,7 @@ TEST_F(ExactRows, OtherRectangles) {
   EXPECT_GT(found.partly, 300U);
 }
 
-/// The order of triangles changes the order of a sum, and with it the last digit.
+/// The order of triangles changes the order of a sum, and so its last digit.
 TEST_F(ExactRows, OrderOfTriangles) {
   const scenes::Scene scene = tests::shipped_scene("self-shadow");
   const SoftStage stage(scene, device(), 64, 64);
@@ -258,7 +258,7 @@ TEST_F(ExactRows, OrderOfTriangles) {
   permuted(turned.receives_shadow);
   permuted(turned.emits);
   for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  // Numbers of planes are their first triangle's.
+  // A plane's number is that of its first triangle.
   for (std::uint32_t& plane : turned.plane) {
     if (plane != SceneFloats::kNoPlane) plane = place[plane];
   }
@@ -272,7 +272,7 @@ TEST_F(ExactRows, OrderOfTriangles) {
   double largest = 0;
   for (std::size_t i = 0; i < one.size(); ++i)
     largest = std::max(largest, std::abs(static_cast<double>(one[i]) - static_cast<double>(other[i])));
-  // Clusters are the same, so every edge is where it was; double sums of some hundred terms, rounded to float once.
+  // Clusters are the same, so every edge is in the same place; sums of some hundred doubles, rounded to float once.
   EXPECT_LE(largest, 0x1p-24);
 }
 

@@ -11,7 +11,7 @@
 /// Counts of surfaces (faces with three corners or more) in mesh files, by code that shares nothing with the readers.
 namespace penumbra::test {
 
-using FaceCount = std::optional<std::uint64_t>;  ///< nothing where this file is beyond the counter
+using FaceCount = std::optional<std::uint64_t>;  ///< nothing if the counter cannot handle this file
 
 /// Counts the file's surfaces, as often as the file shows them. Throws std::exception for a damaged file.
 using FaceCounter = FaceCount (*)(const std::filesystem::path& file);

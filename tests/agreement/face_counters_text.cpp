@@ -73,7 +73,7 @@ Element parse_xml(std::string_view text) {
   return parse_xml(text, "", "");
 }
 
-/// The first entry of a zip archive whose name ends so.
+/// The first entry of a zip archive whose name has this ending.
 std::string entry_of_zip(const std::filesystem::path& file, std::string_view ending) {
   const unzFile archive = unzOpen64(file.c_str());
   if (archive == nullptr) throw std::runtime_error("no zip archive");
@@ -234,7 +234,7 @@ FaceCount count_amf(const std::filesystem::path& file) {
     std::uint64_t& own = faces[object.attribute("id")];
     object.each("triangle", [&](const Element&) { ++own; });
   });
-  amf.each("constellation", [&](const Element& group) {  // of what stands before it
+  amf.each("constellation", [&](const Element& group) {  // of the objects and groups before it
     std::uint64_t& own = faces[group.attribute("id")];
     group.each("instance", [&](const Element& instance) {
       own += faces.at(instance.attribute("objectid"));

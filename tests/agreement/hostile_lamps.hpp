@@ -51,7 +51,8 @@ class HostileLamp {
   }
   glm::dvec3 lattice_point(int range) { return {lattice(range), lattice(range), lattice(range)}; }
 
-  /// Tilted with coordinates that a float holds exactly, or any; along the axes; long and narrow; askew.
+  /// A light: tilted, with coordinates that a float holds exactly or with any; along the axes; long and narrow; with
+  /// sides at any angle.
   void lamp() {
     do {
       const bool exact = below(2) == 0;
@@ -116,7 +117,7 @@ class HostileLamp {
     if (below(4) == 0) add_object(scene_, "body", quad(center_, u_, v_)).emits = 0;
   }
 
-  /// Of any size between 2⁻⁴⁰ and 2⁹, with either sign; now and then a whole number, or 0.
+  /// Of any size between 2⁻⁴⁰ and 2⁹, with either sign; sometimes a whole number, or 0.
   double mixed() {
     if (below(4) == 0) return lattice(4);
     const double size = std::ldexp(1 + static_cast<double>(below(16)) / 16, static_cast<int>(below(50)) - 40);

@@ -29,7 +29,7 @@ scenes::Scene swarm_over_floor(int count) {
   return scene;
 }
 
-/// Expects the bits that the processor's own walk finds; returns how often the method had to begin anew.
+/// Expects the bits that the processor's own walk finds; returns how often the method had to start again.
 std::uint64_t expect_same_bits(visibility::Method& method, const tests::Stage& stage, const tests::Masks& expected) {
   const tests::Masks masks = tests::run(method, stage.floats, stage.light, stage.samples);
   EXPECT_EQ(tests::differing_bits(masks, expected), 0U) << method.description().name;

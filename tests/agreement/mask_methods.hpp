@@ -46,9 +46,9 @@ inline std::unique_ptr<visibility::Method> make_depth_complexity(const render::D
 }
 inline constexpr MaskMethod kDepthComplexity{"depth_complexity", make_depth_complexity, false};
 
-/// Those of the two fast methods, on both engines.
+/// The two fast methods, each on both engines.
 inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter};
-/// All of them.
+/// All methods that promise every bit.
 inline constexpr std::array kAllMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter,
                                             kDepthComplexity};
 

@@ -34,7 +34,7 @@ class AgreementTest : public AgreementBase,
   }
 };
 
-// A rectangle light whose sides are not at right angles: a little, as decimals make it, or far from it.
+// A rectangle light whose sides are not quite at right angles, as decimals make them, or far from it.
 using AgreementOn = AgreementBase;
 TEST_F(AgreementOn, ParallelogramLights) {
   for (const double skew : {1e-4, 0.3, -0.9}) {
@@ -45,8 +45,9 @@ TEST_F(AgreementOn, ParallelogramLights) {
   }
 }
 
-// A lamp's panel in the plane of a tilted light, over all of it or a part: light samples are in front of it or behind
-// by a unit in the last place. Rays stop short of that; the exact decision is the judge.
+// The panel of a lamp in the plane of a tilted light, over all of the light or a part of it: by a unit in the last
+// place, light samples are in front of the panel or behind it. Rays stop short of that; the exact decision is the
+// judge.
 TEST_F(AgreementOn, PanelsInTheLightsPlane) {
   const glm::dvec3 center(-2.6, 4.2, 2.4), u(0.5208, 0, 0.6076), v(-0.4416, -0.5498, 0.3784);
   for (const auto& [shift, size] : {std::pair(0.0, 2.0), std::pair(-0.7, 0.6)}) {
@@ -89,8 +90,8 @@ TEST_F(AgreementOn, PanelsOfRandomLights) {
   }
 }
 
-// One method, lights one after the other: with a body and without, whose planes cut the scene or not. Nothing of one
-// may be left for the next.
+// One method is given one light after another: with a body and without, with planes that cut the scene and planes that
+// do not. Nothing of one light may remain for the next.
 TEST_F(AgreementOn, LightsOneAfterTheOther) {
   mesh::SphereShape ball;
   ball.center = {0.3, 0.8, 0.2};
@@ -99,7 +100,7 @@ TEST_F(AgreementOn, LightsOneAfterTheOther) {
   const glm::dvec3 u(0.5208, 0, 0.6076), v(-0.4416, -0.5498, 0.3784);
   tests::add_object(scene, "lamp", tests::quad({-2.6, 4.2, 2.4}, u, v)).emits = 1;
   scene.lights.push_back(tests::rectangle_light({-2.6, 4.2, 2.4}, u, v));
-  scene.lights.push_back(tests::rectangle_light({0.3, 0.9, 0.2}, u, v));  // in the midst of the ball
+  scene.lights.push_back(tests::rectangle_light({0.3, 0.9, 0.2}, u, v));  // in the middle of the ball
   scene.lights.back().two_sided = true;
   const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
   render::VisibilityBuffer view(device(), floats);

@@ -124,7 +124,7 @@ std::uint64_t count_self_intersections(const Soup& soup) {
   return count;
 }
 
-/// At points at random in the bounds, the solid angles' sum over 4π; the farthest from an integer.
+/// The sum of the solid angles over 4π at random points within the bounds: how far the worst is from an integer.
 double worst_winding(const Soup& soup, const Diagnosis& diagnosis) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -151,9 +151,10 @@ double worst_winding(const Soup& soup, const Diagnosis& diagnosis) {
   return worst;
 }
 
-/// What CGAL counts besides, and why. It cuts a soup at its non-manifold edges before it makes a mesh of it: the ends
-/// of these edges are singular vertices to it, and the cuts are borders. The definition is about the soup as it stands:
-/// its fans are linked through such edges, which have too many triangles, not one; and no cut opens it.
+/// What CGAL counts in addition, and why. CGAL cuts a soup at its non-manifold edges before it makes a mesh of it: for
+/// CGAL the ends of these edges are singular vertices, and the cuts are borders. Our definition is about the soup
+/// without cuts: its fans are linked through such edges, which have too many triangles rather than one, and no cut
+/// opens it.
 struct Difference {
   std::uint64_t vertices = 0, border_edges = 0, cycles = 0;
   bool closed_to_us_alone = false;
@@ -192,11 +193,11 @@ void compare_mesh(const SurfaceMesh& mesh, const Diagnosis& ours, const Differen
 
 void compare_self_intersections(const Soup& soup, const SurfaceMesh& mesh, bool as_it_stands, const Diagnosis& ours) {
   constexpr std::size_t kFew = 500;
-  // CGAL's function wants a mesh, and takes vertices that were split to get one for different places.
+  // CGAL's function needs a mesh, and takes vertices that were split to get one for different places.
   if (as_it_stands) {
     std::vector<std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>> pairs;
     pmp::self_intersections<CGAL::Parallel_if_available_tag>(mesh, std::back_inserter(pairs));
-    std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });  // that is: without area
+    std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });  // one triangle, without area
     EXPECT_EQ(ours.self_intersections.value().count, pairs.size());
   }
   if (!as_it_stands || soup.triangles.size() < kFew) {

@@ -77,7 +77,8 @@ std::vector<float> visibility_of(visibility::Method& method, const FlawedStage& 
   return result;
 }
 
-/// Every pair that differs from the ray caster's, and every pair of each sixteenth pixel, is the exact predicates'.
+/// Every pair that differs from the ray caster's, and every pair of each sixteenth pixel, must be as the exact
+/// predicates decide it.
 void expect_exact(const std::string& name, const FlawedStage& stage, const Masks& mapped) {
   const Differences found = differences(stage.floats, stage.samples, stage.light, mapped, stage.traced,
                                         std::numeric_limits<std::size_t>::max());
@@ -92,8 +93,8 @@ void expect_exact(const std::string& name, const FlawedStage& stage, const Masks
   }
 }
 
-/// An area of what all layers cover: at most their sum, and less by no more than pairs of them have in common. V is
-/// stored in float.
+/// V as an exact area: at most the sum of what all layers cover, and less than that by no more than what pairs of
+/// layers have in common. V is stored in float.
 void expect_exact_area(const std::string& name, const FlawedStage& stage, const std::vector<float>& found) {
   const volumes::Casters casters = volumes::casters_of(stage.floats, stage.light);
   const volumes::SoftVisibility soft(stage.floats, stage.light, casters);
@@ -126,7 +127,8 @@ class MeshVerdicts : public testing::Test {
   static inline std::unique_ptr<app::DeviceSource> devices_;
 };
 
-/// All methods of the table but the ray caster, which stands beside them. Maps small: approximate they are anyhow.
+/// All methods of the table except the ray caster, which judges them. Maps are small: these methods are approximate
+/// anyway.
 std::vector<std::unique_ptr<visibility::Method>> make_methods(app::DeviceSource& devices) {
   std::vector<std::unique_ptr<visibility::Method>> methods;
   for (const visibility::MethodDescription* method : app::all_methods()) {
@@ -138,7 +140,7 @@ std::vector<std::unique_ptr<visibility::Method>> make_methods(app::DeviceSource&
   return methods;
 }
 
-/// Pairs that it decides otherwise than the ray caster; or how far its V is from the area.
+/// How many pairs the method decides differently from the ray caster; or how far its V is from the area.
 double error_of(visibility::Method& method, const FlawedStage& stage, const std::vector<float>& areas) {
   if (method.description().output == Output::mask) {
     const Masks mapped = run(method, stage.floats, stage.light, stage.samples);
@@ -187,7 +189,8 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   }
 }
 
-/// The variants of depth-complexity: where `laine` is wrong, the verdict has said so; `forest` errs on one side.
+/// The variants of depth-complexity: where `laine` is wrong, its verdict must have said so; `forest` errs on one side
+/// only.
 TEST_F(MeshVerdicts, NameWhereVariantsOfDepthComplexityFail) {
   const auto laine = app::make_method("depth-complexity", {{"variant", "laine"}}, devices());
   const auto forest = app::make_method("depth-complexity", {{"variant", "forest"}}, devices());

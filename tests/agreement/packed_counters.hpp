@@ -25,8 +25,8 @@ class PackedTwin {
     if (floats.triangles.size() > kMostTried) tree_ = visibility::make_triangle_tree(floats);
   }
 
-  /// The count at the light's centre and what silhouettes change it by on the straight way to each light sample, as
-  /// forest has it; nothing where a sign is exactly zero.
+  /// The count at the light's centre, and what silhouettes change it by on the straight way to each light sample, as
+  /// variant=forest has it; nothing where a sign is exactly zero.
   [[nodiscard]] std::vector<std::optional<std::int16_t>> by_edges(std::size_t pixel) const {
     const glm::dvec3 p(samples_.p[pixel]), c(center_);
     std::int16_t constant = 0;
@@ -51,7 +51,8 @@ class PackedTwin {
     return counters;
   }
 
-  /// Σ σ over the triangles that p→l meets: 1 where p and the light's centre are on opposite sides, −1 where on one.
+  /// Σ σ over the triangles that p→l meets: σ is 1 where p and the light's centre are on opposite sides of the
+  /// triangle, −1 where they are on the same side.
   [[nodiscard]] int by_triangles(std::size_t pixel, std::uint32_t j) const {
     int sum = 0;
     for_each_met(pixel, light_.points[j], [&](std::uint32_t triangle) {
@@ -106,8 +107,8 @@ struct PackedTotals {
   }
 };
 
-/// Every pair of a picture: counters equal both twins without tolerance, masks say which are 0, and whatever has no
-/// counter is the truth. `by_edges`: on so many pixels, as that is slow.
+/// Every pair of a picture: counters equal both twins without tolerance, masks say which are 0, and pairs without a
+/// counter have the true bit. `by_edges`: on how many pixels the twin by edges is asked, as it is slow.
 inline PackedTotals expect_packed(volumes::DepthCounters& method, const visibility::SceneFloats& floats,
                                   const visibility::ViewSamples& samples, const visibility::Light& light,
                                   std::size_t by_edges, const std::string& name) {

@@ -1,5 +1,5 @@
-// depth-complexity variant=forest on the shipped scenes: its counters those of the twins, and against the ray caster
-// too bright where it differs, never too dark.
+// depth-complexity variant=forest on the shipped scenes: its counters are those of the twins, and where it differs from
+// the ray caster it is too bright, never too dark.
 
 #include "tests/agreement/packed_counters.hpp"
 

@@ -4,7 +4,7 @@
 
 namespace penumbra::tests {
 
-/// A panel, 2.4 wide and 1.2 high, stands a hair over the floor; in front of it a board, a post and a shelf.
+/// A panel, 2.4 wide and 1.2 high, that stands just above the floor; in front of it a board, a post and a shelf.
 inline scenes::Scene things_before_a_panel() {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0.5}, {2.5, 0, 0}, {0, 0, -1.5}));

@@ -1,5 +1,5 @@
-// Shadows of things that stand before a light that stands on the floor: where V times the unshadowed integral is wrong,
-// how wrong, and how far point samples and cells are from `exact`. The table of docs/radiance.md is printed from here.
+// Shadows of things in front of a light that stands on the floor: where V times the unshadowed integral is wrong, how
+// wrong it is, and how far point samples and cells are from `exact`. Prints the table of docs/radiance.md.
 
 #include "compare/beauty.hpp"
 #include "reference/exact_method.hpp"

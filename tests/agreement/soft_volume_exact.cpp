@@ -67,7 +67,8 @@ TEST_F(SoftVolumeExact, ASolidIsOffByWhatItsSilhouettesPredict) {
       fmt::print("{}, light {}: off by {:.4f} at most, as predicted within {:.1e}\n", cube ? "cube" : "sphere", half,
                  largest, worst);
       EXPECT_LE(worst, 1e-3);
-      // Or there was nothing to predict. A light no wider than the cube sees one top, wherever it is seen from.
+      // Otherwise there was nothing to predict: from wherever a cube is seen, a light no wider than it sees its top
+      // alone.
       EXPECT_GT(largest, !cube || half > 0.5 ? 1e-3 : 0.0);
     }
   }

@@ -24,9 +24,9 @@ class SoftVolumeMeasures : public tests::DeviceTest {
     scene.lights[0].shape =
         scenes::Disk{rectangle.center, glm::cross(rectangle.half_u, rectangle.half_v), glm::length(rectangle.half_u)};
   }
-  /// Each pixel against the twin, whose edges have their own whole weights, where the shader's depend on their
-  /// neighbours'. Tolerance: soft_volume_twin.cpp's; and for each edge on the light four walks over texels (the
-  /// shader's one, the twin's three), each off by at most 2⁻²⁴ · brightest where it is all but upright
+  /// Each pixel against the twin. The twin gives each edge its own whole weight, while the shader's weights depend on
+  /// neighbouring edges. Tolerance: that of soft_volume_twin.cpp, and for each edge on the light four walks over texels
+  /// (one of the shader, three of the twin), each off by at most 2⁻²⁴ · brightest where the edge is nearly upright
   /// (property/coverage_textures.cpp).
   static void expect_twin(const SoftStage& stage, const std::vector<float>& found, const std::string& name) {
     const Casters casters = casters_of(stage.floats, stage.light);
@@ -86,7 +86,7 @@ TEST_F(SoftVolumeMeasures, TheTableKeepsWithinItsBound) {
           swept += std::abs(edge.multiplicity) * reach *
                    (glm::length(edge.clipped.to - edge.clipped.from) + glm::length(to - from)) / 2;
         }
-        // Beside it, the tolerance of soft_volume_twin.cpp.
+        // 1e-6 is above the tolerance of soft_volume_twin.cpp for 8,000 edges.
         const double bound = swept / soft.outline().area + 1e-6, error = std::abs(found[i] - layers.visibility);
         ASSERT_LE(error, bound) << name << ", pixel " << i;
         largest = std::max(largest, error);
@@ -140,8 +140,8 @@ TEST_F(SoftVolumeMeasures, TexturedLightsAgreeWithTheExactArea) {
   }
   const Errors table = tests::errors_of(run(stage, {{"coverage", "table"}}), exact);
   fmt::print("boards under a texture, by a table: off by {:.4f} at most\n", table.largest);
-  // A convex region of [−1, 1]² has a perimeter of at most 8, also once its corners are moved: 2 · reach of the area,
-  // and no texel is twice the mean.
+  // A convex region of [−1, 1]² has a perimeter of at most 8, also after its corners are moved, so its area is off by
+  // at most 2 · reach of the whole; and no texel is brighter than twice the mean.
   EXPECT_LE(table.largest, 4 * kRectangleTableReach);
 }
 

@@ -32,7 +32,7 @@
 
 namespace penumbra::tests {
 
-/// One device for all tests of a suite, under the validation layer, which must have nothing to say.
+/// One device for all tests of a suite, under the validation layer, which must not report anything.
 class DeviceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { device_ = std::make_unique<render::Device>(render::DeviceOptions{"", true}); }
@@ -75,7 +75,7 @@ inline Masks run(visibility::Method& method, const Stage& stage, std::uint32_t r
   return run(method, stage.floats, stage.light, stage.samples, rows_at_once);
 }
 
-/// On the device.
+/// View-sample mapping on the device.
 inline Masks map_view_samples(const render::Device& device, const visibility::SceneFloats& floats,
                               const visibility::Light& light, const visibility::ViewSamples& samples,
                               std::uint32_t rows_at_once = 0) {
@@ -101,7 +101,7 @@ inline std::string text_of(const glm::vec3& v) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
 }
 
-/// One pair in numbers, enough to make a test of its own of it.
+/// One pair in numbers, enough to write a test for it alone.
 inline std::string describe_pair(const visibility::SceneFloats& floats, const visibility::ViewSamples& samples,
                                  std::size_t pixel, const visibility::Light& light, std::uint32_t j) {
   const auto truth = visibility::decide_pair(floats, samples, pixel, light, j);

@@ -110,8 +110,8 @@ std::vector<glm::vec3> beauty_of(const Stage& stage, const compare::LightVisibil
 }
 
 TEST_F(TexturedLightMethods, BeautyTakesEachSamplesColour) {
-  // Red above, blue below: red is what a white light gives whose lower half is not seen, blue the other way round; but
-  // for the order of sums in double and one rounding to float.
+  // Red above, blue below: the red channel is that of a white light whose lower half is not seen, the blue channel that
+  // of one whose upper half is not seen, up to the order of sums in double and one rounding to float.
   const auto texture =
       texture_of(1, 2, [](std::uint32_t, std::uint32_t y) { return y == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1); });
   const Stage colored = stage_with(texture, kWhole), white = stage_with(constant_texture(1, 1, glm::vec3(1)), kWhole);

@@ -61,7 +61,8 @@ TEST_F(WedgeRamp, RefusesWhatItCannotDo) {
       InputError);
 }
 
-/// What a ramp an edge cannot do: corners, where it is not the area, and meshes finer than their penumbra is wide.
+/// What a ramp for each edge cannot do: corners, where it is not the area, and meshes finer than their penumbra is
+/// wide.
 TEST_F(WedgeRamp, ItsFailuresAreShown) {
   for (const auto& [name, least] : {std::pair{"parallel-square", 0.01}, {"bunny", 0.05}}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

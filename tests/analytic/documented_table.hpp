@@ -48,7 +48,8 @@ class DocumentedTable {
     const std::size_t point = text.find('.');
     return point == std::string::npos ? 1 : std::pow(10, -static_cast<double>(text.size() - point - 1));
   }
-  /// Measured on another driver, edges may be snapped otherwise: a tenth, and a unit of the last digit for rounding.
+  /// Another driver may snap edges differently: a tenth of the value is allowed for that, and a unit of the last digit
+  /// for rounding.
   void expect(std::size_t row, std::size_t column, double measured) const {
     EXPECT_NEAR(measured, value(row, column), 0.1 * std::abs(value(row, column)) + digit(row, column))
         << "row " << row << ", column " << column;

@@ -1,5 +1,5 @@
-// `exact`'s form factors: closed forms, brute force, additivity. Cosines and distances are as different over the light
-// as lights near the floor make them.
+// `exact`'s form factors: closed forms, brute force, additivity. Lights near the floor make cosines and distances
+// differ over the light as much as they can.
 
 #include "reference/exact_method.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
@@ -97,7 +97,7 @@ bool blocked(const glm::dvec3& p, const glm::dvec3& l, const tests::Corners& t) 
 
 struct Brute {
   double form_factor = 0;
-  double doubtful = 0;  ///< that of cells whose neighbours are not all like them: what the boundary can have cost
+  double doubtful = 0;  ///< the part of cells whose neighbours are not all like them: what the boundary may have cost
 };
 
 /// size × size cells, each visible if its middle is.
@@ -142,8 +142,8 @@ TEST(ExactRadiance, IsWhatBruteForceComesTo) {
     if (exact.visibility == 0 || exact.form_factor.x == UnshadowedLight(stage.light, p, kUp).whole()) continue;
     ++part;
     const Brute coarse = brute_force(stage, triangles, p, 32), fine = brute_force(stage, triangles, p, 256);
-    // A cell that the boundary crosses is off by no more than all of it, and differs from a neighbour, or the boundary
-    // leaves it again before its middle: half of the doubtful cells' sum is a generous bound on both together.
+    // A cell that the boundary crosses is off by at most all of it. Either it differs from a neighbour, or the boundary
+    // leaves it again before its middle: half of the doubtful cells' sum is a generous bound for both together.
     EXPECT_NEAR(fine.form_factor, exact.form_factor.x, 0.5 * fine.doubtful + 1e-9) << "seed " << kSeed << " " << round;
     coarse_error += std::abs(coarse.form_factor - exact.form_factor.x);
     fine_error += std::abs(fine.form_factor - exact.form_factor.x);
@@ -151,7 +151,7 @@ TEST(ExactRadiance, IsWhatBruteForceComesTo) {
   }
   EXPECT_GE(part, 5);
   EXPECT_LT(fine_error, coarse_error / 4);  // cells are 8 times smaller; 65,536 samples
-  EXPECT_LT(fine_error, v_error / 20);      // V times the unshadowed integral is another thing
+  EXPECT_LT(fine_error, v_error / 20);      // V times the unshadowed integral is something else
 }
 
 TEST(ExactRadiance, QuartersOfALightAddUp) {

@@ -33,8 +33,8 @@ struct Comparison {
   std::size_t pairs = 0, hidden = 0, wrong = 0, within_rounding = 0;
 };
 
-/// The board as stored is what both sides know. The closed form works in double: a crossing point is off by a few of
-/// its ulps, hence the one allowance.
+/// Both sides know the board as stored. The closed form works in double: a crossing point is off by a few of its ulps,
+/// and the one tolerance here allows for that.
 Comparison compare_pairs(const Stage& stage, const Masks& masks) {
   glm::dvec3 lower(stage.floats.positions.back()), upper = lower;
   for (const std::uint32_t triangle : {2U, 3U}) {

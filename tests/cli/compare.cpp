@@ -43,7 +43,7 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
     EXPECT_TRUE(method.at("error").contains(key)) << key;
   EXPECT_TRUE(method.at("seconds").at("warmup").is_number());
 
-  // Counted again, from the files.
+  // The counts again, computed from the files.
   const auto mine = visibility::read_bits(path("dir/view-sample.bits")),
              other = visibility::read_bits(path("dir/reference.bits"));
   std::uint64_t all = 0, penumbra = 0, differing = 0;
@@ -69,7 +69,7 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
             differing);
 }
 
-/// A method that gives areas on request has no pairs, whatever the table of methods says of it; its error is given.
+/// A method that gives areas on request has no pairs, whatever the table of methods says about it; its error is given.
 TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
   const Outcome outcome =
       compare({"--methods", "edge-scatter:rows=exact,edge-scatter,edge-scatter:rows=exact", "--bits", "--reference",
@@ -88,15 +88,15 @@ TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
   EXPECT_FALSE(std::filesystem::exists(path("dir/edge-scatter:rows=exact.bits")));
   EXPECT_TRUE(std::filesystem::exists(path("dir/edge-scatter.bits")));
   EXPECT_EQ(read_exr(path("dir/edge-scatter:rows=exact.exr")).attributes.at("penumbra.output"), "radiance");
-  // What cannot be is refused before the reference is traced.
+  // What cannot be done is refused before the reference is traced.
   const Outcome bits = run({"render", path("scene.json"), "-o", path("a.exr"), "--method", "edge-scatter",
                             "--method-option", "rows=exact", "--bits", path("a.bits")});
   EXPECT_EQ(bits.code, 2) << bits.err;
 }
 
-/// One method that fails takes nothing from the others, and its failure is the command's exit code.
+/// A method that fails takes nothing away from the others, and the command ends with its exit code.
 TEST_F(Compare, AMethodThatFailsIsReportedAndTheOthersGoOn) {
-  // Beside the new report nothing must lie that an earlier run made; what is not ours stays.
+  // Beside the new report there must be no file that an earlier run made; files that are not ours stay.
   std::filesystem::create_directories(path("dir"));
   for (const char* ending : {".exr", "-error.png", ".png"})
     write("dir/edge-scatter:engine=vulkan" + std::string(ending), "old");
@@ -139,7 +139,8 @@ TEST_F(Compare, ARefusalLeavesNoFolders) {
   EXPECT_TRUE(std::filesystem::is_empty(path("kept")));
 }
 
-/// Where too many pairs differ for each to be decided, an evenly spaced sample of them is, and it says how large it is.
+/// Where too many pairs differ to decide each of them, an evenly spaced sample of them is decided, and metrics.json
+/// says how large it is.
 TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
   const Outcome outcome = compare({"--methods", "accumulate:size=8,raytrace", "--light-samples", "64",
                                    "--reference-samples", "same", "--size", "96x64"});
@@ -165,7 +166,7 @@ TEST_F(Compare, ErrorsCanBeRecomputedFromTheImages) {
   EXPECT_TRUE(method.at("pairsDiffering").is_null()) << "not the same samples";
   EXPECT_EQ(result["reference"]["lightSamples"], 1024);
   const ExrFile mine = read_exr(path("dir/raytrace.exr")), other = read_exr(path("dir/reference.exr"));
-  // Nothing of this scene is an emitter; horizon pixels are some of the wedge's, so leave out the wedge.
+  // No surface of this scene is an emitter. Some pixels of the wedge are at the horizon, so the wedge is left out.
   double largest = 0;
   for (std::size_t i = 0; i < mine.floats.at("V").size(); ++i) {
     if (mine.integers.at("id")[i] > 1) continue;

@@ -14,7 +14,8 @@ Code code_of(std::size_t factor, std::size_t value) {
 }
 constexpr unsigned kBits = 20;
 
-/// Calls `visit(code)` for each combination of `strength` chosen values; with `with`, of those that hold this factor.
+/// Calls `visit(code)` for each combination of `strength` chosen values; given `with`, only for those that contain this
+/// factor.
 template <typename Visit>
 void for_each_combination(const Choices& row, std::size_t strength, std::optional<std::size_t> with, Visit visit) {
   const auto has = [&](std::size_t i) { return row[i].has_value(); };
@@ -37,7 +38,8 @@ void for_each_combination(const Choices& row, std::size_t strength, std::optiona
   }
 }
 
-/// Chooses the factor's value and whatever it has to have to mean something. False if that is chosen otherwise.
+/// Chooses the factor's value, and the values of other factors that it needs in order to mean something. False if one
+/// of these factors has another value already.
 bool choose(const std::vector<Factor>& factors, std::size_t factor, std::size_t value, Choices& row) {
   if (row[factor] && *row[factor] != value) return false;
   row[factor] = value;
@@ -97,7 +99,7 @@ class Generator {
 
   Choices completed(Choices row, std::size_t number) {
     const std::size_t count = row.size();
-    for (std::size_t i = 0; i < 2 * count; ++i) {  // twice: what means nothing yet may mean something at the end
+    for (std::size_t i = 0; i < 2 * count; ++i) {  // twice: what means nothing at first may mean something later
       const std::size_t factor = (i + number) % count;
       if (!row[factor] && means_something(row, factor)) row[factor] = best_value(row, factor);
     }
@@ -110,7 +112,7 @@ class Generator {
     return !only_if || row[only_if->first] == only_if->second;
   }
 
-  /// The allowed value that covers most of what is open; of several, the one that was used least.
+  /// The allowed value that covers the most open combinations; of several, the one that was used least.
   [[nodiscard]] std::optional<std::size_t> best_value(Choices row, std::size_t factor) const {
     std::optional<std::size_t> best;
     std::pair<std::size_t, std::size_t> best_gain;

@@ -65,7 +65,7 @@ TEST_F(Inspect, JsonHasTheKeysOfTheContract) {
     for (const auto& [key, value] : known) EXPECT_EQ(object.at(key), value) << key;
     EXPECT_EQ(object.at("bounds"), json::parse("[[0, 0, 0], [1, 1, 1]]"));
     EXPECT_EQ(object.at("verdicts").at("view-sample"), "exact");
-    // About the bounds' centre, the missing triangle's pyramid lacks: a twelfth.
+    // Seen from the bounds' centre, the pyramid over the missing triangle is missing: a twelfth of the volume.
     EXPECT_DOUBLE_EQ(object.at("volume").get<double>(), 11.0 / 12);
     const json& edges = object.at("lists").at("boundaryEdges");
     ASSERT_EQ(edges.size(), 3u);

@@ -14,7 +14,7 @@ class Interrupt : public ProgramTest, public testing::WithParamInterface<double>
 
 TEST_P(Interrupt, EndsWith130AndLeavesNoFile) {
   const std::string scene = tiny_scene();
-  // Enough work for minutes: the signal always comes in the midst of it.
+  // Enough work for minutes: the signal always comes while it is being done.
   const auto start = std::chrono::steady_clock::now();
   const Outcome outcome =
       run_program({.arguments = {"render", scene, "-o", path("out.exr"), "--bits", path("out.bits"), "--method",

@@ -1,6 +1,6 @@
-// Options together: a covering array of all options of `render` and `compare`, of all methods and their own options.
-// Each was tried alone elsewhere; here any two (quick) or three (full) of them meet. What is there is asked of the
-// program, so a new method or option is tried without a word here.
+// Options together: a covering array of all options of `render` and `compare`, and of all methods with their own
+// options. Other tests try each option alone; here any two (quick) or three (full) of them meet. The program itself is
+// asked what there is, so a new method or option is tried without a change here.
 
 #include "tests/cli/options_together.hpp"
 
@@ -263,7 +263,7 @@ TEST_P(CompareThree, EveryTriple) {
 INSTANTIATE_TEST_SUITE_P(Part, RenderThree, testing::Range<std::size_t>(0, kParts));
 INSTANTIATE_TEST_SUITE_P(Part, CompareThree, testing::Range<std::size_t>(0, kParts));
 
-/// What cannot be is refused with a documented code and a reason, whatever is wrong with it.
+/// What cannot be done is refused with a documented code and a reason, whatever is wrong with it.
 TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
   scenes_ = write_lit_scenes(folder_, false);
   for (const json& method : table_.all()) {
@@ -308,7 +308,7 @@ TEST(CoveringArray, HasEveryAllowedCombination) {
       EXPECT_TRUE(allowed(row));
       EXPECT_EQ(row[2].has_value(), row[0] == 2U);
     }
-    // The check can fail.
+    // The check itself can fail.
     EXPECT_GT(uncovered_combinations(factors, strength, allowed, {rows.begin(), rows.end() - 1}), 0U);
   }
 }

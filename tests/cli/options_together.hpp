@@ -13,7 +13,7 @@
 
 namespace penumbra::tests {
 
-/// A scene of a few triangles and two lights or more, and what these ask of a method.
+/// A scene of a few triangles and two lights or more, and what these require of a method.
 struct LitScene {
   std::string name, file;
   std::vector<std::string> lights;  ///< kinds, in order
@@ -47,17 +47,17 @@ class Row {
   std::map<std::string, std::string> values_;
 };
 
-/// Values that an option of a method is tried with, from its description.
+/// The values that are tried for an option of a method, from its description.
 std::vector<std::string> values_to_try(const nlohmann::json& option);
 
-/// Do these options of a method exclude each other, or what else is chosen? Only what its page says.
+/// Do these options of a method exclude one another, or the other choices? Only as far as its page says so.
 bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,
                      const LitScene& scene, const std::string& light_samples);
 
 /// Options chosen for the method: factors are named METHOD.OPTION.
 std::map<std::string, std::string> options_of(const Row& row, const nlohmann::json& method);
 
-/// What must hold of each file that is there after a run. Adds failures to the current test.
+/// What must hold for each file that is there after a run. Adds failures to the current test.
 void expect_whole_picture(const std::string& path, bool all_pixels);
 void expect_whole_png(const std::string& path);
 void expect_whole_bits(const std::string& path);

@@ -85,7 +85,7 @@ Outcome run_program(const Invocation& invocation) {
   if (child == 0) {
     ::dup2(out[1], STDOUT_FILENO);
     ::dup2(err[1], STDERR_FILENO);
-    ::signal(SIGINT, SIG_DFL);  // a shell in the background has it ignored, and children inherit that
+    ::signal(SIGINT, SIG_DFL);  // a shell ignores it for jobs in the background, and children inherit that
     ::execve(PENUMBRA_PROGRAM, argv.data(), envp.data());
     ::_exit(126);
   }
@@ -141,7 +141,7 @@ Outcome ProgramTest::run(std::vector<std::string> arguments, std::map<std::strin
 }
 
 std::string scene_text_with(const std::string& pointer, const std::string& json) {
-  // A number that no double can hold would not survive the library, so the text is put in place of a mark.
+  // The JSON library would not keep a number that no double can hold, so the text is put in place of a mark.
   constexpr const char* kMark = "@@";
   nlohmann::ordered_json scene = nlohmann::ordered_json::parse(kTinyScene);
   scene[nlohmann::ordered_json::json_pointer(pointer)] = kMark;

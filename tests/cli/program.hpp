@@ -18,7 +18,7 @@ struct Outcome {
 
 struct Invocation {
   std::vector<std::string> arguments;
-  std::map<std::string, std::string> environment;  ///< beside the test's own and PENUMBRA_VALIDATION=1
+  std::map<std::string, std::string> environment;  ///< in addition to the test's own and PENUMBRA_VALIDATION=1
   std::optional<double> interrupt_after;           ///< seconds until SIGINT
   double timeout = 120;                            ///< seconds until SIGKILL; then code is 137
 };

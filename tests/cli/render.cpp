@@ -213,7 +213,7 @@ TEST_F(RenderOnce, BitsOfASphereAreRefused) {
   EXPECT_EQ(bits.code, 2);
   EXPECT_THAT(bits.err, HasSubstr("sphere"));
   EXPECT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--method", "raytrace"}).code, 0);
-  // No geometry-based method can do it yet: what can is said.
+  // No geometry-based method can do it yet: the message says which methods can.
   const Outcome by_default = run({"render", path("scene.json"), "-o", path("other.exr")});
   EXPECT_EQ(by_default.code, 3);
   EXPECT_THAT(by_default.err, testing::AllOf(HasSubstr("bulb"), HasSubstr("raytrace")));

@@ -54,7 +54,7 @@ TEST_F(WedgesCommand, ValidatesItself) {
   }
 }
 
-/// Areas are the light's own, whatever its picture weighs.
+/// Areas are those of the light itself, whatever its picture weighs.
 TEST_F(WedgesCommand, ValidatesUnderATexturedLight) {
   const Outcome outcome = run({"wedges", PENUMBRA_SCENES "/textured-light.json", "--light", "window", "--validate"});
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;

@@ -29,14 +29,14 @@ struct Limit {
   rlim_t value;
 };
 
-/// A run of the program in an environment that does it no good.
+/// A run of the program under adverse conditions.
 struct Conditions {
   std::vector<std::string> arguments;
-  std::map<std::string, std::string> environment = {};  ///< beside the test's own
+  std::map<std::string, std::string> environment = {};  ///< in addition to the test's own
   std::vector<Limit> limits = {};
   Stream in = Stream::captured, out = Stream::captured, err = Stream::captured;
   bool as_stranger = false;  ///< as a user who has no other process, where the test runs as root: for RLIMIT_NPROC
-  double timeout = 300;      ///< seconds until SIGKILL, which no test expects: code is then 137
+  double timeout = 300;      ///< seconds until SIGKILL, which no test expects; the code is then 137
 };
 
 struct Ending {

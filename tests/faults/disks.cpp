@@ -79,7 +79,7 @@ TEST_P(DiskFaults, EachOutputIsOldOrWholeOrNotThere) {
     if (ending.code == 0 && ++faults > 0) break;
     ++faults;
   }
-  // Only the last one got through: what fails is counted.
+  // Only the last run got through; in each one before it a call failed.
   EXPECT_GT(faults, 1) << "no call ever failed";
 }
 

@@ -30,7 +30,7 @@ class KillFaults : public FaultTest {
       std::this_thread::sleep_for(moment);
       program.send(signal);
       const Ending ending = program.wait();
-      // Before the program's main begins, a signal is the system's.
+      // Before the program's main begins, signals have the system's default action.
       EXPECT_THAT(ending.code, AnyOf(0, 130, 128 + signal)) << ending.err;
       if (ending.code == 130) {
         expect_no_parts();

@@ -14,7 +14,7 @@ using testing::Not;
 
 class LimitFaults : public FaultTest {
  protected:
-  /// Everything that a limited run has to be, whatever the limit; returns its exit code.
+  /// Everything that must hold for a limited run, whatever the limit; returns its exit code.
   int check(const Conditions& conditions, const std::string& what) const {
     const Ending ending = run_under(conditions);
     EXPECT_THAT(ending.code, AnyOf(0, 4)) << what << ": " << ending.err;
@@ -64,7 +64,7 @@ TEST_F(LimitFaults, FewThreads) {
     GTEST_SKIP() << "the limit counts all processes of the user; run it as root, who can be a new one";
   for (rlim_t threads = 1; threads <= 12; ++threads) limited(threads);
   EXPECT_EQ(limited(1), 4);
-  EXPECT_EQ(limited(4), 4);  // the number at which the driver's threads are too few and ours are not
+  EXPECT_EQ(limited(4), 4);  // too few for the driver's threads, but not for ours
   EXPECT_EQ(limited(500), 0);
 }
 
@@ -85,7 +85,8 @@ TEST_F(LimitFaults, FewDescriptors) {
   (void)small_scene();
   for (const rlim_t files : {4ul, 5ul, 6ul, 8ul, 10ul, 12ul, 16ul, 20ul, 64ul}) {
     const Conditions conditions{.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}};
-    // Where this process has files open of its own, too few are left to load the program: that is no answer of ours.
+    // Where this test has files open itself, too few are left to load the program: then there is no answer of ours to
+    // check.
     if (files < 8 && run_under(conditions).err.find("while loading shared libraries") != std::string::npos) continue;
     check(conditions, std::to_string(files) + " descriptors");
   }

@@ -1,4 +1,4 @@
-// Memory in proportion to what is used, and asked for only where there is as much.
+// The program takes memory in proportion to what it uses, and asks for it only where there is as much.
 #include "base/exr.hpp"
 #include "base/memory.hpp"
 #include "tests/faults/child.hpp"
@@ -47,14 +47,15 @@ TEST_F(MemoryFaults, APicturesOtherChannelsTakeNone) {
   const Ending few = convert(scene_with_picture(3)), many = convert(scene_with_picture(200));
   ASSERT_EQ(few.code, 0) << few.err;
   ASSERT_EQ(many.code, 0) << many.err;
-  // All of them are 200 MiB; the lines that OpenEXR unpacks together are of all channels, 16 of 512.
+  // All channels together are 200 MiB. OpenEXR unpacks 16 of the 512 lines at a time, each with all channels.
   constexpr std::uint64_t kLines = 200u * 512 * 16 * 4;
   EXPECT_LT(many.peak_bytes, few.peak_bytes + 8 * kLines);
 }
 
 TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
   constexpr rlim_t kGibi = 1u << 30;
-  // Each of the eight would fit. Nothing is made of what does not fit as a whole: 92 bytes a lone triangle.
+  // Each of the eight meshes would fit. Nothing is made of a scene that does not fit as a whole: 92 bytes for a lone
+  // triangle.
   for (const auto& [count, triangles] : {std::pair{1, 20'000'000}, {8, 2'000'000}}) {
     const Ending ending = convert(scene_of_soups(count, triangles), {{RLIMIT_AS, kGibi}});
     EXPECT_EQ(ending.code, 4) << ending.err;

@@ -1,5 +1,5 @@
-// The program may be killed at any moment, above all when the helper that reads foreign files has just been started:
-// the helper ends with it.
+// The program may be killed at any moment, above all when it has just started the helper that reads foreign files: the
+// helper ends with it.
 #include "tests/faults/child.hpp"
 
 #include <chrono>
@@ -37,7 +37,7 @@ class OrphanFaults : public FaultTest {
       int status = 0;
       if (::waitpid(*helper, &status, 0) != *helper) continue;  // the program had reaped it
       ++counts.orphans;
-      // One that finds its asker gone says 130; one that goes on writes its answer to nobody.
+      // A helper that finds its asker gone returns 130; one that goes on writes its answer to nobody.
       const bool ended_with_it = (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) ||
                                  (WIFEXITED(status) && (WEXITSTATUS(status) == 130 || WEXITSTATUS(status) == 127));
       if (!ended_with_it) ++counts.finished;

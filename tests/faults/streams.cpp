@@ -1,4 +1,4 @@
-// Standard streams that are closed, full, or read by nobody: a documented exit code, and output files as ever.
+// Standard streams that are closed, full, or read by nobody: a documented exit code, and output files as usual.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TEST_F(StreamFaults, AFileNeverGetsTheNumberOfAClosedStream) {
     };
     EXPECT_EQ(run({"render", scene, "-o", path("out.exr")}).code, 0);
     EXPECT_EQ(read("out.exr"), read("right.exr")) << "closed streams: " << closed;
-    // Its table is for stdout, its file is not.
+    // The table goes to stdout, the file does not.
     EXPECT_EQ(run({"inspect", scene, "--json", path("out.json")}).code, (closed & 2) != 0 ? 4 : 0);
     if ((closed & 2) == 0) {
       EXPECT_EQ(read("out.json"), read("right.json")) << "closed streams: " << closed;

@@ -1,4 +1,4 @@
-// A device that takes work and does not finish it: an answer in the end, and an orderly one.
+// A device that takes work and does not finish it: the program still ends, and in an orderly way.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>

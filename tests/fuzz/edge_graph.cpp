@@ -238,7 +238,8 @@ void check_counts(const Soup& soup, const EdgeGraph& graph, const Diagnosis& dia
   agree("closed as wound", diagnosis.closed_as_wound, closed_by_brute_force(soup, graph));
 }
 
-/// What no order of triangles and no first corner may change, nor turning all of them over.
+/// The counts that must not change with the order of triangles, with their first corners, or when all triangles are
+/// turned over.
 std::array<std::uint64_t, 14> shape_of(const Diagnosis& d) {
   return {d.vertices,
           d.components,
@@ -262,7 +263,7 @@ void check_turned(const Soup& soup, const Diagnosis& diagnosis) {
   for (std::size_t t = 0; t < turned.triangles.size(); ++t) {
     Triangle& c = turned.triangles[t];
     std::rotate(c.begin(), c.begin() + static_cast<long>(t % 3), c.end());
-    std::swap(c[0], c[2]);  // all of them: neighbours still agree or not
+    std::swap(c[0], c[2]);  // all of them: neighbours that agreed still do, and others still do not
   }
   const Diagnosis other = diagnose(turned.view());
   PENUMBRA_ASSERT(shape_of(other) == shape_of(diagnosis), "turned triangles have another diagnosis");

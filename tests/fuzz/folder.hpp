@@ -12,7 +12,7 @@
 
 namespace penumbra::fuzz {
 
-/// A folder of its own for a fuzz target's file, so that what that names beside itself is not there.
+/// A folder of its own for a fuzz target's file, so that the files which it names beside itself are not there.
 class Folder {
  public:
   Folder() : path_((std::filesystem::temp_directory_path() / "penumbra-fuzz-XXXXXX").string()) {

@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const auto mesh = attempt([&] { return scenes::import_gltf_mesh(input, false); });
   if (mesh) fuzz::check_imported(*mesh);
-  // A scene may be refused for its cameras and lights alone, a mesh for nothing that a scene is not refused for.
+  // A scene may be refused for its cameras and lights alone, but what can be read as a scene can be read as a mesh.
   PENUMBRA_ASSERT(mesh || !scene, "read as a scene, but not as a mesh");
   if (scene && mesh) {
     PENUMBRA_ASSERT(mesh->soup.triangles == scene->soup.triangles, "{} triangles as a mesh, {} as a scene",

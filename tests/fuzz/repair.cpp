@@ -1,5 +1,5 @@
 // Repair of any small soup, with CGAL's own checks on: it ends, what comes out is a soup, and triangles without area
-// are gone or spoken of.
+// are gone or mentioned.
 #include "base/assert.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/repair/repair.hpp"

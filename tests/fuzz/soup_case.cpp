@@ -96,7 +96,7 @@ class Reader {
     return {rows * columns, rows, columns, pattern, 0};
   }
 
-  /// Each in some relation to an earlier one, or in none.
+  /// Each triangle has some relation to an earlier one, or none.
   std::vector<Corners> triangles(std::uint32_t count) {
     std::vector<Corners> soup;
     while (soup.size() < count) {

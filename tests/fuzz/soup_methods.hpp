@@ -17,7 +17,7 @@ namespace penumbra::fuzz {
 struct SoupFindings {
   std::uint64_t cases = 0, pairs = 0, visible = 0;  ///< pairs: of each case, by the judge
   std::uint64_t answers = 0;                        ///< pairs that a method answered
-  std::uint64_t refusals = 0;                       ///< cases that a method cannot do, though it can do such lights
+  std::uint64_t refusals = 0;                       ///< cases that a method refuses, though it can do such lights
   std::uint64_t wrong = 0;
   std::string first_wrong;  ///< which method, and the pair in numbers
 
@@ -37,7 +37,8 @@ class SoupMethods {
     std::string name;
     std::unique_ptr<visibility::Method> method;
   };
-  /// Those for this number and kind of light samples: a method that is given others compiles its shaders anew.
+  /// The variants for this number and kind of light samples: a method that is given other light samples compiles its
+  /// shaders again.
   std::vector<Variant>& variants_for(const visibility::Light& light);
 
   const render::Device* device_;

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Drivers and pipelines take far longer to make than a case to judge.
+  // Making drivers and pipelines takes far longer than judging a case.
   static const penumbra::render::Device device(penumbra::render::DeviceOptions{});
   static penumbra::fuzz::SoupMethods methods(device);
   const auto judged = penumbra::fuzz::read_soup_case({data, size});

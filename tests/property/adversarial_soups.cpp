@@ -28,7 +28,7 @@ fuzz::SoupFindings check_soups(std::uint32_t first_seed, std::uint32_t count) {
   return all;
 }
 
-/// That the cases are what they are meant to be: most can be made, and both answers are common.
+/// The cases must be what they are meant to be: most can be made, and both answers are common.
 void expect_worth(const fuzz::SoupFindings& found, std::uint32_t count) {
   EXPECT_GT(found.cases, count / 2);
   EXPECT_GT(found.visible, found.pairs / 20);

@@ -1,5 +1,5 @@
-// The generator of broken meshes against the diagnosis: what a mesh was made to have is what is found in it. The known
-// answers are formulas; the diagnosis searches.
+// The generator of broken meshes against the diagnosis: the defects that a mesh was made to have are those that are
+// found in it. The known answers are formulas; the diagnosis searches.
 
 #include "base/error.hpp"
 #include "mesh/shapes/broken_meshes.hpp"
@@ -20,7 +20,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The counts by name, so that a difference reads.
+/// The counts with their names, so that a difference can be read.
 using Counts = std::vector<std::pair<const char*, std::uint64_t>>;
 
 Counts counts(const KnownDiagnosis& known) {
@@ -108,7 +108,7 @@ TEST(BrokenMeshes, LargeOnesFull) {
   EXPECT_TRUE(has_what_it_was_made_to_have({names(), 64}));
 }
 
-/// Wherever it stands and however large: places nobody would choose, and the lattice is exact all the same.
+/// At any place and of any size, also ones that nobody would choose, the lattice is exact.
 TEST(BrokenMeshes, AnywhereAtAnyScale) {
   for (const double half_extent : {0.1, 1.7, 3e-5, 1e6}) {
     for (const glm::dvec3& center : {glm::dvec3(0.1, 0.7, -0.3), glm::dvec3(1000.0 / 3, -77.7, 1e-3)}) {
@@ -128,7 +128,7 @@ TEST(BrokenMeshes, AnywhereAtAnyScale) {
   }
 }
 
-/// The oracle's own oracle: a wrong formula must not pass.
+/// A test of this test: a mesh that lacks a triangle must not pass.
 TEST(BrokenMeshes, OneTriangleLessIsNoticed) {
   for (const std::string& name : names()) {
     BrokenMesh mesh = make_broken_mesh({{name}, 2});
@@ -199,7 +199,7 @@ TEST(LatticeSoups, AreAFunctionOfTheirParameters) {
   }
 }
 
-/// Coincidences are the rule: on a lattice of 27 points no two hundred triangles are without each of these.
+/// Coincidences are the rule: on a lattice of 27 points any two hundred triangles have each of these.
 TEST(LatticeSoups, HaveCoincidences) {
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const KnownDiagnosis found = found_in(make_lattice_soup({200, 2, seed}));

@@ -1,8 +1,9 @@
-// What must not change the coverage integral: where a closed loop is looked at from, where an edge is cut, mirrors,
-// scale, and the order and winding of triangles.
+// What must not change the coverage integral: the point from which a closed loop is looked at, the place where an edge
+// is cut, mirrors, scale, and the order and winding of triangles.
 //
-// Points of the light are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰ (none is on an edge's line but by
-// design): all signs here are exact in double. Tolerance: sums of a few dozen areas of a few ulps of 4 each.
+//
+// Points of the light are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰ (none is on an edge's line except
+// on purpose): all signs here are exact in double. Tolerance: sums of a few dozen areas of a few ulps of 4 each.
 
 #include "tests/unit/coverage_stage.hpp"
 #include "tests/unit/exact_area_soups.hpp"

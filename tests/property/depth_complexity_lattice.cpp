@@ -40,9 +40,9 @@ INSTANTIATE_TEST_SUITE_P(Range, DepthLatticeFull, testing::Values(1, 2, 4));
 
 using DepthHard = tests::DeviceTest;
 
-/// Triangles that reach behind p, past the light and through it, in general position: all of it must be right, on every
-/// kind of light and pattern. For half of the soups next to nothing is left to exact predicates; in the others whole
-/// view samples are, most of them. It may not become more.
+/// Triangles that reach behind p, past the light and through it, in general position: all of it must be right, for
+/// every kind of light and pattern. For half of the soups next to nothing is left to exact predicates; in the others
+/// whole view samples are, and most of them. This share may not grow.
 TEST_F(DepthHard, SoupsAllAroundTheLight) {
   const auto method = make_depth_complexity(device(), {});
   PairCounts counts;

@@ -40,7 +40,7 @@ bool has_corner(const Corners& t, const Point& p) {
 bool has_edge(const Corners& t, const Segment& e) {
   return has_corner(t, e.first) && has_corner(t, e.second);
 }
-/// Runs from the edge's first end to its second.
+/// Does the triangle run along the edge from its first end to its second?
 bool runs_along(const Corners& t, const Segment& e) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (t[i] == e.first) return t[(i + 1) % 3] == e.second;
@@ -54,7 +54,7 @@ Corners sorted(Corners t) {
 Corners reversed(const Corners& t) {
   return {t[0], t[2], t[1]};
 }
-/// A key of t that does not depend on its first corner; another one if it is wound the other way.
+/// A key of t that does not depend on its first corner, but does depend on its winding.
 Corners rotated(Corners t) {
   std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   return t;
@@ -62,7 +62,7 @@ Corners rotated(Corners t) {
 
 using Linked = std::function<bool(std::size_t, std::size_t)>;
 
-/// Sets of the numbers below count under the links' closure; each gets the set's smallest.
+/// The numbers below `count` in sets: linked numbers share a set. Gives each number the smallest of its set.
 std::vector<std::size_t> sets(std::size_t count, const Linked& linked) {
   std::vector<std::size_t> set(count, count);
   const std::function<void(std::size_t, std::size_t)> flood = [&](std::size_t i, std::size_t name) {
@@ -107,7 +107,8 @@ std::uint64_t count_boundary_loops(const std::vector<Corners>& soup, const Aroun
   });
 }
 
-/// Winds neighbours alike: most of each patch stay, or the first in space; or all, if it cannot be.
+/// Winds neighbours alike. Most triangles of each patch keep their winding (of equally many, those of the triangle that
+/// is first in space); if a patch cannot be wound alike, all keep theirs.
 std::vector<Corners> agreeing(const std::vector<Corners>& soup, const Around& around) {
   std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(soup.size());  // and: are wound against each other
   for (const auto& [e, triangles] : around) {
@@ -145,8 +146,8 @@ std::vector<Corners> agreeing(const std::vector<Corners>& soup, const Around& ar
 }
 
 /// Integer winding numbers at random points among the triangles. Each of n solid angles is off by some 1e-15 unless the
-/// point is close to its plane, which 20 points at random are not; the winding numbers of what is open are integers
-/// nearly nowhere.
+/// point is close to its plane, which 20 points at random are not; the winding numbers of an open mesh are integers
+/// almost nowhere.
 bool integer_windings(const std::vector<Corners>& soup) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> anywhere(-1, 9);

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-/// mesh/diagnosis/diagnosis.hpp once more, straight from its definitions, in time quadratic or worse. For soups whose
+/// mesh/diagnosis/diagnosis.hpp once more, directly from its definitions, in time quadratic or worse. For soups whose
 /// coordinates are small integers: all arithmetic that decides is in integers, except for the winding numbers.
 namespace penumbra::mesh::oracle {
 

@@ -56,7 +56,7 @@ std::vector<Numbers> reachable(const native::WideEdgeTree& tree) {
   return found;
 }
 
-/// Of the hierarchy below a root, in texels.
+/// All edges below a root of a hierarchy that is given as texels.
 std::vector<Numbers> reachable(const EdgeTexels& texels, std::uint32_t root) {
   std::vector<Numbers> found;
   if (texels.depth == 0) return found;
@@ -92,7 +92,7 @@ std::vector<Numbers> reachable(const EdgeTexels& texels, std::uint32_t root) {
 std::vector<Numbers> reachable(const CutEdges& edges) {
   return reachable(edges.tree());
 }
-/// What is on the device, at that: as far as it is in use.
+/// All edges of the hierarchy on the device, as far as its buffers are in use.
 std::vector<Numbers> reachable(const EdgeUpload& edges) {
   EdgeTexels texels = edges.texels();
   const auto read = [](const render::Buffer& from, std::vector<visibility::Texel>& texels_to) {

@@ -122,8 +122,8 @@ TEST_P(ExactAreaSoups, PointSamplesAverageToTheArea) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ExactAreaSoups, testing::Range(0u, 8u));
 
 TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
-  // Beyond the light, in its plane, behind p, in p's plane, edge-on to p, without area: and each as part of a triangle
-  // that crosses. Of the crossing ones the part between hides.
+  // Beyond the light, in its plane, behind p, in p's plane, edge-on to p, without area: and each also as part of a
+  // triangle that crosses. Of the crossing ones the part between p and the light hides.
   const auto alone = [](const Corners& corners, const glm::vec3& p = {0, -1, 0}) {
     return AreaStage(soup_scene({corners}, Lamp::flat)).visibility(p);
   };

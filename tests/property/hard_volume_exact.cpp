@@ -140,7 +140,7 @@ class HardVolume : public tests::DeviceTest {
   }
 
   /// No pixel may differ, there must have been something to decide, and the rasterised faces must have decided it: what
-  /// they left to the host is at most 1 % (or another share) of the pixels at a boundary.
+  /// they left to the host is at most 1 % (or another given share) of the pixels at a boundary.
   static void expect_exact(const std::string& name, const Picture& picture, double most_on_host = 0.01) {
     const Tally tally = compare(picture);
     fmt::print("{}: {} pixels counted, {} in shadow, {} at a boundary, largest count {}; {} counted on the host\n",
@@ -204,7 +204,7 @@ TEST_F(HardVolume, CountsAreExactWhereEverythingCoincides) {
   EXPECT_GT(doubtful, 0U);  // or this test has missed what it is about
 }
 
-/// The occluder's shadow on the floor is the square scaled by two from the light's centre: closed form.
+/// The occluder's shadow on the floor is the square, scaled by two from the light's centre: a closed form.
 TEST_F(HardVolume, ASquareThrowsASquare) {
   const Picture picture(shipped("parallel-square"), device(), 200, 150);
   const auto method = make_hard_volume(device(), {});
@@ -255,7 +255,7 @@ TEST_F(HardVolume, TheCameraMayBeInAVolume) {
   const Counted beyond = run(picture), before = run(picture, CountVariant::z_pass);
   const std::vector<std::int32_t> exact = exact_counts(picture, beyond.center);
   EXPECT_EQ(beyond.counts, exact);
-  // z-pass starts from 0 at the camera, which is in three volumes: all that it counts is off by three.
+  // z-pass starts from 0 at the camera, which is in three volumes: every count is too small by three.
   std::size_t counted = 0, in_shadow = 0, lit = 0;
   for (std::size_t pixel = 0; pixel < exact.size(); ++pixel) {
     if (beyond.kinds[pixel] != Kind::counted) continue;
@@ -270,7 +270,8 @@ TEST_F(HardVolume, TheCameraMayBeInAVolume) {
   EXPECT_GT(lit, 100U);
 }
 
-/// A camera that looks the way the light does sees the far ends of volumes: directions without end in shadow.
+/// A camera that looks in the light's direction sees the far ends of volumes: directions in which the shadow never
+/// ends.
 TEST_F(HardVolume, TheFarEndIsCounted) {
   const scenes::Scene broken = tests::with_a_floor(mesh::make_broken_mesh({{"hole", "fin"}, 2, {0, 1.5, 0}, 1}).soup);
   for (const glm::dvec3& eye : {glm::dvec3(0.5, 6, 0.5), glm::dvec3(0.3, 4, 0.8), glm::dvec3(1.5, 2.5, -0.5)}) {
@@ -284,7 +285,7 @@ TEST_F(HardVolume, TheFarEndIsCounted) {
 }
 
 /// So close that p, rounded to float32, moves by a part of a pixel and often past an edge of its triangle: the carrier
-/// and what is coplanar with it must still count nothing, its neighbours what they exactly are.
+/// and what is coplanar with it must still not be counted, and its neighbours must be counted exactly.
 TEST_F(HardVolume, CloseUpsWhereRoundingMovesPoints) {
   for (const double cell : {1.6e-5, 4e-6}) {
     const glm::dvec3 middle(1.3, 0.7, -0.4);

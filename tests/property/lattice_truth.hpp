@@ -17,7 +17,7 @@
 
 namespace penumbra::tests {
 
-/// What all cameras see, and points on triangles that no camera's rounding has moved off them.
+/// What all cameras see, and also points on triangles that no camera's rounding has moved off them.
 inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const visibility::SceneFloats& floats,
                                            std::mt19937& random) {
   visibility::ViewSamples samples = samples_on_triangles(floats, 8, 8, random);
@@ -27,7 +27,7 @@ inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const vis
   return samples;
 }
 
-/// The light with its samples in no rows, so that shaders take the path for samples anywhere.
+/// The light with its samples not in rows, so that shaders take the path for samples anywhere.
 inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
   light.pattern = visibility::SamplePattern::sobol;
   light.rows = light.columns = 0;
@@ -36,7 +36,7 @@ inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
   return light;
 }
 
-/// `count` soups with corners in −range … range. Without `any_light`, light samples in rows alone.
+/// `count` soups with corners in −range … range. Without `any_light`, only light samples in rows.
 struct LatticeRun {
   int range = 1;
   std::uint32_t count = 1;
@@ -44,7 +44,7 @@ struct LatticeRun {
   std::uint32_t first = 0;
 };
 
-/// A method for each layout of light samples: one that is given another compiles its kernels anew.
+/// A method for each layout of light samples: a method that is given another layout compiles its kernels again.
 class MethodsByLayout {
  public:
   using Make = std::function<std::unique_ptr<visibility::Method>()>;
@@ -61,7 +61,7 @@ class MethodsByLayout {
   std::map<std::array<std::uint32_t, 3>, std::unique_ptr<visibility::Method>> methods_;
 };
 
-/// Returns what the pairs were.
+/// Returns how the pairs turned out.
 inline PairCounts expect_lattice_truth(MethodsByLayout& methods, const LatticeRun& run_of) {
   PairCounts counts;
   for (std::uint32_t i = run_of.first; i < run_of.first + run_of.count; ++i) {

@@ -50,7 +50,8 @@ class MaskLamps : public tests::DeviceTest,
 TEST_P(MaskLamps, EveryPairIsTheExactDecision) {
   look(0, std::get<1>(GetParam()).any_light ? 12 : 25);
 }
-/// Found among thousands: a corner of the light whose depth was counted at a light sample rounded anew.
+/// Found among thousands of lamps: a corner of the light whose depth was counted at a light sample that had been
+/// rounded again.
 TEST_P(MaskLamps, WhatWasWrong) {
   if (std::get<0>(GetParam()) == Hostility::panels) look(5983, 3);
 }

@@ -39,8 +39,8 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
   EXPECT_GT(counts.behind, counts.pairs / 100);
 }
 
-/// On a device without the validation layer, which takes most of the time and has nothing to say of soups that it does
-/// not say of the sixty.
+/// On a device without the validation layer, which takes most of the time and reports nothing about these soups that it
+/// does not report about the sixty.
 class LatticeSoupsFull : public testing::TestWithParam<std::tuple<int, tests::MaskMethod>> {};
 
 /// 60,000 soups for each engine of each method.
@@ -59,8 +59,8 @@ TEST_P(LatticeSoupsFull, EveryPairIsTheExactDecision) {
   tests::expect_all_kinds(counts);
 }
 
-/// Found among tens of thousands: an outline along the light's left side, p inside another triangle within rounding,
-/// an edge at p's own height; light samples stored off the light's plane, which a triangle touches.
+/// Found among tens of thousands of soups: an outline along the light's left side, p inside another triangle within
+/// rounding, an edge at p's own height; light samples stored off the light's plane, which a triangle touches.
 TEST_P(HardScenes, LatticeSoupsThatWereWrong) {
   tests::MethodsByLayout methods([&] { return GetParam().make(device(), {}); });
   static constexpr std::pair<int, std::uint32_t> kSoups[] = {{1, 335},   {1, 788},   {1, 873},  {1, 10790},
@@ -170,7 +170,7 @@ TEST_P(HardScenes, MagnitudesFarApart) {
   EXPECT_GT(counts.blocked, counts.pairs / 100);
 }
 
-/// A light as large as the sun and as far: the scene is a speck beside it.
+/// A light as large and as far away as the sun: the scene is a speck beside it.
 TEST_P(HardScenes, LightsFarAway) {
   const auto method = GetParam().make(device(), {});
   PairCounts counts;

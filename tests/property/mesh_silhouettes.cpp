@@ -142,8 +142,8 @@ RC_GTEST_PROP(SignedMultiplicity, OppositeFacesOnlyAddUp, ()) {
   RC_ASSERT(computed(soup, p) == twice);
 }
 
-/// From points around and inside of a closed surface: 0 and ±2 alone; loops, as in = out says; none from where all
-/// triangles show the same side.
+/// From points around and inside a closed surface: only 0 and ±2; loops, since as much arrives at each vertex as leaves
+/// it; none where all triangles show the same side.
 TEST(Silhouettes, OfClosedSurfacesAreTwofold) {
   for (const TriangleSoup& soup :
        {make_sphere({}), make_torus({}), make_blob({.subdivisions = 3}), make_box({0, 0, 0}, {1, 2, 3})}) {
@@ -233,7 +233,8 @@ RC_GTEST_PROP(PossibleSilhouettes, FromOnePointAreItsSilhouettes, ()) {
 }
 
 RC_GTEST_PROP(PossibleSilhouettes, AreTightWhereNoTriangleIsSeenFromBothSides, ()) {
-  // An edge all of whose triangles show the whole hull one side is in the list iff it is a silhouette from each point.
+  // If all triangles of an edge show the whole hull one side, the edge is in the list iff it is a silhouette from each
+  // point.
   const LatticeSoup soup = draw_soup();
   const EdgeGraph graph = build_edge_graph(soup.view());
   const std::vector<glm::dvec3> corners = draw_corners(4);
@@ -251,7 +252,7 @@ RC_GTEST_PROP(PossibleSilhouettes, AreTightWhereNoTriangleIsSeenFromBothSides, (
 }
 
 TEST(PossibleSilhouettes, OfAFlatGridAreItsBorder) {
-  // A box of receivers on both sides of the grid: every triangle is mixed, and inner edges cancel all the same.
+  // A box of receivers on both sides of the grid: every triangle is mixed, and inner edges still cancel.
   const TriangleSoup soup = make_grid({.half_u = {4, 0, 0}, .half_v = {0, 0, -4}, .cells_u = 8, .cells_v = 8});
   const MeshView view{soup.positions, soup.triangles};
   const EdgeGraph graph = build_edge_graph(view);
@@ -265,7 +266,7 @@ TEST(PossibleSilhouettes, OfAFlatGridAreItsBorder) {
 }
 
 TEST(PossibleSilhouettes, PagesOfAFlatBookCancelInPairs) {
-  // Around one edge in one plane: as many pages left as right cancel from everywhere; one page more does not.
+  // Pages around one edge, all in one plane: as many left as right cancel from everywhere; one page more does not.
   LatticeSoup soup;
   soup.places = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {2, 0, 5}, {-1, 0, 0}, {-3, 0, 2}, {0, 1, 0}};
   soup.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 5}};

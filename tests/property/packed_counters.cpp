@@ -1,4 +1,4 @@
-// depth-complexity variant=forest against its twins and exact predicates: every counter, and what is done where there
+// depth-complexity variant=forest against its twins and exact predicates: every counter, and what happens where there
 // is none.
 
 #include "tests/agreement/packed_counters.hpp"
@@ -135,7 +135,7 @@ TEST_F(Packed, SoupsAroundEveryKindOfLight) {
   EXPECT_GT(totals_.too_bright, 0U);      // the paper's approximation shows
 }
 
-/// Occluders no plane of which passes through the light: all of it sees the same silhouettes.
+/// Occluders whose planes all miss the light: all of the light sees the same silhouettes.
 scenes::Scene boards() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));
@@ -168,8 +168,8 @@ TEST_F(Packed, BoardsAreExact) {
   }
 }
 
-/// A sheet in shallow pleats, so turned that view samples are off its planes by more than rounding, under light along
-/// it: ways to the light run through planes of carriers, past edges that are no silhouettes.
+/// A sheet in shallow pleats, turned so that view samples are off its planes by more than rounding, under light along
+/// the sheet: ways to the light pass through planes of carriers, past edges that are no silhouettes.
 TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
   const glm::dvec3 u = glm::normalize(glm::dvec3(0.8, 0.31, -0.23)),
                    v = glm::normalize(glm::cross(u, glm::dvec3(0.17, 0.9, 0.41))), n = glm::cross(v, u);
@@ -203,7 +203,7 @@ TEST_F(Packed, ABallIsTooBright) {
   EXPECT_LT(found.too_bright, found.pairs / 50);
 }
 
-/// `count` boards in one place: their edges are three, of multiplicity `count`.
+/// `count` boards in one place: they have three edges, each of multiplicity `count`.
 scenes::Scene stack(std::uint32_t count) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));

@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Wedges,
                            return (std::get<0>(test.param) == Construction::tight ? "tight_" : "original_") + name;
                          });
 
-/// How the outcomes are spread: printed, and the promises of the header held.
+/// Prints how often each outcome occurs, and checks what the header promises.
 TEST(WedgeOutcomes, AsDocumented) {
   Random random(2);
   for (const Case& c : kCases) {

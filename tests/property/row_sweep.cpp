@@ -1,4 +1,4 @@
-// The sweep of rows=exact by itself: what no triangle covers has the same area whichever way the rows run.
+// The sweep of rows=exact by itself: the area that no triangle covers does not depend on the direction of the rows.
 
 #include "volumes/scatter/vectors/row_sweep.hpp"
 
@@ -20,7 +20,7 @@ double twice_area(const Triangle& t) {
   return (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
 }
 
-/// Triangles as layers: whichever way they are wound, inside is one more.
+/// Triangles as layers: whichever way they are wound, inside there is one layer more.
 std::vector<RowEdge> outlines(std::span<const Triangle> triangles) {
   std::vector<RowEdge> edges;
   for (const Triangle& triangle : triangles) {

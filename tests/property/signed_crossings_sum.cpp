@@ -119,8 +119,8 @@ bool enters_slab(const Corner& a, const Corner& b) {
   return a.place != b.place || a.place == Place::between;
 }
 
-/// What runs from one side of the ray's line to the other, with the light point on its left (`left` > 0) or right
-/// (< 0), crosses the ray itself upwards (+1), downwards (−1) or not. With the light point on it (0) it does not: l +
+/// An edge from one side of the ray's line to the other, with the light point on its left (`left` > 0) or right (< 0),
+/// crosses the ray itself upwards (+1), downwards (−1) or not. If the light point is on the edge (0), it does not: l +
 /// ε·u is beyond it. (Ties: E)
 int crossing(bool from_above, bool to_above, int left) {
   if (from_above == to_above) return 0;

@@ -20,7 +20,7 @@ struct CrossingPair {
 struct SignedCrossings {
   int edges = 0;          ///< Σ over the graph's edges, clipped, each k_e(p) times
   int cuts_at_light = 0;  ///< Σ over the triangles' cut edges in the plane through l
-  int cuts_at_p = 0;      ///< the same in the plane through p
+  int cuts_at_p = 0;      ///< Σ over the triangles' cut edges in the plane through p
 
   /// The number of triangles that the open segment p→l meets: segment_meets_triangle summed over the graph's triangles,
   /// zero predicates included.

@@ -39,7 +39,7 @@ class SilhouettePassTest : public tests::DeviceTest {
  protected:
   SilhouettePassTest() : pass_(device()) {}
 
-  /// From all points, every side that a triangle is seen from counting, and then only some.
+  /// From all points: first every side that a triangle is seen from counts, then only some.
   void expect_exact(const std::string& name, const Mesh& mesh, const std::vector<glm::vec3>& points) {
     ASSERT_TRUE(pass_.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph}));
     std::vector<std::uint32_t> all(mesh.triangles.size(), gpu::kBothBits), some(all);

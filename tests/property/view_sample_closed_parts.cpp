@@ -1,6 +1,7 @@
-// Closed parts lose the triangles that pairs outside them can do without: not one bit may change. The parts here are
-// the worst that are still closed: spheres in connection only, their vertices anywhere on a lattice, so that they cross
-// themselves, touch their box, the floor and the view samples, and have no inside that deserves the name.
+// Closed parts drop the triangles that pairs outside of them do not need: not one bit may change. The parts here are
+// the worst that are still closed: spheres only in how they are connected, with vertices anywhere on a lattice, so that
+// they cross themselves, touch their box, the floor and the view samples, and have hardly anything that could be called
+// an inside.
 
 #include "mesh/shapes/shapes.hpp"
 #include "tests/agreement/lattice.hpp"

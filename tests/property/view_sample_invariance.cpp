@@ -1,5 +1,5 @@
 // What must not change a single bit of view-sample mapping: the order, winding and first vertex of triangles, doubled
-// vertices and faces, the size of tiles, a second run, a scale by a power of two. And what may change next to nothing:
+// vertices and faces, the size of tiles, a second run, a scale by a power of two. And what may change almost nothing:
 // another scale, another place in the world.
 
 #include "tests/agreement/lattice.hpp"
@@ -146,7 +146,8 @@ TEST_F(Invariance, OneMethodForManyMeshesLightsAndViews) {
 }
 
 TEST_F(Invariance, LightsOnTheOneEngineAndTheOther) {
-  // Rows on the processor, points of no row on the device: by turns, in one method, before and after the view.
+  // Rows on the processor, points that form no rows on the device: in turns, in one method, before and after the view
+  // is given.
   const auto method = make_view_sample(device(), {{"engine", "native"}});
   const scenes::Scene scene = shipped("contact.json");
   const tests::Stage stage(scene, 40, 40, {64, 0, 0, visibility::SamplePattern::rows, 0});

@@ -1,6 +1,6 @@
-// Broken meshes told in other words: the same triangles in another order, from another first vertex, wound the other
-// way, on vertices of their own, twice, or cut at points exactly on them. None may change a bit. (The same for scenes
-// and for soups with lights among them: view_sample_invariance.cpp.)
+// Broken meshes described in other ways: the same triangles in another order, from another first vertex, wound the
+// other way, on vertices of their own, twice, or cut at points exactly on them. None of this may change a bit.
+// (view_sample_invariance.cpp does this for scenes and for soups with lights among them.)
 
 #include "tests/agreement/differences.hpp"
 
@@ -38,7 +38,7 @@ std::vector<Case> cases() {
   return result;
 }
 
-/// Another wording of a soup.
+/// Another way to describe a soup.
 using Wording = void (*)(mesh::TriangleSoup&, std::mt19937&);
 
 void permute(mesh::TriangleSoup& soup, std::mt19937& random) {
@@ -82,7 +82,7 @@ class Metamorphic : public tests::DeviceTest, public testing::WithParamInterface
     Masks masks;
   };
 
-  /// `samples`: as they are stored, or anew.
+  /// `samples`: the given ones, or those that the camera sees.
   Picture picture(const SceneFloats& floats, const scenes::Scene& scene, std::optional<ViewSamples> samples = {}) {
     const Light light = visibility::make_light(scene, 0, floats.origin, {});
     if (!samples) {
@@ -126,7 +126,7 @@ TEST_P(Metamorphic, TheSameTrianglesInOtherWords) {
   EXPECT_GT(partly, 300U);  // pixels in penumbra
 }
 
-/// A scene whose triangles are cut, and for each piece the triangle that it is of.
+/// A scene whose triangles are cut, and for each piece the triangle that it comes from.
 struct Split {
   scenes::Scene scene;
   std::vector<std::uint32_t> whole;
@@ -249,7 +249,7 @@ TEST_P(Metamorphic, CutAtPointsExactlyOnThem) {
     const Picture exact = picture(before, scene, tests::samples_on_triangles(before, 16, 12, random));
     const Picture exact_cut = picture(after, cut, on_pieces(exact.samples, before, after, whole));
     EXPECT_EQ(tests::differing_bits(exact.masks, exact_cut.masks), 0U) << name;
-    // Seen anew: p is rounded from the pieces' corners.
+    // Seen again by the camera: p is rounded from the pieces' corners.
     const Picture anew = picture(after, cut);
     differing += tests::differing_bits(plain.masks, anew.masks);
     for (const std::int32_t triangle : plain.samples.triangle) pairs += triangle < 0 ? 0 : 256;

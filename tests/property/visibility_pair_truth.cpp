@@ -133,7 +133,8 @@ TEST_P(PairTruthOnLattice, SegmentAgainstOneTriangle) {
   EXPECT_GT(zeros_met, 5);
 }
 
-/// Points of the light's plane that no float is: the same sentence, of the part of the triangle before that plane.
+/// Points of the light's plane that are no floats: the same definition, for the part of the triangle between p and that
+/// plane.
 TEST_P(PairTruthOnLattice, PointsOfTheLightsPlane) {
   Lattice lattice(GetParam() + 700);
   int met = 0;

@@ -39,7 +39,7 @@ struct Stage {
   std::vector<visibility::Light> lights;
 };
 
-/// A square and a disk at each place of a way, turned on it.
+/// A square and a disk light at each place along a path, turned on the way.
 std::vector<scenes::AreaLight> moving(std::size_t frames, double height, double half, double scale = 1) {
   std::vector<scenes::AreaLight> lights;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -73,7 +73,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
     }
   }
 
-  /// That they bound is not enough: they must be the construction's.
+  /// It is not enough that the planes bound the penumbra: they must be those of the construction.
   static void expect_like(const LightWedges& device, const LightWedges& host, Tally& tally) {
     ASSERT_EQ(device.wedges.size(), host.wedges.size());
     for (std::size_t i = 0; i < host.wedges.size(); ++i) {
@@ -93,7 +93,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
 
   enum class How { like_host, valid, valid_and_like_host };
 
-  /// Against the host, from every light. Layers::one_a_solid unless they are to be validated.
+  /// Compares with the host, from every light. Layers::one_a_solid unless the wedges are to be validated.
   static void expect_sound(const std::string& name, const Stage& stage, How how, Tally& tally) {
     const Layers layers = how == How::like_host ? Layers::one_a_solid : Layers::every_triangle;
     WedgeBuilder device_builder(device(), {WedgesOn::device, Construction::original, layers});
@@ -176,8 +176,8 @@ TEST_F(WedgeBuilderTest, FarFromOneInSize) {
   EXPECT_LE(tally.widest, 1e-6);
 }
 
-/// Nothing depends on the schedule: the same bits once more, from another builder, and from buffers that take the
-/// wedges in batches. Buffers that do not hold the mesh leave all to the host.
+/// Nothing depends on the schedule: a second run, another builder, and buffers that take the wedges in batches give the
+/// same bits. Buffers that do not hold the mesh leave everything to the host.
 TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
   const Stage stage(mesh::make_lattice_soup({200, 64, 7, glm::dvec3(0), 2}), moving(2, 5, 0.7));
   const std::uint64_t triangles = stage.floats.triangles.size(), enough = triangles * sizeof(gpu::FacingTriangle);

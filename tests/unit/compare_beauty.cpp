@@ -74,7 +74,7 @@ TEST(Beauty, OneSampleStraightAbove) {
   Floor floor({{0, 0, 0}});
   floor.lights = {rectangle(2, 1, 1, 1, 1)};
   const std::vector<std::uint32_t> seen{1}, hidden{0};
-  // All that there is is visible: the light's form factor, not the sample's. colour · radiance · F
+  // All of the light is visible: the light's form factor counts, not the sample's. colour · radiance · F
   const glm::vec3 color = floor.shade({{seen, {}}})[0];
   EXPECT_FLOAT_EQ(color.r, static_cast<float>(0.5 * 10 * kStraightAbove));
   EXPECT_FLOAT_EQ(color.g, static_cast<float>(0.25 * 20 * kStraightAbove));
@@ -86,7 +86,7 @@ TEST(Beauty, ALightToOneSide) {
   Floor floor({{3, 0, 0}});
   floor.lights = {rectangle(4, 1, 1, 1, 1)};
   const std::vector<std::uint32_t> seen{1};
-  // From 2 to 4 beside the element: the rectangle up to 4 less that up to 2, and two of them.
+  // From 2 to 4 beside the element: the rectangle up to 4 minus the one up to 2, twice.
   const double expected = 2 * (corner_form_factor(4, 1, 4) - corner_form_factor(2, 1, 4));
   EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 * expected));
 }

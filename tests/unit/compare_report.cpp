@@ -146,12 +146,12 @@ TEST(Report, SaysTheNumbers) {
   }
 }
 
-/// 4 s of the reference against 2 s: what that says of speed depends on what either was asked.
+/// The reference took 4 s, the method 2 s: what this says about speed depends on what each was asked.
 TEST(Report, GivesASpeedOnlyBetweenAnswersToTheSameQuestion) {
   const auto says_faster = [](const ReportInput& in) {
     const std::string html = report_html(in);
     EXPECT_EQ(unbalanced_tag(html), "");
-    // In the table and at a glance, or in neither.
+    // Both in the table and at a glance, or in neither.
     EXPECT_EQ(occurrences(html, "2.00× faster</td>"), occurrences(html, "2.00× faster than the reference"));
     EXPECT_EQ(occurrences(html, "× faster"), 2 * occurrences(html, "× faster</td>"));
     EXPECT_NE(occurrences(html, "× faster</td>"), occurrences(html, "another question"));
@@ -175,7 +175,7 @@ TEST(Report, GivesASpeedOnlyBetweenAnswersToTheSameQuestion) {
   in.reference.description.output = radiance;  // both areas: light samples do not matter
   in.metrics.reference.light_samples = 1;
   EXPECT_TRUE(says_faster(in));
-  in.sampled_pixels = 2000;  // the reference's alone, perhaps
+  in.sampled_pixels = 2000;  // perhaps only of the reference
   EXPECT_FALSE(says_faster(in));
   in.metrics.methods[0].stats.method = in.metrics.reference.method;
   EXPECT_TRUE(says_faster(in));

@@ -93,7 +93,7 @@ TEST(VisibleLight, ARunIsTheSumOfItsCells) {
 }
 
 TEST(VisibleLight, AllVisibleIsTheWholeToTheLastBit) {
-  // The last point's horizon cuts the lights: all samples above it, and no other, are visible.
+  // The last point's horizon cuts the lights: there all samples above it, and no others, are visible.
   const glm::vec3 up(0, 1, 0), slanted = glm::normalize(glm::vec3(1, 0.02f, 0.1f));
   for (const char* kind : {"rectangle", "disk", "polygon", "sphere"}) {
     for (const SamplePattern pattern :

@@ -46,7 +46,7 @@ TEST(AtomicFile, WithoutCommitNothingIsLeftAndTheOldFileStays) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
-/// As on a file system without nameless files, for as long as it lives.
+/// As on a file system without nameless files, while this object lives.
 class NamedParts {
  public:
   NamedParts() { ::setenv("PENUMBRA_TEST_NAMED_PARTS", "1", 1); }
@@ -101,7 +101,7 @@ TEST(AtomicFile, PartsOfDeadProcessesAreRemovedAndOthersAreNot) {
   ASSERT_EQ(folder.names().size(), 1u);
   const std::string orphan = folder.names().front();
   EXPECT_TRUE(orphan.starts_with(".penumbra-") && orphan.ends_with(".part.exr")) << orphan;
-  // Of another machine, or of this one before it started again; of somebody else altogether.
+  // Temporary files of another machine, or of this one before its last start; and a file that is nobody's temporary.
   (void)folder.write(".penumbra-00000000-1-0.part.exr", "not ours");
   (void)folder.write(".penumbra-notes.part", "not ours");
   AtomicFile live(folder / "live.exr");

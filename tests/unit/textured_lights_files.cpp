@@ -1,5 +1,5 @@
-// Textures from files: what each kind of picture means, what is refused and in which words, and that nothing is lost on
-// the way out and in again.
+// Textures from files: what each kind of picture means, what is refused and in which words, and that nothing is lost
+// when they are written and read again.
 
 #include "base/exr.hpp"
 #include "scenes/light_texture.hpp"
@@ -105,7 +105,7 @@ TEST_F(TexturedLightFiles, OpenExrIsLinearAndMayBeBrighterThanOne) {
   EXPECT_EQ(color->width, 2u);
   const auto grey = read(exr(4, 1, {"Y"}, values), "t.exr").lights[0].texture;
   EXPECT_EQ(grey->texels, color->texels);
-  // What a file is, its first bytes say, not its name.
+  // The first bytes of a file say what it is, not its name.
   EXPECT_EQ(read(exr(2, 2, {"R", "G", "B"}, values), "t.png").lights[0].texture->texels, color->texels);
 }
 

@@ -1,4 +1,5 @@
-// Weights of light samples: they add up, stand for the texel that is there, and change nothing where nothing changes.
+// Weights of light samples: they add up, they are those of the texel at the sample, and they change nothing where
+// nothing should change.
 
 #include "base/error.hpp"
 #include "tests/unit/scenes_support.hpp"

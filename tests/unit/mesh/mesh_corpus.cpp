@@ -1,6 +1,6 @@
-// The half-edge view and repair on the meshes of Debian's libcgal-demo, as CGAL's authors use and abuse them: no face
-// is lost without being listed, OpenMesh refuses none, silhouette loops are the signed multiplicities, and repair keeps
-// its promises. The label `quick` has some small flawed ones, `full` all.
+// The half-edge view and repair on the meshes of Debian's libcgal-demo, good and bad: no face is lost without being
+// listed, OpenMesh refuses none, silhouette loops are the signed multiplicities, and repair keeps its promises. The
+// label `quick` has some small flawed ones, `full` all.
 
 #include "mesh/half_edge_view.hpp"
 #include "mesh/import.hpp"

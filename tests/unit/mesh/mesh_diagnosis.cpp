@@ -304,7 +304,7 @@ TEST(Diagnosis, PatchesThatOnlyCoincideInSpaceCloseOneAnother) {
   EXPECT_TRUE(d.closed && d.closed_as_wound);
   EXPECT_GT(d.t_junctions.count, 0);
   EXPECT_NEAR(d.volume, 120.0 * 120 * 120, 1e-6);
-  std::swap(box.triangles[4][0], box.triangles[4][1]);  // turned back: most of its patch are wound the other way
+  std::swap(box.triangles[4][0], box.triangles[4][1]);  // turned back: now most of its patch is wound the other way
   EXPECT_TRUE(diagnosis_of(box).closed);
   EXPECT_FALSE(diagnosis_of(box).closed_as_wound);
 }
@@ -328,14 +328,14 @@ TEST(Diagnosis, SelfIntersections) {
   EXPECT_EQ(diagnosis_of(crossing).self_intersections->first[0].points.size(), 6);
   EXPECT_FALSE(diagnosis_of(crossing, {.search_intersections = false}).self_intersections.has_value());
 
-  // Neighbours that fold onto one another; and that only lie in one plane.
+  // Neighbours that fold onto one another, and neighbours that only lie in one plane.
   EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 3, 0}}, {{0, 1, 2}, {0, 1, 3}}))
                 .self_intersections->count,
             1);
   EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -3, 0}}, {{0, 1, 2}, {0, 1, 3}}))
                 .self_intersections->count,
             0);
-  // A vertex that touches the inside of another triangle or edge is a meeting elsewhere, too.
+  // A vertex that touches the inside of another triangle or edge also counts as a meeting elsewhere.
   EXPECT_EQ(
       diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}))
           .self_intersections->count,
@@ -347,7 +347,7 @@ TEST(Diagnosis, SelfIntersections) {
 }
 
 TEST(Diagnosis, ManyTrianglesInOnePlaceAreCountedAsOneSurface) {
-  // n times one triangle and m times one that crosses it, in turn: pairs of 60,000 triangles, which nobody can visit.
+  // n times one triangle and m times one that crosses it, alternating: 60,000 triangles have too many pairs to visit.
   constexpr std::uint32_t n = 40'000, m = 20'000;
   TriangleSoup heap = soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 0}}, {});
   for (std::uint32_t i = 0; i < n; ++i) {

@@ -26,7 +26,7 @@ std::size_t count(const HalfEdgeView& surface, NotHeld why) {
   return static_cast<std::size_t>(std::ranges::count(surface.listed(), why, &ListedFace::why));
 }
 
-/// Runs of each edge in the loops: from a to b less from b to a.
+/// How often the loops run along each edge: from a to b, minus from b to a.
 std::map<std::uint32_t, int> runs(const HalfEdgeView& surface, const EdgeGraph& graph,
                                   const std::vector<SurfaceLoop>& loops) {
   std::map<std::uint32_t, int> runs;
@@ -42,7 +42,7 @@ std::map<std::uint32_t, int> runs(const HalfEdgeView& surface, const EdgeGraph& 
   return runs;
 }
 
-/// Held and listed are all; the maps are each other's inverse; neighbours are wound alike.
+/// Every triangle is held or listed; the maps are each other's inverse; neighbours are wound alike.
 void expect_sound(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEdgeView& surface) {
   std::set<std::uint32_t> triangles(surface.triangle_of_face().begin(), surface.triangle_of_face().end());
   for (const ListedFace& face : surface.listed()) EXPECT_TRUE(triangles.insert(face.triangle).second);
@@ -68,7 +68,7 @@ void expect_sound(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEd
   EXPECT_EQ(faces, surface.triangle_of_face().size());
 }
 
-/// k_e(p) over the held faces is what the front loops run, less what the back loops run.
+/// k_e(p) over the held faces is what the front loops run along each edge, minus what the back loops run.
 void expect_loops_are_multiplicities(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEdgeView& surface,
                                      const glm::dvec3& p) {
   std::vector<Side> sides = facings(view(soup), graph, p);

@@ -35,7 +35,7 @@ TEST_F(MeshReaders, ObjFacesWithTextureCoordinatesThatDoNotExistAreWhole) {
     EXPECT_THAT(mesh.notes, Contains("2 lines skipped: faces with two corners"));
     EXPECT_THAT(mesh.notes, Contains("1 points skipped: faces with one corner"));
   }
-  // Lines do not stand in for faces that are gone.
+  // Lines do not make up for faces that are missing.
   const ImportedMesh mesh = read("lines.obj", square + "vt 0 0\nf 1/1 2/1 3/2\nf 1/1 3/1 4/1\nl 1 2 3 4 1\n");
   EXPECT_EQ(mesh.soup.triangles.size(), 2u);
 }

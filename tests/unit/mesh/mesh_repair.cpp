@@ -1,5 +1,6 @@
-// Repair of known breakages, with the counts that it must report, and of random lattice soups, where it must hold what
-// it promises: an oriented manifold by indices, the same points, its own input untouched, and nothing to do twice.
+// Repair of known defects, with the counts that it must report, and of random lattice soups, where it must keep its
+// promises: an oriented manifold by indices, the same points, its own input untouched, and nothing left for a second
+// repair.
 
 #include "mesh/repair/repair.hpp"
 
@@ -170,7 +171,7 @@ TEST(Repair, RemovesWhatHasNoAreaAndWhatRepeats) {
   add({0, 0, 5});
   soup.positions.emplace_back(0.5, 0, 0);
   add({0, 8, 1});          // attached to an edge: no other triangle uses its middle
-  add(soup.triangles[3]);  // the same again
+  add(soup.triangles[3]);  // repeats triangle 3
   add({soup.triangles[5][0], soup.triangles[5][2], soup.triangles[5][1]});  // and one wound the other way
   const Repaired repaired = repair_and_check(soup);
   EXPECT_EQ(count_of(repaired, "at one point"), 1u);
