@@ -19,7 +19,7 @@ void watch_for_interrupts();
 void check_interrupt();
 
 /// A stretch of work that may take long and polls nothing: while one is alive and no output file is open (FileIsOpen),
-/// a signal ends the process on the spot. Otherwise the next check_interrupt() throws.
+/// a signal ends the process immediately. Otherwise the next check_interrupt() throws.
 class MayExitAtOnce {
  public:
   MayExitAtOnce();

@@ -109,7 +109,7 @@ const std::vector<TableRow>& table() {
   return rows;
 }
 
-/// Names that the program will understand some day; they mean nothing else until then.
+/// Names of methods that are planned, or that this build goes without. They are never used for anything else.
 constexpr std::array kNotThereYet = {"exact",
                                      "depth-complexity",
                                      "alias-free",

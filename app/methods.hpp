@@ -16,8 +16,8 @@ std::vector<const visibility::MethodDescription*> all_methods();
 /// The members of `reference`, `geometry`, `image` or `all`; nothing for any other word.
 std::optional<std::vector<const visibility::MethodDescription*>> method_group(std::string_view group);
 
-/// Throws UsageError, listing what is there, for an unknown name and (in other words) for one whose time has yet to
-/// come.
+/// Throws UsageError, listing what is there, for an unknown name and (in other words) for a method that is not there
+/// yet.
 const visibility::MethodDescription& describe_method(std::string_view name);
 
 /// The description of a method run with these options: its output and its lights may depend on them. Throws

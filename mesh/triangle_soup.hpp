@@ -11,7 +11,7 @@ namespace penumbra::mesh {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Triangles as they stand: the default path, on which nothing is ever dropped in silence. Positions may repeat,
+/// Triangles as they stand: the default path, on which nothing is ever dropped silently. Positions may repeat,
 /// triangles may be degenerate, doubled, open, non-manifold. Lengths in the file's unit, double precision.
 struct TriangleSoup {
   std::vector<glm::dvec3> positions;

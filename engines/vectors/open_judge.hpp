@@ -9,7 +9,7 @@
 
 namespace penumbra::native {
 
-/// Decides by exact predicates what is not certain, on the spot, and counts that.
+/// Decides at once, by exact predicates, what is not certain, and counts it.
 class ExactOpenJudge final : public OpenJudge {
  public:
   ExactOpenJudge(const visibility::PairJudge& judge, const LightGrid& grid) : judge_(judge), grid_(grid) {}

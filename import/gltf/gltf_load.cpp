@@ -141,7 +141,7 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
       throw InputError("{}: /extensionsRequired: {} is not supported; export without compression", name, extension);
     }
   }
-  // It goes on after some errors, and leaves out what it could not understand: nothing may go missing in silence.
+  // It goes on after some errors, and leaves out what it could not understand: nothing may go missing silently.
   if (!loaded || !error.empty()) {
     throw InputError("{}: {}", name, error.empty() ? "it is no glTF file" : without_line_ends(error));
   }

@@ -102,7 +102,7 @@ void append(TriangleSoup& to, const TriangleSoup& from, const CgalSurface& surfa
     const auto [a, b, c] = corners(surface.mesh, face);
     to.triangles.push_back({offset + a.idx(), offset + b.idx(), offset + c.idx()});
     const std::uint32_t named = surface.triangle[face];
-    const std::uint32_t source = named == CgalSurface::kNew ? first_triangle : named;  // a part made anew
+    const std::uint32_t source = named == CgalSurface::kNew ? first_triangle : named;  // a part that was built again
     to.object.push_back(from.object[source]);
     to.source_face.push_back(from.source_face[source]);
   }

@@ -34,7 +34,7 @@ auto at_place(const Place& place, const Make& make) {
 }
 
 /// Parses JSON strictly. InputError with line and column for a syntax error, and with the JSON pointer for what
-/// libraries let pass in silence: a number beyond double's range, a key that stands twice, absurd nesting.
+/// libraries let pass silently: a number beyond double's range, a key that stands twice, absurd nesting.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
 /// The whole text file; InputError if it is missing, a folder, a device, or cannot be read.

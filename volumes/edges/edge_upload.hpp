@@ -15,8 +15,8 @@
 namespace penumbra::volumes {
 
 /// A hierarchy of edges on the device (EdgeTexels) that is cut at a light's plane, and restored for the next light.
-/// Only what the plane cuts is made anew and written: subtrees behind it are left out, the cut edges are a second tree
-/// below a root of both. The twin of CutEdges on vector units.
+/// Only what the plane cuts is computed again and written: subtrees behind it are left out, the cut edges are a second
+/// tree below a root of both. The twin of CutEdges on vector units.
 class EdgeUpload {
  public:
   EdgeUpload(const render::Device& device, EdgeTexels texels);

@@ -29,10 +29,10 @@ struct SilhouetteMesh {
   const mesh::EdgeGraph* graph = nullptr;
 };
 
-/// mesh::silhouette_edges on the device, anew for each point. Facings from floats with the bound of volumes/README.md
-/// (Bounds) and, where that does not suffice, from the host's exact predicate; k_e of every edge from them; then count,
-/// prefix sum, fill. So the list is the host's, in the host's order, whatever the device and its schedule; it is made
-/// as long as it must be before it is written.
+/// mesh::silhouette_edges on the device, for one point after another. Facings from floats with the bound of
+/// volumes/README.md (Bounds) and, where that does not suffice, from the host's exact predicate; k_e of every edge from
+/// them; then count, prefix sum, fill. So the list is the host's, in the host's order, whatever the device and its
+/// schedule; it is made as long as it must be before it is written.
 class SilhouettePass {
  public:
   /// `most_bytes`: of any buffer; 0: the device's limit. Tests make it small.

@@ -23,7 +23,7 @@ constexpr auto wedges_option(const char* help) {
       "wedges", {{"device", WedgesOn::device}, {"host", WedgesOn::host}}, WedgesOn::device, help};
 }
 
-/// The silhouettes of a light's centre and their wedges, anew for every light: what a moving light needs each frame.
+/// The silhouettes of a light's centre and their wedges, built for each light: what a moving light needs in each frame.
 ///
 /// Silhouettes of device and host are the same edges in the same order. Wedges are not the same numbers, but either way
 /// every plane satisfies bounds_penumbra, exactly. The device builds `original` wedges of four planes; where it cannot

@@ -125,7 +125,7 @@ void drain(bool on, GroupBounds g) {
   queued = 0;
 }
 
-// Edges of the list whose triangles the group does not see all alike go to the queue.
+// Edges of the list go to the queue unless all of the group sees their triangles from the same side.
 void scatter_list(uint head, bool on) {
   const GroupBounds g = bounds_of_group(on);
   queued = 0;

@@ -16,7 +16,7 @@ namespace penumbra::volumes {
 native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
 
 /// A hierarchy of edges that is cut at a light's plane, and restored for the next light. Only what the plane cuts is
-/// made anew: subtrees behind it are left out, the cut edges are a second tree beside the first.
+/// computed again: subtrees behind it are left out, the cut edges are a second tree beside the first.
 class CutEdges {
  public:
   CutEdges() = default;
