@@ -23,6 +23,9 @@
 #endif
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/sampling/accumulate.hpp"
+#include "maps/sampling/adaptive_light.hpp"
+#include "maps/sampling/deep_penumbra.hpp"
+#include "maps/sampling/layered_attenuation.hpp"
 #include "maps/filters/pcss.hpp"
 #include "maps/filters/shadow_map.hpp"
 #endif
@@ -99,6 +102,9 @@ const std::vector<TableRow>& table() {
 #ifdef PENUMBRA_HAS_MAPS
       on_device<maps::pcss_description, maps::make_pcss>(),
       on_device<maps::accumulate_description, maps::make_accumulate>(),
+      on_device<maps::adaptive_light_description, maps::make_adaptive_light>(),
+      on_device<maps::deep_penumbra_description, maps::make_deep_penumbra>(),
+      on_device<maps::layered_attenuation_description, maps::make_layered_attenuation>(),
       on_device<maps::shadow_map_description, maps::make_shadow_map>(),
 #endif
 #ifdef PENUMBRA_HAS_REFERENCE
@@ -128,9 +134,6 @@ constexpr std::array kNotThereYet = {"exact",
                                      "contour",
                                      "packet",
                                      "accumulate",
-                                     "adaptive-light",
-                                     "layered-attenuation",
-                                     "deep-penumbra",
                                      "occlusion-textures",
                                      "convolution",
                                      "edge-scatter",

@@ -1,8 +1,11 @@
 # The image-based family against closed forms and the twins of its products.
 penumbra_test(maps FULL MapsTable.*
   SOURCES
+  analytic/maps_adaptive_light.cpp
   analytic/maps_closed_form.cpp
   analytic/maps_formulas.cpp
+  analytic/maps_light_tree.cpp
+  analytic/maps_lists.cpp
   analytic/maps_method.cpp
   analytic/maps_products.cpp
   analytic/maps_pyramids.cpp

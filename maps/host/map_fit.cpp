@@ -190,35 +190,32 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   return fitted;
 }
 
-gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {
+Face face_of(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {
   const int s = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
   const gpu::SideView& side = view.side[s];
   const glm::dvec3 up = s == 0 ? basis.n : -basis.n;
-  // The face's axes: across a, b and along w. taps.glsl chooses faces and coordinates in the same way.
-  struct Axes {
-    glm::dvec3 a, b, w;
-  };
-  const std::array<Axes, kHemicubeFaces> hemicube{{{basis.u, basis.v, up},
-                                                   {basis.v, up, basis.u},
-                                                   {basis.v, up, -basis.u},
-                                                   {basis.u, up, basis.v},
-                                                   {basis.u, up, -basis.v}}};
-  const std::uint32_t k = face - side.first_face;
-  const Axes& axes = hemicube[k];
-  glm::dvec2 lower{-1, k == 0 ? -1 : 0}, upper{1, 1};
-  if (side.face_count == 1) {
-    lower = side.lower;
-    upper = side.upper;
-  }
+  if (side.face_count == 1) return {basis.u, basis.v, up, side.lower, side.upper};
+  // taps.glsl chooses faces and coordinates in the same way.
+  const glm::dvec2 upper(1), whole(-1), half(-1, 0);
+  const std::array<Face, kHemicubeFaces> hemicube{{{basis.u, basis.v, up, whole, upper},
+                                                   {basis.v, up, basis.u, half, upper},
+                                                   {basis.v, up, -basis.u, half, upper},
+                                                   {basis.u, up, basis.v, half, upper},
+                                                   {basis.u, up, -basis.v, half, upper}}};
+  return hemicube[face - side.first_face];
+}
+
+gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face) {
+  const auto [a, b, w, lower, upper] = face_of(view, basis, face);
   // clip.x / clip.w runs from −1 to 1 while a / w runs over the window.
   const glm::dvec2 scale = 2.0 / (upper - lower), shift = (lower + upper) / (upper - lower);
   gpu::CasterPush push{};
   push.point = view.point;
   push.near = view.far * kNearOfFar;
   push.far = view.far;
-  push.row_x = scale.x * axes.a - shift.x * axes.w;
-  push.row_y = scale.y * axes.b - shift.y * axes.w;
-  push.row_w = axes.w;
+  push.row_x = scale.x * a - shift.x * w;
+  push.row_y = scale.y * b - shift.y * w;
+  push.row_w = w;
   return push;
 }
 

@@ -32,6 +32,19 @@ struct FitOptions {
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options);
 
+/// One face: what lies at `point` + w · (x · a + y · b + axis w) has the coordinates x and y, from `lower` to `upper`.
+struct Face {
+  glm::dvec3 a, b, w;  ///< across, across and along; unit vectors in world axes
+  glm::dvec2 lower, upper;
+
+  /// To the centre of a texel, one long along the axis.
+  [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y, std::uint32_t size) const {
+    const glm::dvec2 at = lower + (glm::dvec2(x, y) + 0.5) * (upper - lower) / static_cast<double>(size);
+    return at.x * a + at.y * b + w;
+  }
+};
+Face face_of(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face);
+
 /// What caster.vert needs for one face of a view; `first_vertex` is the caller's.
 gpu::CasterPush face_push(const gpu::LightView& view, const LightBasis& basis, std::uint32_t face);
 

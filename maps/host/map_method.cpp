@@ -102,10 +102,14 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   render::grow(*device_, depths_, "map depths", point_bytes * batch_);
   render::grow(*device_, views_, "map views", fitted_.views.size() * sizeof(gpu::LightView));
   views_->write<gpu::LightView>(fitted_.views);
+  counters_ = {{"maps", 0}, {"mapFaces", 0}, {"casters", casters_.caster_count()}};
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
+    product->make({*scene_, light, basis_, casters_, fitted_.views.front(), fitted_.faces, options_.size, options_.bias,
+                   times_, counters_});
+  }
   own_push_ = recipe_.push ? recipe_.push(light) : std::vector<std::uint32_t>();
   PENUMBRA_ASSERT(own_push_.size() == recipe_.push_words, "{}: {} words of push constants", recipe_.description.name,
                   own_push_.size());
-  counters_ = {{"maps", 0}, {"mapFaces", 0}, {"casters", casters_.caster_count()}};
   if (many) {
     counters_["mapsPerBatch"] = batch_;
     return;
@@ -204,7 +208,7 @@ void MapMethod::read_visibility(std::span<float> visibility) {
 std::uint64_t MapMethod::memory_bytes() const {
   std::uint64_t bytes = casters_.memory_bytes() + receivers_.memory_bytes();
   for (const auto* buffer : {&views_, &depths_, &results_}) bytes += *buffer ? (*buffer)->bytes() : 0;
-  for (const std::unique_ptr<MapProduct>& product : recipe_.products) bytes += product->buffer().bytes();
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) bytes += product->memory_bytes();
   return bytes;
 }
 

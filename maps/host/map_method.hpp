@@ -8,11 +8,13 @@
 #include "render/commands.hpp"
 #include "render/device.hpp"
 #include "visibility/method.hpp"
+#include "visibility/pass_times.hpp"
 
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -37,6 +39,19 @@ struct MapSet {
   const LightBasis& basis;
 };
 
+/// What a product needs that looks from other points than the light's centre.
+struct MapSource {
+  const visibility::SceneFloats& scene;
+  const visibility::Light& light;
+  const LightBasis& basis;
+  const CasterMaps& casters;
+  const gpu::LightView& centre;  ///< the view of the light's centre, which look-ups ask
+  std::uint32_t faces, size;
+  double bias;
+  visibility::PassTimes& times;
+  std::map<std::string, std::uint64_t>& counters;
+};
+
 /// What a light's maps are made into before they are asked (a minimum, a pyramid), or what a look-up needs of the light
 /// itself (points on it): one buffer on the device. A file pair, its shader, and a twin in C++ in the tests.
 class MapProduct {
@@ -46,9 +61,12 @@ class MapProduct {
   MapProduct& operator=(const MapProduct&) = delete;
   virtual ~MapProduct() = default;
 
+  /// Makes it of maps of its own, in submissions of its own. Once a light, before record and MapRecipe::push.
+  virtual void make([[maybe_unused]] const MapSource& source) {}
   /// Records what makes it of maps whose rendering is recorded before. Once a light, for maps from its centre.
   virtual void record(render::Commands& commands, const MapSet& maps) = 0;
   [[nodiscard]] virtual const render::Buffer& buffer() const = 0;
+  [[nodiscard]] virtual std::uint64_t memory_bytes() const { return buffer().bytes(); }
 };
 
 /// A struct of 32-bit numbers as the words that a shader's push constants take.

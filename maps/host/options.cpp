@@ -4,8 +4,9 @@
 
 namespace penumbra::maps {
 
-std::vector<visibility::OptionDescription> map_option_descriptions() {
-  return {kMapSize.description(), kBias.description()};
+std::vector<visibility::OptionDescription> map_option_descriptions(const visibility::IntegerOption& size,
+                                                                   const visibility::RealOption& bias) {
+  return {size.description(), bias.description()};
 }
 
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,

@@ -8,7 +8,11 @@
 
 namespace penumbra::maps {
 
-inline constexpr visibility::IntegerOption kMapSize{"size", 8, 16384, 1024, "texels on a side of a map"};
+/// `otherwise`: what a method's paper takes.
+constexpr visibility::IntegerOption map_size(std::uint32_t otherwise) {
+  return {"size", 8, 16384, otherwise, "texels on a side of a map"};
+}
+inline constexpr visibility::IntegerOption kMapSize = map_size(1024);
 inline constexpr visibility::RealOption kBias{
     "bias", 0, 1024, 0.5,
     "how far, in texels, a surface may rise above the receiver's plane without shading it; grows with the slope"};
@@ -20,7 +24,8 @@ struct MapOptions {
 };
 
 /// How `methods` describes them.
-std::vector<visibility::OptionDescription> map_option_descriptions();
+std::vector<visibility::OptionDescription> map_option_descriptions(const visibility::IntegerOption& size = kMapSize,
+                                                                   const visibility::RealOption& bias = kBias);
 
 /// Throws UsageError for a size that the device cannot draw.
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,

@@ -62,6 +62,49 @@ std::vector<glm::vec2> light_pattern(const visibility::Light& light, const Light
   return pattern;
 }
 
+LightSquare::LightSquare(const visibility::Light& light)
+    : light_(&light), frame_(visibility::light_frame(light)), centroid_(visibility::center_of(light)) {
+  if (light.kind != visibility::LightKind::polygon) return;
+  area_up_to_ = {0.0};
+  for (std::size_t i = 0; i < light.outline.size(); ++i) {
+    const glm::dvec3 a(light.outline[i]), b(light.outline[(i + 1) % light.outline.size()]);
+    area_up_to_.push_back(area_up_to_.back() + glm::length(glm::cross(a - centroid_, b - centroid_)));
+  }
+  for (double& area : area_up_to_) area /= area_up_to_.back();
+}
+
+glm::dvec3 LightSquare::outline(double share) const {
+  if (light_->kind == visibility::LightKind::disk) {
+    const double angle = 2 * std::numbers::pi * (share - 0.375);  // the square's lower left corner: 225 degrees
+    return frame_.center + std::cos(angle) * frame_.u + std::sin(angle) * frame_.v;
+  }
+  const auto count = light_->outline.size();
+  std::size_t i = 0;
+  while (i + 1 < count && share >= area_up_to_[i + 1]) ++i;
+  const double swept = area_up_to_[i + 1] - area_up_to_[i];
+  const double along = swept > 0 ? std::clamp((share - area_up_to_[i]) / swept, 0.0, 1.0) : 0.5;
+  return glm::mix(glm::dvec3(light_->outline[i]), glm::dvec3(light_->outline[(i + 1) % count]), along);
+}
+
+glm::vec3 LightSquare::at(const glm::dvec2& unit) const {
+  const double a = 2 * unit.x - 1, b = 2 * unit.y - 1;
+  if (light_->kind == visibility::LightKind::rectangle) return glm::vec3(frame_.center + a * frame_.u + b * frame_.v);
+  const double ring = std::max(std::abs(a), std::abs(b));
+  if (ring == 0) return glm::vec3(centroid_);
+  // How far around the ring, from its lower left corner and counter-clockwise: a quarter a side.
+  double quarters = 0;
+  if (b == -ring) {
+    quarters = (a / ring + 1) / 2;
+  } else if (a == ring) {
+    quarters = 1 + (b / ring + 1) / 2;
+  } else if (b == ring) {
+    quarters = 2 + (1 - a / ring) / 2;
+  } else {
+    quarters = 3 + (1 - b / ring) / 2;
+  }
+  return glm::vec3(glm::mix(centroid_, outline(quarters / 4), ring));
+}
+
 LightPattern::LightPattern(const render::Device& device, std::initializer_list<std::uint32_t> counts)
     : counts_(counts),
       points_(device, "light pattern",

@@ -3,6 +3,9 @@
 // How tests make a method of maps/ and run it.
 
 #include "maps/sampling/accumulate.hpp"
+#include "maps/sampling/adaptive_light.hpp"
+#include "maps/sampling/deep_penumbra.hpp"
+#include "maps/sampling/layered_attenuation.hpp"
 #include "maps/filters/pcss.hpp"
 #include "maps/filters/shadow_map.hpp"
 #include "tests/agreement/support.hpp"

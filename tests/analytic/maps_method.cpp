@@ -12,7 +12,8 @@ using visibility::MethodOptions;
 
 class MapsMethod : public MapsTest {
  protected:
-  const std::vector<Factory> all_{maps::make_shadow_map, maps::make_pcss, maps::make_accumulate};
+  const std::vector<Factory> all_{maps::make_shadow_map,     maps::make_pcss,          maps::make_accumulate,
+                                  maps::make_adaptive_light, maps::make_deep_penumbra, maps::make_layered_attenuation};
 };
 
 TEST_F(MapsMethod, ASphereIsRefusedWithWhatCanBeDone) {

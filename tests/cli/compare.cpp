@@ -231,9 +231,9 @@ TEST_F(Compare, DefaultIsEveryGeometryAndImageMethod) {
   std::vector<std::string> names;
   const json result = metrics();
   for (const json& method : result.at("methods")) names.push_back(method.at("method"));
-  EXPECT_THAT(
-      names, testing::ElementsAre("edge-scatter", "view-sample", "depth-complexity", "soft-volume", "soft-volume-blend",
-                                  "wedge-ramp", "hard-volume", "pcss", "accumulate", "shadow-map"));
+  EXPECT_THAT(names, testing::ElementsAre("edge-scatter", "view-sample", "depth-complexity", "soft-volume",
+                                          "soft-volume-blend", "wedge-ramp", "hard-volume", "pcss", "accumulate",
+                                          "adaptive-light", "deep-penumbra", "layered-attenuation", "shadow-map"));
 }
 
 TEST_F(Compare, OptionsReachTheMethodsThatHaveThem) {

@@ -1,0 +1,58 @@
+// St-Amour, Paquette and Poulin, "Soft shadows from extended light sources with penumbra deep shadow maps" (Graphics
+// Interface 2005), as the course notes of Eisemann et al. (2009, section 5.2.4) tell it. Departures: V(depth) is kept
+// as constant pieces (it jumps at every event, so that lines would break the bound), V = 1 and V = 0 are kept as they
+// are, the receiver's plane is compared at the texel's centre (taps.glsl), and what is below the horizon is dark.
+
+#include "maps/sampling/deep_penumbra.hpp"
+
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/penumbra_events.hpp"
+#include "maps/sampling/deep_penumbra.comp.spv.hpp"
+#include "maps/sampling/deep_penumbra.shared.h"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::RealOption kBound{"bound", 0, 0.5, 0.01, "how far V may be off to save steps of depth"};
+constexpr visibility::IntegerOption kSize = map_size(256);
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("V of the light samples along the rays of one map, off by a texel beside them", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "deep-penumbra",
+      .family = visibility::Family::image,
+      .paper = "St-Amour et al. 2005",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps and bound 0 the share of light samples that are visible",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(kSize),
+      .verdict_on = verdict_on};
+  description.options.push_back(kBound.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription deep_penumbra_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_deep_penumbra(const render::Device& device,
+                                                       const visibility::MethodOptions& options) {
+  MapRecipe recipe{
+      .description = describe(), .look_up_name = "deep-penumbra look-up", .look_up = shaders::kDeepPenumbraComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  recipe.products.push_back(std::make_unique<PenumbraEvents>(device, parsed[kBound]));
+  recipe.products.push_back(std::make_unique<SamplePoints>(device));
+  recipe.push_words = sizeof(gpu::DeepPenumbraPush) / sizeof(std::uint32_t);
+  recipe.push = [](const visibility::Light& light) { return push_words(gpu::DeepPenumbraPush{light.sample_count()}); };
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

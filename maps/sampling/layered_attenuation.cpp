@@ -1,0 +1,73 @@
+// Agrawala, Ramamoorthi, Heirich and Moll, "Efficient image-based methods for rendering soft shadows" (SIGGRAPH 2000),
+// the layered attenuation maps, as the course notes of Eisemann et al. (2009, section 5.2.4) tell them. Departures: a
+// texel is warped with its extent (layered_warp.comp), a receiver that its own texel knows nothing of is looked for in
+// the eight around (option neighbours), its plane is compared at the texel's centre (taps.glsl), and what is below the
+// horizon is dark.
+
+#include "maps/sampling/layered_attenuation.hpp"
+
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/layered_depth.hpp"
+#include "maps/sampling/layered_attenuation.comp.spv.hpp"
+#include "maps/sampling/layered_attenuation.shared.h"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::RealOption kEpsilon{"epsilon", 0, 1, 0.02,
+                                          "depths that differ by no more than this share of them are one surface"};
+constexpr visibility::ChoiceOption kNeighbours = visibility::flag_option(
+    "neighbours", true, "looks for a receiver that its own texel knows nothing of in the eight around");
+constexpr visibility::IntegerOption kSize = map_size(256);
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("light samples counted on the surfaces that they see, off by a texel beside them", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "layered-attenuation",
+      .family = visibility::Family::image,
+      .paper = "Agrawala et al. 2000",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps and small epsilon the share of light samples that are visible",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(kSize),
+      .verdict_on = verdict_on};
+  description.options.push_back(kEpsilon.description());
+  description.options.push_back(kNeighbours.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription layered_attenuation_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Device& device,
+                                                             const visibility::MethodOptions& options) {
+  MapRecipe recipe{.description = describe(),
+                   .look_up_name = "layered-attenuation look-up",
+                   .look_up = shaders::kLayeredAttenuationComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  const double epsilon = parsed[kEpsilon];
+  const bool neighbours = parsed[kNeighbours];
+  auto layers = std::make_unique<LayeredDepth>(device, epsilon);
+  recipe.push_words = sizeof(gpu::AttenuationPush) / sizeof(std::uint32_t);
+  recipe.push = [epsilon, neighbours, &made = *layers](const visibility::Light& light) {
+    return push_words(gpu::AttenuationPush{.sample_count = light.sample_count(),
+                                           .neighbours = neighbours ? 1u : 0u,
+                                           .epsilon = static_cast<float>(epsilon),
+                                           .total = static_cast<float>(made.total_weight()),
+                                           .layers = made.layers()});
+  };
+  recipe.products.push_back(std::move(layers));
+  recipe.products.push_back(std::make_unique<SamplePoints>(device));
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

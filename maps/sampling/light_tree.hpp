@@ -1,0 +1,77 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// Which share of V a light point has.
+enum class PointWeights : std::uint8_t {
+  paper,  ///< Schwärzler's equations 5 and 6: 1 / (2^d + 1) on a line, its square on an area
+  equal,
+  area,  ///< each cell's light, shared by its corners: the trapezoidal rule
+};
+
+/// Points of a light at the corners of cells that are halved where it pays: Schwärzler, "Real-time soft shadows with
+/// adaptive light source sampling", sections 3.3.1, 3.3.4 and 3.3.5. Cells of an area are squares of the unit square
+/// that split in four, those of a line are intervals that split in two. Points have integer coordinates, so neighbours
+/// share them. Cells are asked about level by level, in one fixed order, so that a bound on points is fair.
+class LightTree {
+ public:
+  enum class Shape : std::uint8_t { line, area };
+  /// Two points whose maps are to be compared; indices into points().
+  struct Pair {
+    std::uint32_t a = 0, b = 0;
+  };
+  /// A square (or an interval, whose y is the whole height) of the unit square, with the points at its corners.
+  struct Cell {
+    glm::uvec2 at{0};  ///< its lower corner
+    std::uint32_t depth = 0;
+  };
+
+  /// `levels`: how often a cell can be halved, at most 12.
+  LightTree(Shape shape, std::uint32_t levels);
+
+  /// Points so far, in the order in which they came, in units of 2^-levels.
+  [[nodiscard]] const std::vector<glm::uvec2>& points() const { return points_; }
+  [[nodiscard]] glm::dvec2 unit(const glm::uvec2& point) const;
+  /// Opposite corners of every cell of the deepest level: two pairs a cell of an area, one of a line. Empty when no
+  /// cell can be split.
+  [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
+  /// Splits the cells of which a pair differs (`differs`: one a pair), as long as there are no more than `most` points
+  /// in all: a cell whose new points would be too many stays whole, the next may need fewer. Then pairs() are those of
+  /// the new cells.
+  void split(std::span<const std::uint8_t> differs, std::size_t most);
+
+  /// The cells that were not split.
+  [[nodiscard]] const std::vector<Cell>& leaves() const { return leaves_; }
+  /// How much light a rectangle of the unit square (lower, upper) gives.
+  using Light = std::function<double(const glm::dvec2&, const glm::dvec2&)>;
+  /// Of each point; not normalised. The depth d of equations 5 and 6 is that of the deepest cell at the point: only
+  /// then do the weights of a wholly refined light add up to 1. Where light is uneven, `paper` and `equal` are
+  /// multiplied by the mean light of the cells at the point. Only when pairs() is empty.
+  [[nodiscard]] std::vector<double> weights(PointWeights kind, const Light& light) const;
+
+ private:
+  [[nodiscard]] std::vector<glm::uvec2> corners(const Cell& cell) const;
+  [[nodiscard]] std::vector<Cell> children(const Cell& cell) const;
+  /// The points that a cell's children need and nobody has yet.
+  [[nodiscard]] std::size_t new_points(const Cell& cell) const;
+  std::uint32_t add(const glm::uvec2& point);
+  void find_pairs();
+
+  Shape shape_;
+  std::uint32_t levels_;
+  std::vector<glm::uvec2> points_;
+  std::map<std::uint64_t, std::uint32_t> index_;  // of the point with these coordinates
+  std::vector<Cell> level_, leaves_;              // cells that may be split, and those that stay whole
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace penumbra::maps
