@@ -321,17 +321,14 @@ void AdaptiveLight::add_maps() {
 }
 
 gpu::LookupPush AdaptiveLight::push() const {
-  return {.basis = basis_.rounded(),
-          .bias = static_cast<float>(map_.bias),
-          .size = map_.size,
-          .two_sided = light_->two_sided ? 1u : 0u,
-          .first_receiver = 0,
-          .receiver_count = 0,
-          .first_result = 0,
-          .words_per_pixel = 1,
-          .first_point = 0,
-          .point_count = 0,
-          .faces = grid_.faces};
+  gpu::LookupPush push{};
+  push.basis = basis_.rounded();
+  push.bias = static_cast<float>(map_.bias);
+  push.size = map_.size;
+  push.two_sided = light_->two_sided ? 1 : 0;
+  push.words_per_pixel = 1;
+  push.faces = grid_.faces;
+  return push;
 }
 
 template <typename Own>
