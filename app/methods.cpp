@@ -26,8 +26,12 @@
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"
 #include "maps/sampling/layered_attenuation.hpp"
+#include "maps/filters/convolution.hpp"
+#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/pcf.hpp"
 #include "maps/filters/pcss.hpp"
 #include "maps/filters/shadow_map.hpp"
+#include "maps/filters/vssm.hpp"
 #endif
 #ifdef PENUMBRA_HAS_REFERENCE
 #include "reference/exact_method.hpp"
@@ -101,10 +105,14 @@ const std::vector<TableRow>& table() {
 #endif
 #ifdef PENUMBRA_HAS_MAPS
       on_device<maps::pcss_description, maps::make_pcss>(),
+      on_device<maps::vssm_description, maps::make_vssm>(),
       on_device<maps::accumulate_description, maps::make_accumulate>(),
       on_device<maps::adaptive_light_description, maps::make_adaptive_light>(),
       on_device<maps::deep_penumbra_description, maps::make_deep_penumbra>(),
       on_device<maps::layered_attenuation_description, maps::make_layered_attenuation>(),
+      on_device<maps::occlusion_textures_description, maps::make_occlusion_textures>(),
+      on_device<maps::convolution_description, maps::make_convolution>(),
+      on_device<maps::pcf_description, maps::make_pcf>(),
       on_device<maps::shadow_map_description, maps::make_shadow_map>(),
 #endif
 #ifdef PENUMBRA_HAS_REFERENCE
@@ -124,9 +132,7 @@ constexpr std::array kNotThereYet = {"exact",
                                      "soft-irregular",
                                      "hierarchical-penumbra",
                                      "shadow-map",
-                                     "pcf",
                                      "pcss",
-                                     "vssm",
                                      "soft-shadow-map",
                                      "backproject",
                                      "backproject-peel",
@@ -134,8 +140,6 @@ constexpr std::array kNotThereYet = {"exact",
                                      "contour",
                                      "packet",
                                      "accumulate",
-                                     "occlusion-textures",
-                                     "convolution",
                                      "edge-scatter",
                                      "raytrace"};
 

@@ -23,8 +23,6 @@
 namespace penumbra::maps {
 namespace {
 
-/// tan 76°: up to 152° wide a window has, texel for texel, about the resolution of a hemicube at a fifth of its cost.
-constexpr double kWidestTangent = 4;
 constexpr std::uint32_t kHemicubeFaces = 5;
 /// Casters nearer to the light point than this share of the scene are not seen; see docs/accumulate.md.
 constexpr float kNearOfFar = 0x1p-20f;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -31,7 +32,7 @@ class MapMethod final : public visibility::Method {
         look_up_(device, {.name = recipe_.look_up_name,
                           .spirv = recipe_.look_up,
                           .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) + 4 * recipe_.push_words),
-                          .constants = {}}) {
+                          .constants = recipe_.constants}) {
     PENUMBRA_ASSERT(!gives_masks() || recipe_.points == MapPoints::light_samples,
                     "{}: masks are answers of light samples' own maps", recipe_.description.name);
   }
@@ -117,7 +118,7 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   render::Commands commands(*device_);
   render_maps(commands, 0, 1);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
-    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, basis_});
+    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, basis_, *scene_});
   }
   times_.add(commands.submit());
 }
@@ -169,7 +170,9 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
     std::vector<std::uint32_t> words = push_words(push);
     words.insert(words.end(), own_push_.begin(), own_push_.end());
     std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
-    for (const std::unique_ptr<MapProduct>& product : recipe_.products) buffers.emplace_back(product->buffer());
+    for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
+      std::ranges::copy(product->buffers(), std::back_inserter(buffers));
+    }
     look_up_.record(commands, std::as_bytes(std::span(words)), buffers, part.groups());
   }
 }

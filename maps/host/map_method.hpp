@@ -37,6 +37,7 @@ struct MapSet {
   std::uint32_t faces, size;
   const visibility::Light& light;
   const LightBasis& basis;
+  const visibility::SceneFloats& scene;
 };
 
 /// What a product needs that looks from other points than the light's centre.
@@ -53,7 +54,8 @@ struct MapSource {
 };
 
 /// What a light's maps are made into before they are asked (a minimum, a pyramid), or what a look-up needs of the light
-/// itself (points on it): one buffer on the device. A file pair, its shader, and a twin in C++ in the tests.
+/// itself (points on it): one buffer on the device, or several. A file pair, its shader, and a twin in C++ in the
+/// tests.
 class MapProduct {
  public:
   MapProduct() = default;
@@ -66,6 +68,8 @@ class MapProduct {
   /// Records what makes it of maps whose rendering is recorded before. Once a light, for maps from its centre.
   virtual void record(render::Commands& commands, const MapSet& maps) = 0;
   [[nodiscard]] virtual const render::Buffer& buffer() const = 0;
+  /// What a look-up binds, in this order; there are always as many.
+  [[nodiscard]] virtual std::vector<render::BufferReference> buffers() const { return {buffer()}; }
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return buffer().bytes(); }
 };
 
@@ -85,6 +89,7 @@ struct MapRecipe {
   /// mask_main.glsl. It reads receivers, views, depths, results and then the products' buffers, in this order.
   std::string look_up_name;
   std::span<const std::uint32_t> look_up{};
+  std::vector<std::uint32_t> constants{};  ///< its specialization constants 0, 1, 2 …
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
   std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};

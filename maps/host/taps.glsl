@@ -9,6 +9,39 @@
 // A receiver's plane is not followed further than this many texels in depth: so steep, half a texel is half the scene.
 const float kSteepest = 8.0;
 
+// Where the direction of d, a vector in the light's basis, meets the maps. d must not lie in the light's plane.
+struct Place {
+  uint face;         // of its side
+  int axis;          // the face's axis: 0, 1, 2
+  vec3 f;            // d as (a, b, w): across and along the face
+  vec2 lower, upper; // of the face, in a/w and b/w
+};
+
+// Faces and coordinates as in face_push (map_fit.cpp).
+Place place_of(LightView view, vec3 d) {
+  const SideView side = view.side[d.z < 0.0 ? 1 : 0];
+  const vec3 e = vec3(d.xy, abs(d.z));
+  const vec2 across = abs(e.xy);
+  Place place = Place(0, 2, e, side.lower, side.upper);
+  if (side.face_count > 1) {
+    place.lower = vec2(-1.0);
+    place.upper = vec2(1.0);
+    if (max(across.x, across.y) > e.z) {
+      place.lower.y = 0.0;
+      if (across.x >= across.y) {
+        place.face = e.x > 0.0 ? 1 : 2;
+        place.f = vec3(e.y, e.z, across.x);
+        place.axis = 0;
+      } else {
+        place.face = e.y > 0.0 ? 3 : 4;
+        place.f = vec3(e.x, e.z, across.y);
+        place.axis = 1;
+      }
+    }
+  }
+  return place;
+}
+
 // What the map has in the direction of d, a vector in the light's basis. `direction` points to the texel's centre, one
 // long along the face's axis; the nearest surface is at depth * direction.
 struct Tap {
@@ -25,47 +58,25 @@ Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   Tap tap;
   tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
-  const vec3 e = vec3(d.xy, abs(d.z));
-  const vec2 across = abs(e.xy);
-
-  // Face and coordinates as in face_push (map_fit.cpp).
-  uint face = 0;
-  vec3 f = e;  // (a, b, w): across and along the face
-  tap.axis = 2;
-  vec2 lower = side.lower, upper = side.upper;
-  if (side.face_count > 1) {
-    lower = vec2(-1.0);
-    upper = vec2(1.0);
-    if (max(across.x, across.y) > e.z) {
-      lower.y = 0.0;
-      if (across.x >= across.y) {
-        face = e.x > 0.0 ? 1 : 2;
-        f = vec3(e.y, e.z, across.x);
-        tap.axis = 0;
-      } else {
-        face = e.y > 0.0 ? 3 : 4;
-        f = vec3(e.x, e.z, across.y);
-        tap.axis = 1;
-      }
-    }
-  }
-  const vec2 texel = (upper - lower) / float(size);
-  const vec2 cell = floor((f.xy / f.z - lower) / texel);
+  const Place place = place_of(view, d);
+  tap.axis = place.axis;
+  const vec2 texel = (place.upper - place.lower) / float(size);
+  const vec2 cell = floor((place.f.xy / place.f.z - place.lower) / texel);
   const vec2 at = clamp(cell, vec2(0.0), vec2(float(size - 1)));
   // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.
   const bool beside = side.face_count == 1 && at != cell;
-  const vec2 center = lower + (at + 0.5) * texel;
+  const vec2 center = place.lower + (at + 0.5) * texel;
   if (tap.axis == 2) {
     tap.direction = vec3(center, 1.0);
   } else if (tap.axis == 0) {
-    tap.direction = vec3(e.x > 0.0 ? 1.0 : -1.0, center);
+    tap.direction = vec3(d.x > 0.0 ? 1.0 : -1.0, center);
   } else {
-    tap.direction = vec3(center.x, e.y > 0.0 ? 1.0 : -1.0, center.y);
+    tap.direction = vec3(center.x, d.y > 0.0 ? 1.0 : -1.0, center.y);
   }
   tap.direction.z *= tap.mirrored;
-  tap.along = f.z;
+  tap.along = place.f.z;
   tap.texel = max(texel.x, texel.y);
-  const uint map = first_map + side.first_face + face;
+  const uint map = first_map + side.first_face + place.face;
   tap.depth = side.face_count == 0 || beside ? view.far : view.far * maps[(map * size + uint(at.y)) * size + uint(at.x)];
   return tap;
 }

@@ -1,6 +1,10 @@
 #include "tests/analytic/maps_parallel_square.hpp"
 
 #include "base/error.hpp"
+#include "maps/filters/convolution.hpp"
+#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/pcf.hpp"
+#include "maps/filters/vssm.hpp"
 #include "maps/host/caster_maps.hpp"
 
 #include <bit>
@@ -12,8 +16,16 @@ using visibility::MethodOptions;
 
 class MapsMethod : public MapsTest {
  protected:
-  const std::vector<Factory> all_{maps::make_shadow_map,     maps::make_pcss,          maps::make_accumulate,
-                                  maps::make_adaptive_light, maps::make_deep_penumbra, maps::make_layered_attenuation};
+  const std::vector<Factory> all_{maps::make_shadow_map,
+                                  maps::make_pcf,
+                                  maps::make_pcss,
+                                  maps::make_vssm,
+                                  maps::make_occlusion_textures,
+                                  maps::make_convolution,
+                                  maps::make_accumulate,
+                                  maps::make_adaptive_light,
+                                  maps::make_deep_penumbra,
+                                  maps::make_layered_attenuation};
 };
 
 TEST_F(MapsMethod, ASphereIsRefusedWithWhatCanBeDone) {

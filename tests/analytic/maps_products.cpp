@@ -3,9 +3,8 @@
 
 #include "maps/host/caster.frag.spv.hpp"
 #include "maps/host/caster.vert.spv.hpp"
-#include "maps/host/map_fit.hpp"
 #include "maps/products/nearest_caster.hpp"
-#include "tests/analytic/maps_fixture.hpp"
+#include "tests/analytic/centre_maps.hpp"
 
 #include <array>
 #include <limits>
@@ -15,26 +14,6 @@ namespace penumbra::tests {
 namespace {
 
 constexpr std::uint32_t kSize = 64;
-
-/// The maps of a stage's light from its centre.
-struct CentreMaps {
-  CentreMaps(const render::Device& device, const Stage& stage)
-      : basis(maps::light_basis(stage.light)),
-        centre(basis.center),
-        fitted(maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize})),
-        views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
-        depths(device, "depths", std::uint64_t{kSize} * kSize * sizeof(float) * fitted.faces) {
-    maps::CasterMaps casters(device, kSize);
-    casters.upload(stage.floats);
-    render::Commands commands(device);
-    casters.record(commands, fitted.views.front(), basis, stage.light.index, depths, 0);
-    commands.submit();
-  }
-  maps::LightBasis basis;
-  glm::vec3 centre;
-  maps::FittedViews fitted;
-  render::Buffer views, depths;
-};
 
 /// NearestCaster's twin.
 std::array<float, 2> nearest_twin(const CentreMaps& maps, const std::vector<float>& depths) {
@@ -75,17 +54,15 @@ TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
   for (const auto& [two_sided, wall] :
        {std::tuple(false, 0.0), std::tuple(false, 5.0), std::tuple(true, 0.0), std::tuple(true, 6.0)}) {
     const Stage stage(scene_around(two_sided, wall), 4, 4, light_samples(1));
-    CentreMaps maps(device(), stage);
+    CentreMaps maps(device(), stage, kSize);
     ASSERT_EQ(maps.fitted.faces, (wall > 0 ? 5U : 1U) + (two_sided ? (wall > 5 ? 5U : 1U) : 0U));
     maps::NearestCaster product(device());
     render::Commands commands(device());
-    product.record(commands, {maps.views, maps.depths, maps.fitted.faces, kSize, stage.light, maps.basis});
+    product.record(commands, maps.set(stage));
     commands.submit();
     std::array<float, 2> found{};
     product.buffer().read<float>(found);
-    std::vector<float> depths(std::size_t{kSize} * kSize * maps.fitted.faces);
-    maps.depths.read<float>(depths);
-    EXPECT_EQ(found, nearest_twin(maps, depths)) << "two-sided: " << two_sided << ", wall " << wall;
+    EXPECT_EQ(found, nearest_twin(maps, maps.read())) << "two-sided: " << two_sided << ", wall " << wall;
     EXPECT_LT(found[0], 5) << "the sphere is seen";
     EXPECT_EQ(found[1] < 5, two_sided);
   }

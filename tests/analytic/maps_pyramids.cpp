@@ -51,6 +51,7 @@ std::vector<glm::vec2> pyramid_twin(const PyramidHeader& header, std::uint32_t f
 TEST_F(MapsPyramids, EachNodeHasTheRangeOfItsTexels) {
   std::mt19937 random(15);
   const visibility::Light light{};
+  const visibility::SceneFloats scene{};
   const maps::LightBasis basis{};
   const render::Buffer views(device(), "views", sizeof(maps::gpu::LightView));
   for (const PyramidKind kind : kKinds) {
@@ -60,7 +61,7 @@ TEST_F(MapsPyramids, EachNodeHasTheRangeOfItsTexels) {
       for (float& depth : depths) depth = random() % 8 == 0 ? 1.0F : static_cast<float>(random() % 1000) / 1000;
       const render::Buffer maps = render::make_buffer<float>(device(), "depths", depths);
       render::Commands commands(device());
-      product.record(commands, {views, maps, faces, size, light, basis});
+      product.record(commands, {views, maps, faces, size, light, basis, scene});
       commands.submit();
       const PyramidHeader expected = maps::pyramid_header(kind, size, faces, kPlenty);
       PyramidHeader header{};

@@ -1,0 +1,46 @@
+// Soler and Sillion 1998, "Fast calculation of soft shadow textures using convolution". Departures: the mean over the
+// light's image is taken for each view sample, by summed areas, where the paper convolves a picture for one receiver at
+// a time; blockers are all casters but the ground (ground_of), where the paper is told which they are.
+
+#include "maps/filters/convolution.hpp"
+
+#include "maps/filters/slice_recipe.hpp"
+#include "maps/host/mesh_verdict.hpp"
+
+namespace penumbra::maps {
+namespace {
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("all blockers in one plane at their mean height, whatever their own", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "convolution",
+      .family = visibility::Family::image,
+      .paper = "Soler, Sillion 1998",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(),
+      .verdict_on = verdict_on};
+  description.options.push_back(kSliceFilter.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription convolution_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_convolution(const render::Device& device,
+                                                     const visibility::MethodOptions& options) {
+  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  return make_map_method(
+      device,
+      slice_recipe(device, describe(), {.rule = SliceRule::one_plane, .count = 1, .filter = parsed[kSliceFilter]}),
+      options);
+}
+
+}  // namespace penumbra::maps

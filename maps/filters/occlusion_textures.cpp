@@ -1,0 +1,51 @@
+// Eisemann and Décoret 2006, "Plausible image based soft shadows using occlusion textures" (Eisemann et al. 2009,
+// section 5.2.5). Departures: surfaces are sorted into slices by one raster pass from the light's centre, and box means
+// are taken from summed areas in integers unless `filter` says otherwise.
+
+#include "maps/filters/occlusion_textures.hpp"
+
+#include "maps/filters/slice_recipe.hpp"
+#include "maps/host/mesh_verdict.hpp"
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::IntegerOption kSlices{"slices", 1, gpu::kMostSlices, 8, "slices parallel to the light"};
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("slices, each taken to be flat, and a product in place of their union", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{.name = "occlusion-textures",
+                                            .family = visibility::Family::image,
+                                            .paper = "Eisemann, Décoret 2006",
+                                            .output = visibility::Output::scalar,
+                                            .exact_for =
+                                                "nothing; in the limit of large maps, one flat blocker parallel to a "
+                                                "rectangle light in the far plane of a slice",
+                                            .lights = planar_lights(),
+                                            .options = map_option_descriptions(),
+                                            .verdict_on = verdict_on};
+  description.options.push_back(kSlices.description());
+  description.options.push_back(kSliceFilter.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription occlusion_textures_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_occlusion_textures(const render::Device& device,
+                                                            const visibility::MethodOptions& options) {
+  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  return make_map_method(
+      device,
+      slice_recipe(device, describe(),
+                   {.rule = SliceRule::equal, .count = parsed[kSlices], .filter = parsed[kSliceFilter]}),
+      options);
+}
+
+}  // namespace penumbra::maps

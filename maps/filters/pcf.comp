@@ -1,0 +1,55 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/filters/pcf.shared.h"
+#define OWN_PUSH PcfPush
+#include "maps/host/look_up.glsl"
+
+// Percentage-closer filtering (Reeves, Salesin, Cook 1987; Eisemann et al. 2009, equation 4.1) with equal weights: the
+// share of the window x window texels around the receiver whose depth test says lit.
+
+// The receiver's own texel's neighbour, (a, b) texels along the face's coordinates; one long along the face's axis.
+vec3 neighbour(Tap own, vec2 step, vec2 offset) {
+  const vec2 by = step * offset;
+  if (own.axis == 2) return own.direction + vec3(by, 0.0);
+  if (own.axis == 0) return own.direction + vec3(0.0, by.x, by.y * own.mirrored);
+  return own.direction + vec3(by.x, 0.0, by.y * own.mirrored);
+}
+
+bool texel_blocks(Tap tap, vec3 m, float h, float along, float texels_away) {
+  if (own.receiver_plane != 0) {
+    return blocks(tap, m, h, along * (1.0 + kSteepest * tap.texel * max(texels_away, 1.0)), lookup.bias);
+  }
+  return tap.depth < along - lookup.bias * tap.texel * along;
+}
+
+float visibility_of(LightView view, vec3 d, vec3 m) {
+  const float h = dot(m, d);
+  if (h <= 0.0) return 0.0;  // the light's centre is below the receiver's horizon
+  const Tap own_tap = fetch(view, 0, lookup.size, d);
+  const Place place = place_of(view, d);
+  const vec2 step = (place.upper - place.lower) / float(lookup.size);
+  const vec2 at = (place.f.xy / place.f.z - place.lower) / step;
+  // As many texels on either side of the receiver as there can be: an odd window is centred on the receiver's texel, an
+  // even one on the texel border nearest to it.
+  const vec2 first = floor(at - 0.5 * float(own.window) + 0.5) - floor(at);
+
+  uint lit = 0;
+  for (uint j = 0; j < own.window; ++j) {
+    for (uint i = 0; i < own.window; ++i) {
+      const vec2 offset = first + vec2(i, j);
+      const vec3 direction = neighbour(own_tap, step, offset);
+      // A hemicube's window may reach behind the light's plane, where nothing is between light and receiver.
+      bool blocked = false;
+      if (direction.z * own_tap.mirrored > 0.0) {
+        const Tap tap = fetch(view, 0, lookup.size, direction * own_tap.along);
+        const float away = max(abs(offset.x), abs(offset.y));
+        blocked = texel_blocks(tap, m, h, tap.along, away);
+      }
+      lit += blocked ? 0 : 1;
+    }
+  }
+  return float(lit) / float(own.window * own.window);
+}
+
+#include "maps/host/scalar_main.glsl"

@@ -1,0 +1,62 @@
+// Reeves, Salesin, Cook 1987, "Rendering antialiased shadows with depth maps"; the window and its weights as in
+// Eisemann et al. 2009, section 4.1.2. Departures: each texel is compared with the receiver's plane (receiverPlane=off:
+// with the receiver's depth, as published), and a window in a hemicube goes on on the next face.
+
+#include "maps/filters/pcf.hpp"
+
+#include "maps/filters/pcf.comp.spv.hpp"
+#include "maps/filters/pcf.shared.h"
+#include "maps/host/map_fit.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::IntegerOption kWindow{"window", 1, 64, 7, "texels on a side of the window that is averaged"};
+constexpr auto kReceiverPlane = visibility::flag_option(
+    "receiverPlane", true, "compare each texel with the receiver's plane; off: with the receiver's own depth");
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "pcf",
+      .family = visibility::Family::image,
+      .paper = "Reeves, Salesin, Cook 1987",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(),
+      .verdict_on = verdict_on};
+  description.options.push_back(kWindow.description());
+  description.options.push_back(kReceiverPlane.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription pcf_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options) {
+  MapRecipe recipe{.description = describe(), .look_up_name = "pcf look-up", .look_up = shaders::kPcfComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  const gpu::PcfPush push{parsed[kWindow], parsed[kReceiverPlane] ? 1U : 0U};
+  // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window
+  // holds: no window of receivers is wider than ±kWidestTangent.
+  const double beside = 2 * kWidestTangent * (push.window / 2) / parsed[kMapSize];
+  recipe.beside = [beside](const visibility::Light& /*light*/, const LightBasis& /*basis*/) {
+    return glm::dvec2(beside);
+  };
+  recipe.push_words = sizeof(gpu::PcfPush) / sizeof(std::uint32_t);
+  recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

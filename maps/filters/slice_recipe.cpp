@@ -1,0 +1,50 @@
+#include "maps/filters/slice_recipe.hpp"
+
+#include "maps/filters/occlusion_textures.comp.spv.hpp"
+#include "maps/filters/occlusion_textures.shared.h"
+#include "maps/products/light_shape.hpp"
+#include "maps/products/map_frame.hpp"
+#include "maps/products/nearest_caster.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+/// Points of the light that say how much of it is above a receiver's horizon.
+constexpr std::uint32_t kHorizonSamples = 64;
+
+}  // namespace
+
+MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
+                       const SliceChoices& choices) {
+  MapRecipe recipe{.description = std::move(description),
+                   .look_up_name = "slices look-up",
+                   .look_up = shaders::kOcclusionTexturesComp,
+                   .constants = {static_cast<std::uint32_t>(choices.filter)}};
+  std::vector<PrefilterFunction> bits;
+  for (std::uint32_t k = 0; k < choices.count; ++k) {
+    bits.push_back({.kind = gpu::kBit, .a = static_cast<float>(k), .digits = 0});
+  }
+  auto nearest = std::make_unique<NearestCaster>(device);
+  auto frame = std::make_unique<MapFrame>(device);
+  auto slices = std::make_unique<Slices>(device, choices.rule, choices.count);
+  auto prefilter = std::make_unique<Prefilter>(
+      device, PrefilterOptions{.kind = choices.filter, .functions = std::move(bits), .of_bits = true},
+      Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get(), .bits = slices.get()});
+  recipe.products.push_back(std::move(nearest));
+  recipe.products.push_back(std::move(frame));
+  recipe.products.push_back(std::move(slices));
+  recipe.products.push_back(std::move(prefilter));
+  recipe.products.push_back(
+      std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
+  // Through a plane no nearer to the light than the radius of a disk of its area: as far as pcss looks.
+  recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
+    return half_extent(light, basis) / half_width(light);
+  };
+  recipe.push_words = sizeof(gpu::OcclusionPush) / sizeof(std::uint32_t);
+  recipe.push = [](const visibility::Light& /*light*/) { return push_words(gpu::OcclusionPush{kHorizonSamples}); };
+  return recipe;
+}
+
+}  // namespace penumbra::maps

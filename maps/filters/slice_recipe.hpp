@@ -1,0 +1,26 @@
+#pragma once
+
+#include "maps/host/map_method.hpp"
+#include "maps/products/prefilter.hpp"
+#include "maps/products/slices.hpp"
+
+namespace penumbra::maps {
+
+/// The option of both methods that filter slices.
+inline constexpr visibility::ChoiceOption kSliceFilter{
+    "filter",
+    {{"sat", PrefilterKind::table}, {"mip", PrefilterKind::pyramid}, {"n-buffer", PrefilterKind::windows}},
+    PrefilterKind::table,
+    "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
+
+struct SliceChoices {
+  SliceRule rule = SliceRule::equal;
+  std::uint32_t count = 1;
+  PrefilterKind filter = PrefilterKind::table;
+};
+
+/// Light-space slices, each filtered by the light seen through its plane, and their product (occlusion_textures.comp).
+MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
+                       const SliceChoices& choices);
+
+}  // namespace penumbra::maps

@@ -1,0 +1,173 @@
+// Soft shadows from prefiltered moments: windows as in Fernando 2005, their statistics by Donnelly and Lauritzen 2006
+// (vsm), Lauritzen and McCool 2008 (lvsm, evsm), Annen et al. 2007 and 2008 (csm, esm), and the mean blocker by Yang et
+// al. 2010 or, with csm, by Annen et al. 2008. docs/vssm.md says where this departs from them, and why.
+
+#include "maps/filters/vssm.hpp"
+
+#include "maps/filters/vssm.comp.spv.hpp"
+#include "maps/filters/vssm.shared.h"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/light_shape.hpp"
+#include "maps/products/map_frame.hpp"
+#include "maps/products/nearest_caster.hpp"
+#include "maps/products/prefilter.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+enum class Moments : std::uint8_t { vsm, lvsm, evsm, csm, esm };
+
+constexpr visibility::ChoiceOption kMoments{
+    "moments",
+    {{"vsm", Moments::vsm},
+     {"lvsm", Moments::lvsm},
+     {"evsm", Moments::evsm},
+     {"csm", Moments::csm},
+     {"esm", Moments::esm}},
+    Moments::vsm,
+    "what stands for a window's depths: mean and variance, these in layers or of "
+    "exponentials, a Fourier series, one exponential"};
+constexpr visibility::ChoiceOption kFilter{
+    "filter",
+    {{"sat", PrefilterKind::table}, {"mip", PrefilterKind::pyramid}, {"n-buffer", PrefilterKind::windows}},
+    PrefilterKind::table,
+    "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
+constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 4, "lvsm: layers of equal height"};
+constexpr visibility::IntegerOption kTerms{"terms", 1, 16, 16, "csm: terms of the series"};
+constexpr visibility::RealOption kScale{"scale", 1, 16, 2, "csm: how much steeper the step is made; 1: not at all"};
+constexpr visibility::RealOption kExponent{
+    "exponent", 1, 80, 80,
+    "esm: how fast the exponential falls over the scene's depth; evsm, which squares it: twice that"};
+constexpr auto kFallback =
+    visibility::flag_option("fallback", true, "esm: compare texel by texel where the exponential says more than lit");
+constexpr visibility::RealOption kLeak{"leak", 0, 0.99, 0,
+                                       "V below this is black, and the rest is stretched over 0 … 1"};
+
+/// Points of the light that say how much of it is above a receiver's horizon.
+constexpr std::uint32_t kHorizonSamples = 64;
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("one map, one mean height for all that shades a pixel, and a bound in place of a count", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{.name = "vssm",
+                                            .family = visibility::Family::image,
+                                            .paper = "Yang 2010, Annen 2008",
+                                            .output = visibility::Output::scalar,
+                                            .exact_for =
+                                                "nothing; in the limit of large maps, where all blockers lie in one "
+                                                "plane and what they shade in another, both "
+                                                "parallel to a rectangle light",
+                                            .lights = planar_lights(),
+                                            .options = map_option_descriptions(),
+                                            .verdict_on = verdict_on};
+  for (const auto& option :
+       {kMoments.description(), kFilter.description(), kLayers.description(), kTerms.description(),
+        kScale.description(), kExponent.description(), kFallback.description(), kLeak.description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+/// What each texel is made into; vssm.comp knows their order.
+std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, float exponent) {
+  std::vector<PrefilterFunction> functions;
+  const PrefilterFunction height{};
+  // 16 binary digits where an exponential is least, exp(−c): digits in all. (24 are all that a float has.)
+  const auto digits = [&](double c) { return static_cast<std::uint32_t>(std::ceil(c * std::numbers::log2e)) + 16; };
+  switch (moments) {
+    case Moments::vsm:
+    case Moments::lvsm:
+      for (std::uint32_t i = 0; i < count; ++i) {
+        for (const std::uint32_t power : {gpu::kPlain, gpu::kSquared}) {
+          functions.push_back(
+              {.kind = gpu::kLayer, .power = power, .a = static_cast<float>(count), .b = static_cast<float>(i)});
+        }
+      }
+      if (count > 1) functions.push_back(height);
+      break;
+    case Moments::evsm:
+      for (const std::uint32_t kind : {gpu::kRising, gpu::kFalling}) {
+        for (const std::uint32_t power : {gpu::kPlain, gpu::kSquared}) {
+          const double steepest = power == gpu::kSquared ? 2.0 * exponent : exponent;
+          functions.push_back({.kind = kind, .power = power, .a = exponent, .digits = digits(steepest)});
+        }
+      }
+      functions.push_back(height);
+      break;
+    case Moments::csm:
+      for (std::uint32_t k = 0; k < count; ++k) {
+        for (const std::uint32_t power : {gpu::kPlain, gpu::kTimesHeight}) {
+          for (const std::uint32_t kind : {gpu::kSine, gpu::kCosine}) {
+            // 12 digits: one table each at 1024 texels a side; the series is cut off at 1 / (2 · 16 · π) anyway.
+            functions.push_back(
+                {.kind = kind, .power = power, .a = static_cast<float>((2 * k + 1) * std::numbers::pi), .digits = 12});
+          }
+        }
+      }
+      functions.push_back(height);
+      break;
+    case Moments::esm:
+      functions.push_back({.kind = gpu::kRising, .a = exponent, .digits = digits(exponent)});
+      functions.push_back(height);
+      break;
+  }
+  return functions;
+}
+
+}  // namespace
+
+visibility::MethodDescription vssm_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, const visibility::MethodOptions& options) {
+  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const Moments moments = parsed[kMoments];
+  std::uint32_t model = gpu::kVariance;
+  gpu::VssmPush push{.count = 1,
+                     .exponent = static_cast<float>(parsed[kExponent]),
+                     .scale = static_cast<float>(parsed[kScale]),
+                     .leak = static_cast<float>(parsed[kLeak]),
+                     .fallback = parsed[kFallback] ? 1U : 0U,
+                     .horizon_samples = kHorizonSamples};
+  if (moments == Moments::lvsm) push.count = parsed[kLayers];
+  if (moments == Moments::csm) {
+    model = gpu::kFourier;
+    push.count = parsed[kTerms];
+  }
+  if (moments == Moments::esm) model = gpu::kExponential;
+  if (moments == Moments::evsm) {
+    model = gpu::kExpVariance;
+    push.exponent /= 2;
+  }
+  MapRecipe recipe{.description = describe(),
+                   .look_up_name = "vssm look-up",
+                   .look_up = shaders::kVssmComp,
+                   .constants = {static_cast<std::uint32_t>(parsed[kFilter]), model}};
+  auto nearest = std::make_unique<NearestCaster>(device);
+  auto frame = std::make_unique<MapFrame>(device);
+  auto prefilter = std::make_unique<Prefilter>(
+      device, PrefilterOptions{.kind = parsed[kFilter], .functions = functions(moments, push.count, push.exponent)},
+      Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get()});
+  recipe.products.push_back(std::move(nearest));
+  recipe.products.push_back(std::move(frame));
+  recipe.products.push_back(std::move(prefilter));
+  recipe.products.push_back(
+      std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
+  // As far as the search looks: see pcss.
+  recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
+    return half_extent(light, basis) / half_width(light);
+  };
+  recipe.push_words = sizeof(gpu::VssmPush) / sizeof(std::uint32_t);
+  recipe.push = [push](const visibility::Light& /*light*/) { return push_words(push); };
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

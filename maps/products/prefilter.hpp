@@ -1,0 +1,81 @@
+#pragma once
+
+#include "maps/host/map_method.hpp"
+#include "maps/products/prefilter.shared.h"
+#include "maps/products/summed_areas.hpp"
+#include "render/compute_pass.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// How means over windows are taken from what is stored.
+enum class PrefilterKind : std::uint32_t {
+  table = gpu::kTable,      ///< summed areas in integers: any box, its border texels by their share
+  pyramid = gpu::kPyramid,  ///< mip levels, looked up between texels and between levels
+  windows = gpu::kWindows,  ///< N-buffer: overlapping squares of the largest power of two that fits into the box
+};
+
+/// One function of a texel, see prefilter.shared.h.
+struct PrefilterFunction {
+  std::uint32_t kind = gpu::kLayer, power = gpu::kPlain;
+  float a = 1, b = 0;
+  std::uint32_t digits = 24;  ///< binary digits that a table keeps of it; 0: it is 0 or 1
+};
+
+struct PrefilterOptions {
+  PrefilterKind kind = PrefilterKind::table;
+  std::vector<PrefilterFunction> functions{};
+  bool of_bits = false;  ///< texels are words of bits; else the maps' depths
+};
+
+/// Functions of the texels of one light point's maps, prefiltered: a look-up gets their means over windows of any size
+/// by a number of fetches that does not depend on the window (maps/products/prefilter.glsl).
+///
+/// Tables sum unsigned integers modulo 2³². With b = ⌊32 − 2 log₂ size⌋ bits a texel no box overflows, so a value of
+/// more binary digits is cut into limbs of b bits, each with a table of its own: sums of 24 digits, or of the 150 that
+/// an exponential needs, are exact at any size.
+class Prefilter final : public MapProduct {
+ public:
+  /// What texels are read from. All are recorded before this.
+  struct Sources {
+    const MapProduct* nearest = nullptr;  ///< NearestCaster
+    const MapProduct* frame = nullptr;    ///< MapFrame
+    const MapProduct* bits = nullptr;     ///< a word a texel of each face; with of_bits
+  };
+  Prefilter(const render::Device& device, PrefilterOptions options, const Sources& sources);
+
+  /// Throws ResourceError, saying which size would do, if the device's buffers do not hold it.
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return *table_; }
+  [[nodiscard]] std::vector<render::BufferReference> buffers() const override;
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ private:
+  void record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const;
+
+  const render::Device* device_;
+  PrefilterOptions options_;
+  Sources sources_;
+  render::ComputePass values_, level_;
+  SummedAreas sums_;
+  std::unique_ptr<render::Buffer> table_;
+  std::array<std::unique_ptr<render::Buffer>, gpu::kPrefilterBuffers> images_;
+  std::array<std::uint32_t, gpu::kPrefilterBuffers> blocks_{};  ///< in each
+};
+
+/// How what a look-up needs is laid out, for maps of this size. Empty if that is more than `kPrefilterBuffers` buffers
+/// of `buffer_bytes` hold.
+struct PrefilterLayout {
+  gpu::PrefilterTable table;
+  std::vector<gpu::PrefilterValue> values;
+  std::uint32_t blocks = 0;
+};
+std::optional<PrefilterLayout> prefilter_layout(const PrefilterOptions& options, std::uint32_t size,
+                                                std::uint32_t faces, std::uint64_t buffer_bytes);
+
+}  // namespace penumbra::maps

@@ -1,0 +1,59 @@
+// One struct, two languages: what texels are made into so that means over windows of them take a fixed number of
+// fetches. prefilter.hpp has the picture.
+#ifndef PENUMBRA_MAPS_PREFILTER
+#define PENUMBRA_MAPS_PREFILTER
+#include "maps/host/map_view.shared.h"
+#ifdef __cplusplus
+#pragma once
+namespace penumbra::maps::gpu {
+#endif
+
+// Functions of a texel's height t, 0 at the nearest caster and 1 at the deepest receiver, all of them in [0, 1].
+const uint kLayer = 0;    // x = clamp(a t - b, 0, 1); its square is about the middle, (x - 1/2)^2
+const uint kRising = 1;   // exp(a (t - 1))
+const uint kFalling = 2;  // exp(-a t)
+const uint kSine = 3;     // 1/2 + sin(a t) / 2
+const uint kCosine = 4;   // 1/2 + cos(a t) / 2
+const uint kBit = 5;      // bit a of the texel's word
+
+const uint kPlain = 0;
+const uint kSquared = 1;
+const uint kTimesHeight = 2;  // of kSine and kCosine: 1/2 + t sin(a t) / 2
+
+struct PrefilterValue {
+  uint kind, power;
+  float a, b;
+  uint first_block;  // where its blocks are
+  uint limbs, bits;  // of a table: digits of so many bits each, the highest first; 0 bits: the value is 0 or 1
+};
+
+const uint kTable = 0;    // summed areas of digits
+const uint kPyramid = 1;  // mip levels
+const uint kWindows = 2;  // N-buffer: level l has the mean of the 2^l squared texels that begin at each texel
+
+const uint kPrefilterBuffers = 4;
+
+struct PrefilterTable {
+  uint scheme, size, faces, levels;
+  uint block;       // words of a block: one limb of a table, or all levels of a value
+  uint per_buffer;  // blocks in each buffer
+  uint value_count;
+};
+
+struct PrefilterLevelPush {
+  uint scheme, size, faces;
+  uint level;  // that is made
+  uint from;   // where in a block the level before begins
+  uint to;     // where this one begins
+  uint block, blocks;
+};
+
+struct PrefilterValuesPush {
+  uint texels;   // of all faces
+  uint of_bits;  // texels are words of bits; else depths
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::maps::gpu
+#endif
+#endif  // PENUMBRA_MAPS_PREFILTER

@@ -1,0 +1,169 @@
+#include "maps/products/slices.hpp"
+
+#include "maps/host/caster.vert.spv.hpp"
+#include "maps/host/map_fit.hpp"
+#include "maps/products/slices.frag.spv.hpp"
+#include "visibility/receivers.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace penumbra::maps {
+namespace {
+
+/// How much deeper than its plane a slice ends, relative to its height: a surface that lies in the plane is in the
+/// slice, whatever the rasteriser's interpolation of its depth makes of it.
+constexpr double kBeyondPlane = 0x1p-14;
+
+bool casts(const MapSet& maps, std::uint32_t triangle) {
+  return maps.scene.casts_shadow[triangle] != 0 && maps.scene.emits[triangle] != maps.light.index;
+}
+
+/// Twice the area of a triangle seen along the light's normal, and three times its mean height over the light's plane.
+struct Facing {
+  double area, height;
+};
+Facing facing(const visibility::SceneFloats& scene, const LightBasis& basis, std::uint32_t triangle) {
+  const auto corners = scene.corners(triangle);
+  const glm::dvec3 a = basis.local(corners[0]), b = basis.local(corners[1]), c = basis.local(corners[2]);
+  return {std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)), a.z + b.z + c.z};
+}
+
+struct Range {
+  double nearest = std::numeric_limits<double>::infinity(), deepest = 0;
+};
+/// Heights of what `counts`, on one side of the light's plane.
+template <typename Counts>
+Range heights(const MapSet& maps, double sign, const Counts& counts) {
+  Range range;
+  for (std::uint32_t i = 0; i < maps.scene.triangles.size(); ++i) {
+    if (!counts(i)) continue;
+    Range own{range.nearest, 0};
+    for (const glm::vec3& corner : maps.scene.corners(i)) {
+      const double height = std::max(sign * maps.basis.local(corner).z, 0.0);
+      own.nearest = std::min(own.nearest, height);
+      own.deepest = std::max(own.deepest, height);
+    }
+    if (own.deepest == 0) continue;  // wholly on the other side
+    range.nearest = own.nearest;
+    range.deepest = std::max(range.deepest, own.deepest);
+  }
+  return range;
+}
+
+}  // namespace
+
+std::uint32_t ground_of(const visibility::SceneFloats& scene, const LightBasis& basis) {
+  std::vector<double> areas;
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (!visibility::is_receiver(scene, i)) continue;
+    if (scene.plane[i] != visibility::SceneFloats::kNoPlane && scene.casts_shadow[i] == 0) return kNoObject;
+    areas.resize(std::max<std::size_t>(areas.size(), scene.object[i] + std::size_t{1}), 0.0);
+    areas[scene.object[i]] += facing(scene, basis, i).area;
+  }
+  const auto largest = std::ranges::max_element(areas);
+  return largest == areas.end() || *largest == 0 ? kNoObject : static_cast<std::uint32_t>(largest - areas.begin());
+}
+
+gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t count) {
+  gpu::SlicePlanes planes{.count = count, .limit = {}, .plane = {}};
+  const std::uint32_t ground = rule == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const double sign = s == 0 ? 1 : -1;
+    const auto set = [&](std::uint32_t k, double plane, double limit) {
+      planes.plane[s][k] = static_cast<float>(plane);
+      planes.limit[s][k] = static_cast<float>(limit);
+    };
+    if (rule == SliceRule::one_plane) {
+      double area = 0, moment = 0, corners = 0, sum = 0;
+      for (std::uint32_t i = 0; i < maps.scene.triangles.size(); ++i) {
+        const Facing seen = facing(maps.scene, maps.basis, i);
+        if (!casts(maps, i) || maps.scene.object[i] == ground || sign * seen.height <= 0) continue;
+        area += seen.area;
+        moment += seen.area * sign * seen.height / 3;
+        corners += 1;
+        sum += sign * seen.height / 3;
+      }
+      // Of casters that are all seen edge-on, the mean of the triangles' heights.
+      const double mean = area > 0 ? moment / area : corners > 0 ? sum / corners : 1.0;
+      set(0, mean, std::numeric_limits<float>::max());
+      continue;
+    }
+    const Range casters = heights(maps, sign, [&](std::uint32_t i) { return casts(maps, i); });
+    const Range receivers =
+        heights(maps, sign, [&](std::uint32_t i) { return visibility::is_receiver(maps.scene, i); });
+    const double first = std::min(casters.nearest, receivers.deepest),
+                 last = std::max(first, std::min(casters.deepest, receivers.deepest));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const double plane = first + (last - first) * (k + 1.0) / count;
+      set(k, plane, plane * (1 + kBeyondPlane));
+    }
+  }
+  return planes;
+}
+
+Slices::Slices(const render::Device& device, SliceRule rule, std::uint32_t count)
+    : device_(&device),
+      rule_(rule),
+      count_(count),
+      pass_(device, {.name = "slices",
+                     .vertex = shaders::kCasterVert,
+                     .fragment = shaders::kSlicesFrag,
+                     .push_bytes = sizeof(gpu::SlicesPush),
+                     .constants = {}}),
+      planes_(device, "slice planes", sizeof(gpu::SlicePlanes)) {}
+
+void Slices::upload(const MapSet& maps) {
+  const std::uint32_t ground = rule_ == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  const std::size_t most = device_->limits().max_storage_buffer_range / (3 * sizeof(glm::vec3)) * 3;
+  std::vector<glm::vec3> corners;
+  const auto flush = [&] {
+    if (corners.empty()) return;
+    casters_.push_back({render::make_buffer<glm::vec3>(*device_, "slice casters", corners),
+                        static_cast<std::uint32_t>(corners.size())});
+    corners.clear();
+  };
+  casters_.clear();
+  for (std::uint32_t i = 0; i < maps.scene.triangles.size(); ++i) {
+    if (!casts(maps, i) || maps.scene.object[i] == ground) continue;
+    for (const glm::vec3& corner : maps.scene.corners(i)) corners.push_back(corner);
+    if (corners.size() == most) flush();
+  }
+  flush();
+}
+
+void Slices::record(render::Commands& commands, const MapSet& maps) {
+  const std::uint64_t texels = std::uint64_t{maps.size} * maps.size;
+  render::grow(*device_, bits_, "slices", std::max(maps.faces, 1U) * texels * sizeof(std::uint32_t));
+  commands.fill(*bits_, 0);
+  const gpu::SlicePlanes planes = slice_planes(maps, rule_, count_);
+  planes_.write<gpu::SlicePlanes>(std::span(&planes, 1));
+  upload(maps);
+  gpu::LightView view{};
+  maps.views.read<gpu::LightView>(std::span(&view, 1));
+  for (std::uint32_t face = 0; face < maps.faces; ++face) {
+    const std::uint32_t side = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
+    const gpu::SlicesPush push{.face = face_push(view, maps.basis, face),
+                               .size = maps.size,
+                               .first = static_cast<std::uint32_t>(face * texels),
+                               .side = side,
+                               .sideways = face != view.side[side].first_face ? 1U : 0U};
+    for (const Casters& casters : casters_) {
+      pass_.record(commands, push, {casters.corners, planes_, *bits_},
+                   {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+    }
+  }
+}
+
+std::uint64_t Slices::memory_bytes() const {
+  const std::uint64_t casters =
+      std::accumulate(casters_.begin(), casters_.end(), std::uint64_t{0},
+                      [](std::uint64_t sum, const Casters& batch) { return sum + batch.corners.bytes(); });
+  return casters + planes_.bytes() + (bits_ ? bits_->bytes() : 0);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,23 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/products/slices.shared.h"
+
+// Marks the slice that a surface is in at a texel's centre (Eisemann and Décoret 2006). Any number of surfaces: bits are
+// added in any order.
+
+layout(scalar, binding = 0) readonly buffer Corners { vec3 corners[]; };  // caster.vert's: bindings are shared
+layout(scalar, binding = 1) readonly buffer Planes { SlicePlanes planes; };
+layout(scalar, binding = 2) buffer Bits { uint bits[]; };
+layout(scalar, push_constant) uniform Push { SlicesPush push; };
+
+void main() {
+  const uvec2 at = uvec2(gl_FragCoord.xy);
+  const float along = 1.0 / gl_FragCoord.w;
+  const float height = push.sideways != 0 ? along * gl_FragCoord.y / float(push.size) : along;
+  for (uint k = 0; k < planes.count; ++k) {
+    if (height > planes.limit[push.side][k]) continue;
+    atomicOr(bits[push.first + at.y * push.size + at.x], 1u << k);
+    return;
+  }
+}

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "maps/host/map_method.hpp"
+#include "maps/products/slices.shared.h"
+#include "render/raster_pass.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace penumbra::maps {
+
+enum class SliceRule : std::uint8_t {
+  /// From the nearest caster to the deepest, or to the deepest receiver if that is nearer; equally thick. What is in a
+  /// slice is taken to be in its far plane (Eisemann and Décoret 2006).
+  equal,
+  /// One slice, with all casters that are no ground (ground_of), taken to be at their mean height (Soler and Sillion
+  /// 1998).
+  one_plane,
+};
+
+/// The object that receives but does not shade where a method wants the two apart: none if some receiver casts no
+/// shadow; else the one whose receiving triangles, seen from the light's plane, are largest. kNoObject if there is
+/// none.
+inline constexpr std::uint32_t kNoObject = 0xffffffffU;
+std::uint32_t ground_of(const visibility::SceneFloats& scene, const LightBasis& basis);
+
+/// The planes of `count` slices (1 … 32; one_plane: 1).
+gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t count);
+
+/// What casts shadow, sorted into slices parallel to the light: for each texel of the maps of a light's centre a word
+/// whose bit k says that a surface in slice k lies in its direction. Surfaces that one hides from the other count both.
+class Slices final : public MapProduct {
+ public:
+  Slices(const render::Device& device, SliceRule rule, std::uint32_t count);
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return *bits_; }  ///< the words
+  /// A look-up reads the planes alone.
+  [[nodiscard]] std::vector<render::BufferReference> buffers() const override { return {planes_}; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ private:
+  struct Casters {
+    render::Buffer corners;
+    std::uint32_t vertices;
+  };
+  void upload(const MapSet& maps);
+
+  const render::Device* device_;
+  SliceRule rule_;
+  std::uint32_t count_;
+  render::RasterPass pass_;
+  render::Buffer planes_;
+  std::vector<Casters> casters_;
+  std::unique_ptr<render::Buffer> bits_;
+};
+
+}  // namespace penumbra::maps

@@ -1,0 +1,32 @@
+// One struct, two languages: light-space slices. slices.hpp has the picture.
+#ifndef PENUMBRA_MAPS_SLICES
+#define PENUMBRA_MAPS_SLICES
+#include "maps/host/map_view.shared.h"
+#ifdef __cplusplus
+#pragma once
+namespace penumbra::maps::gpu {
+inline constexpr uint kMostSlices = 32;
+#else
+const uint kMostSlices = 32;  // bits of a word
+#endif
+
+// Heights are distances from the light's plane. A surface is in the first slice whose limit it does not exceed.
+struct SlicePlanes {
+  uint count;
+  float limit[2][kMostSlices];  // of each slice, where the light's normal points and behind
+  float plane[2][kMostSlices];  // where what is in the slice is taken to be
+};
+
+// slices.frag, behind what caster.vert takes.
+struct SlicesPush {
+  CasterPush face;
+  uint size;      // of a face
+  uint first;     // texel of the face
+  uint side;      // of the light's plane
+  uint sideways;  // the face's rows run along the light's normal
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::maps::gpu
+#endif
+#endif  // PENUMBRA_MAPS_SLICES

@@ -1,0 +1,67 @@
+#pragma once
+
+// The maps of a stage's light from its centre, as methods render them, and read back.
+
+#include "maps/host/caster_maps.hpp"
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_fit.hpp"
+#include "maps/host/map_method.hpp"
+#include "tests/analytic/maps_fixture.hpp"
+
+#include <vector>
+
+namespace penumbra::tests {
+
+struct CentreMaps {
+  CentreMaps(const render::Device& device, const Stage& stage, std::uint32_t texels, const glm::dvec2& beside = {0, 0})
+      : size(texels),
+        basis(maps::light_basis(stage.light)),
+        centre(basis.center),
+        fitted(maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1),
+                               {.size = texels, .beside = beside})),
+        views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
+        depths(device, "depths", texel_count() * sizeof(float)) {
+    maps::CasterMaps casters(device, size);
+    casters.upload(stage.floats);
+    render::Commands commands(device);
+    casters.record(commands, fitted.views.front(), basis, stage.light.index, depths, 0);
+    commands.submit();
+  }
+  [[nodiscard]] std::size_t texel_count() const { return std::size_t{size} * size * std::max(fitted.faces, 1U); }
+  [[nodiscard]] std::vector<float> read() const {
+    std::vector<float> texels(texel_count());
+    depths.read<float>(texels);
+    return texels;
+  }
+  /// For products: what a method would give them.
+  [[nodiscard]] maps::MapSet set(const Stage& stage) const {
+    return {views, depths, fitted.faces, size, stage.light, basis, stage.floats};
+  }
+
+  std::uint32_t size;
+  maps::LightBasis basis;
+  glm::vec3 centre;
+  maps::FittedViews fitted;
+  render::Buffer views, depths;
+};
+
+/// View samples by hand, on the plane through `middle` spanned by `u` and `v`: n × n, at middle + s u + t v with s and
+/// t in the middle of equal steps from −1 to 1, carried by triangle 0. `up` is their normal.
+inline auto grid_samples(std::uint32_t n, const glm::dvec3& middle, const glm::dvec3& u, const glm::dvec3& v,
+                         const glm::dvec3& up) {
+  return [=](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+    visibility::ViewSamples samples;
+    samples.width = samples.height = n;
+    for (std::uint32_t i = 0; i < n * n; ++i) {
+      const double s = (2.0 * (i % n) + 1) / n - 1, t = (2.0 * (i / n) + 1) / n - 1;
+      samples.triangle.push_back(0);
+      samples.p.emplace_back(middle + s * u + t * v - floats.origin);
+      samples.n.emplace_back(up);
+      samples.depth.push_back(1);
+      samples.facing.push_back(1);
+    }
+    return samples;
+  };
+}
+
+}  // namespace penumbra::tests
