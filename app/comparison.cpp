@@ -11,6 +11,7 @@
 #include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "base/png.hpp"
 #include "compare/error_picture.hpp"
 #include "compare/report.hpp"
@@ -178,6 +179,12 @@ class Comparison {
 
   void run_reference() {
     const bool keep_masks = same_samples_ && reference_.description.output == Output::mask;
+    if (keep_masks) {
+      const std::uint64_t words = std::uint64_t{session_.pixel_count()} * reference_lights_.front().words_per_mask();
+      require_memory(words * sizeof(std::uint32_t), "the reference's masks",
+                     "choose a smaller --size or fewer --light-samples, or leave out --reference-samples same");
+      reference_masks_.reserve(words);
+    }
     Finished done = run_one(reference_, reference_lights_, [&](const TileResult& tile) {
       if (keep_masks && tile.light == 0) {
         reference_masks_.insert(reference_masks_.end(), tile.masks.begin(), tile.masks.end());
@@ -230,6 +237,12 @@ class Comparison {
     files.push_back(file_of(entry.label, "-error.png"));
     for (const std::filesystem::path& file : files) {
       std::error_code error;
+      const auto status = std::filesystem::symlink_status(file, error);
+      if (!std::filesystem::exists(status)) continue;
+      if (!std::filesystem::is_regular_file(status)) {
+        warn(fmt::format("{} is of an earlier run, and no regular file: it stays", file.string()));
+        continue;
+      }
       std::filesystem::remove(file, error);
       if (error) warn(fmt::format("{} is of an earlier run and cannot be removed: {}", file.string(), error.message()));
     }

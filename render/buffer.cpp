@@ -31,6 +31,12 @@ void copy_and_wait(Device::State& device, vk::Buffer from, vk::Buffer to, const 
   const vk::raii::CommandBuffer commands = std::move(vk::raii::CommandBuffers(device.device, info).front());
   commands.begin(vk::CommandBufferBeginInfo(vk::CommandBufferUsageFlagBits::eOneTimeSubmit));
   commands.copyBuffer(from, to, region);
+  // A fence alone makes nothing visible to the host, nor to later passes.
+  using Stage = vk::PipelineStageFlagBits2;
+  using Access = vk::AccessFlagBits2;
+  const vk::MemoryBarrier2 barrier(Stage::eCopy, Access::eTransferWrite, Stage::eAllCommands | Stage::eHost,
+                                   Access::eMemoryRead | Access::eMemoryWrite | Access::eHostRead);
+  commands.pipelineBarrier2(vk::DependencyInfo({}, barrier));
   commands.end();
   const vk::raii::Fence fence(device.device, vk::FenceCreateInfo());
   device.queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);

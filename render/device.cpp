@@ -244,6 +244,9 @@ std::uint64_t Device::allocated_bytes() const {
 std::uint64_t Device::peak_bytes() const {
   return state_->peak;
 }
+void Device::forget_peak() const {
+  state_->peak = state_->allocated;
+}
 
 std::vector<std::string> Device::take_validation_messages() const {
   const std::lock_guard lock(state_->log->mutex);

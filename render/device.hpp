@@ -64,9 +64,11 @@ class Device {
 
   [[nodiscard]] const DeviceInfo& info() const;
   [[nodiscard]] const Limits& limits() const;
-  /// Bytes of buffers and images alive now, and at their peak since the device was made.
+  /// Bytes of buffers and images alive now, and at their peak since the device was made, or forget_peak.
   [[nodiscard]] std::uint64_t allocated_bytes() const;
   [[nodiscard]] std::uint64_t peak_bytes() const;
+  /// From here on the peak is counted anew, from what is alive now.
+  void forget_peak() const;
   /// What the validation layer said since the last call (errors and warnings); always empty without validation.
   std::vector<std::string> take_validation_messages() const;
 

@@ -24,7 +24,9 @@ void emit_chunk(uint header, uint outside_of, uint count) {
     chunks[first] = header;
     chunks[first + 1] = outside_of;
   }
-  for (uint i = gl_SubgroupInvocationID; i < kChunk; i += kLanes) chunks[first + kChunkHead + i] = i < count ? leaves[i] : kNone;
+  uint i = gl_SubgroupInvocationID;
+  for (; i < kChunk; i += kLanes) chunks[first + kChunkHead + i] = i < count ? leaves[i] : kNone;
+  if (i < kChunk) atomicOr(unfinished, 1u);
 }
 
 // Integers in the order of the floats, −0 and +0 the same: comparing them flushes nothing to zero.
@@ -60,7 +62,8 @@ uvec2 first_of_part() {
   uint node = 0;
   uvec2 sizes = uvec2(1, 0);
   for (uint depth = 0; depth < push.part_levels; ++depth) {
-    const uint reference = texelFetch(nodes, int((node * kTeam + (push.part >> (3 * depth) & 7)) * 2)).w;
+    const uint child = sizes.x == 1 ? node * kTeam + (push.part >> (3 * depth) & 7) : 0;
+    const uint reference = texelFetch(nodes, int(child * 2)).w;
     if (sizes.x == 1) {
       const bool leaf = reference != kNone && (reference & kLeafBit) != 0;
       sizes = uvec2(reference == kNone || leaf ? 0 : 1, leaf && push.part >> (3 * depth + 3) == 0 ? 1 : 0);
@@ -154,7 +157,7 @@ void main() {
     for (uint word = 0; word < words; ++word) {
       masks[pixel * words + word] = all_blocked ? 0 : bits(0, int(min(push.sample_count - 32 * word, 32)) - 1);
     }
-    if (on) take_from_mask();
+    if (on && !take_from_mask()) atomicOr(unfinished, 1u);
   }
   if (push.empty_tree == 0) {
     const uint outside_of = parts_around(on);

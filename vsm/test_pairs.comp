@@ -178,7 +178,8 @@ void main() {
   for (uint word = 0; word < words && full; ++word) {
     full = masks[pixel * words + word] == 0;
   }
-  const bool on = inside && carrier != kNone && level * side > level_error && !full;
+  // Half: a compiler may round differently here than where find_leaves asked the host, which overrules what is found here.
+  const bool on = inside && carrier != kNone && level * side > 0.5 * level_error && !full;
   for (uint word = 0; word < kSharedWords; ++word) blocked[slot_of(word)] = 0;
 
   orientation = -side;
@@ -242,5 +243,5 @@ void main() {
   }
   // Some processors' drivers end loops after 65535 turns. Never go on as if nothing had happened.
   if (at < kChunk || i < again_count) atomicOr(asked.cut_off, 1u);
-  if (on) take_from_mask();
+  if (on && !take_from_mask()) atomicOr(asked.cut_off, 1u);
 }

@@ -33,7 +33,9 @@ class ViewSample final : public visibility::Method {
   }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
-    native_.has_mesh = vulkan_.has_mesh = false;
+    native_.has_mesh = vulkan_.has_mesh = native_.has_view = vulkan_.has_view = false;
+    samples_ = nullptr;  // they are of the mesh before
+    current_ = nullptr;
     give_mesh(native_);
   }
   void prepare_light(const visibility::Light& light) override {

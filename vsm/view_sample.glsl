@@ -167,10 +167,12 @@ const vec4 kWholeLight = vec4(-1.0, -1.0, 1.0, 1.0);
 const vec3 kAlways = vec3(0.0, 0.0, 1.0);                 // the half-plane without an edge,
 const float kAlwaysError = 0.5;                           // and an error that leaves it certain
 
-// Takes this lane's blocked samples out of its mask in memory. Rows end anywhere in a word.
-void take_from_mask() {
+// Takes this lane's blocked samples out of its mask in memory. Rows end anywhere in a word. False: the driver ended the
+// loop before all were.
+bool take_from_mask() {
   const uint words = (push.sample_count + 31) / 32;
-  for (uint i = 0; i < kSharedWords; ++i) {
+  uint i = 0;
+  for (; i < kSharedWords; ++i) {
     const uint value = blocked[slot_of(i)];
     if (value == 0) continue;
     if (kScatteredPoints != 0) {
@@ -181,6 +183,7 @@ void take_from_mask() {
     atomicAnd(masks[pixel * words + (bit >> 5)], ~(value << shift));
     if (shift != 0 && value >> (32 - shift) != 0) atomicAnd(masks[pixel * words + (bit >> 5) + 1], ~(value >> (32 - shift)));
   }
+  return i >= kSharedWords;
 }
 
 // The shaft from this block's view samples (those `on`) to the light: the hull of both lies between two parallel planes

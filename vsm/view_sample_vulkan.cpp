@@ -96,6 +96,7 @@ class ViewSampleMapping final : public device::MaskMethod {
     // scene needs passes of its own.
     const std::uint32_t teams = lanes() / TriangleTree::kWidth, levels = (tree().depth + 3) / 4 * 4 + 2,
                         stack = teams * TriangleTree::kWidth * levels;
+    check_shared_memory(stack);
     const std::vector<std::uint32_t> constants{
         lanes(),      lanes(), shape_.scattered ? 1U : 0U, shape_.words_per_row, shape_.shared_words, block_width(),
         shape_.chunk, stack};
@@ -107,6 +108,17 @@ class ViewSampleMapping final : public device::MaskMethod {
                                                              .constants = constants,
                                                              .full_subgroups = true});
     constants_ = constants;
+  }
+
+  /// A mask a lane; and the stack and leaves of the walk, or the triangles that are looked at twice.
+  void check_shared_memory(std::uint32_t stack) const {
+    const std::uint64_t walk = stack + shape_.chunk + lanes() + 8;
+    const std::uint64_t twice = std::uint64_t{shape_.chunk} * TriangleTree::kWidth + 1;
+    const std::uint64_t needed = 4 * (std::uint64_t{shape_.shared_words} * lanes() + std::max(walk, twice));
+    if (needed <= device().limits().max_shared_memory) return;
+    throw InputError(
+        "light \"{}\": {} light samples need {} bytes of shared memory, {} has {}; take fewer, or raytrace",
+        light().name, light().sample_count(), needed, device().info().name, device().limits().max_shared_memory);
   }
 
   [[nodiscard]] gpu::ViewSamplePush make_push(const visibility::Tile& band) {

@@ -4,6 +4,7 @@
 #include "render/commands.hpp"
 #include "render/device.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -29,7 +30,10 @@ class GrowingList {
   /// Is it less than a storage buffer can be?
   [[nodiscard]] bool is_possible() const { return bytes() <= device_->limits().max_storage_buffer_range; }
   void shrink() { capacity_ = shape_.capacity; }  ///< to what it was at first
-  void set_item_bytes(std::uint64_t bytes) { shape_.item_bytes = bytes; }
+  void set_item_bytes(std::uint64_t bytes) {
+    shape_.item_bytes = bytes;
+    if (!is_possible()) shrink();
+  }
 
   /// Records that it is empty: there is room for it, and its head is 0.
   void clear(render::Commands& commands) {
@@ -51,7 +55,7 @@ class GrowingList {
   /// Is there room for that many items? If not, there will be.
   [[nodiscard]] bool holds(std::uint32_t items) {
     if (items <= capacity_) return true;
-    capacity_ = items + items / 8;
+    capacity_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t{items} + items / 8, ~0U));
     return false;
   }
 

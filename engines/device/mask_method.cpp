@@ -19,11 +19,14 @@ constexpr std::uint32_t kFirstQuestions = 1U << 14;
 MaskMethod::MaskMethod(const render::Device& device, visibility::MethodDescription description,
                        std::uint64_t question_bytes)
     : device_(&device),
+      others_bytes_(device.allocated_bytes()),
       description_(std::move(description)),
       settle_(device, {.name = "settle", .spirv = shaders::kSettleComp, .push_bytes = sizeof(std::uint32_t)}),
       commands_(device),
       view_(device),
-      questions_(device, {"questions", sizeof(gpu::QuestionHead), question_bytes, kFirstQuestions}) {}
+      questions_(device, {"questions", sizeof(gpu::QuestionHead), question_bytes, kFirstQuestions}) {
+  device.forget_peak();
+}
 
 void MaskMethod::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
@@ -52,7 +55,10 @@ std::uint32_t MaskMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
   const std::uint64_t per_pixel =
       std::max<std::uint64_t>({4ULL * layout_.words, ViewUpload::kBytesPerPixel, bytes_per_pixel()});
-  const std::uint64_t rows = device_->limits().max_storage_buffer_range / (per_pixel * samples_->width);
+  const render::Limits& limits = device_->limits();
+  const std::uint64_t rows =
+      std::min(limits.max_storage_buffer_range / (per_pixel * samples_->width),
+               limits.max_texel_buffer_elements / (ViewUpload::kTexelsPerPixel * samples_->width));
   if (rows == 0) {
     throw ResourceError(
         "one row of {} pixels with {} light samples is more than this device's storage buffers can hold",

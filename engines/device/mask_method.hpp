@@ -51,7 +51,7 @@ class MaskMethod : public virtual visibility::Method {
   /// listRetries: a list was too short; loopRetries: a driver ended a loop; splitBands: a band was cut in two; and what
   /// count() was told.
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
-  [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes(); }
+  [[nodiscard]] std::uint64_t memory_bytes() const override { return device_->peak_bytes() - others_bytes_; }
 
  protected:
   /// Once a mesh, before its upload: what the method adds to triangles. It must keep it.
@@ -100,6 +100,7 @@ class MaskMethod : public virtual visibility::Method {
   bool run_whole(const visibility::Tile& band);
 
   const render::Device* device_;
+  std::uint64_t others_bytes_;  ///< that were on the device before this
   visibility::MethodDescription description_;
   render::ComputePass settle_;
   render::Commands commands_;

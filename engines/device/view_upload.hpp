@@ -19,7 +19,7 @@ namespace penumbra::device {
 /// triangle's normal is not known (visibility::normal_is_known), it is 0.
 class ViewUpload {
  public:
-  static constexpr std::uint64_t kBytesPerPixel = 2 * sizeof(visibility::Texel);
+  static constexpr std::uint64_t kTexelsPerPixel = 2, kBytesPerPixel = kTexelsPerPixel * sizeof(visibility::Texel);
 
   explicit ViewUpload(const render::Device& device) : device_(&device) {}
 

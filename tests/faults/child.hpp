@@ -16,6 +16,14 @@
 
 namespace penumbra::tests {
 
+/// Built with a sanitizer, which has needs of its own: address space by the terabyte, threads and pipes, and to be
+/// loaded before any other library. What takes these away says nothing about the program then.
+#if defined(PENUMBRA_SHADOW_MEMORY)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 /// What a standard stream of the program is.
 enum class Stream {
   captured,

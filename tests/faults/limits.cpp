@@ -12,6 +12,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
+constexpr const char* kNoRoom = "the limit leaves a sanitizer no room";
+
 class LimitFaults : public FaultTest {
  protected:
   /// Everything that must hold for a limited run, whatever the limit; returns its exit code.
@@ -55,6 +57,7 @@ TEST_F(LimitFaults, AComparisonWhoseFilesMayNotGrow) {
 }
 
 TEST_F(LimitFaults, FewThreads) {
+  if (kSanitized) GTEST_SKIP() << kNoRoom;
   (void)small_scene();
   const auto limited = [&](rlim_t threads) {
     return check({.arguments = render(), .limits = {{RLIMIT_NPROC, threads}}, .as_stranger = true},
@@ -69,6 +72,7 @@ TEST_F(LimitFaults, FewThreads) {
 }
 
 TEST_F(LimitFaults, FewThreadsForTheImportHelper) {
+  if (kSanitized) GTEST_SKIP() << kNoRoom;
   if (::geteuid() != 0)
     GTEST_SKIP() << "the limit counts all processes of the user; run it as root, who can be a new one";
   const std::string scene = slow_scene();
@@ -82,6 +86,7 @@ TEST_F(LimitFaults, FewThreadsForTheImportHelper) {
 }
 
 TEST_F(LimitFaults, FewDescriptors) {
+  if (kSanitized) GTEST_SKIP() << kNoRoom;
   (void)small_scene();
   for (const rlim_t files : {4ul, 5ul, 6ul, 8ul, 10ul, 12ul, 16ul, 20ul, 64ul}) {
     const Conditions conditions{.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}};
@@ -93,6 +98,7 @@ TEST_F(LimitFaults, FewDescriptors) {
 }
 
 TEST_F(LimitFaults, FewAddresses) {
+  if (kSanitized) GTEST_SKIP() << kNoRoom;
   (void)small_scene();
   for (const rlim_t mebibytes : {200ul, 300ul, 400ul, 500ul, 600ul, 800ul, 1200ul}) {
     check({.arguments = render(), .limits = {{RLIMIT_AS, mebibytes << 20}}}, std::to_string(mebibytes) + " MiB");

@@ -168,7 +168,8 @@ precise float beside_way(vec2 x, vec2 point) {
 void drain(uint queued) {
   subgroupMemoryBarrierShared();
   subgroupBarrier();
-  for (uint first = gl_SubgroupInvocationID; first < kSamples; first += kEach * kLanes) {
+  uint first = gl_SubgroupInvocationID;
+  for (; first < kSamples; first += kEach * kLanes) {
     vec2 x[kEach];
     int change[kEach];
     bool open[kEach];
@@ -177,7 +178,8 @@ void drain(uint queued) {
       change[i] = 0;
       open[i] = false;
     }
-    for (uint e = 0; e < queued; ++e) {
+    uint e = 0;
+    for (; e < queued; ++e) {
       const vec4 ends = queue_ends[e];
       const vec2 more = queue_more[e], a = ends.xy, b = ends.zw, d = b - a;
       const float size = sqrt(dot(d, d));
@@ -199,7 +201,9 @@ void drain(uint queued) {
         if (open[i]) atomicOr(open_words[j / 32], 1u << (j % 32));
       }
     }
+    cut_off = cut_off || e < queued;
   }
+  cut_off = cut_off || first < kSamples;
   subgroupMemoryBarrierShared();
   subgroupBarrier();
 }
@@ -284,34 +288,30 @@ uint count_to_corner(uint head) {
   return met;
 }
 
-uint bits_of_word(uint word) {
-  const uint left = kSamples - word * 32;
-  return left >= 32 ? 0xffffffffu : (1u << left) - 1;
-}
-
 void ask(uint pixel, uint word, uint bits) {
   const uint question = atomicAdd(asked.count, 1);
   if (question < push.question_capacity) questions[question] = DepthQuestion(pixel, word, bits);
 }
 
-// The whole mask is one answer: all visible, none, or all open.
+// The whole mask is one answer: all visible, none (nobody reads the mask then), or all open. Without a loop: a driver that
+// ended one may have no turns left.
 void settle_whole(uint pixel, bool visible, bool open) {
-  for (uint word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
-    masks[pixel * kWords + word] = visible ? bits_of_word(word) : 0;
-    if (open) ask(pixel, word, bits_of_word(word));
-  }
-  if (gl_SubgroupInvocationID == 0) counts[pixel] = visible ? kSamples : 0;
+  if (gl_SubgroupInvocationID != 0) return;
+  counts[pixel] = visible ? kSamples : 0;
+  if (open) ask(pixel, kAllWords, 0);
 }
 
 // Takes light samples not strictly above the carrier's plane away: `dark` for counters. (bound horizon)
 const int kDark = 0x40000000;
 void cut_at_horizon(vec3 above, float error) {
-  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+  uint j = gl_SubgroupInvocationID;
+  for (; j < kSamples; j += kLanes) {
     const vec2 light_point = places[j] - half_cells;
     const float value = above.x * light_point.x + above.y * light_point.y + above.z;
     if (value <= error) counters[j] = kDark;
     if (abs(value) <= error) atomicOr(open_words[j / 32], 1u << (j % 32));
   }
+  cut_off = cut_off || j < kSamples;
 }
 
 bool is_open(uint j) { return (open_words[j / 32] >> (j % 32) & 1) != 0; }
@@ -319,14 +319,17 @@ bool is_open(uint j) { return (open_words[j / 32] >> (j % 32) & 1) != 0; }
 // (counter, light sample) of the light sample with the least counter of those that are not open; kNone if there is none.
 uvec2 least() {
   int low = kDark;
-  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+  uint j = gl_SubgroupInvocationID;
+  for (; j < kSamples; j += kLanes) {
     if (!is_open(j)) low = min(low, counters[j]);
   }
+  cut_off = cut_off || j < kSamples;
   low = subgroupMin(low);
   uint who = kNone;
-  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+  for (j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
     if (!is_open(j) && counters[j] == low && low != kDark) who = min(who, j);
   }
+  cut_off = cut_off || j < kSamples;
   return uvec2(uint(low), subgroupMin(who));
 }
 
@@ -361,16 +364,19 @@ void main() {
   const uint list = 2 * (block * kClusters + (below ? 0 : heads[2 * kClusters * block_count() + in_band]));
   const uint edges = below ? kNone : heads[list], triangles = below || kHalves != 0 ? kNone : heads[list + 1];
   const int depth = triangles != kNone ? int(count_to_corner(triangles)) : 0;
-  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) counters[j] = depth;
-  for (uint word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
+  uint j = gl_SubgroupInvocationID, word = j;
+  for (; j < kSamples; j += kLanes) counters[j] = depth;
+  for (; word < kWords; word += kLanes) {
     open_words[word] = 0;
     visible_words[word] = 0;
   }
+  cut_off = cut_off || j < kSamples || word < kWords;
   subgroupMemoryBarrierShared();
   subgroupBarrier();
   if (edges != kNone) count_list(edges);
   if (kKeepsDepths != 0 && !below) {
-    for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
+    for (j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
+    cut_off = cut_off || j < kSamples;
   }
   const bool touched = (push.touched_low | push.touched_high) != 0 || sees_flat(length(from_center), at.height);
   // On a triangle within rounding: half of all ways from p depend on which side of it p is. (bound on)
@@ -383,16 +389,21 @@ void main() {
   subgroupMemoryBarrierShared();
   subgroupBarrier();
   const uvec2 reference = kHalves != 0 ? least() : uvec2(0);
-  for (uint j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
+  for (j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) {
     if (counters[j] == int(reference.x) && reference.y != kNone && !is_open(j)) atomicOr(visible_words[j / 32], 1u << (j % 32));
   }
+  cut_off = cut_off || j < kSamples;
   subgroupMemoryBarrierShared();
   subgroupBarrier();
   uint visible = 0;
-  for (uint word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
+  for (word = gl_SubgroupInvocationID; word < kWords; word += kLanes) {
     masks[pixel * kWords + word] = visible_words[word];
     visible += bitCount(visible_words[word]);
     if (open_words[word] != 0) ask(pixel, word, open_words[word]);
+  }
+  if (subgroupAny(cut_off || word < kWords)) {
+    settle_whole(pixel, false, true);
+    return;
   }
   visible = subgroupAdd(visible);
   if (gl_SubgroupInvocationID == 0) {

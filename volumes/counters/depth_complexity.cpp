@@ -91,6 +91,11 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
     PENUMBRA_ASSERT(keeps_depths_ && counters.size() == tile_pixels() * light().sample_count(), "{}", counters.size());
     depths_->read(counters);
     for (const gpu::DepthQuestion& question : asked_) {
+      if (question.word == gpu::kAllWords) {
+        const std::size_t count = light().sample_count();
+        std::ranges::fill(counters.subspan(question.pixel * count, count), DepthCounters::kNoCounter);
+        continue;
+      }
       for (std::uint32_t i = 0; i < 32; ++i) {
         if ((question.bits >> i & 1U) == 0) continue;
         counters[std::size_t{question.pixel} * light().sample_count() + question.word * 32 + i] =
@@ -164,41 +169,53 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   std::vector<device::OpenBits> open_bits(std::uint32_t count) override {
     std::vector<gpu::DepthQuestion> asked(count);
     questions().read(std::span(asked));
+    asked_.insert(asked_.end(), asked.begin(), asked.end());
+    std::vector<std::uint32_t> whole;
+    for (const gpu::DepthQuestion& question : asked) {
+      if (question.word == gpu::kAllWords) whole.push_back(question.pixel);
+    }
+    std::ranges::sort(whole);
+    reference_rays_.clear();
     std::vector<device::OpenBits> open;
     for (const gpu::DepthQuestion& question : asked) {
-      const bool is_reference = (question.word & gpu::kReference) != 0;
       const std::uint32_t sample = question.word & ~gpu::kReference;
-      if (is_reference) {
-        open.push_back({question.pixel | device::gpu::kWholePixel, sample / 32, 1U << (sample % 32)});
+      if (question.word == gpu::kAllWords) {
+        for (std::uint32_t word = 0; word < light().words_per_mask(); ++word) {
+          const std::uint32_t left = light().sample_count() - 32 * word;
+          open.push_back({question.pixel | device::gpu::kWholePixel, word, left >= 32 ? ~0U : (1U << left) - 1});
+        }
+        open_pairs_ += light().sample_count();
+      } else if (std::ranges::binary_search(whole, question.pixel)) {
+        continue;
+      } else if ((question.word & gpu::kReference) != 0) {
+        reference_rays_.push_back({question.pixel, sample / 32, 1U << (sample % 32)});
       } else {
         open.push_back({question.pixel, question.word, question.bits});
+        open_pairs_ += static_cast<std::uint64_t>(std::popcount(question.bits));
       }
-      references_ += is_reference ? 1 : 0;
-      open_pairs_ += static_cast<std::uint64_t>(std::popcount(question.bits));
     }
-    open_words_ += count;
-    asked_.insert(asked_.end(), asked.begin(), asked.end());
+    references_ += reference_rays_.size();
+    open_words_ += open.size();
     return open;
   }
 
   /// Where a reference ray is blocked (variant=laine), all that is not asked about singly is dark.
   void answer(std::span<const device::OpenBits> questions) override {
-    std::vector<device::gpu::MaskWord> decided = decide(questions), dark;
+    std::vector<device::gpu::MaskWord> dark;
     const std::uint32_t words = light().words_per_mask();
-    std::erase_if(decided, [&](const device::gpu::MaskWord& word) {
-      if ((word.pixel & device::gpu::kWholePixel) == 0) return false;
-      const std::uint32_t pixel = word.pixel & ~device::gpu::kWholePixel;
-      for (std::uint32_t i = 0; i < words && word.bits == 0; ++i) dark.push_back({pixel, pixel * words + i, ~0U, 0});
-      return true;
-    });
+    for (const device::gpu::MaskWord& ray : decide(reference_rays_)) {
+      for (std::uint32_t i = 0; i < words && ray.bits == 0; ++i) {
+        dark.push_back({ray.pixel, ray.pixel * words + i, ~0U, 0});
+      }
+    }
     settle(dark);
-    settle(decided);
+    settle(decide(questions));
   }
 
   void count(std::map<std::string, std::uint64_t>& counters) override {
     EdgeMethod::count(counters);
     if (references_ > 0) counters["referenceRays"] += references_;
-    if (open_words_ > references_) counters["openWords"] += open_words_ - references_;
+    if (open_words_ > 0) counters["openWords"] += open_words_;
     if (open_words_ > 0) counters["openPairs"] += open_pairs_;
     references_ = open_words_ = open_pairs_ = 0;
   }
@@ -210,6 +227,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   std::optional<render::Buffer> places_;
   std::unique_ptr<render::Buffer> depths_;
   std::vector<gpu::DepthQuestion> asked_;                           // of the tile
+  std::vector<device::OpenBits> reference_rays_;                    // of the band, laine's
   std::uint64_t references_ = 0, open_words_ = 0, open_pairs_ = 0;  // to be counted
 };
 

@@ -7,7 +7,8 @@ using uint = std::uint32_t;
 #endif
 
 // Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: `word` is the number
-// of the one light sample whose ray the whole mask depends on; `bits` is 0.
+// of the one light sample whose ray the whole mask depends on; `bits` is 0. With kAllWords: all light samples of the
+// pixel, whatever else is asked about it.
 struct DepthQuestion {
   uint pixel;
   uint word;
@@ -15,6 +16,7 @@ struct DepthQuestion {
 };
 
 const uint kReference = 0x80000000u;
+const uint kAllWords = 0x7fffffffu;
 
 #ifdef __cplusplus
 }  // namespace penumbra::volumes::gpu

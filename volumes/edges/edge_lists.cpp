@@ -86,7 +86,8 @@ void EdgeLists::prepare_edges() {
 /// hierarchy by a level, and may be many; rounded up, so that not every scene needs a pass of its own.
 void EdgeLists::build_pass() {
   const std::uint32_t lanes = device_->limits().subgroup_size, teams = lanes / TriangleTree::kWidth;
-  const std::uint32_t levels = (std::max(tree_->depth, whole_->depth()) + 3) / 4 * 4 + 10;
+  const std::uint32_t depth = std::max({tree_->depth, whole_->depth(), front_->depth(), back_ ? back_->depth() : 0U});
+  const std::uint32_t levels = (depth + 3) / 4 * 4 + 10;
   const std::vector<std::uint32_t> constants{lanes, lanes, teams * TriangleTree::kWidth * levels, crops_ ? 1U : 0U};
   if (pass_ && constants == constants_) return;
   pass_.emplace(*device_, render::ComputePassOptions{.name = "find edges",

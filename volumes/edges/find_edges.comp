@@ -70,17 +70,25 @@ bool triangle_matters(Shaft shaft, uint slot) {
   return t0.w != kNone && t2.w != push.light && meets(shaft, vec3(dot(axis, a), dot(axis, b), dot(axis, c)), least);
 }
 
+// More words than any buffer has: the counter of a list that grows beyond all bounds stays here and never comes round to 0.
+const uint kTooMany = 0xc0000000u;
+
 // Writes the collected items as a piece in front of the list.
 uint emit(uint next, uint count) {
   uint first = 0;
-  if (subgroupElect()) first = atomicAdd(list_words, count + 2);
+  if (subgroupElect()) {
+    first = atomicAdd(list_words, count + 2);
+    if (first >= kTooMany) atomicExchange(list_words, kTooMany);
+  }
   first = subgroupBroadcastFirst(first);
-  if (first + count + 2 > push.list_capacity) return kNone;
+  if (first >= push.list_capacity || count + 2 > push.list_capacity - first) return kNone;
   if (gl_SubgroupInvocationID == 0) {
     lists[first] = next;
     lists[first + 1] = count;
   }
-  for (uint i = gl_SubgroupInvocationID; i < count; i += kLanes) lists[first + 2 + i] = items[i];
+  uint i = gl_SubgroupInvocationID;
+  for (; i < count; i += kLanes) lists[first + 2 + i] = items[i];
+  if (i < count) atomicOr(unfinished, 1u);
   return first;
 }
 
@@ -90,7 +98,7 @@ uvec2 first_of_part(bool edges) {
   uint node = edges ? push.edge_root : 0;
   uvec2 sizes = uvec2(1, 0);
   for (uint level = 0; level < push.part_levels; ++level) {
-    const int child = int(node * kTeam + (push.part >> (3 * level) & 7));
+    const int child = sizes.x == 1 ? int(node * kTeam + (push.part >> (3 * level) & 7)) : 0;
     const uint reference = edges ? texelFetch(edge_nodes, 3 * child).w : texelFetch(triangle_nodes, 2 * child).w;
     if (sizes.x == 1) {
       const bool leaf = reference != kNone && (reference & kLeafBit) != 0;
@@ -248,7 +256,8 @@ void main() {
     const uint pixel = pixel_of(i, block);
     const ViewSample it = fetch_view_sample(pixel == kNone ? 0 : pixel);
     place_of[i] = it.p;
-    if (pixel != kNone && it.carrier != kNone && it.height > level_error(it.p)) on_each |= 1u << i;
+    // Half: a compiler may round differently in the passes that ask for these lists.
+    if (pixel != kNone && it.carrier != kNone && it.height > 0.5 * level_error(it.p)) on_each |= 1u << i;
   }
   if (!subgroupAny(on_each != 0)) return;
   uint clusters = 1;

@@ -116,7 +116,8 @@ void main() {
 
   if (on) open_rows = touched_rows();
   if (on && sees_flat(away, at.height)) open_pixel = true;
-  const bool any_touched = subgroupAny((open_rows.x | open_rows.y) != 0);
+  // Of the light, not of this band: where a pixel's mask is read, each of its bands has to have written its words.
+  const bool any_touched = subgroupAny(on && (push.touched_low | push.touched_high) != 0);
 
   uint visible = receives ? 0 : all_samples;
   const uint cluster = on ? heads[2 * kClusters * block_count() + pixel] : kNone;

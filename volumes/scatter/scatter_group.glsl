@@ -78,7 +78,7 @@ Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 
   return m;
 }
 
-const uint kQueue = 64;
+const uint kQueue = kLanes > 32 ? 2 * kLanes : 64;        // one more vote of the subgroup must fit whenever there is room
 uint queue[kQueue];                                       // edges; every lane has all of it: shared memory is the histogram's
 uint queued;
 
