@@ -1,8 +1,9 @@
 #!/bin/bash
 # Plants each fault of faults.txt into a copy of the tree, builds what is needed and runs the tests that should fail.
 #   run.sh match SOURCE               does every fault still fit the tree? Builds nothing.
-#   run.sh plant SOURCE WORK [NAME…]  plants all, or those whose names hold one of these; prints a table.
-# Exit 1 if a fault does not fit, a test fails without any, or a fault survives. See README.md.
+#   run.sh plant SOURCE WORK [NAME…]  plants all, or those whose names hold one of these; prints a table. What an earlier run
+#                                     built in WORK is used again.
+# Exit 1 if a fault does not fit or does not compile, a test fails without any, or a fault survives. See README.md.
 set -euo pipefail
 
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -51,42 +52,65 @@ swap() {
   FROM=$2 TO=$3 perl -0777 -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$1"
 }
 
-build() { ninja -C "$work/tree/build" "$@" >"$work/build.log" 2>&1; }
-# A test executable's tests; anything but success is a caught fault.
-passes() { (cd "$work/tree/build" && timeout 1200 "./$1" --gtest_filter="$2" --gtest_brief=1) >"$work/test.log" 2>&1; }
+# What CMAKE_BUILD_PARALLEL_LEVEL says of the number of jobs holds here.
+build() { cmake --build "$work/tree/build" --target "$@" >"$work/build.log" 2>&1; }
+# A test executable's tests, up to the first that fails; anything but success is a caught fault.
+passes() {
+  (cd "$work/tree/build" && timeout 1200 "./$1" --gtest_filter="$2" --gtest_brief=1 --gtest_fail_fast) >"$work/test.log" 2>&1
+}
+
+# Makes $work/tree what the source is. What is the same already stays, and its objects with it.
+copy_tree() {
+  local file
+  mkdir -p "$work/tree/build"  # in it, as builds mostly are: so compiler caches know them
+  git -C "$source" ls-files -z --cached --others --exclude-standard | sort -z >"$work/files"
+  while IFS= read -r -d '' file; do
+    cmp -s "$source/$file" "$work/tree/$file" || (cd "$source" && cp --parents -t "$work/tree" -- "$file")
+  done <"$work/files"
+  (cd "$work/tree" && find . -path ./build -prune -o -type f -printf '%P\0') | sort -z | comm -z -13 "$work/files" - | (cd "$work/tree" && xargs -0r rm --)
+}
+
+# Every pattern of the filter names a test, and all pass where nothing is planted.
+find_nothing_unplanted() {
+  local pattern
+  tr ':' '\n' <<<"$2" >"$work/patterns"
+  while IFS= read -r pattern; do
+    [[ $("$work/tree/build/$1" --gtest_list_tests --gtest_filter="$pattern") == *'  '* ]] && continue
+    say "$1 has no test '$pattern'"; exit 1
+  done <"$work/patterns"
+  passes "$1" "$2" && return
+  tail -30 "$work/test.log" >&2
+  say "$1 --gtest_filter=$2 fails without a fault"; exit 1
+}
 
 plant_all() {
-  local survivors=0 i status seconds
-  rm -rf "$work/tree"
-  mkdir -p "$work/tree/build"
-  git -C "$source" ls-files -z --cached --others --exclude-standard | (cd "$source" && xargs -0 cp --parents -t "$work/tree")
-  cmake -S "$work/tree" -B "$work/tree/build" -G Ninja -DCMAKE_BUILD_TYPE=Release ${PENUMBRA_CMAKE_OPTIONS:-} >"$work/configure.log"
+  local survivors=0 i name status seconds
   local wanted=()
   for i in "${!names[@]}"; do
     ((${#only[@]} == 0)) && wanted+=("$i") && continue
-    local name
     for name in "${only[@]}"; do [[ ${names[$i]} == *"$name"* ]] && wanted+=("$i") && break; done
   done
-  local needed
+  ((${#wanted[@]} > 0)) || { say "no fault has such a name"; exit 1; }
+  copy_tree
+  # shellcheck disable=SC2086
+  cmake -S "$work/tree" -B "$work/tree/build" -G Ninja -DCMAKE_BUILD_TYPE=Release ${PENUMBRA_CMAKE_OPTIONS:-} >"$work/configure.log"
+  local needed tests
   needed=$(for i in "${wanted[@]}"; do echo "${targets[$i]}"; done | sort -u)
   # shellcheck disable=SC2086
   build $needed || { tail -30 "$work/build.log" >&2; say "it does not build without a fault"; exit 1; }
-  for i in "${wanted[@]}"; do
-    passes "${targets[$i]}" "${filters[$i]}" && continue
-    tail -30 "$work/test.log" >&2
-    say "${targets[$i]} --gtest_filter=${filters[$i]} fails without a fault"; exit 1
-  done
+  tests=$(for i in "${wanted[@]}"; do echo "${targets[$i]} ${filters[$i]}"; done | sort -u)
+  while IFS= read -r name; do find_nothing_unplanted "${name%% *}" "${name#* }"; done <<<"$tests"
   printf '| fault | place | tests | |\n| --- | --- | --- | --- |\n'
   for i in "${wanted[@]}"; do
     seconds=$SECONDS
     swap "$work/tree/${files[$i]}" "${olds[$i]}" "${news[$i]}"
     status=caught
     if ! build "${targets[$i]}"; then
-      status='caught by the compiler'
+      status='**does not compile**'                       # a fault that no program can have
     elif passes "${targets[$i]}" "${filters[$i]}"; then
       status='**survives**'
-      survivors=$((survivors + 1))
     fi
+    [[ $status == caught ]] || survivors=$((survivors + 1))
     cp -f "$source/${files[$i]}" "$work/tree/${files[$i]}"
     printf '| %s | %s | %s %s | %s |\n' "${names[$i]}" "${files[$i]}" "${targets[$i]}" "${filters[$i]}" "$status"
     say "${names[$i]}: $status ($((SECONDS - seconds)) s)"

@@ -4,6 +4,7 @@
 #include "scenes/formats/json_schema.hpp"
 #include "tests/unit/scenes_support.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -164,6 +165,14 @@ TEST(Shapes, TerrainStaysWithinItsHeight) {
     EXPECT_GE(p.y, 8.5);
     EXPECT_LE(p.y, 11.5);
   }
+}
+
+TEST(Shapes, TerrainIsAsLongAndAsWideAsItsFileSays) {
+  glm::dvec3 most(0);
+  const auto shape = nlohmann::json::parse(R"({"type": "terrain", "halfSize": [3, 7], "cells": [4, 6]})");
+  for (const glm::dvec3& p : scenes::read_shape(shape).positions) most = glm::max(most, glm::abs(p));
+  EXPECT_EQ(most.x, 3);
+  EXPECT_EQ(most.z, 7);
 }
 
 TEST(Shapes, AMillionTriangles) {

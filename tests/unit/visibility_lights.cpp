@@ -102,6 +102,22 @@ TEST(Lights, DiskSamplesKeepAreas) {
   }
 }
 
+/// Four neighbours of a grid are the corners of 1 / 4096 of the disk's area, wherever they are. Chords for arcs of dφ
+/// make that less by dφ² / 6; a quarter of the radius from the centre dφ is 0.1.
+TEST(Lights, DiskSamplesAreSpreadEvenly) {
+  const Light light = light_of(scenes::Disk{{1, 2, 3}, {0, -1, 0}, 2}, {4096, 0, 0, SamplePattern::grid, 0});
+  const auto at = [&](std::size_t row, std::size_t column) { return light.coordinates[64 * row + column]; };
+  for (std::size_t row = 0; row + 1 < 64; ++row) {
+    for (std::size_t column = 0; column + 1 < 64; ++column) {
+      if (row == column || row + column == 62) continue;  // the map bends at the diagonals
+      const glm::dvec2 middle = at(row, column), diagonal = at(row + 1, column + 1) - middle,
+                       other = at(row + 1, column) - at(row, column + 1);
+      if (glm::length(middle) < 0.25) continue;
+      EXPECT_NEAR(std::abs(diagonal.x * other.y - diagonal.y * other.x) / 2 / (kPi / 4096), 1, 0.004);
+    }
+  }
+}
+
 TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
   const scenes::Polygon house{{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 4, 0}, {0, 2, 0}}};  // area 8 + 4
   const Light light = light_of(house, {4096, 0, 0, SamplePattern::sobol, 1});

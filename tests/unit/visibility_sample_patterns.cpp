@@ -2,9 +2,12 @@
 
 #include "base/error.hpp"
 
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -58,6 +61,9 @@ TEST(SamplePatterns, RowsShiftEachRowByItsOwnFraction) {
     const double shift = row_shift_of(row);
     EXPECT_GT(shift, -0.5);
     EXPECT_LT(shift, 0.5);
+    // A multiple of the golden ratio's fraction, which is rounded to 2⁻¹⁶: half of that a row.
+    const double off = shift - row * (std::numbers::phi - 1);
+    EXPECT_LE(std::abs(off - std::round(off)), row * 0x1p-17);
     EXPECT_EQ(shift, static_cast<double>(static_cast<float>(shift)));
     shifts.insert(shift);
     for (std::uint32_t column = 0; column < 64; ++column) {
@@ -92,6 +98,20 @@ TEST(SamplePatterns, JitteredHasOnePointInEachStratum) {
     const double below = i < 2 ? 0 : i < 4 ? 2 : 4, above = i < 2 ? 2 : i < 4 ? 4 : 7;
     EXPECT_GE(prime[i].y, below / 7);
     EXPECT_LT(prime[i].y, above / 7);
+  }
+}
+
+/// All of a stratum, everywhere alike: 410 ± 19 of 4096 points are in each tenth of theirs.
+TEST(SamplePatterns, JitteredFillsItsStrata) {
+  std::array<int, 10> across{}, along{};
+  for (const glm::dvec2& q : samples(4096, SamplePattern::jittered, 5)) {
+    const glm::dvec2 at = 64.0 * q - glm::floor(64.0 * q);
+    ++across.at(static_cast<std::size_t>(10 * at.x));
+    ++along.at(static_cast<std::size_t>(10 * at.y));
+  }
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_NEAR(across.at(i), 410, 5 * 19) << i;
+    EXPECT_NEAR(along.at(i), 410, 5 * 19) << i;
   }
 }
 
