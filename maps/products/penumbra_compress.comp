@@ -11,6 +11,7 @@
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) buffer Events { uvec2 events[]; };
 layout(scalar, binding = 1) buffer Counts { uint counts[]; };  // events of each texel, then its steps
+layout(scalar, binding = 2) buffer Ended { uint ended; };      // 1: a driver ended a loop before its end
 layout(scalar, push_constant) uniform Push { CompressPush push; };
 
 uint first;
@@ -63,7 +64,8 @@ void main() {
   uint visible = push.total, steps = 0;
   uint low = visible, high = visible, value = 2 * visible, begin = 0;  // of the piece so far
   bool is_first = true;                                                // V = 1 from the light on goes without a step
-  for (uint i = 0; i < count;) {
+  uint i = 0;
+  for (; i < count;) {
     const uint t = events[first + i].x;
     for (; i < count && events[first + i].x == t; ++i) {
       const uint event = events[first + i].y, weight = event & 0x7fffffffu;
@@ -84,4 +86,5 @@ void main() {
   }
   if (!is_first) events[first + steps++] = uvec2(begin, floatBitsToUint(float(value) / float(2 * push.total)));
   counts[texel] = steps;
+  if (i < count) ended = 1;
 }

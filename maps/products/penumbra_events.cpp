@@ -82,7 +82,10 @@ void PenumbraEvents::make(const MapSource& source) {
     render::grow(*device_, counts_, "event counts", band * sizeof(std::uint32_t));
     render::Commands commands(*device_);
     commands.fill(*most_, 0);
-    for (const SampleMaps::Part& part : samples_.parts()) {
+    // Drivers for processors end all loops of a workgroup after 65,535 turns: no more samples at once than end before.
+    const std::uint32_t at_once = std::max(60000 / (std::max(samples_.faces(), 1u) * (2 * source.size + 2)), 1u);
+    std::uint32_t recorded = 0;
+    for (const SampleMaps::Part& part : samples_.parts(at_once)) {
       const gpu::EventsPush push{.basis = source.basis.rounded(),
                                  .size = source.size,
                                  .faces = source.faces,
@@ -90,12 +93,14 @@ void PenumbraEvents::make(const MapSource& source) {
                                  .texel_count = band,
                                  .capacity = capacity,
                                  .first_point = part.first,
+                                 .first_map = part.first_map,
                                  .point_count = part.count,
                                  .sample_faces = samples_.faces(),
                                  .nearest = nearest};
       walk_.record(commands, push,
                    {*centre_, samples_.views(), *part.maps, samples_.weights(), *events_, *counts_, *most_},
                    groups_of(band));
+      if (++recorded % 96 == 0) source.times.add(commands.submit());
     }
     source.times.add(commands.submit());
     std::uint32_t most = 0;
@@ -138,8 +143,18 @@ std::vector<std::uint32_t> PenumbraEvents::compress(const MapSource& source, std
                                .total = samples_.total(),
                                .tolerance = static_cast<std::uint32_t>(2 * bound_ * samples_.total())};
   render::Commands commands(*device_);
-  compress_.record(commands, push, {*events_, *counts_}, groups_of(texels));
+  commands.fill(*most_, 0);
+  compress_.record(commands, push, {*events_, *counts_, *most_}, groups_of(texels));
   source.times.add(commands.submit());
+  std::uint32_t ended = 0;
+  most_->read<std::uint32_t>(std::span(&ended, 1));
+  if (ended != 0) {
+    throw ResourceError(
+        "deep-penumbra: up to {} events on a ray are more than {} sorts before it ends a loop; take fewer "
+        "--light-samples "
+        "or a smaller size",
+        capacity, device_->info().name);
+  }
   std::vector<std::uint32_t> counts(texels);
   counts_->read<std::uint32_t>(counts);
   return counts;

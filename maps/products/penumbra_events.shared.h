@@ -13,6 +13,7 @@ struct EventsPush {
   uint texel_count;
   uint capacity;     // events a texel can have
   uint first_point;  // of the samples whose maps are walked
+  uint first_map;    // of the first of them, in the buffer of maps, in faces
   uint point_count;
   uint sample_faces;  // of one sample
   vec2 nearest;       // no caster is nearer to the light's plane than this, on either side

@@ -117,7 +117,7 @@ void main() {
       const bool own_window = own.face_count == 1;
       const vec2 own_lower = own_window ? own.lower : vec2(-1.0, f == 0 ? -1.0 : 0.0);
       const vec2 own_upper = own_window ? own.upper : vec2(1.0);
-      walk(on_face(o, f), on_face(e, f), own_lower, own_upper, j * push.sample_faces + own.first_face + f, view.far, nearest,
+      walk(on_face(o, f), on_face(e, f), own_lower, own_upper, push.first_map + j * push.sample_faces + own.first_face + f, view.far, nearest,
            farthest, weights[push.first_point + j]);
     }
   }

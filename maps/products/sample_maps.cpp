@@ -62,11 +62,13 @@ void SampleMaps::make(const MapSource& source) {
   source.counters["sampleMapFaces"] = std::uint64_t{count_} * faces_;
 }
 
-std::vector<SampleMaps::Part> SampleMaps::parts() const {
+std::vector<SampleMaps::Part> SampleMaps::parts(std::uint32_t most) const {
   std::vector<Part> parts;
-  for (std::size_t i = 0; i < maps_.size(); ++i) {
-    const auto first = static_cast<std::uint32_t>(i) * per_buffer_;
-    parts.push_back({maps_[i].get(), first, std::min(per_buffer_, count_ - first)});
+  for (std::uint32_t first = 0; first < count_;) {
+    const std::uint32_t in_buffer = first % per_buffer_;
+    const std::uint32_t count = std::min({per_buffer_ - in_buffer, count_ - first, most});
+    parts.push_back({maps_[first / per_buffer_].get(), first, count, in_buffer * faces_});
+    first += count;
   }
   return parts;
 }

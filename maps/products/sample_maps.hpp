@@ -22,8 +22,10 @@ class SampleMaps {
   struct Part {
     const render::Buffer* maps;
     std::uint32_t first, count;
+    std::uint32_t first_map;  ///< of sample `first`, in faces
   };
-  [[nodiscard]] std::vector<Part> parts() const;
+  /// `most`: no more samples than this in a part.
+  [[nodiscard]] std::vector<Part> parts(std::uint32_t most = UINT32_MAX) const;
   [[nodiscard]] std::uint32_t count() const { return count_; }
   /// Of one sample. 0: there is no receiver.
   [[nodiscard]] std::uint32_t faces() const { return faces_; }
