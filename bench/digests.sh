@@ -21,7 +21,8 @@ entries=(
   depth-complexity depth-complexity:crop=off depth-complexity:variant=laine depth-complexity:variant=forest@16
   soft-volume soft-volume:coverage=table soft-volume:split=3 soft-volume:construction=tight soft-volume:wedges=host
   soft-volume:tests=both soft-volume-blend wedge-ramp hard-volume
-  shadow-map pcss accumulate adaptive-light deep-penumbra layered-attenuation raytrace exact
+  shadow-map pcf pcf:receiverPlane=off pcss vssm vssm:moments=lvsm vssm:moments=csm:filter=mip vssm:moments=esm
+  vssm:moments=evsm:filter=n-buffer convolution occlusion-textures accumulate adaptive-light deep-penumbra layered-attenuation raytrace exact
 )
 
 # render SCENE ENTRY PATTERN: prints its line.
