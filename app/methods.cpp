@@ -22,6 +22,9 @@
 #include "volumes/soft/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
+#include "maps/backprojection/backproject.hpp"
+#include "maps/backprojection/backproject_peel.hpp"
+#include "maps/backprojection/bitmask.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"
@@ -104,6 +107,9 @@ const std::vector<TableRow>& table() {
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
+      on_device<maps::bitmask_description, maps::make_bitmask>(),
+      on_device<maps::backproject_description, maps::make_backproject>(),
+      on_device<maps::backproject_peel_description, maps::make_backproject_peel>(),
       on_device<maps::pcss_description, maps::make_pcss>(),
       on_device<maps::vssm_description, maps::make_vssm>(),
       on_device<maps::accumulate_description, maps::make_accumulate>(),
@@ -134,9 +140,6 @@ constexpr std::array kNotThereYet = {"exact",
                                      "shadow-map",
                                      "pcss",
                                      "soft-shadow-map",
-                                     "backproject",
-                                     "backproject-peel",
-                                     "bitmask",
                                      "contour",
                                      "packet",
                                      "accumulate",

@@ -30,16 +30,17 @@ set(may_maps/host render visibility scenes mesh base)
 set(may_maps/products maps/host render visibility scenes mesh base)
 set(may_maps/filters maps/products maps/host render visibility scenes mesh base)
 set(may_maps/sampling maps/products maps/host render visibility scenes mesh base)
+set(may_maps/backprojection maps/products maps/host render visibility scenes mesh base)
 set(may_reference areas visibility scenes mesh base)
 set(may_compare visibility scenes mesh base)
-set(may_app compare reference areas maps/filters maps/sampling vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render visibility
+set(may_app compare reference areas maps/filters maps/sampling maps/backprojection vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render visibility
     scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
 set(may_app/inspect ${may_app} app)
 set(may_app/wedges ${may_app} app)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility areas render engines/device engines/vectors engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products
-    maps/filters maps/sampling reference compare app app/inspect app/wedges bench)
+    maps/filters maps/sampling maps/backprojection reference compare app app/inspect app/wedges bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 

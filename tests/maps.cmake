@@ -2,15 +2,20 @@
 penumbra_test(maps FULL MapsTable.*
   SOURCES
   analytic/maps_adaptive_light.cpp
+  analytic/maps_backproject.cpp
+  analytic/maps_bitmask.cpp
   analytic/maps_closed_form.cpp
   analytic/maps_filters_robust.cpp
   analytic/maps_formulas.cpp
+  analytic/maps_layers.cpp
+  analytic/maps_light_table.cpp
   analytic/maps_light_tree.cpp
   analytic/maps_lists.cpp
   analytic/maps_method.cpp
   analytic/maps_moments.cpp
   analytic/maps_pcf.cpp
   analytic/maps_prefilter.cpp
+  analytic/maps_peel.cpp
   analytic/maps_products.cpp
   analytic/maps_pyramids.cpp
   analytic/maps_resolution_table.cpp

@@ -20,7 +20,7 @@ bool texel_blocks(Tap tap, vec3 m, float h, float along, float texels_away) {
   if (own.receiver_plane != 0) {
     return blocks(tap, m, h, along * (1.0 + kSteepest * tap.texel * max(texels_away, 1.0)), lookup.bias);
   }
-  return tap.depth < along - lookup.bias * tap.texel * along;
+  return is_before(tap, along, lookup.bias * tap.texel * along);
 }
 
 float visibility_of(LightView view, vec3 d, vec3 m) {

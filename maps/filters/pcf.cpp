@@ -31,7 +31,7 @@ visibility::MethodDescription describe() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
       .lights = planar_lights(),
-      .options = map_option_descriptions(),
+      .options = single_map_option_descriptions(),
       .verdict_on = verdict_on};
   description.options.push_back(kWindow.description());
   description.options.push_back(kReceiverPlane.description());

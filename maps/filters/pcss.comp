@@ -20,15 +20,6 @@ Tap tap_at(LightView view, vec3 d, vec2 s, float z) {
   return fetch(view, 0, lookup.size, vec3(at * height, d.z));
 }
 
-// Something is between receiver and light only if it is nearer to the light's plane than the receiver.
-bool tap_blocks(Tap tap, vec3 d, vec3 m) {
-  const float limit = d.z / tap.direction.z;
-  const float h = dot(m, d);
-  // Where the light's centre is below the receiver's horizon its plane says nothing about the centre's map.
-  if (h <= 0.0) return tap.depth < limit - lookup.bias * tap.texel * tap.along;
-  return blocks(tap, m, h, limit, lookup.bias);
-}
-
 float visibility_of(LightView view, vec3 d, vec3 m) {
   const float height = abs(d.z);
 
@@ -38,7 +29,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   uint blockers = 0;
   for (uint k = 0; k < own.blocker_samples; ++k) {
     const Tap tap = tap_at(view, d, pattern[k], near);
-    if (tap_blocks(tap, d, m)) {
+    if (blocks_light(tap, d, m, lookup.bias)) {
       sum += tap.depth * abs(tap.direction.z);
       ++blockers;
     }
@@ -51,7 +42,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   for (uint k = 0; k < own.filter_samples; ++k) {
     const vec2 s = pattern[own.blocker_samples + k];
     const bool above = dot(m, d - vec3(s, 0.0)) > 0.0;
-    if (above && (blockers == 0 || !tap_blocks(tap_at(view, d, s, blocker), d, m))) ++visible;
+    if (above && (blockers == 0 || !blocks_light(tap_at(view, d, s, blocker), d, m, lookup.bias))) ++visible;
   }
   return float(visible) / float(own.filter_samples);
 }

@@ -33,7 +33,7 @@ visibility::MethodDescription describe() {
           "nothing; in the limit of large maps and many samples, where all blockers lie in one plane parallel to "
           "the light and cover the search window or none of it",
       .lights = planar_lights(),
-      .options = map_option_descriptions(),
+      .options = single_map_option_descriptions(),
       .verdict_on = verdict_on};
   description.options.push_back(kBlockerSamples.description());
   description.options.push_back(kFilterSamples.description());

@@ -22,7 +22,7 @@ visibility::MethodDescription describe() {
           .output = visibility::Output::scalar,
           .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
           .lights = planar_lights(),
-          .options = map_option_descriptions(),
+          .options = single_map_option_descriptions(),
           .verdict_on = verdict_on};
 }
 

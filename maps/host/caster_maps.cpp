@@ -4,23 +4,43 @@
 #include "maps/host/caster.frag.spv.hpp"
 #include "maps/host/caster.vert.spv.hpp"
 #include "maps/host/map_fit.hpp"
+#include "maps/host/peel.frag.spv.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <span>
 
 namespace penumbra::maps {
 
+namespace {
+
+render::RasterPassOptions pass_options(std::string name, render::DepthCompare compare) {
+  return {.name = std::move(name),
+          .vertex = shaders::kCasterVert,
+          .fragment = shaders::kCasterFrag,
+          .push_bytes = sizeof(gpu::CasterPush),
+          .constants = {},
+          .depth = true,
+          .compare = compare};
+}
+
+render::RasterPassOptions behind_options() {
+  render::RasterPassOptions options = pass_options("peel maps", render::DepthCompare::less);
+  options.fragment = shaders::kPeelFrag;
+  options.push_bytes = sizeof(gpu::PeelPush);
+  return options;
+}
+
+}  // namespace
+
 CasterMaps::CasterMaps(const render::Device& device, std::uint32_t size)
     : device_(&device),
       size_(size),
-      pass_(device, {.name = "render maps",
-                     .vertex = shaders::kCasterVert,
-                     .fragment = shaders::kCasterFrag,
-                     .push_bytes = sizeof(gpu::CasterPush),
-                     .constants = {},
-                     .depth = true}),
+      pass_(device, pass_options("render maps", render::DepthCompare::less)),
+      behind_(device, behind_options()),
+      farthest_(device, pass_options("render farthest", render::DepthCompare::greater)),
       target_(device, "shadow map", size, size) {}
 
 void CasterMaps::upload(const visibility::SceneFloats& scene) {
@@ -58,8 +78,10 @@ std::vector<CasterMaps::Range> CasterMaps::ranges(const Batch& batch, std::int32
   return ranges;
 }
 
-void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
-                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
+template <typename PushOf>
+void CasterMaps::record_faces(render::Commands& commands, const render::RasterPass& pass, const gpu::LightView& view,
+                              const LightBasis& basis, std::int32_t light_index, const render::Buffer& maps,
+                              std::uint64_t first_face, float nothing, const PushOf& push_of) const {
   const std::uint32_t faces = view.side[0].face_count + view.side[1].face_count;
   const std::uint64_t face_bytes = std::uint64_t{size_} * size_ * sizeof(float);
   for (std::uint32_t face = 0; face < faces; ++face) {
@@ -68,18 +90,41 @@ void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, 
     for (const Batch& batch : batches_) {
       for (const Range& range : ranges(batch, light_index)) {
         push.first_vertex = 3 * range.first;
-        pass_.record(commands, push, {batch.corners},
-                     {.width = size_, .height = size_, .vertices = 3 * range.count, .depth = &target_, .clear = clear});
+        const auto words = push_of(push, face);
+        std::vector<render::BufferReference> buffers{batch.corners};
+        if constexpr (sizeof(words) != sizeof(push)) buffers.emplace_back(maps);
+        pass.record(commands, std::as_bytes(std::span(&words, 1)), buffers,
+                    {.width = size_, .height = size_, .vertices = 3 * range.count, .depth = &target_, .clear = clear});
         clear = false;
       }
     }
-    if (clear) {                                  // nothing casts shadow: the map is empty
-      const std::uint32_t nothing = 0x3f800000u;  // 1.0f
-      commands.fill(maps, nothing, (first_face + face) * face_bytes, face_bytes);
+    if (clear) {  // nothing casts shadow: the map is empty
+      commands.fill(maps, std::bit_cast<std::uint32_t>(nothing), (first_face + face) * face_bytes, face_bytes);
     } else {
       target_.copy_to(commands, maps, (first_face + face) * face_bytes);
     }
   }
+}
+
+void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
+                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
+  record_faces(commands, pass_, view, basis, light_index, maps, first_face, 1.0F,
+               [](const gpu::CasterPush& push, std::uint32_t) { return push; });
+}
+
+void CasterMaps::record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
+                               std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
+                               std::uint64_t previous_face) const {
+  const auto push_of = [&](const gpu::CasterPush& push, std::uint32_t face) {
+    return gpu::PeelPush{push, static_cast<std::uint32_t>((previous_face + face) * size_ * size_), size_};
+  };
+  record_faces(commands, behind_, view, basis, light_index, maps, first_face, 1.0F, push_of);
+}
+
+void CasterMaps::record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
+                                 std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
+  record_faces(commands, farthest_, view, basis, light_index, maps, first_face, 0.0F,
+               [](const gpu::CasterPush& push, std::uint32_t) { return push; });
 }
 
 std::uint64_t CasterMaps::memory_bytes() const {

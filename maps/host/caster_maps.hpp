@@ -26,6 +26,15 @@ class CasterMaps {
   /// `maps`, the first at `first_face` · size² floats.
   void record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis, std::int32_t light_index,
               const render::Buffer& maps, std::uint64_t first_face) const;
+  /// The next layer (Everitt 2001, depth peeling): of what is behind the layer whose faces begin at `previous_face`,
+  /// the nearest, likewise. 1 where nothing is. What is within 2⁻²⁰ of the layer before, relative, belongs to it: a
+  /// surface that is there twice, in different triangles, differs by rounding.
+  void record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
+                     std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
+                     std::uint64_t previous_face) const;
+  /// The farthest surface of each texel, likewise; 0 where nothing is.
+  void record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
+                       std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const;
 
   [[nodiscard]] std::uint64_t caster_count() const { return emits_.size(); }
   [[nodiscard]] std::uint64_t memory_bytes() const;
@@ -41,10 +50,15 @@ class CasterMaps {
   };
   /// The casters of a batch without the body of that light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
+  /// All faces of a light point, drawn by `pass` with what `push_of(face's push, face)` makes of the push constants.
+  template <typename PushOf>
+  void record_faces(render::Commands& commands, const render::RasterPass& pass, const gpu::LightView& view,
+                    const LightBasis& basis, std::int32_t light_index, const render::Buffer& maps,
+                    std::uint64_t first_face, float nothing, const PushOf& push_of) const;
 
   const render::Device* device_;
   std::uint32_t size_;
-  render::RasterPass pass_;
+  render::RasterPass pass_, behind_, farthest_;
   render::DepthTarget target_;
   std::vector<Batch> batches_;
   std::vector<std::int32_t> emits_;  // of each caster as uploaded, ascending: a light's body is one range

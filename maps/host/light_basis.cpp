@@ -1,5 +1,6 @@
 #include "maps/host/light_basis.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace penumbra::maps {
@@ -16,6 +17,17 @@ LightBasis light_basis(const visibility::Light& light) {
   basis.v = glm::cross(basis.n, basis.u);
   basis.center = visibility::center_of(light);
   return basis;
+}
+
+LightBounds light_bounds(const visibility::Light& light, const LightBasis& basis) {
+  if (light.kind == visibility::LightKind::disk) return {glm::dvec2(-light.radius), glm::dvec2(light.radius)};
+  LightBounds bounds;
+  for (const glm::vec3& corner : light.outline) {
+    const glm::dvec2 at(basis.local(corner));
+    bounds.lower = glm::min(bounds.lower, at);
+    bounds.upper = glm::max(bounds.upper, at);
+  }
+  return bounds;
 }
 
 }  // namespace penumbra::maps

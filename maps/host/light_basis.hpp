@@ -3,6 +3,7 @@
 #include "maps/host/map_view.shared.h"
 #include "visibility/light_samples.hpp"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace penumbra::maps {
@@ -19,5 +20,11 @@ struct LightBasis {
 
 /// The light must be planar (no sphere).
 LightBasis light_basis(const visibility::Light& light);
+
+/// The light's bounding rectangle along u and v.
+struct LightBounds {
+  glm::dvec2 lower{0}, upper{0};
+};
+LightBounds light_bounds(const visibility::Light& light, const LightBasis& basis);
 
 }  // namespace penumbra::maps

@@ -4,10 +4,15 @@
 //   scalar_main.glsl   float visibility_of(LightView view, vec3 d, vec3 m)
 //   mask_main.glsl     bool sees(LightView view, uint first_map, vec3 d, vec3 m)
 // d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is on
-// an emitting side.
+// an emitting side. Where many texels answer for one receiver a workgroup looks at them, which defines GROUP_A_RECEIVER
+// before it includes this: group_scalar_main.glsl and group_mask_main.glsl say what they need.
 #include "maps/host/map_view.shared.h"
 
+#ifdef GROUP_A_RECEIVER
+layout(local_size_x = 8, local_size_y = 8) in;
+#else
 layout(local_size_x = kLookupGroup) in;
+#endif
 layout(scalar, binding = 0) readonly buffer Receivers { Receiver receivers[]; };
 layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
@@ -21,9 +26,14 @@ layout(scalar, push_constant) uniform Push {
 
 #include "maps/host/taps.glsl"
 
-// The receiver of this invocation, counted from the part's first.
+// The receiver of this invocation, or of this workgroup, counted from the part's first.
 uint this_receiver() {
-  return (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+#ifdef GROUP_A_RECEIVER
+  return group;
+#else
+  return group * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+#endif
 }
 
 bool on_emitting_side(vec3 d) { return d.z > 0.0 || (lookup.two_sided != 0 && d.z < 0.0); }

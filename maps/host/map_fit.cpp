@@ -110,11 +110,23 @@ struct Contents {
   const SideTriangles& receivers;
   const SideTriangles& casters;  ///< where they are not more than `beside` beside the receivers
   glm::dvec2 beside;
+  bool or_hemicube;  ///< rather than a window that is too wide because of its casters
 };
+
+/// How far beside any receiver's direction a caster can shade it from a light that reaches so far.
+glm::dvec2 beside_of(const glm::dvec2& reach, const SideTriangles& receivers, const SideTriangles& casters) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (reach == glm::dvec2(0) || !casters.any || receivers.reach_plane) return glm::dvec2(0);
+  if (casters.reach_plane) return glm::dvec2(kInfinity);
+  double nearest = kInfinity, deepest = 0;
+  for (const glm::dvec2& corner : casters.hull_x) nearest = std::min(nearest, corner.y);
+  for (const glm::dvec2& corner : receivers.hull_x) deepest = std::max(deepest, corner.y);
+  return reach * std::max(0.0, 1 / nearest - 1 / deepest);
+}
 
 /// The window of one light point with a texel to spare on every side, or nothing if it would be too wide.
 std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& origin, double sign, std::uint32_t size) {
-  const auto& [receivers, casters, beside] = contents;
+  const auto& [receivers, casters, beside, or_hemicube] = contents;
   if (receivers.reach_plane) return std::nullopt;
   Window window{};
   for (int axis = 0; axis < 2; ++axis) {
@@ -129,6 +141,7 @@ std::optional<Window> fit_window(const Contents& contents, const glm::dvec3& ori
                                      : tangents(axis == 0 ? casters.hull_x : casters.hull_y, origin[axis], origin_z);
       lower = std::min(lower, std::max(first, lower - beside[axis]));
       upper = std::max(upper, std::min(last, upper + beside[axis]));
+      if (or_hemicube && !(std::max(-lower, upper) <= kWidestTangent)) return std::nullopt;
     }
     // A receiver seen edge-on leaves no width of its own: then float32's resolution of a tangent decides.
     const double texel = std::max((upper - lower) / (size - 2), kWidestTangent * 0x1p-20);
@@ -164,11 +177,12 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     const SideTriangles receivers =
         triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, i); });
     if (!receivers.any) continue;
-    const bool beside = options.beside != glm::dvec2(0);
+    const bool beside = options.beside != glm::dvec2(0) || options.reach != glm::dvec2(0);
     const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {
       return beside && scene.casts_shadow[i] != 0 && scene.emits[i] != light.index;
     });
-    const Contents contents{receivers, casters, options.beside};
+    const Contents contents{receivers, casters, options.beside + beside_of(options.reach, receivers, casters),
+                            options.reach != glm::dvec2(0)};
     bool windows = true;  // for all points of the light or for none
     for (gpu::LightView& view : fitted.views) {
       const std::optional<Window> window = fit_window(contents, basis.local(view.point), sign, options.size);

@@ -29,6 +29,10 @@ struct FitOptions {
   /// How far beside a receiver's direction a look-up taps the map, in x/z and y/z: windows hold casters that far beside
   /// the receivers, too. Where there is no caster a tap beside the window finds nothing, and nothing is there.
   glm::dvec2 beside{0};
+  /// For look-ups that ask for all that stands between a receiver and any point of the light: how far the light reaches
+  /// from the point along u and v. Seen from the point, a caster at height z_c shades a receiver at height z from as
+  /// far as reach · (1/z_c − 1/z) beside it: windows hold what casters are there, or become hemicubes.
+  glm::dvec2 reach{0};
 };
 
 /// Fits each point's maps to the receivers of the scene, so that no receiver on an emitting side is ever outside.

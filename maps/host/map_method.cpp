@@ -5,9 +5,12 @@
 #include "maps/host/map_method.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/visible_share.hpp"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -33,8 +36,9 @@ class MapMethod final : public visibility::Method {
                           .spirv = recipe_.look_up,
                           .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) + 4 * recipe_.push_words),
                           .constants = recipe_.constants}) {
-    PENUMBRA_ASSERT(!gives_masks() || recipe_.points == MapPoints::light_samples,
-                    "{}: masks are answers of light samples' own maps", recipe_.description.name);
+    if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
+    PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",
+                    recipe_.description.name);
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return recipe_.description; }
@@ -54,10 +58,20 @@ class MapMethod final : public visibility::Method {
   [[nodiscard]] bool gives_masks() const { return recipe_.description.output == visibility::Output::mask; }
   /// Words of results that a pixel has: its mask, or V.
   [[nodiscard]] std::uint32_t words_per_pixel() const { return gives_masks() ? light_->words_per_mask() : 1; }
+  /// Of so many pixels; and a word more, where a workgroup's look-up says that its loops were cut off.
+  [[nodiscard]] std::uint64_t result_bytes(std::uint64_t pixels) const {
+    return (pixels * words_per_pixel() + (recipe_.group_a_receiver ? 1 : 0)) * sizeof(std::uint32_t);
+  }
   [[nodiscard]] std::uint32_t point_count() const { return static_cast<std::uint32_t>(fitted_.views.size()); }
+  [[nodiscard]] std::uint32_t total_layers() const { return recipe_.layers.count + (recipe_.layers.farthest ? 1 : 0); }
 
   /// Records maps of light points first … first + count − 1, in submissions that can be timed.
   void render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count);
+  /// Records what is behind the nearest surfaces in the maps of the light's centre.
+  void render_layers(render::Commands& commands);
+  /// Whether the device ran the last look-ups to their end; else fewer rows of a map are looked at at a time from now
+  /// on.
+  [[nodiscard]] bool loops_ended();
   /// Records the look-ups of a tile in the maps of these light points.
   void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count);
 
@@ -74,8 +88,9 @@ class MapMethod final : public visibility::Method {
   LightBasis basis_;
   FittedViews fitted_;
   std::vector<std::uint32_t> own_push_;
-  std::uint32_t batch_ = 1;        ///< light points at a time
-  std::uint32_t tile_pixels_ = 0;  ///< of the tile last evaluated
+  std::uint32_t batch_ = 1;         ///< light points at a time
+  std::uint32_t rows_at_once_ = 0;  ///< of a map, that one dispatch looks at
+  std::uint32_t tile_pixels_ = 0;   ///< of the tile last evaluated
   std::unique_ptr<render::Buffer> views_, depths_, results_;
 };
 
@@ -91,12 +106,17 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   basis_ = light_basis(light);
   const glm::vec3 centre(basis_.center);
   const bool many = recipe_.points == MapPoints::light_samples;
-  const FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
+  FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
+  if (recipe_.whole_light) {
+    const LightBounds bounds = light_bounds(light, basis_);
+    fit.reach = glm::max(-bounds.lower, bounds.upper);
+  }
   fitted_ = fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span(&centre, 1), fit);
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
-  check_faces_fit(*device_, options_.size, faces);
+  check_faces_fit(*device_, options_.size, faces * total_layers());
 
-  const std::uint64_t point_bytes = std::uint64_t{faces} * options_.size * options_.size * sizeof(float);
+  const std::uint64_t point_bytes =
+      std::uint64_t{faces} * total_layers() * options_.size * options_.size * sizeof(float);
   const std::uint64_t most = std::min(kBatchBytes, device_->limits().max_storage_buffer_range) / point_bytes;
   batch_ = std::bit_floor(std::clamp(static_cast<std::uint32_t>(most), 1u, kBitsPerWord));
   batch_ = std::min(batch_, std::bit_ceil(point_count()));
@@ -111,14 +131,17 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   own_push_ = recipe_.push ? recipe_.push(light) : std::vector<std::uint32_t>();
   PENUMBRA_ASSERT(own_push_.size() == recipe_.push_words, "{}: {} words of push constants", recipe_.description.name,
                   own_push_.size());
+  rows_at_once_ = options_.size;
   if (many) {
     counters_["mapsPerBatch"] = batch_;
     return;
   }
   render::Commands commands(*device_);
   render_maps(commands, 0, 1);
+  render_layers(commands);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
-    product->record(commands, {*views_, *depths_, fitted_.faces, options_.size, light, basis_, *scene_});
+    product->record(commands,
+                    {*views_, *depths_, fitted_.faces, options_.size, light, basis_, *scene_, recipe_.layers.count});
   }
   times_.add(commands.submit());
 }
@@ -132,7 +155,11 @@ std::uint32_t MapMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: max_tile_rows before prepare_light", recipe_.description.name);
   const std::uint64_t pixel_bytes = words_per_pixel() * sizeof(std::uint32_t);
   const std::uint32_t possible = receivers_.max_rows(*device_, pixel_bytes);
-  if (recipe_.points == MapPoints::centre) return possible;
+  if (recipe_.points == MapPoints::centre) {
+    const bool full =
+        result_bytes(std::uint64_t{possible} * receivers_.width()) > device_->limits().max_storage_buffer_range;
+    return full && possible > 1 ? possible - 1 : possible;
+  }
   // Every tile renders all maps again: tiles are as high as memory allows.
   const std::uint64_t row_bytes = std::max(receivers_.width(), 1u) * pixel_bytes;
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMaskBytes / row_bytes, 1, possible));
@@ -153,27 +180,51 @@ void MapMethod::render_maps(render::Commands& commands, std::uint32_t first, std
   counters_["mapFaces"] += std::uint64_t{count} * fitted_.faces;
 }
 
+void MapMethod::render_layers(render::Commands& commands) {
+  for (std::uint32_t layer = 1; layer < total_layers(); ++layer) {
+    times_.add(commands.submit());
+    const std::uint64_t first = std::uint64_t{layer} * fitted_.faces;
+    const gpu::LightView& view = fitted_.views.front();
+    if (layer < recipe_.layers.count) {
+      casters_.record_behind(commands, view, basis_, light_->index, *depths_, first, first - fitted_.faces);
+    } else {
+      casters_.record_farthest(commands, view, basis_, light_->index, *depths_, first);
+    }
+    counters_["maps"] += 1;
+    counters_["mapFaces"] += fitted_.faces;
+  }
+}
+
 void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first,
                     std::uint32_t count) {
   for (const Receivers::Part& part : receivers_.parts(tile)) {
-    const gpu::LookupPush push{.basis = basis_.rounded(),
-                               .bias = static_cast<float>(options_.bias),
-                               .size = options_.size,
-                               .two_sided = light_->two_sided ? 1u : 0u,
-                               .first_receiver = part.first_receiver,
-                               .receiver_count = part.count,
-                               .first_result = part.first_result,
-                               .words_per_pixel = words_per_pixel(),
-                               .first_point = first,
-                               .point_count = count,
-                               .faces = fitted_.faces};
-    std::vector<std::uint32_t> words = push_words(push);
-    words.insert(words.end(), own_push_.begin(), own_push_.end());
+    gpu::LookupPush push{.basis = basis_.rounded(),
+                         .bias = static_cast<float>(options_.bias),
+                         .size = options_.size,
+                         .two_sided = light_->two_sided ? 1u : 0u,
+                         .first_receiver = part.first_receiver,
+                         .receiver_count = part.count,
+                         .first_result = part.first_result,
+                         .words_per_pixel = words_per_pixel(),
+                         .first_point = first,
+                         .point_count = count,
+                         .faces = fitted_.faces,
+                         .layers = recipe_.layers.count,
+                         .depth_use = static_cast<std::uint32_t>(options_.depth),
+                         .first_row = 0,
+                         .last_row = 0};
     std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
     for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
       std::ranges::copy(product->buffers(), std::back_inserter(buffers));
     }
-    look_up_.record(commands, std::as_bytes(std::span(words)), buffers, part.groups());
+    const std::uint64_t groups = recipe_.group_a_receiver ? part.count : part.groups();
+    for (std::uint32_t row = 0; row < options_.size; row += rows_at_once_) {
+      push.first_row = row;
+      push.last_row = std::min(row + rows_at_once_, options_.size) - 1;
+      std::vector<std::uint32_t> words = push_words(push);
+      words.insert(words.end(), own_push_.begin(), own_push_.end());
+      look_up_.record(commands, std::as_bytes(std::span(words)), buffers, groups);
+    }
   }
 }
 
@@ -181,15 +232,30 @@ void MapMethod::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", recipe_.description.name);
   tile_pixels_ = tile.row_count * receivers_.width();
   if (tile_pixels_ == 0) return;
-  render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility",
-               std::uint64_t{tile_pixels_} * words_per_pixel() * sizeof(std::uint32_t));
-  render::Commands commands(*device_);
-  for (std::uint32_t first = 0; first < point_count(); first += batch_) {
-    const std::uint32_t count = std::min(batch_, point_count() - first);
-    if (recipe_.points == MapPoints::light_samples) render_maps(commands, first, count);
-    ask(commands, tile, first, count);
-    times_.add(commands.submit());
+  render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility", result_bytes(tile_pixels_));
+  do {
+    render::Commands commands(*device_);
+    if (recipe_.group_a_receiver) commands.fill(*results_, 0, results_->bytes() - sizeof(std::uint32_t), 4);
+    for (std::uint32_t first = 0; first < point_count(); first += batch_) {
+      const std::uint32_t count = std::min(batch_, point_count() - first);
+      if (recipe_.points == MapPoints::light_samples) render_maps(commands, first, count);
+      ask(commands, tile, first, count);
+      times_.add(commands.submit());
+    }
+  } while (!loops_ended());
+}
+
+bool MapMethod::loops_ended() {
+  if (!recipe_.group_a_receiver) return true;
+  std::uint32_t cut = 0;
+  results_->read(std::span(&cut, 1), results_->bytes() - sizeof(cut));
+  if (cut == 0) return true;
+  if (rows_at_once_ == 1) {
+    throw ResourceError("method {}: {} ends the loop over one row of a map before its end; take a smaller size",
+                        recipe_.description.name, device_->info().name);
   }
+  rows_at_once_ = (rows_at_once_ + 1) / 2;
+  return false;
 }
 
 void MapMethod::read_masks(std::span<std::uint32_t> masks) {

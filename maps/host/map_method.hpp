@@ -33,11 +33,18 @@ enum class MapPoints : std::uint8_t {
 /// The maps of one light, as products and look-ups read them.
 struct MapSet {
   const render::Buffer& views;   ///< a LightView for each light point
-  const render::Buffer& depths;  ///< `faces` · size² floats for each light point of the batch
+  const render::Buffer& depths;  ///< `faces` · size² floats for each light point of the batch, or each of the layers
   std::uint32_t faces, size;
   const visibility::Light& light;
   const LightBasis& basis;
   const visibility::SceneFloats& scene;
+  std::uint32_t layers = 1;  ///< MapLayers::count; if there is a farthest one it is the next
+};
+
+/// What is kept of a texel's surfaces, in maps from the light's centre: layer i begins at face i · faces.
+struct MapLayers {
+  std::uint32_t count = 1;  ///< the nearest, and what depth peeling finds behind it
+  bool farthest = false;    ///< the farthest after them: 0 where there is nothing
 };
 
 /// What a product needs that looks from other points than the light's centre.
@@ -82,17 +89,24 @@ std::vector<std::uint32_t> push_words(const Push& push) {
 }
 
 struct MapRecipe {
-  /// Output::mask: the look-up answers for each light point (points must be light_samples); scalar: it gives V.
+  /// Output::mask: the look-up answers for each light sample, from its own map or from the centre's; scalar: it gives
+  /// V.
   visibility::MethodDescription description;
   MapPoints points = MapPoints::centre;
-  /// The look-up: a shader that includes look_up.glsl, defines one function, and includes scalar_main.glsl or
-  /// mask_main.glsl. It reads receivers, views, depths, results and then the products' buffers, in this order.
+  /// The look-up: a shader that includes look_up.glsl, defines one function, and includes one of the mains that
+  /// look_up.glsl names. It reads receivers, views, depths, results and then the products' buffers, in this order.
   std::string look_up_name;
   std::span<const std::uint32_t> look_up{};
   std::vector<std::uint32_t> constants{};  ///< its specialization constants 0, 1, 2 …
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
   std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};
+  /// The look-up asks for all that stands between a receiver and any point of the light (FitOptions::reach).
+  bool whole_light = false;
+  /// A workgroup answers one receiver, looking at many texels (group_scalar_main.glsl, group_mask_main.glsl).
+  bool group_a_receiver = false;
+  /// Beside the second one, which the option `depth` may ask for.
+  MapLayers layers{};
   /// What the shader's push constants have behind LookupPush: `push_words` of them, for a light.
   std::uint32_t push_words = 0;
   std::function<std::vector<std::uint32_t>(const visibility::Light&)> push{};

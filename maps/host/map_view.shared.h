@@ -12,8 +12,13 @@ using glm::vec2;
 using glm::vec3;
 using uint = std::uint32_t;
 inline constexpr uint kLookupGroup = 64;
+inline constexpr uint kWholeLight = 1u << 30;
+inline constexpr uint kDepthFirst = 0, kDepthSecond = 1, kDepthMidpoint = 2, kDepthDual = 3;
 #else
-const uint kLookupGroup = 64;  // invocations of a look-up's workgroup
+const uint kLookupGroup = 64;       // invocations of a look-up's workgroup
+const uint kWholeLight = 1u << 30;  // group_scalar_main.glsl: hidden light is counted in parts of this
+// LookupPush::depth_use: what of a texel's surfaces a receiver must be behind, to be in its shadow.
+const uint kDepthFirst = 0, kDepthSecond = 1, kDepthMidpoint = 2, kDepthDual = 3;
 #endif
 
 // One side of the light's plane as a light point sees it. With d = (x, y, z) in the light's basis, z > 0 on this side:
@@ -52,6 +57,13 @@ struct CasterPush {
   vec3 row_w;
 };
 
+// peel.frag: a face of a deeper layer. caster.vert reads the first part.
+struct PeelPush {
+  CasterPush face;
+  uint previous;  // where the layer before begins in the maps, in texels
+  uint size;
+};
+
 // What every look-up needs; its own push constants follow.
 struct LookupPush {
   LightBasis basis;
@@ -64,7 +76,11 @@ struct LookupPush {
   uint words_per_pixel;  // of results: a mask's words, or 1 for V
   uint first_point;      // of the light points whose maps are asked; all of them bits of one word
   uint point_count;
-  uint faces;  // of one light point
+  uint faces;      // of one light point; layer i of the centre's maps begins at face i * faces
+  uint layers;     // of maps from the light's centre
+  uint depth_use;  // kDepthFirst ...
+  uint first_row;  // rows of a map that are looked at now; the others, before or after
+  uint last_row;
 };
 
 #ifdef __cplusplus

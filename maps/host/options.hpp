@@ -1,5 +1,6 @@
 #pragma once
 
+#include "maps/host/map_view.shared.h"
 #include "render/device.hpp"
 #include "visibility/method.hpp"
 
@@ -17,15 +18,39 @@ inline constexpr visibility::RealOption kBias{
     "bias", 0, 1024, 0.5,
     "how far, in texels, a surface may rise above the receiver's plane without shading it; grows with the slope"};
 
-/// What all methods here have: texels on a side of a map, and the bias in texels.
+/// What of a texel's surfaces a receiver must be behind to be in its shadow: taps.glsl, begins_behind.
+enum class DepthUse : std::uint8_t {
+  first = gpu::kDepthFirst,
+  second = gpu::kDepthSecond,
+  midpoint = gpu::kDepthMidpoint,
+  dual = gpu::kDepthDual,
+};
+/// `depth` of a single-map method.
+constexpr visibility::ChoiceOption<DepthUse, 4> depth_option(DepthUse otherwise) {
+  return {
+      "depth",
+      {{"first", DepthUse::first},
+       {"second", DepthUse::second},
+       {"midpoint", DepthUse::midpoint},
+       {"dual", DepthUse::dual}},
+      otherwise,
+      "what a receiver must be behind: the nearest surface and the bias, the second surface, the middle between the "
+      "two, or the bias but no farther than the middle"};
+}
+inline constexpr auto kDepth = depth_option(DepthUse::first);
+
+/// What all methods here have: texels on a side of a map, and the bias in texels; and `depth`, if the method has it.
 struct MapOptions {
   std::uint32_t size = kMapSize.otherwise;
   double bias = kBias.otherwise;
+  DepthUse depth = DepthUse::first;
 };
 
 /// How `methods` describes them.
 std::vector<visibility::OptionDescription> map_option_descriptions(const visibility::IntegerOption& size = kMapSize,
                                                                    const visibility::RealOption& bias = kBias);
+/// Those of a method that asks one map, from the light's centre: the same, and `depth`.
+std::vector<visibility::OptionDescription> single_map_option_descriptions(DepthUse otherwise = DepthUse::first);
 
 /// Throws UsageError for a size that the device cannot draw.
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,

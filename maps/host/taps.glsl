@@ -42,43 +42,110 @@ Place place_of(LightView view, vec3 d) {
   return place;
 }
 
+// One face of a light point's maps. Directions are taken on the receiver's side of the light's plane: (x, y, |z|).
+struct MapFace {
+  vec2 lower, texel;  // where the first texel begins, and a texel's extent, at depth 1
+  int axis;           // 0, 1, 2
+  float sign;         // of a sideways face's axis, else 1
+  uint map;           // among all maps
+};
+
+// Face number `face` of a side, as in face_push (map_fit.cpp). `first_map`: where the maps of this light point start.
+MapFace face_of(SideView side, uint first_map, uint size, uint face) {
+  MapFace f;
+  vec2 lower = side.lower, upper = side.upper;
+  f.axis = 2;
+  f.sign = 1.0;
+  if (side.face_count > 1) {
+    lower = vec2(-1.0, face == 0 ? -1.0 : 0.0);
+    upper = vec2(1.0);
+    if (face > 0) {
+      f.axis = face <= 2 ? 0 : 1;
+      f.sign = face == 1 || face == 3 ? 1.0 : -1.0;
+    }
+  }
+  f.lower = lower;
+  f.texel = (upper - lower) / float(size);
+  f.map = first_map + side.first_face + face;
+  return f;
+}
+
+// (a, b, w) of a vector: across and along the face; and back.
+vec3 to_face(MapFace f, vec3 e) {
+  if (f.axis == 2) return e;
+  return f.axis == 0 ? vec3(e.y, e.z, f.sign * e.x) : vec3(e.x, e.z, f.sign * e.y);
+}
+vec3 from_face(MapFace f, vec3 abw) {
+  if (f.axis == 2) return abw;
+  return f.axis == 0 ? vec3(f.sign * abw.z, abw.xy) : vec3(abw.x, f.sign * abw.z, abw.y);
+}
+
 // What the map has in the direction of d, a vector in the light's basis. `direction` points to the texel's centre, one
 // long along the face's axis; the nearest surface is at depth * direction.
 struct Tap {
   vec3 direction;
   float depth;      // far where there is nothing
+  float second;     // of the surface behind it; far where there is none, and where no option `depth` asks for it
+  float far;
   float along;      // d along the face's axis
   float texel;      // a texel's width at depth 1
   int axis;         // the face's axis: 0, 1, 2
-  float mirrored;   // -1 on the light's rear side, else 1
+  float mirrored;   // -1 where the direction is on the light's rear side, else 1
 };
 
-// `first_map`: where the maps of this light point start, in faces. d must not lie in the light's plane.
-Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
+// The texel `cell` of a face, as a tap on the receiver's side of the light's plane. `along` is the caller's.
+Tap tap_of(LightView view, uint size, MapFace face, uvec2 cell) {
   Tap tap;
-  tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
+  tap.direction = from_face(face, vec3(face.lower + (vec2(cell) + 0.5) * face.texel, 1.0));
+  const uint texel = (face.map * size + cell.y) * size + cell.x;
+  tap.far = view.far;
+  tap.depth = view.far * maps[texel];
+  tap.second = lookup.depth_use == kDepthFirst ? view.far : view.far * maps[texel + lookup.faces * size * size];
+  tap.along = 1.0;
+  tap.texel = max(face.texel.x, face.texel.y);
+  tap.axis = face.axis;
+  tap.mirrored = 1.0;
+  return tap;
+}
+
+// d must not lie in the light's plane.
+Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
   const Place place = place_of(view, d);
-  tap.axis = place.axis;
-  const vec2 texel = (place.upper - place.lower) / float(size);
-  const vec2 cell = floor((place.f.xy / place.f.z - place.lower) / texel);
+  const MapFace face = face_of(side, first_map, size, place.face);
+  const vec2 cell = side.face_count == 0 ? vec2(0.0) : floor((place.f.xy / place.f.z - face.lower) / face.texel);
   const vec2 at = clamp(cell, vec2(0.0), vec2(float(size - 1)));
-  // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.
-  const bool beside = side.face_count == 1 && at != cell;
-  const vec2 center = place.lower + (at + 0.5) * texel;
-  if (tap.axis == 2) {
-    tap.direction = vec3(center, 1.0);
-  } else if (tap.axis == 0) {
-    tap.direction = vec3(d.x > 0.0 ? 1.0 : -1.0, center);
-  } else {
-    tap.direction = vec3(center.x, d.y > 0.0 ? 1.0 : -1.0, center.y);
-  }
-  tap.direction.z *= tap.mirrored;
+  Tap tap = tap_of(view, size, face, uvec2(at));
   tap.along = place.f.z;
-  tap.texel = max(texel.x, texel.y);
-  const uint map = first_map + side.first_face + place.face;
-  tap.depth = side.face_count == 0 || beside ? view.far : view.far * maps[(map * size + uint(at.y)) * size + uint(at.x)];
+  tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
+  tap.direction.z *= tap.mirrored;
+  // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.
+  if (side.face_count == 0 || (side.face_count == 1 && at != cell)) tap.depth = tap.second = view.far;
   return tap;
+}
+
+// Where a receiver begins to be behind what the tap found, in depth: at least `forgiven` beyond the nearest surface, or
+// what the option `depth` puts in its place. Wang and Molnar 1994: the second surface; Woo 1992: the middle between the
+// two; Weiskopf and Ertl 2003: the bias, but no farther than the middle. Where there is no second surface, the middle
+// is as far as the bias.
+float begins_behind(Tap tap, float forgiven) {
+  const float middle = tap.depth + 0.5 * (tap.second - tap.depth);
+  const bool single = tap.second >= tap.far;
+  switch (lookup.depth_use) {
+    case kDepthSecond:
+      return single ? tap.far * 4.0 : tap.second;
+    case kDepthMidpoint:
+      return single ? tap.depth + forgiven : middle;
+    case kDepthDual:
+      return single ? tap.depth + forgiven : min(tap.depth + forgiven, middle);
+  }
+  return tap.depth + forgiven;
+}
+
+// Is a receiver at this depth in the shadow of what the tap found?
+bool is_before(Tap tap, float receiver, float forgiven) {
+  if (lookup.depth_use != kDepthFirst) return begins_behind(tap, forgiven) < receiver;
+  return tap.depth < receiver - forgiven;
 }
 
 // Is what the map has nearer to the light than the receiver's plane (normal m away from the light, at distance h = m . p
@@ -89,7 +156,18 @@ bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
   // Depth of the plane per unit across, bounded: a texel's worth of it, and of width, is what bias 1 forgives.
   const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[tap.axis]);
   const float slope = across < kSteepest * facing ? across / facing : kSteepest;
-  return tap.depth < plane - bias * tap.texel * tap.along * (1.0 + slope);
+  const float forgiven = bias * tap.texel * tap.along * (1.0 + slope);
+  return is_before(tap, plane, forgiven);
+}
+
+// Does what the tap found stand between the receiver at d and some point of the light? The receiver's plane is asked in
+// the tap's direction; and nothing stands in between that is not nearer to the light's plane than the receiver.
+bool blocks_light(Tap tap, vec3 d, vec3 m, float bias) {
+  const float limit = d.z / tap.direction.z;
+  const float h = dot(m, d);
+  if (h > 0.0) return blocks(tap, m, h, limit, bias);
+  // Where the light's centre is below the receiver's horizon its plane says nothing about the centre's map.
+  return is_before(tap, limit, bias * tap.texel * tap.along);
 }
 
 vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis.v, x), dot(basis.n, x)); }

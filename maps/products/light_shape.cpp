@@ -124,10 +124,8 @@ double half_width(const visibility::Light& light) {
 }
 
 glm::dvec2 half_extent(const visibility::Light& light, const LightBasis& basis) {
-  if (light.kind == visibility::LightKind::disk) return glm::dvec2(light.radius);
-  glm::dvec2 extent(0);
-  for (const glm::vec3& corner : light.outline) extent = glm::max(extent, glm::abs(glm::dvec2(basis.local(corner))));
-  return extent;
+  const LightBounds bounds = light_bounds(light, basis);
+  return glm::max(-bounds.lower, bounds.upper);
 }
 
 }  // namespace penumbra::maps

@@ -2,6 +2,9 @@
 
 // How tests make a method of maps/ and run it.
 
+#include "maps/backprojection/backproject.hpp"
+#include "maps/backprojection/backproject_peel.hpp"
+#include "maps/backprojection/bitmask.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"

@@ -16,6 +16,13 @@ using visibility::MethodOptions;
 
 class MapsMethod : public MapsTest {
  protected:
+  /// On small maps, unless the test says how large: a kernel has many texels.
+  static Factory small(const Factory& make) {
+    return [make](const render::Device& device, MethodOptions options) {
+      options.try_emplace("size", "64");
+      return make(device, options);
+    };
+  }
   const std::vector<Factory> all_{maps::make_shadow_map,
                                   maps::make_pcf,
                                   maps::make_pcss,
@@ -23,6 +30,9 @@ class MapsMethod : public MapsTest {
                                   maps::make_occlusion_textures,
                                   maps::make_convolution,
                                   maps::make_accumulate,
+                                  small(maps::make_bitmask),
+                                  small(maps::make_backproject),
+                                  small(maps::make_backproject_peel),
                                   maps::make_adaptive_light,
                                   maps::make_deep_penumbra,
                                   maps::make_layered_attenuation};

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+
+#include <memory>
+
+namespace penumbra::maps {
+
+/// Guennebaud, Barthe and Paulin 2006: texels of one map, projected back onto the light. docs/backproject.md.
+std::unique_ptr<visibility::Method> make_backproject(const render::Device& device,
+                                                     const visibility::MethodOptions& options);
+
+/// What it is; needs no device.
+visibility::MethodDescription backproject_description();
+
+}  // namespace penumbra::maps

@@ -1,0 +1,120 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/backprojection/bitmask.shared.h"
+#define GROUP_A_RECEIVER
+#define OWN_PUSH BitmaskPush
+#include "maps/host/look_up.glsl"
+#include "maps/host/group_kernel.glsl"
+#define LIGHT_TABLE 5
+#include "maps/backprojection/light_table.glsl"
+#define SAMPLE_BANDS 6
+#include "maps/backprojection/sample_bands.glsl"
+#include "maps/backprojection/fill.glsl"
+#define PYRAMID_BINDING 7
+#include "maps/backprojection/search.glsl"
+
+// Schwarz and Stamminger 2007, 2008: what texels hide is kept as a bit a light sample, so that occluders that overlap
+// count once. An occluder is a texel's rectangle, a quad between the centres of four texels that all hide light, a
+// triangle of three of them where just three do, or, of a coarse level, the rectangle around what there is in a block.
+
+layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
+layout(scalar, binding = 8) readonly buffer Levels { uvec2 levels[]; };  // level_maps.comp's
+
+uint level_size() { return ((lookup.size - 1) >> own.level) + 1; }
+
+// The same face with the level's texels.
+MapFace at_level(MapFace face) {
+  face.texel *= float(1u << own.level);
+  return face;
+}
+
+Tap texel_at(MapFace face, uint layer, uvec2 cell) {
+  if (own.level == 0) return ask_texel(face, layer, cell);
+  const uint side = level_size();
+  const uint texel = ((face.map + layer * lookup.faces) * side + cell.y) * side + cell.x;
+  Tap tap;
+  tap.direction = from_face(face, vec3(face.lower + (vec2(cell) + 0.5) * face.texel, 1.0));
+  tap.far = asked.view.far;
+  tap.depth = tap.far * uintBitsToFloat(levels[texel].x);
+  tap.second = tap.far;
+  if (lookup.depth_use != kDepthFirst) tap.second *= uintBitsToFloat(levels[texel + lookup.faces * side * side].x);
+  tap.along = asked.e.z / tap.direction.z;
+  tap.texel = max(face.texel.x, face.texel.y);
+  tap.axis = face.axis;
+  return tap;
+}
+
+Kernel kernel_of(MapFace face) {
+  // Quads and triangles lie between centres.
+  const int padding = own.occluder == kOccluderPatch || own.occluder == kOccluderRect ? 0 : 1;
+  float near = nearest[asked.number];
+  Kernel kernel = kNoKernel;
+  if (own.search != 0) {
+    kernel = search_kernel(face, light.lower, light.upper, near, padding, true);
+    if (is_empty(kernel)) return kernel;
+  }
+  if (own.search == 0 || own.level > 0) {
+    kernel = kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, padding);
+  }
+  return kernel;
+}
+
+void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {
+  Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
+  if (own.fill != kFillNone) fill_gaps(one, face, layer, cell, own.fill == kFillDiagonal);
+  hide_rectangle(in_light_order(face, one.from), in_light_order(face, one.to));
+}
+
+// The box of a block's texels that hold anything, at the block's nearest depth.
+void hide_box(MapFace fine, uint layer, uvec2 cell, Tap tap) {
+  const uint side = level_size();
+  const uint box = levels[((fine.map + layer * lookup.faces) * side + cell.y) * side + cell.x].y;
+  const uvec2 first = uvec2(box & 255u, box >> 16 & 255u), last = uvec2(box >> 8 & 255u, box >> 24);
+  const Patch one = patch_of(fine, asked.e, (cell << own.level) + first, last - first + 1, tap.depth);
+  hide_rectangle(in_light_order(fine, one.from), in_light_order(fine, one.to));
+}
+
+// The quad between the centres of this texel and of its right and upper neighbours: two triangles, along the same diagonal
+// everywhere; or one, of the three that hide light.
+void hide_quad(MapFace face, uint layer, uvec2 cell) {
+  if (any(greaterThanEqual(cell + 1, uvec2(level_size())))) return;
+  const uvec2 at[4] = uvec2[](cell, cell + uvec2(1, 0), cell + 1, cell + uvec2(0, 1));
+  vec3 seen[4];
+  uint hiding = 0;
+  int missing = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Tap tap = texel_at(face, layer, at[k]);
+    if (hides(tap)) {
+      seen[k] = onto_light(asked.e, tap.depth * tap.direction);
+      ++hiding;
+    } else {
+      missing = k;
+    }
+  }
+  if (hiding == 4) {
+    hide_triangle(seen[0], seen[1], seen[2]);
+    hide_triangle(seen[0], seen[2], seen[3]);
+  } else if (hiding == 3 && own.occluder == kOccluderTriangle) {
+    hide_triangle(seen[(missing + 1) & 3], seen[(missing + 2) & 3], seen[(missing + 3) & 3]);
+  }
+}
+
+void hide(MapFace fine, uvec2 cell) {
+  const MapFace face = at_level(fine);
+  for (uint layer = 0; layer < own.layers; ++layer) {
+    if (own.occluder == kOccluderQuad || own.occluder == kOccluderTriangle) {
+      hide_quad(face, layer, cell);
+      continue;
+    }
+    const Tap tap = texel_at(face, layer, cell);
+    if (!hides(tap)) continue;
+    if (own.occluder == kOccluderRect && own.level > 0) {
+      hide_box(fine, layer, cell, tap);
+    } else {
+      hide_patch(face, layer, cell, tap);
+    }
+  }
+}
+
+#include "maps/host/group_mask_main.glsl"

@@ -1,0 +1,11 @@
+// Constants, two languages: fill.glsl's.
+#ifdef __cplusplus
+#pragma once
+#include "maps/host/map_view.shared.h"
+namespace penumbra::maps::gpu {
+inline constexpr uint kFillNone = 0, kFillEdges = 1, kFillDiagonal = 2;
+}  // namespace penumbra::maps::gpu
+#else
+#include "maps/host/map_view.shared.h"
+const uint kFillNone = 0, kFillEdges = 1, kFillDiagonal = 2;
+#endif

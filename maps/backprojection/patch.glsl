@@ -1,0 +1,42 @@
+// Micropatches (Guennebaud, Barthe and Paulin 2006): each texel of a map is a rectangle of its own extent at its own
+// depth, parallel to the face; seen from the receiver it covers a rectangle of the light. Included after kernel.glsl.
+//
+// On a face parallel to the light, borders at tangent alpha and depth z_s are seen at (alpha - a) f, f = z_s z / (z - z_s).
+// Sideways faces of a hemicube: rows of a texel have different heights over the light's plane, and its sides are seen
+// slanted; here each row's sides stand where its middle sees them, so that neighbours still share borders.
+
+// Where on the light a border across the first coordinate, at `at.x`, and one across the second, at `at.y`, are seen in
+// the texel around `middle`, whose depth is `depth`: in face coordinates' order.
+vec2 border_on_light(MapFace face, vec3 e, vec2 at, vec2 middle, float depth) {
+  if (face.axis == 2) return (at * e.z - e.xy) * (depth / (e.z - depth));
+  // The far side of a row may be beyond the receiver's height.
+  const float row = min(at.y, middle.y + 0.999 * (e.z / depth - middle.y));
+  const vec3 across = onto_light(e, depth * from_face(face, vec3(at.x, middle.y, 1.0)));
+  const vec3 along = onto_light(e, depth * from_face(face, vec3(middle.x, row, 1.0)));
+  const int a = face.axis == 0 ? 1 : 0;
+  return vec2(across[a] / across.z, along[1 - a] / along.z);
+}
+
+// A rectangle of the light between the borders where a texel begins and where it ends, in face coordinates' order.
+struct Patch {
+  vec2 from, to;
+};
+
+vec2 in_light_order(MapFace face, vec2 across) { return face.axis == 0 ? across.yx : across; }
+
+// The texels cell ... cell + count - 1, as if all had this depth.
+Patch patch_of(MapFace face, vec3 e, uvec2 cell, uvec2 count, float depth) {
+  const vec2 from = face.lower + vec2(cell) * face.texel, to = face.lower + vec2(cell + count) * face.texel;
+  const vec2 middle = 0.5 * (from + to);
+  return Patch(border_on_light(face, e, from, middle, depth), border_on_light(face, e, to, middle, depth));
+}
+
+// Is something between this depth in a texel's direction and the receiver? Where rounding says no, it hides nothing.
+bool in_front(vec3 e, vec3 direction, float depth) { return depth * direction.z < e.z; }
+
+// Gap filling: the patch reaches to where the neighbour's depth sees the common border, if that is farther out.
+void extend(inout Patch one, vec2 neighbour, bvec2 which) {
+  for (int k = 0; k < 2; ++k) {
+    if (which[k]) one.from[k] = one.from[k] <= one.to[k] ? min(one.from[k], neighbour[k]) : max(one.from[k], neighbour[k]);
+  }
+}

@@ -1,0 +1,49 @@
+// A workgroup of 8 x 8 invocations looks at the texels of a receiver's kernel; see look_up.glsl. The shader defines
+//   Kernel kernel_of(MapFace face)       which texels of a face to look at
+// and what its main asks for: group_scalar_main.glsl, group_mask_main.glsl. All of them read `asked`.
+#include "maps/host/kernel.glsl"
+
+// The receiver of this workgroup in (x, y, |z|): e from the light's centre, m its normal away from the light.
+struct Asked {
+  LightView view;
+  uint number;  // of the side of the light's plane
+  SideView side;
+  vec3 e, m;
+};
+Asked asked;
+int stride = 1;           // kernel_of may take texels so far apart, each for its block
+bool all_hidden = false;  // kernel_of may find that nothing of the light is seen
+
+// False if no light reaches the receiver's side of the light's plane.
+bool ask(Receiver receiver) {
+  asked.view = views[0];
+  const vec3 d = to_basis(lookup.basis, receiver.p - asked.view.point);
+  const vec3 m = -to_basis(lookup.basis, receiver.n);
+  asked.number = d.z < 0.0 ? 1 : 0;
+  asked.side = asked.view.side[asked.number];
+  asked.e = vec3(d.xy, abs(d.z));
+  asked.m = d.z < 0.0 ? vec3(m.xy, -m.z) : m;
+  return on_emitting_side(d);
+}
+
+// A texel of layer `layer`, as this receiver asks it: along the face's axis the tap reaches to the receiver's height.
+Tap ask_texel(MapFace face, uint layer, uvec2 cell) {
+  face.map += layer * lookup.faces;
+  Tap tap = tap_of(asked.view, lookup.size, face, cell);
+  tap.along = asked.e.z / tap.direction.z;
+  return tap;
+}
+
+// The first row of a kernel to look at that is in this part of the map: blocks begin where the kernel does.
+int first_row_of(Kernel kernel) {
+  const int before = max(int(lookup.first_row) - kernel.first.y, 0);
+  return kernel.first.y + (before + stride - 1) / stride * stride;
+}
+
+// Drivers for processors end all loops of an invocation after 65,535 turns together. Then this loop, too, ends at once:
+// the host takes fewer rows at a time. (`layers` is at least 1, which the compiler does not know.)
+void check_that_loops_ended() {
+  uint turns = 0;
+  while (turns < lookup.layers + 1) ++turns;
+  if (turns != lookup.layers + 1) results[results.length() - 1] = 1;
+}

@@ -1,0 +1,55 @@
+// A mask of each receiver, a bit a light sample, from maps of the light's centre, whose texels a workgroup looks at; see
+// group_kernel.glsl. The shader defines, too,
+//   void hide(MapFace face, uvec2 cell)                       calls hide_sample(j) for what a texel hides
+//   uint light_sample_count(), vec2 light_sample(uint j)      the samples, in the light's basis
+const uint kMaskWords = 128;  // 4096 light samples
+shared uint hidden_bits[kMaskWords];
+shared uint hidden_count;
+
+void hide_sample(uint j) {
+  const uint bit = 1u << (j & 31);
+  if ((hidden_bits[j / 32] & bit) == 0 && (atomicOr(hidden_bits[j / 32], bit) & bit) == 0) atomicAdd(hidden_count, 1);
+}
+
+bool all_samples_hidden() { return hidden_count >= light_sample_count(); }
+
+void main() {
+  const uint i = this_receiver();
+  if (i >= lookup.receiver_count) return;
+  const Receiver receiver = receivers[lookup.first_receiver + i];
+  const uint lane = gl_LocalInvocationIndex;
+  for (uint word = lane; word < kMaskWords; word += 64) hidden_bits[word] = 0;
+  if (lane == 0) hidden_count = 0;
+  barrier();
+
+  const bool receives = receiver.n != vec3(0.0);
+  const bool reached = receives && ask(receiver);
+  if (reached) {
+    for (uint number = 0; number < asked.side.face_count; ++number) {
+      const MapFace face = face_of(asked.side, 0, lookup.size, number);
+      const Kernel kernel = kernel_of(face);
+      const int last_row = min(kernel.last.y, int(lookup.last_row));
+      for (int y = first_row_of(kernel) + stride * int(gl_LocalInvocationID.y); y <= last_row; y += 8 * stride) {
+        for (int x = kernel.first.x + stride * int(gl_LocalInvocationID.x); x <= kernel.last.x; x += 8 * stride) hide(face, uvec2(x, y));
+      }
+    }
+  }
+  barrier();
+
+  const uint samples = light_sample_count();
+  for (uint word = lane; word < lookup.words_per_pixel; word += 64) {
+    const uint used = min(samples - 32 * word, 32u);
+    uint visible = used == 32 ? 0xffffffffu : (1u << used) - 1;
+    if (receives) {
+      visible = reached && !all_hidden ? visible & ~hidden_bits[word] : 0;
+      // Light samples that are not strictly above the receiver's horizon are not visible.
+      for (uint bit = 0; bit < used; ++bit) {
+        const vec3 s = vec3(light_sample(32 * word + bit), 0.0);
+        if (!(dot(asked.m, asked.e - s) > 0.0)) visible &= ~(1u << bit);
+      }
+    }
+    const uint result = (lookup.first_result + i) * lookup.words_per_pixel + word;
+    results[result] = lookup.first_row == 0 ? visible : results[result] & visible;
+  }
+  check_that_loops_ended();
+}

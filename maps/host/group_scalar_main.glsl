@@ -1,0 +1,50 @@
+// V of each receiver, whose texels a workgroup looks at; see group_kernel.glsl. The shader defines, too,
+//   uint hidden_by(MapFace face, uvec2 cell)    how much of the light a texel hides, in parts of kWholeLight
+//   float share_above()                         the share of the light above the receiver's horizon
+// Parts are added as integers: their order, and how many rows of the map are looked at at a time, change nothing.
+shared uint sum_low, sum_high;  // sum_low + 2^15 sum_high
+
+void main() {
+  const uint i = this_receiver();
+  if (i >= lookup.receiver_count) return;
+  const Receiver receiver = receivers[lookup.first_receiver + i];
+  if (gl_LocalInvocationIndex == 0) sum_low = sum_high = 0;
+  barrier();
+
+  const bool receives = receiver.n != vec3(0.0);
+  const bool reached = receives && ask(receiver);
+  if (reached) {
+    uint sum = 0;
+    for (uint number = 0; number < asked.side.face_count; ++number) {
+      const MapFace face = face_of(asked.side, 0, lookup.size, number);
+      const Kernel kernel = kernel_of(face);
+      const int last_row = min(kernel.last.y, int(lookup.last_row));
+      for (int y = first_row_of(kernel) + stride * int(gl_LocalInvocationID.y); y <= last_row; y += 8 * stride) {
+        for (int x = kernel.first.x + stride * int(gl_LocalInvocationID.x); x <= kernel.last.x; x += 8 * stride) {
+          sum = min(sum + hidden_by(face, uvec2(x, y)), kWholeLight);
+        }
+      }
+    }
+    if (all_hidden) sum = kWholeLight;
+    atomicAdd(sum_low, sum & 32767u);
+    atomicAdd(sum_high, sum >> 15);
+  }
+  barrier();
+  check_that_loops_ended();
+  if (gl_LocalInvocationIndex != 0) return;
+
+  // Until the last rows of the map are looked at the result is what is left of the light, in parts.
+  const uint result = lookup.first_result + i;
+  const uint whole = kWholeLight >> 15;
+  const uint high = min(sum_high + (sum_low >> 15), whole);
+  const uint hidden = high == whole ? kWholeLight : (high << 15) + (sum_low & 32767u);
+  uint left = lookup.first_row == 0 ? kWholeLight : results[result];
+  left -= min(left, hidden);
+  if (lookup.last_row + 1 < lookup.size) {
+    results[result] = left;
+    return;
+  }
+  float v = 1.0;
+  if (receives) v = reached ? min(float(left) / float(kWholeLight), share_above()) : 0.0;
+  results[result] = floatBitsToUint(v);
+}

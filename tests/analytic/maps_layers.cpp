@@ -1,0 +1,181 @@
+// Layers of a map: what depth peeling finds, against every crossing of a texel's ray with the casters' triangles, and
+// what the option `depth` makes of the first two.
+
+#include "maps/filters/pcf.hpp"
+#include "tests/analytic/centre_maps.hpp"
+#include "tests/analytic/maps_parallel_square.hpp"
+
+#include <random>
+
+namespace penumbra::tests {
+namespace {
+
+constexpr std::uint32_t kSize = 48, kLayers = 4;
+
+/// Distances along the window's axis at which the ray in the direction (a, b, 1) from the light's centre meets casters,
+/// ascending; empty `certain` if that is different for a ray a fiftieth of a texel beside it: corners are snapped to
+/// 1/256 texel.
+struct Crossings {
+  std::vector<double> depths;
+  bool certain = true;
+};
+
+Crossings crossings(const Stage& stage, const CentreMaps& maps, const glm::dvec2& at, const glm::dvec2& texel) {
+  const auto along = [&](const glm::dvec2& tangent) {
+    std::vector<double> depths;
+    const glm::dvec3 ray(tangent, 1);
+    for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
+      if (stage.floats.casts_shadow[i] == 0) continue;
+      const auto corners = stage.floats.corners(i);
+      const glm::dvec3 a = maps.basis.local(corners[0]), b = maps.basis.local(corners[1]),
+                       c = maps.basis.local(corners[2]);
+      const double u = glm::dot(ray, glm::cross(b, c)), v = glm::dot(ray, glm::cross(c, a)),
+                   w = glm::dot(ray, glm::cross(a, b));
+      if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
+      depths.push_back((u * a.z + v * b.z + w * c.z) / (u + v + w));
+    }
+    std::ranges::sort(depths);
+    return depths;
+  };
+  Crossings found{along(at)};
+  for (const double x : {-0.02, 0.02}) {
+    for (const double y : {-0.02, 0.02})
+      found.certain &= along(at + glm::dvec2(x, y) * texel).size() == found.depths.size();
+  }
+  return found;
+}
+
+/// Boards at several heights, some of them twice, and a sphere, over a floor that casts, too.
+scenes::Scene stacked() {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_object(scene, "sphere", sphere({0.4, 1, 0.3}, 0.7, 6));
+  add_quad(scene, {-0.6, 2.5, 0.2}, {1, 0.3, 0}, {0, 0.1, 0.9});
+  add_quad(scene, {0.3, 3, -0.3}, {0.6, -0.1, 0.2}, {0, 0, 0.8});
+  add_quad(scene, {0.3, 3, -0.3}, {-0.6, 0.1, -0.2}, {0, 0, 0.8});  // again, the other way round
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+  return scene;
+}
+
+class MapsLayers : public MapsTest {};
+
+TEST_F(MapsLayers, EachHoldsTheNextSurfaceAndTheFarthestTheLast) {
+  const Stage stage(stacked(), 4, 4, light_samples(1));
+  const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = kLayers, .farthest = true});
+  ASSERT_EQ(maps.fitted.faces, 1U);
+  const std::vector<float> texels = maps.read();
+  const maps::gpu::SideView& window = maps.fitted.views.front().side[0];
+  const double far = maps.fitted.views.front().far;
+  const glm::dvec2 texel = (glm::dvec2(window.upper) - glm::dvec2(window.lower)) / static_cast<double>(kSize);
+  std::array<std::size_t, kLayers + 1> seen{};
+  std::size_t uncertain = 0;
+  for (std::uint32_t y = 0; y < kSize; ++y) {
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      Crossings found = crossings(stage, maps, glm::dvec2(window.lower) + (glm::dvec2(x, y) + 0.5) * texel, texel);
+      if (!found.certain) {
+        ++uncertain;
+        continue;
+      }
+      // Twice the same surface is one layer; others are much farther apart here.
+      const auto same = [](double a, double b) { return std::abs(a - b) < 1e-5; };
+      found.depths.erase(std::unique(found.depths.begin(), found.depths.end(), same), found.depths.end());
+      const std::size_t at = std::size_t{y} * kSize + x;
+      for (std::uint32_t layer = 0; layer < kLayers; ++layer) {
+        const double depth = texels[std::size_t{layer} * kSize * kSize + at];
+        if (layer < found.depths.size()) {
+          ++seen[layer];
+          // The rasteriser moves corners by up to 1/512 texel, which on the steepest face here (slope 60 within half a
+          // texel of a silhouette) is no more than that times its slope: far below what parts the layers.
+          EXPECT_NEAR(depth * far, found.depths[layer], 0.01) << x << ", " << y << " layer " << layer;
+        } else {
+          EXPECT_EQ(depth, 1) << x << ", " << y << " layer " << layer;
+        }
+      }
+      const double last = texels[std::size_t{kLayers} * kSize * kSize + at];
+      if (found.depths.empty()) {
+        EXPECT_EQ(last, 0);
+      } else {
+        ++seen[kLayers];
+        EXPECT_NEAR(last * far, found.depths.back(), 0.01) << x << ", " << y;
+      }
+    }
+  }
+  for (const std::size_t count : seen) EXPECT_GT(count, 20U);
+  EXPECT_LT(uncertain, std::size_t{kSize} * kSize / 5);
+}
+
+// An open sheet over a floor that casts nothing: there is no second surface under it.
+TEST_F(MapsLayers, AnOpenSheetCastsNothingByItsSecondSurfaceAndTheSameByAllOthers) {
+  scenes::Scene scene = parallel_square();
+  scene.objects[0].casts_shadow = false;
+  const Stage stage(scene, 32, 32, light_samples(1));
+  const ParallelSquare exact(stage);
+  for (const Factory& factory : {Factory(maps::make_shadow_map), Factory(maps::make_pcf), Factory(maps::make_pcss),
+                                 Factory(maps::make_backproject)}) {
+    const auto with = [&](const char* depth) { return run(factory, stage, {{"size", "64"}, {"depth", depth}}); };
+    const Masks first = with("first"), second = with("second"), midpoint = with("midpoint"), dual = with("dual");
+    EXPECT_EQ(first.visibility, midpoint.visibility);
+    EXPECT_EQ(first.visibility, dual.visibility);
+    std::size_t shaded = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!exact.on_floor(i)) continue;
+      EXPECT_EQ(second.visibility[i], 1);
+      shaded += first.visibility[i] < 1 ? 1 : 0;
+    }
+    EXPECT_GT(shaded, 50U);
+  }
+}
+
+/// A slab between heights 0.1 and 2.1 over a floor at 0, and view samples inside it, in its shadow's upper half and
+/// lower half: where each use of the depths says that the shadow begins.
+TEST_F(MapsLayers, AThickCasterBeginsToShadeWhereTheOptionSays) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_quad(scene, {0, 2.1, 0}, {1, 0, 0}, {0, 0, -1}).receives_shadow = false;
+  add_quad(scene, {0, 0.1, 0}, {1, 0, 0}, {0, 0, -1}).receives_shadow = false;
+  add_quad(scene, {0, 1, 0}, {0.5, 0, 0}, {0, 0, -0.5}).casts_shadow = false;  // carries the samples
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
+  constexpr std::uint32_t kSide = 64;
+  const auto column = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+    visibility::ViewSamples samples;
+    samples.width = 1;
+    samples.height = kSide;
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      const double height = 2.4 * (i + 0.5) / kSide;
+      samples.triangle.push_back(6);
+      samples.p.emplace_back(glm::dvec3(0.1, height, 0.05) - floats.origin);
+      samples.n.emplace_back(0, 1, 0);
+      samples.depth.push_back(1);
+      samples.facing.push_back(1);
+    }
+    return samples;
+  };
+  const Stage stage(scene, 1, kSide, light_samples(1), column);
+  // Light at 5: surfaces at depths 2.9 and 4.9, their middle at 3.9. The window holds the floor, ±2 / 5, and what
+  // stands above it: a texel is at most 4.2 / 5 / 62 wide, so the bias of 8 is 8 · 0.0135 · z, 0.32 … 0.35 around z
+  // = 3.2.
+  const auto begins_at = [&](const char* depth, const char* bias) {
+    const Masks found = run(maps::make_shadow_map, stage, {{"size", "64"}, {"depth", depth}, {"bias", bias}});
+    double deepest_lit = 0;
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      if (found.visibility[i] == 1) deepest_lit = std::max(deepest_lit, 5 - 2.4 * (i + 0.5) / kSide);
+    }
+    return deepest_lit;
+  };
+  const double step = 2.4 / kSide;
+  EXPECT_NEAR(begins_at("first", "0"), 2.9, step);
+  EXPECT_NEAR(begins_at("midpoint", "0"), 3.9, step);
+  EXPECT_NEAR(begins_at("midpoint", "8"), 3.9, step) << "the bias is only where there is no second surface";
+  EXPECT_NEAR(begins_at("second", "8"), 4.9, step);
+  const double biased = begins_at("first", "8");
+  EXPECT_GT(biased, 2.9 + 0.2);
+  EXPECT_LT(biased, 3.9 - 0.2);
+  EXPECT_EQ(begins_at("dual", "8"), biased);
+  EXPECT_NEAR(begins_at("dual", "100"), 3.9, step) << "no farther than the middle";
+  EXPECT_GT(begins_at("first", "100"), 4.9) << "the bias alone goes on";
+}
+
+}  // namespace
+}  // namespace penumbra::tests
