@@ -2,12 +2,12 @@
 
 #include "app/device_source.hpp"
 #include "app/failure.hpp"
-#include "app/mask_comparison.hpp"
+#include "app/light_judge.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
 #include "app/output_files.hpp"
+#include "app/report_views.hpp"
 #include "app/runner.hpp"
-#include "app/sample_pixels.hpp"
 #include "app/session.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <iterator>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -44,10 +43,14 @@ struct Entry {
 struct Finished {
   MethodRun run;
   std::vector<glm::vec3> beauty;
+  std::vector<std::string> masks;  ///< PackedMasks::finish()
 };
 
 class Comparison {
  public:
+  /// Of all lights' masks by rays, which are kept while the methods run.
+  static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
+
   Comparison(const RunOptions& run, const ComparisonOptions& options, Progress& progress)
       : run_(run),
         options_(options),
@@ -63,26 +66,22 @@ class Comparison {
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
     choose_entries();
     reference_lights_ = same_samples_ ? session_.lights : lights_of_reference();
-    const auto& classes = session_.classes.front();
-    judged_ = sample_pixels(compare::pixels_of_class(classes, visibility::PixelClass::judged), options.sample_pixels,
-                            session_.width, session_.height);
-    horizon_ = sample_pixels(compare::pixels_of_class(classes, visibility::PixelClass::horizon), options.sample_pixels,
-                             session_.width, session_.height);
-    if (judged_.empty()) {
-      warn(
-          "no pixel is judged (none sees the whole light above its tangent plane, or --sample-pixels chose none): "
-          "there is no error to report");
+    truths_ = choose_pixels(session_, options.sample_pixels);
+    for (std::size_t light = 0; light < truths_.size(); ++light) {
+      if (!truths_[light].judged.empty()) continue;
+      const std::string of_light = truths_.size() > 1 ? fmt::format("light {}: ", session_.lights[light].name) : "";
+      warn(of_light +
+           "no pixel is judged (none sees the whole light above its tangent plane, or --sample-pixels chose none): "
+           "there is no error to report");
     }
-    if (options_.sample_pixels != "all") {
-      wanted_.emplace();
-      std::ranges::merge(judged_, horizon_, std::back_inserter(*wanted_));
-    }
+    if (options_.sample_pixels != "all") wanted_ = all_pixels(truths_);
   }
 
   compare::Metrics run(const std::vector<std::string>& arguments) {
     run_reference();
+    run_rays();
     for (const Entry& entry : entries_) run_or_report(entry);
-    write_error_pictures();
+    make_error_pictures();
     progress_.clear();
     const std::string json = compare::json_text(compare::to_json(report_.metrics));
     write_file_atomically(run_.out / "metrics.json", json);
@@ -177,26 +176,74 @@ class Comparison {
     return lights;
   }
 
+  /// Of all lights' masks, on the methods' light samples.
+  [[nodiscard]] std::uint64_t mask_bytes() const {
+    std::uint64_t words = 0;
+    for (const Light& light : session_.lights) words += std::uint64_t{session_.pixel_count()} * light.words_per_mask();
+    return words * sizeof(std::uint32_t);
+  }
+
+  /// Masks of rays are kept whole, light by light: every method's are held against them.
+  [[nodiscard]] TileSink keep_rays() {
+    return [this](const TileResult& tile) {
+      auto& masks = truths_[tile.light].ray_masks;
+      masks.insert(masks.end(), tile.masks.begin(), tile.masks.end());
+    };
+  }
+
   void run_reference() {
-    const bool keep_masks = same_samples_ && reference_.description.output == Output::mask;
-    if (keep_masks) {
-      const std::uint64_t words = std::uint64_t{session_.pixel_count()} * reference_lights_.front().words_per_mask();
-      require_memory(words * sizeof(std::uint32_t), "the reference's masks",
+    const bool rays = same_samples_ && reference_.description.output == Output::mask;
+    if (rays) {
+      require_memory(mask_bytes(), "the reference's masks",
                      "choose a smaller --size or fewer --light-samples, or leave out --reference-samples same");
-      reference_masks_.reserve(words);
     }
-    Finished done = run_one(reference_, reference_lights_, [&](const TileResult& tile) {
-      if (keep_masks && tile.light == 0) {
-        reference_masks_.insert(reference_masks_.end(), tile.masks.begin(), tile.masks.end());
-      }
-    });
+    Finished done = run_one(reference_, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
     report_.exposure = compare::auto_exposure(done.beauty);
     report_.metrics.reference = make_stats(session_, reference_lights_, label_of(reference_), done.run);
-    report_.metrics.judged_pixels = judged_.size();
-    report_.metrics.horizon_pixels = horizon_.size();
+    report_.metrics.judged_pixels = truths_.front().judged.size();
+    report_.metrics.horizon_pixels = truths_.front().horizon.size();
     report_.reference = pictures_of(reference_, done);
-    reference_visibility_ = std::move(done.run.visibility.front());
+    for (std::size_t light = 0; light < truths_.size(); ++light) {
+      if (rays) truths_[light].rays = done.run.visibility[light];
+      truths_[light].reference = std::move(done.run.visibility[light]);
+    }
     reference_beauty_ = std::move(done.beauty);
+  }
+
+  /// Methods with masks are held against rays on their own light samples, whatever else the reference looks at: so one
+  /// sees what is the method's fault, and what the number of light samples costs. Once, untimed.
+  void run_rays() {
+    if (!truths_.front().ray_masks.empty()) return;
+    if (std::ranges::none_of(entries_, [](const Entry& e) { return e.description.output == Output::mask; })) return;
+    if (mask_bytes() > kMostRayBytes) {
+      warn(
+          fmt::format("masks of rays on the same light samples would take {} MiB: pairs are not compared; "
+                      "--reference-samples same asks for it all the same",
+                      mask_bytes() >> 20));
+      return;
+    }
+    const Entry rays{"rays", describe_method("raytrace"), {}};
+    const auto method = make_method(rays.description.name, rays.options, devices_);
+    PackedMasks masks(session_.lights.size());
+    const TileSink keep = keep_rays();
+    Finished done;
+    done.run = run_method(
+        *method, session_, {.lights = session_.lights, .runs = 1, .pixels = wanted_},
+        [&](const TileResult& tile) {
+          keep(tile);
+          masks.add(tile);
+        },
+        progress_);
+    progress_.clear();
+    compare::SampleCost cost;
+    cost.stats = make_stats(session_, session_.lights, label_of(rays), done.run);
+    cost.stats.seconds = {};  // one run that nothing warmed up
+    cost.all_lights_error = error_of_all_lights(done.run, truths_);
+    cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
+    report_.rays = report_entry(session_, rays.description, report_.exposure, {done.run, {}, masks.finish()});
+    report_.metrics.same_samples = std::move(cost);
+    for (std::size_t light = 0; light < truths_.size(); ++light)
+      truths_[light].rays = std::move(done.run.visibility[light]);
   }
 
   /// One method that fails is no reason to lose what the others have to say. After a device that does not answer no
@@ -249,36 +296,20 @@ class Comparison {
   }
 
   void run_entry(const Entry& entry) {
-    std::optional<MaskComparison> judge;
-    if (!reference_masks_.empty() && entry.description.output == Output::mask) {
-      judge.emplace(session_, reference_masks_);
-    }
-    Finished done = run_one(entry, session_.lights, [&](const TileResult& tile) {
-      if (judge && tile.light == 0) judge->add(tile);
-    });
+    const bool pairs_of_reference = same_samples_ && reference_.description.output == Output::mask;
+    // Exact decisions take milliseconds each: a few say who is right, and who asks for pairs gets many.
+    LightJudge judge(session_, truths_, pairs_of_reference ? 4000 : 400);
+    Finished done = run_one(entry, session_.lights, [&](const TileResult& tile) { judge.add(tile); });
 
     compare::MethodResult result;
     result.entry = entry.label;
     result.stats = make_stats(session_, session_.lights, label_of(entry), done.run);
-    result.error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, judged_);
-    result.horizon_error = compare::visibility_error(done.run.visibility.front(), reference_visibility_, horizon_);
-    result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, judged_);
-    if (judge) {
-      result.pairs = judge->counts();
-      result.verdicts = judge->decide(progress_);
-      result.stats.counters["exactDecided"] = result.verdicts->decided;
-      result.stats.counters["methodRight"] = result.verdicts->method_right;
-      result.stats.counters["referenceRight"] = result.verdicts->reference_right;
-      if (!judge->kept_all()) {
-        result.stats.warnings.push_back(
-            fmt::format("{}: {} pairs differ; {} of them, evenly spaced, were decided exactly", entry.label,
-                        result.pairs->differing, result.verdicts->decided));
-      }
-    }
+    judge.fill(result, done.run, pairs_of_reference, progress_);
+    result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
     compare::ReportEntry pictures = pictures_of(entry, done);
     report_.metrics.methods.push_back(std::move(result));
     report_.methods.push_back(std::move(pictures));
-    visibility_.push_back(std::move(done.run.visibility.front()));
+    visibility_.push_back(std::move(done.run.visibility));
   }
 
   /// Runs a method and writes its EXR and, if wanted, its bits.
@@ -294,16 +325,19 @@ class Comparison {
       plan.runs = 1;
       plan.discard_first = false;
     }
+    PackedMasks masks(lights.size());
     Finished done;
     done.run = run_method(
         *method, session_, plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
+          masks.add(tile);
           if (bits && tile.light == 0) bits->add(tile);
           sink(tile);
         },
         progress_);
     done.beauty = beauty.pixels();
+    done.masks = masks.finish();
     devices_.check_validation();
     progress_.clear();
     write_picture(file_of(entry.label, ".exr"), session_, lights, label_of(entry), done.run, done.beauty);
@@ -319,27 +353,31 @@ class Comparison {
     return {entry.description, entry.options, device_of(entry.description, devices_.name())};
   }
 
-  compare::ReportEntry pictures_of(const Entry& entry, const Finished& done) {
-    compare::ReportEntry pictures;
-    pictures.description = entry.description;
-    pictures.beauty = to_srgb(session_.width, session_.height, done.beauty, report_.exposure);
-    pictures.visibility = compare::visibility_picture(session_.samples, done.run.visibility.front());
+  compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {
+    compare::ReportEntry pictures =
+        report_entry(session_, entry.description, report_.exposure, {done.run, done.beauty, std::move(done.masks)});
     if (options_.png) write_png(file_of(entry.label, ".png"), *pictures.beauty);
     return pictures;
   }
 
   /// Last, because all share one scale.
-  void write_error_pictures() {
+  void make_error_pictures() {
     double largest = 0;
     for (const compare::MethodResult& result : report_.metrics.methods) {
-      if (result.error) largest = std::max(largest, result.error->max);
+      if (result.all_lights_error) largest = std::max(largest, result.all_lights_error->max);
     }
     report_.error_limit = compare::error_scale_limit(largest);
-    for (std::size_t i = 0; i < visibility_.size(); ++i) {
-      if (visibility_[i].empty()) continue;  // it failed
-      report_.methods[i].error =
-          compare::error_picture(session_.samples, visibility_[i], reference_visibility_, report_.error_limit);
-      write_png(file_of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].error);
+    const auto picture = [&](std::size_t light, std::span<const float> v) {
+      return compare::error_picture(session_.samples, v, truths_[light].reference, report_.error_limit);
+    };
+    for (std::size_t light = 0; light < truths_.size(); ++light) {
+      if (report_.rays) report_.rays->lights[light].error = picture(light, truths_[light].rays);
+      for (std::size_t i = 0; i < visibility_.size(); ++i) {
+        if (visibility_[i].empty()) continue;  // it failed
+        report_.methods[i].lights[light].error = picture(light, visibility_[i][light]);
+        if (light == 0)
+          write_png(file_of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].lights[0].error);
+      }
     }
   }
 
@@ -347,9 +385,9 @@ class Comparison {
     report_.version = PENUMBRA_VERSION;
     report_.arguments = arguments;
     report_.scene = compare::describe_scene(session_.scene, session_.camera_index);
-    report_.light = session_.lights.front().name;
+    report_.lights = report_lights(session_, reference_lights_, same_samples_);
     report_.same_samples = same_samples_;
-    report_.sampled_pixels = options_.sample_pixels == "all" ? 0 : judged_.size();
+    report_.sampled_pixels = options_.sample_pixels == "all" ? 0 : truths_.front().judged.size();
     report_.machine = compare::this_machine();
     report_.warnings = warnings_;
   }
@@ -384,12 +422,11 @@ class Comparison {
   Session session_;
   std::vector<Light> reference_lights_;
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> judged_, horizon_;       ///< pixels that errors are taken over
-  std::optional<std::vector<std::uint32_t>> wanted_;  ///< both, if --sample-pixels chose; nothing: all pixels
-  std::vector<std::uint32_t> reference_masks_;        ///< of the first light; empty unless pairs can be compared
-  std::vector<float> reference_visibility_;           ///< of the first light
+  std::vector<LightTruth> truths_;  ///< of each light
+  std::optional<std::vector<std::uint32_t>>
+      wanted_;  ///< all their pixels, if --sample-pixels chose; nothing: every one
   std::vector<glm::vec3> reference_beauty_;
-  std::vector<std::vector<float>> visibility_;  ///< of each entry, of the first light; empty: it failed
+  std::vector<std::vector<std::vector<float>>> visibility_;  ///< of each entry, of each light; empty: it failed
   std::vector<std::string> warnings_;
   compare::ReportInput report_;
   std::exception_ptr hang_;  ///< what a device that does not answer threw; it must not be used again

@@ -22,8 +22,8 @@ struct ComparisonOptions {
   std::filesystem::path stats;  ///< empty: only DIR/metrics.json
 };
 
-/// Runs the reference, then each method on the same view samples, and writes all of DIR. Errors and pairs are those of
-/// the first light; seconds are sums over all lights. `arguments` is the command line, for the report.
+/// Runs the reference, then each method on the same view samples, and writes all of DIR. Every light is judged; what is
+/// said once is of the first. Seconds are sums over all lights. `arguments` is the command line, for the report.
 compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
                                  const std::vector<std::string>& arguments, Progress& progress);
 

@@ -5,6 +5,7 @@
 #include "app/session.hpp"
 #include "compare/metrics.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,15 +18,21 @@ struct DifferingPair {
   bool visible_for_method = false;
 };
 
-/// Counts, tile by tile, where the masks of a method differ from those of the reference on the same light samples (of
-/// the first light), and keeps some of the differing pairs for exact decision: all of them while there are few, then
-/// evenly spaced ones.
+/// What masks are compared with.
+struct MaskQuestion {
+  std::size_t light = 0;                     ///< index into Session::lights
+  std::span<const std::uint32_t> reference;  ///< masks of the whole image, on the light's samples; must outlive all
+  std::size_t most_decided = 4000;           ///< differing pairs that are decided exactly
+};
+
+/// Counts, tile by tile, where the masks of a method differ from those of rays on the same light samples, and keeps
+/// some of the differing pairs for exact decision: all of them while there are few, then evenly spaced ones.
 class MaskComparison {
  public:
-  /// `reference`: masks of the whole image; both must outlive it.
-  MaskComparison(const Session& session, std::span<const std::uint32_t> reference);
+  /// `session` must outlive it.
+  MaskComparison(const Session& session, const MaskQuestion& question);
 
-  /// For tiles of light 0, with masks.
+  /// For tiles of that light, with masks.
   void add(const TileResult& result);
 
   [[nodiscard]] const compare::PairCounts& counts() const { return counts_; }
@@ -36,11 +43,9 @@ class MaskComparison {
   /// Who was right on the kept pairs: the exact pair decision says. Milliseconds each.
   [[nodiscard]] compare::PairVerdicts decide(Progress& progress) const;
 
-  static constexpr std::size_t kMostDecided = 4000;
-
  private:
   const Session& session_;
-  std::span<const std::uint32_t> reference_;
+  MaskQuestion question_;
   compare::PairCounts counts_;
   std::vector<DifferingPair> kept_;
   std::uint64_t seen_ = 0, stride_ = 1;  ///< every stride-th differing pair in scan-line order is kept

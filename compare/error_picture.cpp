@@ -38,8 +38,12 @@ Image8 paint(const visibility::ViewSamples& samples, ValueOf value_of, ColorOf c
 
 }  // namespace
 
+std::span<const Color8> error_colors(bool too_bright) {
+  return too_bright ? kTooBright : kTooDark;
+}
+
 Color8 error_color(double error, double limit) {
-  const auto& arm = error > 0 ? kTooBright : kTooDark;
+  const std::span<const Color8> arm = error_colors(error > 0);
   const double depth = std::sqrt(std::min(1.0, std::abs(error) / limit)) * static_cast<double>(arm.size() - 1);
   const std::size_t from = std::min(static_cast<std::size_t>(depth), arm.size() - 2);
   const double share = depth - static_cast<double>(from);

@@ -15,6 +15,8 @@ inline constexpr Color8 kBackgroundColor{96, 104, 116};
 /// The colour of a signed error: white is right, blue too bright, red too dark, deepest at ±limit and beyond. The
 /// depth grows with √(|error| / limit), so that small errors are seen beside large ones.
 Color8 error_color(double error, double limit);
+/// The colours between which error_color() goes, evenly spaced in depth from right to wrong.
+std::span<const Color8> error_colors(bool too_bright);
 
 /// The end of a scale that suits errors up to `largest`: the next of 0.01, 0.02, 0.05, 0.1 … 1 (at least 0.01). To be
 /// shared by all pictures that will be looked at side by side.

@@ -51,31 +51,38 @@ std::vector<std::uint32_t> pixels_with_alpha(const visibility::ViewSamples& samp
 
 std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
                                                 std::span<const std::uint32_t> pixels) {
-  if (pixels.empty()) return std::nullopt;
+  const JudgedVisibility light{visibility, reference, pixels};
+  return visibility_error({&light, 1});
+}
+
+std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility> lights) {
   std::vector<double> magnitudes;
-  magnitudes.reserve(pixels.size());
   VisibilityError error;
   double squares = 0;
-  for (const std::uint32_t pixel : pixels) {
-    PENUMBRA_ASSERT(pixel < visibility.size() && pixel < reference.size(), "pixel {} of {} and {}", pixel,
-                    visibility.size(), reference.size());
-    const double e = static_cast<double>(visibility[pixel]) - static_cast<double>(reference[pixel]);
-    // A NaN would slip through every comparison below and call a broken method perfect.
-    PENUMBRA_ASSERT(std::isfinite(e), "V is {} and {} at pixel {}", visibility[pixel], reference[pixel], pixel);
-    const double magnitude = std::abs(e);
-    magnitudes.push_back(magnitude);
-    error.mean += magnitude;
-    error.bias += e;
-    squares += e * e;
-    if (magnitude > 0.05) error.over05 += 1;
+  for (const JudgedVisibility& light : lights) {
+    for (const std::uint32_t pixel : light.pixels) {
+      PENUMBRA_ASSERT(pixel < light.visibility.size() && pixel < light.reference.size(), "pixel {} of {} and {}", pixel,
+                      light.visibility.size(), light.reference.size());
+      const double e = static_cast<double>(light.visibility[pixel]) - static_cast<double>(light.reference[pixel]);
+      // A NaN would slip through every comparison below and call a broken method perfect.
+      PENUMBRA_ASSERT(std::isfinite(e), "V is {} and {} at pixel {}", light.visibility[pixel], light.reference[pixel],
+                      pixel);
+      const double magnitude = std::abs(e);
+      magnitudes.push_back(magnitude);
+      error.mean += magnitude;
+      error.bias += e;
+      squares += e * e;
+      if (magnitude > 0.05) error.over05 += 1;
+    }
   }
-  const auto count = static_cast<double>(pixels.size());
+  if (magnitudes.empty()) return std::nullopt;
+  const auto count = static_cast<double>(magnitudes.size());
   error.mean /= count;
   error.bias /= count;
   error.over05 /= count;
   error.rmse = std::sqrt(squares / count);
   // Nearest rank ⌈0.999 n⌉, in integers: 0.999 is no double.
-  const std::size_t rank = (999 * pixels.size() + 999) / 1000;
+  const std::size_t rank = (999 * magnitudes.size() + 999) / 1000;
   const auto place = magnitudes.begin() + static_cast<std::ptrdiff_t>(rank - 1);
   std::nth_element(magnitudes.begin(), place, magnitudes.end());
   error.p999 = *place;

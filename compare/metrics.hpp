@@ -37,6 +37,15 @@ struct VisibilityError {
 std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
                                                 std::span<const std::uint32_t> pixels);
 
+/// V by a method and by its reference under one light, and the pixels that count (indices into both).
+struct JudgedVisibility {
+  std::span<const float> visibility, reference;
+  std::span<const std::uint32_t> pixels;
+};
+
+/// Over the pixels of all lights together: a pixel counts once for each light that it is judged under.
+std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility> lights);
+
 /// How far the beauty is off over a set of pixels: with e the difference of luminances (Rec. 709), both over the mean
 /// luminance of the reference.
 struct BeautyError {

@@ -3,6 +3,8 @@
 #include "base/assert.hpp"
 #include "base/atomic_file.hpp"
 #include "compare/question.hpp"
+#include "compare/report_data.hpp"
+#include "compare/report_gallery.hpp"
 #include "compare/report_parts.hpp"
 #include "compare/report_tables.hpp"
 
@@ -36,26 +38,67 @@ std::string facts_html(const std::vector<ReportFact>& facts) {
   return html + "</tbody></table></div>\n";
 }
 
+/// Who answers every pair as rays do, or else who comes closest to that.
+template <typename Card>
+std::string exactness_card(const ReportInput& in, const Card& card) {
+  struct Sum {
+    const MethodResult* result;
+    PairCounts pairs;
+  };
+  std::vector<Sum> sums;
+  for (const MethodResult& result : in.metrics.methods) {
+    Sum sum{&result, {}};
+    for (const LightResult& light : result.lights) {
+      if (light.same_samples) sum.pairs += light.same_samples->pairs;
+    }
+    if (sum.pairs.all > 0) sums.push_back(sum);
+  }
+  if (sums.empty()) return {};
+  const std::uint64_t fewest =
+      std::ranges::min(sums, {}, [](const Sum& s) { return s.pairs.differing; }).pairs.differing;
+  std::string names;
+  std::uint64_t all = 0;
+  for (const Sum& sum : sums) {
+    if (sum.pairs.differing != fewest) continue;
+    names += (names.empty() ? "" : ", ") + sum.result->entry;
+    all = sum.pairs.all;
+  }
+  return card("Most exact", names,
+              fmt::format("{} of {} answers differ from rays on the same light samples",
+                          fewest == 0 ? "none" : count_text(fewest), count_text(all)));
+}
+
 std::string glance_html(const ReportInput& in) {
   const auto card = [](std::string_view title, const std::string& name, const std::string& text) {
     return fmt::format("<div><dt>{}</dt><dd><b>{}</b><br>{}</dd></div>\n", title, escape_html(name), text);
   };
   const Stats& reference = in.metrics.reference;
   std::string html = "<dl class=\"glance\">\n";
-  if (const MethodResult* best = smallest(in.metrics.methods, rmse_of)) {
-    html += card("Closest to the reference", best->entry,
-                 fmt::format("V is off by {} on average (RMSE {})", error_text(best->error->mean),
-                             error_text(best->error->rmse)));
+  const auto names = [](const std::vector<const MethodResult*>& results) {
+    std::string text;
+    for (const MethodResult* result : results) text += (text.empty() ? "" : ", ") + result->entry;
+    return text;
+  };
+  const auto closest = smallest(in.metrics.methods, rmse_of, error_text);
+  if (!closest.empty()) {
+    const VisibilityError& error = *closest.front()->all_lights_error;
+    html += card("Closest to the reference", names(closest),
+                 fmt::format("{}V is off by {} on average (RMSE {})", closest.size() > 1 ? "a tie: " : "",
+                             error_text(error.mean), error_text(error.rmse)));
   }
-  if (const MethodResult* best = smallest(in.metrics.methods, shadow_of)) {
+  html += exactness_card(in, card);
+  const auto fastest = smallest(in.metrics.methods, shadow_of, [](double seconds) { return seconds_text(seconds); });
+  if (!fastest.empty()) {
+    const MethodResult* best = fastest.front();
     const ReportEntry& entry = in.methods[static_cast<std::size_t>(best - in.metrics.methods.data())];
     const std::string speed =
         same_question(in, entry, *best) ? speed_text(shadow_of(*best), reference.seconds.shadow()) : std::string("–");
-    html += card(
-        "Least time", best->entry,
-        fmt::format(
-            "{} for the shadow, {}{}", seconds_text(shadow_of(*best)), question_of({entry.description, best->stats}),
-            speed == "–" ? "" : fmt::format(": {} {} the reference", speed, speed == "as fast" ? "as" : "than")));
+    html +=
+        card("Least time", names(fastest),
+             fmt::format(
+                 "{}{} for the shadow, {}{}", fastest.size() > 1 ? "a tie: " : "", seconds_text(shadow_of(*best)),
+                 question_of({entry.description, best->stats}),
+                 speed == "–" ? "" : fmt::format(": {} {} the reference", speed, speed == "as fast" ? "as" : "than")));
   }
   html += card("Judged by", reference.method,
                fmt::format("{}, {} for the shadow", samples_of_reference(in, ", the same as the methods’"),
@@ -78,8 +121,11 @@ of it). Get <var>V</var> right, and the shadow is right.</p>
       "<p>Each pixel of the picture became one point of the scene, and every method below was asked about the very "
       "same points. Those that look for points of the light (not every method does) looked for the very same {}. The "
       "methods differ in how they find out what stands between, and so in speed and in the mistakes they make. "
-      "<strong>{}</strong> served as the reference; the light in question is “{}”.</p>\n",
-      count_text(samples), escape_html(in.metrics.reference.method), escape_html(in.light));
+      "<strong>{}</strong> served as the reference; {}.</p>\n",
+      count_text(samples), escape_html(in.metrics.reference.method),
+      in.lights.size() == 1
+          ? "the light in question is “" + escape_html(in.lights.front().name) + "”"
+          : fmt::format("each of the scene’s {} lights is judged by itself, and all together", in.lights.size()));
   if (in.same_samples && in.reference.description.output == visibility::Output::mask) {
     html +=
         "<p>The reference looked for the same points of the light, so that every single answer can be compared, not "
@@ -90,8 +136,11 @@ of it). Get <var>V</var> right, and the shadow is right.</p>
   } else {
     html += fmt::format(
         "<p>The reference looked for {} points of the light. Its own V is an estimate too, in steps of 1/{}: errors "
-        "of about that size belong to both sides.</p>\n",
-        count_text(in.metrics.reference.light_samples), in.metrics.reference.light_samples);
+        "of about that size belong to both sides.{}</p>\n",
+        count_text(in.metrics.reference.light_samples), in.metrics.reference.light_samples,
+        in.metrics.same_samples ? " So methods that look for points are also compared with rays to their own points, "
+                                  "answer by answer."
+                                : "");
   }
   return html + "</div><div>" + shadow_drawing_html() + "</div></div></section>\n";
 }
@@ -105,55 +154,6 @@ std::string scene_html(const ReportInput& in) {
                             escape_html(in.metrics.reference.method) + "</span>");
   }
   return html + "</div></div></section>\n";
-}
-
-std::string gallery_html(const ReportInput& in) {
-  const std::string& reference = in.metrics.reference.method;
-  std::string beauties, visibilities, errors;
-  if (in.reference.beauty) {
-    beauties += figure_html(*in.reference.beauty, "Beauty by the reference " + reference,
-                            "<b>" + escape_html(reference) + "</b><span>the reference</span>");
-  }
-  if (in.reference.visibility) {
-    visibilities += figure_html(*in.reference.visibility, "V by the reference " + reference,
-                                "<b>" + escape_html(reference) + "</b><span>the reference</span>");
-  }
-  for (std::size_t i = 0; i < in.methods.size(); ++i) {
-    const MethodResult& result = in.metrics.methods[i];
-    const ReportEntry& entry = in.methods[i];
-    const std::string name = "<b>" + escape_html(result.entry) + "</b>";
-    if (entry.beauty) {
-      beauties += figure_html(*entry.beauty, "Beauty by " + result.entry,
-                              fmt::format("{}<span>{}, {}</span>", name, visibility::name_of(entry.description.family),
-                                          seconds_text(shadow_of(result))));
-    }
-    if (entry.visibility) visibilities += figure_html(*entry.visibility, "V by " + result.entry, name);
-    if (entry.error) {
-      const std::string caption = result.error ? fmt::format("RMSE {}, largest {}", error_text(result.error->rmse),
-                                                             error_text(result.error->max))
-                                               : "no judged pixel";
-      errors += figure_html(*entry.error, "Signed error of V by " + result.entry + ": " + caption,
-                            name + "<span>" + caption + "</span>");
-    }
-  }
-  std::string html =
-      "<section id=\"pictures\"><h2>The pictures</h2>\n<p class=\"note\">Click a picture to enlarge it, click again to "
-      "go back.</p>\n";
-  if (!beauties.empty()) {
-    html += fmt::format(
-        "<h3>Beauty</h3>\n<p>The shaded picture, by each method. All are exposed alike (linear colours × {:.3g}).</p>\n"
-        "<div class=\"gallery\">{}</div>\n",
-        in.exposure, beauties);
-  }
-  if (!visibilities.empty()) {
-    html += "<h3>V: how much of the light is seen</h3>\n" + visibility_legend_html() + "<div class=\"gallery\">" +
-            visibilities + "</div>\n";
-  }
-  if (!errors.empty()) {
-    html += "<h3>Where each method is wrong</h3>\n" + error_legend_html(in.error_limit) + "<div class=\"gallery\">" +
-            errors + "</div>\n";
-  }
-  return html + "</section>\n";
 }
 
 std::string methods_html(const ReportInput& in) {
@@ -223,7 +223,10 @@ std::string report_html(const ReportInput& in) {
   const std::string warnings = warnings_html(in);
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      // Nothing from anywhere else, whatever the page says: no network, and no text is ever run as a program.
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+      "'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n";
   html += fmt::format("<title>Soft shadows of {}: {} method{} compared</title>\n<style>", scene, count,
                       count == 1 ? "" : "s");
   html += kReportStyle;
@@ -250,8 +253,11 @@ std::string report_html(const ReportInput& in) {
       "</pre>\n<p>All numbers of this page, and more, are in <code>metrics.json</code> beside it; the pictures with "
       "all "
       "their channels in the <code>.exr</code> files.</p></section>\n";
-  html += "</main>\n<footer>Written by penumbra " + escape_html(in.version) + ".</footer>\n</body>\n</html>\n";
-  return html;
+  html += "</main>\n<footer>Written by penumbra " + escape_html(in.version) + ".</footer>\n";
+  if (!report_data_is_empty(in)) html += kReportViewer;
+  html += report_data_html(in) + "<script>\n";
+  html += kReportScript;
+  return html + "</script>\n</body>\n</html>\n";
 }
 
 void write_report(const std::filesystem::path& path, const ReportInput& input) {

@@ -6,7 +6,10 @@
 #include "scenes/scene.hpp"
 #include "visibility/method.hpp"
 
+#include <glm/vec2.hpp>
+
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,11 +22,38 @@ struct ReportFact {
   std::string name, value;
 };
 
-/// What the report shows of one method beside its numbers; pictures that were not made are left out.
+/// What the report shows of one method under one light. The pictures are for eyes without script; what the page's
+/// script draws and reads out is packed (compare/report_data.hpp), empty if it was not kept.
+struct ReportLightView {
+  std::optional<Image8> visibility = {};
+  std::optional<Image8> error = {};  ///< none for the reference
+  std::string packed_visibility = {};
+  std::string packed_masks = {};
+};
+
+/// A part of a method's error: what repairing one cause alone would change.
+struct ErrorBudgetPart {
+  std::string cause;             ///< "resolution", "layers" …
+  std::optional<double> change;  ///< of the RMSE, negative if it shrinks; none: cannot be separated
+};
+
+/// What the report shows of one method beside its numbers; what was not made is left out.
 struct ReportEntry {
   visibility::MethodDescription description;
-  std::optional<Image8> beauty, visibility;
-  std::optional<Image8> error;  ///< none for the reference
+  std::optional<Image8> beauty;
+  std::string packed_beauty;
+  std::vector<ReportLightView> lights;        ///< as ReportInput::lights
+  std::vector<ErrorBudgetPart> error_budget;  ///< empty: nobody asked for it
+};
+
+/// A light as the report tells of it, with what its read-out needs.
+struct ReportLight {
+  std::string name;
+  std::string packed_classes = {};                 ///< visibility::PixelClass of each pixel
+  bool round = false;                              ///< a disk or sphere; else a rectangle, or what one bounds
+  double aspect = 1;                               ///< length of u over that of v
+  std::vector<glm::dvec2> samples = {};            ///< of the methods, along u and v in [−1, 1]
+  std::vector<glm::dvec2> reference_samples = {};  ///< empty: the same
 };
 
 /// All that the report says. Every string may come from a user: the report escapes it.
@@ -32,9 +62,10 @@ struct ReportInput {
   std::vector<std::string> arguments;  ///< what followed the program's name, for "how to reproduce"
   std::vector<ReportFact> scene;       ///< describe_scene() and what else there is to say
   Metrics metrics;                     ///< the same numbers as metrics.json
+  std::vector<ReportLight> lights;     ///< the chosen one first; at least one
   ReportEntry reference;
+  std::optional<ReportEntry> rays;   ///< on the methods' light samples, where the reference looked at others
   std::vector<ReportEntry> methods;  ///< in the order of metrics.methods
-  std::string light;                 ///< the name of the light that V, errors and pairs are of
   double error_limit = 1;            ///< of the error pictures' scale
   float exposure = 1;                ///< of the beauty pictures
   bool same_samples = false;         ///< the reference used the methods' light samples
@@ -46,8 +77,9 @@ struct ReportInput {
 /// The scene in words: size, triangles, objects, each light, the camera.
 std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera);
 
-/// One self-contained HTML page: no scripts, nothing from the network, pictures inside. Readable by someone who has
-/// never seen the program, in light and dark, on a phone and on paper.
+/// One self-contained HTML page: nothing from the network, pictures inside. Readable by someone who has never seen the
+/// program, in light and dark, on a phone and on paper, and without script. Script of its own (compare/page/) adds a
+/// viewer, a read-out of each pixel, and tables that sort.
 std::string report_html(const ReportInput& input);
 
 /// Writes it whole or not at all.

@@ -120,13 +120,17 @@ std::string shell_text(std::span<const std::string> arguments) {
   return text;
 }
 
-std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html) {
+std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html,
+                        const ViewerPlace& place) {
   const std::string alt = escape_html(alt_text);
+  const std::string opens = place.entry ? fmt::format(R"html( data-layer="{}" data-entry="{}" data-light="{}")html",
+                                                      place.layer, *place.entry, place.light)
+                                        : "";
   return fmt::format(
-      R"html(<figure><label class="picture"><input type="checkbox" aria-label="Enlarge: {0}">
+      R"html(<figure><label class="picture"><input type="checkbox" aria-label="Enlarge: {0}"{5}>
 <img alt="{0}" width="{1}" height="{2}" src="{3}"></label><figcaption>{4}</figcaption></figure>
 )html",
-      alt, image.width, image.height, png_data_uri(image), caption_html);
+      alt, image.width, image.height, png_data_uri(image), caption_html, opens);
 }
 
 std::string error_legend_html(double limit) {
@@ -174,14 +178,16 @@ aria-label="Grey scale of V: black is 0, the light is hidden; white is 1, the wh
 }
 
 std::string table_html(const ReportTable& table) {
-  std::string html =
-      fmt::format("<div class=\"scroll\" tabindex=\"0\"><table><caption>{}</caption><thead><tr>", table.caption);
+  std::string html = fmt::format(
+      "<div class=\"scroll\" tabindex=\"0\"><table class=\"sortable\"><caption>{}</caption><thead><tr>", table.caption);
   for (const std::string& header : table.headers) html += fmt::format(R"html(<th scope="col">{}</th>)html", header);
   html += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      html += i == 0 ? fmt::format(R"html(<th scope="row">{}</th>)html", row[i]) : fmt::format("<td>{}</td>", row[i]);
+      const std::string value = row[i].value ? fmt::format(" data-value=\"{}\"", *row[i].value) : "";
+      html += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", row[i].html)
+                     : fmt::format("<td{}>{}</td>", value, row[i].html);
     }
     html += "</tr>\n";
   }

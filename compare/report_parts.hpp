@@ -2,11 +2,13 @@
 
 #include "base/image.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// The pieces that the report is put together from. Whatever says "text" is escaped by the function that takes it;
@@ -27,8 +29,17 @@ std::string speed_text(const std::optional<double>& seconds, const std::optional
 /// The arguments as a shell would want them.
 std::string shell_text(std::span<const std::string> arguments);
 
-/// A picture that grows to the window when clicked (a check box and CSS: no script). `caption_html` is finished.
-std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html);
+/// Which of the viewer's pictures a figure opens.
+struct ViewerPlace {
+  std::string_view layer;            ///< beauty, v or error
+  std::optional<std::size_t> entry;  ///< in the script's data; none: the viewer does not have it
+  std::size_t light = 0;
+};
+
+/// A picture that grows to the window when clicked (a check box and CSS: no script), or opens the viewer there.
+/// `caption_html` is finished.
+std::string figure_html(const Image8& image, std::string_view alt_text, std::string_view caption_html,
+                        const ViewerPlace& place = {});
 
 /// The scale of the error pictures, with numbers.
 std::string error_legend_html(double limit);
@@ -37,16 +48,28 @@ std::string visibility_legend_html();
 /// A drawing of a light, an object, a floor and the shadow's parts.
 std::string shadow_drawing_html();
 
-/// A table of numbers: a caption, a row of headers, rows whose first cell is their header. All cells finished HTML.
+/// A cell: finished HTML, and the number that the column sorts by (none: as the text says, a dash last).
+struct ReportCell {
+  std::string html;
+  std::optional<double> value = {};
+
+  ReportCell(std::string text_html, std::optional<double> number = {}) : html(std::move(text_html)), value(number) {}
+  ReportCell(const char* text_html) : html(text_html) {}
+};
+
+/// A table of numbers: a caption, a row of headers, rows whose first cell is their header.
 struct ReportTable {
   std::string caption;
   std::vector<std::string> headers;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<ReportCell>> rows;
 };
 std::string table_html(const ReportTable& table);
 
-/// The style sheet and the glossary: report_style.cpp.
-extern const std::string_view kReportStyle;
+/// The glossary: report_words.cpp.
 extern const std::string_view kReportGlossary;
+/// The files of compare/page/: the style sheet, the script, and the viewer's elements.
+extern const std::string_view kReportStyle;
+extern const std::string_view kReportScript;
+extern const std::string_view kReportViewer;
 
 }  // namespace penumbra::compare

@@ -2,81 +2,159 @@
 
 #include "compare/question.hpp"
 #include "compare/report_parts.hpp"
+#include "compare/report_plots.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace penumbra::compare {
 namespace {
 
-std::vector<std::string> error_cells(const std::optional<VisibilityError>& error) {
-  if (!error) return std::vector<std::string>(6, "–");
-  return {error_text(error->mean), error_text(error->rmse),     error_text(error->p999),
-          error_text(error->max),  percent_text(error->over05), signed_text(error->bias)};
+void add_error_cells(std::vector<ReportCell>& row, const std::optional<VisibilityError>& error, bool is_best) {
+  if (!error) {
+    row.insert(row.end(), 6, "–");
+    return;
+  }
+  const auto best = [&](const std::string& text) {
+    return is_best ? "<span class=\"best\">" + text + "</span>" : text;
+  };
+  row.insert(row.end(), {{error_text(error->mean), error->mean},
+                         {best(error_text(error->rmse)), error->rmse},
+                         {error_text(error->p999), error->p999},
+                         {error_text(error->max), error->max},
+                         {percent_text(error->over05), error->over05},
+                         {signed_text(error->bias), error->bias}});
 }
 
-std::string errors_html(const ReportInput& in) {
-  const std::string judged = count_text(in.metrics.judged_pixels), horizon = count_text(in.metrics.horizon_pixels);
-  ReportTable table{"Error of V against " + escape_html(in.metrics.reference.method) + ". 0 would be perfect. " +
-                        judged + " judged pixels, " + horizon + " horizon pixels.",
-                    {"Method", "Pixels", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias",
-                     "RMSE of the beauty"},
-                    {}};
-  const MethodResult* best = smallest(in.metrics.methods, rmse_of);
+/// What a table of errors is of: of one light, or of all together.
+struct ErrorRows {
+  std::string caption;
+  std::optional<VisibilityError> (*error_of)(const MethodResult& result, std::size_t light);
+  std::size_t light = 0;
+  bool with_beauty = false;
+  std::optional<VisibilityError> rays = {};  ///< what the methods' light samples cost
+};
+
+std::string errors_table_html(const ReportInput& in, const ErrorRows& rows) {
+  ReportTable table{
+      rows.caption, {"Method", "Mean", "RMSE", "99.9 % within", "Largest", "Off by over 0.05", "Bias"}, {}};
+  if (rows.with_beauty) table.headers.emplace_back("RMSE of the beauty");
+  std::optional<double> best;
+  for (const MethodResult& result : in.metrics.methods) {
+    const auto error = rows.error_of(result, rows.light);
+    if (error && (!best || error->rmse < *best)) best = error->rmse;
+  }
+  const auto add = [&](std::string label, const std::optional<VisibilityError>& error, bool may_be_best) {
+    std::vector<ReportCell> row{std::move(label)};
+    add_error_cells(row, error, may_be_best && error && error_text(error->rmse) == error_text(*best));
+    table.rows.push_back(std::move(row));
+  };
   for (const MethodResult& result : in.metrics.methods) {
     if (result.failure) continue;
-    std::vector<std::string> cells = error_cells(result.error);
-    if (&result == best) cells[1] = "<span class=\"best\">" + cells[1] + "</span>";
-    cells.insert(cells.begin(), {escape_html(result.entry), "judged"});
-    cells.push_back(result.beauty_error ? percent_text(result.beauty_error->relative_rmse) : "–");
-    table.rows.push_back(cells);
-    if (result.horizon_error) {
-      cells = error_cells(result.horizon_error);
-      cells.insert(cells.begin(), {label_html(result.entry, "horizon pixels"), "horizon"});
-      cells.emplace_back("–");
-      table.rows.push_back(cells);
-    }
+    add(escape_html(result.entry), rows.error_of(result, rows.light), true);
+    if (!rows.with_beauty) continue;
+    const auto& beauty = result.beauty_error;
+    table.rows.back().push_back(beauty ? ReportCell(percent_text(beauty->relative_rmse), beauty->relative_rmse) : "–");
+  }
+  if (rows.rays) {
+    add(label_html("rays on the same light samples", rays_label(in) + ": what so many light samples cost"), rows.rays,
+        false);
+    if (rows.with_beauty) table.rows.back().emplace_back("–");
   }
   return table_html(table);
 }
 
-std::string pairs_html(const ReportInput& in) {
-  ReportTable table{"Pair by pair: on how many (view sample, light sample) pairs does a method answer other than " +
-                        escape_html(in.metrics.reference.method) + "?",
-                    {"Method", "Differing pairs", "of all pairs", "share", "of pairs in penumbrae", "share"},
-                    {}};
-  ReportTable verdicts{
-      "Who is right where they differ? Decided by exact arithmetic, which does not round.",
-      {"Method", "Pairs decided", "of those that differ", "Method right", "Reference right", "Ties read by rule"},
-      {}};
-  const auto share = [](std::uint64_t part, std::uint64_t whole) {
-    return whole == 0 ? std::string("–")
-                      : fmt::format("{:.2g}", static_cast<double>(part) / static_cast<double>(whole));
-  };
+std::optional<VisibilityError> error_under(const MethodResult& result, std::size_t light) {
+  return light < result.lights.size() ? result.lights[light].error : std::nullopt;
+}
+
+std::optional<VisibilityError> horizon_error_under(const MethodResult& result, std::size_t light) {
+  return light < result.lights.size() ? result.lights[light].horizon_error : std::nullopt;
+}
+
+/// How many pixels are judged, or at the horizon, under a light: the same for all methods.
+const LightResult* pixels_under(const ReportInput& in, std::size_t light) {
   for (const MethodResult& result : in.metrics.methods) {
-    if (result.pairs) {
-      const PairCounts& pairs = *result.pairs;
-      table.rows.push_back({escape_html(result.entry), count_text(pairs.differing), count_text(pairs.all),
-                            share(pairs.differing, pairs.all), count_text(pairs.penumbra),
-                            share(pairs.differing, pairs.penumbra)});
-    }
-    if (result.verdicts) {
-      const PairVerdicts& v = *result.verdicts;
-      verdicts.rows.push_back({escape_html(result.entry), count_text(v.decided),
-                               percent_text(result.pairs ? decided_share(*result.pairs, v) : 1),
-                               count_text(v.method_right), count_text(v.reference_right),
-                               count_text(v.zero_predicate)});
-    }
+    if (light < result.lights.size()) return &result.lights[light];
   }
-  std::string html;
-  if (!table.rows.empty()) html += table_html(table);
-  if (!verdicts.rows.empty()) {
-    html +=
-        table_html(verdicts) +
-        "<p class=\"note\">A tie: the line of sight meets an edge or a corner exactly; the "
-        "definition of visibility says how to read it. Where too many pairs differ, an evenly spaced sample of them "
-        "is decided.</p>\n";
+  return nullptr;
+}
+
+std::string errors_html(const ReportInput& in) {
+  const std::string against = "Error of V against " + escape_html(in.metrics.reference.method);
+  const bool several = in.lights.size() > 1;
+  const SampleCost* cost = in.metrics.same_samples ? &*in.metrics.same_samples : nullptr;
+  const auto cost_under = [&](std::size_t light) {
+    return cost != nullptr && light < cost->lights.size() ? cost->lights[light].error : std::nullopt;
+  };
+  std::string html = "<h3>Errors</h3>\n", horizon;
+  if (several) {
+    html += errors_table_html(in, {against + " under all lights together. 0 would be perfect.",
+                                   [](const MethodResult& result, std::size_t) { return result.all_lights_error; }, 0,
+                                   true, cost != nullptr ? cost->all_lights_error : std::nullopt});
   }
+  for (std::size_t light = 0; light < in.lights.size(); ++light) {
+    const LightResult* pixels = pixels_under(in, light);
+    if (pixels == nullptr) continue;
+    const std::string under = several ? " under light “" + escape_html(in.lights[light].name) + "”" : "";
+    html += errors_table_html(in, {against + under + ". 0 would be perfect. " + count_text(pixels->judged_pixels) +
+                                       " judged pixels, " + count_text(pixels->horizon_pixels) + " horizon pixels.",
+                                   error_under, light, !several, cost_under(light)});
+    if (pixels->horizon_pixels == 0) continue;
+    horizon +=
+        errors_table_html(in, {against + under + " at " + count_text(pixels->horizon_pixels) + " horizon pixels.",
+                               horizon_error_under, light});
+  }
+  if (!horizon.empty()) html += "<details><summary>Errors at the horizon</summary>\n" + horizon + "</details>\n";
   return html;
+}
+
+/// Exactness: what each answers pair by pair, against rays on the very same light samples.
+std::string pairs_html(const ReportInput& in) {
+  const auto share = [](std::uint64_t part, std::uint64_t whole) -> ReportCell {
+    if (whole == 0) return "–";
+    const double value = static_cast<double>(part) / static_cast<double>(whole);
+    return {fmt::format("{:.2g}", value), value};
+  };
+  const auto count = [](std::uint64_t number) { return ReportCell(count_text(number), static_cast<double>(number)); };
+  std::string html;
+  for (std::size_t light = 0; light < in.lights.size(); ++light) {
+    const std::string under =
+        in.lights.size() > 1 ? " Under light “" + escape_html(in.lights[light].name) + "”." : std::string();
+    ReportTable table{
+        "On how many (view sample, light sample) pairs does a method answer other than " + escape_html(rays_label(in)) +
+            ", the same ones?" + under,
+        {"Method", "Differing pairs", "of all pairs", "share", "of pairs in penumbrae", "share", "RMSE of V"},
+        {}};
+    ReportTable verdicts{
+        "Who is right where they differ? Decided by exact arithmetic, which does not round." + under,
+        {"Method", "Pairs decided", "of those that differ", "Method right", "Rays right", "Ties read by rule"},
+        {}};
+    for (const MethodResult& result : in.metrics.methods) {
+      if (light >= result.lights.size() || !result.lights[light].same_samples) continue;
+      const auto& [error, pairs, v] = *result.lights[light].same_samples;
+      table.rows.push_back({escape_html(result.entry), count(pairs.differing), count(pairs.all),
+                            share(pairs.differing, pairs.all), count(pairs.penumbra),
+                            share(pairs.differing, pairs.penumbra),
+                            error ? ReportCell(error_text(error->rmse), error->rmse) : "–"});
+      if (v.decided == 0) continue;
+      verdicts.rows.push_back({escape_html(result.entry),
+                               count(v.decided),
+                               {percent_text(decided_share(pairs, v)), decided_share(pairs, v)},
+                               count(v.method_right),
+                               count(v.reference_right),
+                               count(v.zero_predicate)});
+    }
+    if (!table.rows.empty()) html += table_html(table);
+    if (!verdicts.rows.empty()) html += table_html(verdicts);
+  }
+  if (html.empty()) return html;
+  return "<h3>Exactness, pair by pair</h3>\n" + html +
+         "<p class=\"note\">Methods with a mask are held against rays on their own light samples, so that equal is "
+         "compared with equal. A tie: the line of sight meets an edge or a corner exactly; the definition of "
+         "visibility "
+         "says how to read it. Where too many pairs differ, an evenly spaced sample of them is decided.</p>\n";
 }
 
 /// Nothing if every method answered.
@@ -98,16 +176,28 @@ std::string seconds_html(const ReportInput& in) {
       "the cell says what the reference was asked.",
       {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory"},
       {}};
+  const auto seconds_cell = [](const std::optional<double>& seconds) {
+    return ReportCell(seconds_text(seconds), seconds);
+  };
   const auto row = [&](const std::string& label, const Stats& stats, bool is_best, const std::string& speed) {
-    const std::string shadow = seconds_text(stats.seconds.shadow());
-    table.rows.push_back({label, is_best ? "<span class=\"best\">" + shadow + "</span>" : shadow, speed,
-                          seconds_text(stats.seconds.light), seconds_text(stats.seconds.evaluate),
-                          seconds_text(stats.seconds.mesh), seconds_text(stats.seconds.warmup),
-                          bytes_text(stats.peak_memory_bytes)});
+    const auto shadow = stats.seconds.shadow();
+    ReportCell cell = seconds_cell(shadow);
+    if (is_best) cell.html = "<span class=\"best\">" + cell.html + "</span>";
+    const auto of_reference = reference.seconds.shadow();
+    const bool has_ratio = shadow && of_reference && *shadow > 0 && speed.find("×") != std::string::npos;
+    table.rows.push_back({label,
+                          cell,
+                          {speed, has_ratio ? std::optional(*of_reference / *shadow) : std::nullopt},
+                          seconds_cell(stats.seconds.light),
+                          seconds_cell(stats.seconds.evaluate),
+                          seconds_cell(stats.seconds.mesh),
+                          seconds_cell(stats.seconds.warmup),
+                          {bytes_text(stats.peak_memory_bytes), static_cast<double>(stats.peak_memory_bytes)}});
   };
   const std::string asked = question_of({in.reference.description, reference});
   row(label_html(reference.method, "the reference, " + asked), reference, false, "–");
-  const MethodResult* best = smallest(in.metrics.methods, shadow_of);
+  const std::vector<const MethodResult*> best =
+      smallest(in.metrics.methods, shadow_of, [](double seconds) { return seconds_text(seconds); });
   for (std::size_t i = 0; i < in.methods.size(); ++i) {
     const MethodResult& result = in.metrics.methods[i];
     if (result.failure) continue;
@@ -118,9 +208,9 @@ std::string seconds_html(const ReportInput& in) {
                   "</small>";
     row(label_html(result.entry,
                    fmt::format("{}, {}", question_of({in.methods[i].description, result.stats}), result.stats.device)),
-        result.stats, &result == best, speed);
+        result.stats, std::ranges::find(best, &result) != best.end(), speed);
   }
-  return table_html(table);
+  return "<h3>Time</h3>\n" + table_html(table);
 }
 
 std::string details_html(const ReportInput& in) {
@@ -132,13 +222,16 @@ std::string details_html(const ReportInput& in) {
     if (!stats.passes.empty()) {
       ReportTable table{"Where the time goes", {"Pass", "Time"}, {}};
       for (const visibility::PassTime& pass : stats.passes) {
-        table.rows.push_back({escape_html(pass.name), seconds_text(pass.milliseconds / 1000)});
+        table.rows.push_back(
+            {escape_html(pass.name), {seconds_text(pass.milliseconds / 1000), pass.milliseconds / 1000}});
       }
       html += table_html(table);
     }
     if (!stats.counters.empty()) {
       ReportTable table{"What was counted", {"Counter", "Count"}, {}};
-      for (const auto& [name, count] : stats.counters) table.rows.push_back({escape_html(name), count_text(count)});
+      for (const auto& [name, count] : stats.counters) {
+        table.rows.push_back({escape_html(name), {count_text(count), static_cast<double>(count)}});
+      }
       html += table_html(table);
     }
     html += "</details>\n";
@@ -157,15 +250,36 @@ std::string label_html(const std::string& name, const std::string& small) {
   return escape_html(name) + (small.empty() ? "" : "<small>" + escape_html(small) + "</small>");
 }
 
+std::vector<const MethodResult*> smallest(const std::vector<MethodResult>& results, NumberOf number_of,
+                                          TextOf text_of) {
+  std::optional<double> best;
+  for (const MethodResult& result : results) {
+    const auto number = number_of(result);
+    if (number && (!best || *number < *best)) best = number;
+  }
+  std::vector<const MethodResult*> tied;
+  for (const MethodResult& result : results) {
+    const auto number = number_of(result);
+    if (number && text_of(*number) == text_of(*best)) tied.push_back(&result);
+  }
+  return tied;
+}
+
+std::string rays_label(const ReportInput& in) {
+  const Stats& rays = in.metrics.same_samples ? in.metrics.same_samples->stats : in.metrics.reference;
+  return fmt::format("{}, {} light samples", rays.method, rays.light_samples);
+}
+
 std::optional<double> rmse_of(const MethodResult& result) {
-  return result.error ? std::optional(result.error->rmse) : std::nullopt;
+  return result.all_lights_error ? std::optional(result.all_lights_error->rmse) : std::nullopt;
 }
 std::optional<double> shadow_of(const MethodResult& result) {
   return result.stats.seconds.shadow();
 }
 
 std::string number_tables_html(const ReportInput& in) {
-  return failures_html(in) + errors_html(in) + pairs_html(in) + seconds_html(in) + details_html(in);
+  return failures_html(in) + error_against_time_html(in) + errors_html(in) + pairs_html(in) + error_budget_html(in) +
+         seconds_html(in) + details_html(in);
 }
 
 }  // namespace penumbra::compare

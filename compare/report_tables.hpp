@@ -15,16 +15,16 @@ bool same_question(const ReportInput& in, const ReportEntry& entry, const Method
 /// The label of the method in tables and captions; `small` is a second, paler line.
 std::string label_html(const std::string& name, const std::string& small);
 
-/// The entry for which `value_of` (an optional number) is smallest.
-template <typename ValueOf>
-const MethodResult* smallest(const std::vector<MethodResult>& results, ValueOf value_of) {
-  const MethodResult* best = nullptr;
-  for (const MethodResult& result : results) {
-    if (value_of(result) && (best == nullptr || *value_of(result) < *value_of(*best))) best = &result;
-  }
-  return best;
-}
+/// The entries whose number is smallest as it is shown: more than one where they tie. Of numbers that look the same
+/// none is called better.
+using NumberOf = std::optional<double> (*)(const MethodResult&);
+using TextOf = std::string (*)(double);
+std::vector<const MethodResult*> smallest(const std::vector<MethodResult>& results, NumberOf number_of, TextOf text_of);
 
+/// How rays on the methods' light samples are called: "raytrace, 256 light samples".
+std::string rays_label(const ReportInput& in);
+
+/// Of V over all lights.
 std::optional<double> rmse_of(const MethodResult& result);
 std::optional<double> shadow_of(const MethodResult& result);
 

@@ -23,24 +23,47 @@ Json to_json(const std::optional<VisibilityError>& error) {
           {"max", error->max},   {"over05", error->over05}, {"bias", error->bias}};
 }
 
-Json to_json(const MethodResult& result) {
-  Json json = compare::to_json(result.stats);
-  json["entry"] = result.entry;
-  json["error"] = to_json(result.error);
-  json["horizonError"] = to_json(result.horizon_error);
-  const auto& beauty = result.beauty_error;
-  json["beautyError"] =
-      beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
-  const auto& pairs = result.pairs;
+/// The keys of pairs and of who was right; null where there are none.
+void add_pairs(Json& json, const std::optional<PairCounts>& pairs, const std::optional<PairVerdicts>& verdicts) {
   json["pairs"] = pairs ? Json(pairs->penumbra) : Json();
   json["pairsAll"] = pairs ? Json(pairs->all) : Json();
   json["pairsDiffering"] = pairs ? Json(pairs->differing) : Json();
-  const auto& verdicts = result.verdicts;
   json["pairsDecided"] = verdicts ? Json(verdicts->decided) : Json();
   json["pairsDecidedShare"] = pairs && verdicts ? Json(decided_share(*pairs, *verdicts)) : Json();
   json["pairsZeroPredicate"] = verdicts ? Json(verdicts->zero_predicate) : Json();
   json["pairsMethodRight"] = verdicts ? Json(verdicts->method_right) : Json();
   json["pairsReferenceRight"] = verdicts ? Json(verdicts->reference_right) : Json();
+}
+
+Json to_json(const std::vector<LightResult>& lights) {
+  Json json = Json::array();
+  for (const LightResult& light : lights) {
+    Json same;  // null
+    if (const auto& rays = light.same_samples) {
+      same = {{"error", to_json(rays->error)}};
+      add_pairs(same, rays->pairs, rays->verdicts);
+    }
+    json.push_back({{"name", light.name},
+                    {"judgedPixels", light.judged_pixels},
+                    {"horizonPixels", light.horizon_pixels},
+                    {"error", to_json(light.error)},
+                    {"horizonError", to_json(light.horizon_error)},
+                    {"sameSamples", same}});
+  }
+  return json;
+}
+
+Json to_json(const MethodResult& result) {
+  Json json = compare::to_json(result.stats);
+  json["entry"] = result.entry;
+  json["error"] = to_json(result.error);
+  json["horizonError"] = to_json(result.horizon_error);
+  json["errorAllLights"] = to_json(result.all_lights_error);
+  json["lights"] = to_json(result.lights);
+  const auto& beauty = result.beauty_error;
+  json["beautyError"] =
+      beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
+  add_pairs(json, result.pairs, result.verdicts);
   const auto& failure = result.failure;
   json["failure"] = failure ? Json{{"exitCode", failure->exit_code}, {"message", failure->message}} : Json();
   return json;
@@ -80,9 +103,16 @@ Json to_json(const Stats& stats) {
 Json to_json(const Metrics& metrics) {
   Json methods = Json::array();
   for (const MethodResult& result : metrics.methods) methods.push_back(to_json(result));
+  Json same_samples;  // null
+  if (const auto& rays = metrics.same_samples) {
+    same_samples = compare::to_json(rays->stats);
+    same_samples["errorAllLights"] = to_json(rays->all_lights_error);
+    same_samples["lights"] = to_json(rays->lights);
+  }
   return {{"reference", to_json(metrics.reference)},
           {"judgedPixels", metrics.judged_pixels},
           {"horizonPixels", metrics.horizon_pixels},
+          {"sameSamples", same_samples},
           {"methods", methods}};
 }
 

@@ -49,10 +49,29 @@ struct MethodFailure {
   std::string message;
 };
 
+/// A method with masks against rays (`raytrace`) on its own light samples, whatever the reference is: what a number of
+/// light samples costs is not in it, only what the method itself does wrong.
+struct SameSamples {
+  std::optional<VisibilityError> error = {};  ///< over judged pixels
+  PairCounts pairs = {};
+  PairVerdicts verdicts = {};  ///< of all differing pairs, or of an evenly spaced sample of them
+};
+
+/// What a method makes of one light.
+struct LightResult {
+  std::string name;
+  std::uint64_t judged_pixels = 0, horizon_pixels = 0;
+  std::optional<VisibilityError> error, horizon_error;
+  std::optional<SameSamples> same_samples;  ///< none for a method without masks
+};
+
 /// One line of metrics.json. What does not apply stays empty and becomes null.
 struct MethodResult {
   std::string entry;  ///< the method as asked for: "pcss:search=16"
   Stats stats;
+  std::vector<LightResult> lights;                  ///< each light of the scene, the chosen one first
+  std::optional<VisibilityError> all_lights_error;  ///< over all lights' judged pixels together
+  // Of the first light:
   std::optional<VisibilityError> error;          ///< over judged pixels
   std::optional<VisibilityError> horizon_error;  ///< over horizon pixels
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
@@ -61,10 +80,18 @@ struct MethodResult {
   std::optional<MethodFailure> failure;          ///< then there are no seconds, errors and pairs
 };
 
+/// Rays on the methods' own light samples, run beside a reference that looks at others.
+struct SampleCost {
+  Stats stats;
+  std::vector<LightResult> lights;                  ///< against the reference: what so many light samples cost
+  std::optional<VisibilityError> all_lights_error;  ///< over all lights' judged pixels together
+};
+
 /// metrics.json.
 struct Metrics {
   Stats reference;
-  std::uint64_t judged_pixels = 0, horizon_pixels = 0;
+  std::uint64_t judged_pixels = 0, horizon_pixels = 0;  ///< of the first light
+  std::optional<SampleCost> same_samples;
   std::vector<MethodResult> methods;
 };
 

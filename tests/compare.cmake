@@ -8,6 +8,7 @@ penumbra_test(compare
   unit/compare_metrics.cpp
   unit/compare_picture.cpp
   unit/compare_report.cpp
+  unit/compare_report_data.cpp
   unit/compare_stats.cpp
   unit/compare_visible_light.cpp
-  LIBRARIES penumbra_compare penumbra_reference TBB::tbb)
+  LIBRARIES penumbra_compare penumbra_reference nlohmann_json::nlohmann_json TBB::tbb ZLIB::ZLIB)

@@ -3,6 +3,7 @@
 #include "compare/report_parts.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -37,6 +38,8 @@ MethodResult result_of(const std::string& entry) {
   result.stats.passes = {{"test & count", 1234.0}};
   result.stats.counters = {{"candidates", 1234567}};
   result.error = VisibilityError{0.0012, 0.0034, 0.05, 0.5, 0.001, -0.0002};
+  result.all_lights_error = result.error;
+  result.lights = {{"key", 200000, 0, result.error, {}, {}}};
   return result;
 }
 
@@ -49,15 +52,17 @@ ReportInput input_with(std::size_t method_count) {
   in.metrics.reference.seconds.evaluate = 3.5;
   in.metrics.judged_pixels = 200000;
   in.reference.description.name = "raytrace";
-  in.reference.beauty = in.reference.visibility = picture(10);
+  in.lights.push_back({.name = "key"});
+  in.reference.beauty = picture(10);
+  in.reference.lights.push_back({.visibility = picture(10)});
   for (std::size_t i = 0; i < method_count; ++i) {
     in.metrics.methods.push_back(result_of("method-" + std::to_string(i)));
     ReportEntry entry;
     entry.description.name = "method-" + std::to_string(i);
-    entry.beauty = entry.visibility = entry.error = picture(static_cast<std::uint8_t>(20 + i));
+    entry.beauty = picture(static_cast<std::uint8_t>(20 + i));
+    entry.lights.push_back({.visibility = entry.beauty, .error = entry.beauty});
     in.methods.push_back(entry);
   }
-  in.light = "key";
   in.error_limit = 0.5;
   return in;
 }
@@ -66,13 +71,19 @@ ReportInput input_with(std::size_t method_count) {
 std::string unbalanced_tag(const std::string& html) {
   const std::vector<std::string> kVoid{"meta", "img", "input", "br", "!DOCTYPE"};
   std::vector<std::string> open;
+  bool in_script = false;  // whose text is no markup until it ends
   std::size_t at = 0;
   while ((at = html.find('<', at)) != std::string::npos) {
+    if (in_script && html.compare(at, 9, "</script>") != 0) {
+      ++at;
+      continue;
+    }
     const std::size_t end = html.find('>', at);
     if (end == std::string::npos) return html.substr(at, 40);
     const bool closing = html[at + 1] == '/';
     const std::size_t first = at + (closing ? 2 : 1);
     const std::string name = html.substr(first, html.find_first_of(" />\n", first) - first);
+    in_script = !closing && name == "script";
     const bool alone = html[end - 1] == '/' || std::find(kVoid.begin(), kVoid.end(), name) != kVoid.end();
     if (closing) {
       if (open.empty() || open.back() != name) return "/" + name;
@@ -85,22 +96,134 @@ std::string unbalanced_tag(const std::string& html) {
   return open.empty() ? "" : open.back();
 }
 
-TEST(Report, IsOneWellFormedPageWithoutScriptsOrNetwork) {
-  for (const std::size_t count : {0u, 1u, 2u, 8u}) {
-    const std::string html = report_html(input_with(count));
-    EXPECT_EQ(unbalanced_tag(html), "") << count;
-    EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
-    for (const char* word : {"<script", "http:", "https:", "@import", "<link", "<iframe"}) {
-      EXPECT_EQ(html.find(word), std::string::npos) << word;
-    }
-    EXPECT_EQ(occurrences(html, "url("), occurrences(html, "url(#"));
-    EXPECT_EQ(occurrences(html, "src=\""), occurrences(html, "src=\"data:image/png;base64,"));
-    // Beauty and V of the reference, its beauty once more as the scene's picture, three a method.
-    EXPECT_EQ(occurrences(html, "<img "), 3 + 3 * count);
-    EXPECT_EQ(occurrences(html, "<img alt=\""), occurrences(html, "<img "));
-    EXPECT_EQ(occurrences(html, "<img alt=\"\""), 0u);
-    EXPECT_EQ(occurrences(html, "<th>"), 0u) << "each table header says whether it is a row's or a column's";
+/// With numbers for the script: 2 × 2 pixels, masks of four light samples, `lights` lights.
+ReportInput touchable_input(std::size_t method_count, std::size_t light_count = 1) {
+  ReportInput in = input_with(method_count);
+  in.metrics.reference.width = in.metrics.reference.height = 2;
+  in.lights.clear();
+  for (std::size_t i = 0; i < light_count; ++i) {
+    ReportLight& light = in.lights.emplace_back();
+    light.name = "light " + std::to_string(i);
+    light.packed_classes = "Q0xBU1M=";
+    light.samples = {{-0.5, -0.5}, {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}};
   }
+  const auto fill = [&](ReportEntry& entry, bool has_error) {
+    entry.packed_beauty = "QkVBVVRZ";
+    entry.lights.resize(light_count);
+    for (ReportLightView& view : entry.lights) {
+      view.visibility = picture(10);
+      if (has_error) view.error = picture(20);
+      view.packed_visibility = "Vg==";
+      view.packed_masks = "TQ==";
+    }
+  };
+  fill(in.reference, false);
+  for (ReportEntry& entry : in.methods) fill(entry, true);
+  for (MethodResult& result : in.metrics.methods) {
+    result.lights.resize(light_count, result.lights.front());
+    for (std::size_t i = 0; i < light_count; ++i) result.lights[i].name = in.lights[i].name;
+  }
+  return in;
+}
+
+nlohmann::json data_of(const std::string& html) {
+  const std::string begin = "<script type=\"application/json\" id=\"report-data\">";
+  const std::size_t first = html.find(begin) + begin.size();
+  return nlohmann::json::parse(html.substr(first, html.find("</script>", first) - first));
+}
+
+TEST(Report, IsOneWellFormedPageWithoutNetwork) {
+  for (const std::size_t count : {0u, 1u, 2u, 8u}) {
+    for (const ReportInput& in : {input_with(count), touchable_input(count)}) {
+      const std::string html = report_html(in);
+      EXPECT_EQ(unbalanced_tag(html), "") << count;
+      EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
+      for (const char* word :
+           {"http:", "https:", "@import", "<link", "<iframe", " onclick", "eval(", "Function(", "fetch(", "import("}) {
+        EXPECT_EQ(html.find(word), std::string::npos) << word;
+      }
+      EXPECT_NE(html.find("default-src 'none'; img-src data:;"), std::string::npos);
+      EXPECT_EQ(occurrences(html, "url("), occurrences(html, "url(#"));
+      EXPECT_EQ(occurrences(html, "src=\""), occurrences(html, "src=\"data:image/png;base64,"));
+      // Beauty and V of the reference, its beauty once more as the scene's picture, three a method.
+      EXPECT_EQ(occurrences(html, "<img "), 3 + 3 * count);
+      EXPECT_EQ(occurrences(html, "<img alt=\""), occurrences(html, "<img "));
+      EXPECT_EQ(occurrences(html, "<img alt=\"\""), 0u);
+      EXPECT_EQ(occurrences(html, "<th>"), 0u) << "each table header says whether it is a row's or a column's";
+      // One script that runs; the others are data.
+      EXPECT_EQ(occurrences(html, "<script>"), 1u);
+    }
+  }
+}
+
+/// What the script works on is there, by name, for every entry and light; a method that failed is not among them.
+TEST(Report, CarriesTheNumbersOfEachPicture) {
+  ReportInput in = touchable_input(3, 2);
+  in.methods[1] = {};
+  in.metrics.methods[1].failure = MethodFailure{4, "out of memory"};
+  in.methods[2].lights[1].packed_masks.clear();
+  const std::string html = report_html(in);
+  EXPECT_EQ(unbalanced_tag(html), "");
+  const auto data = data_of(html);
+  EXPECT_EQ(data.at("width"), 2);
+  ASSERT_EQ(data.at("lights").size(), 2u);
+  EXPECT_EQ(data["lights"][1].at("name"), "light 1");
+  EXPECT_EQ(data["lights"][1].at("samples").dump(), "[[-0.5,-0.5],[0.5,-0.5],[-0.5,0.5],[0.5,0.5]]");
+  ASSERT_EQ(data.at("entries").size(), 3u);
+  EXPECT_EQ(data["entries"][2].at("label"), "method-2");
+  EXPECT_TRUE(data["entries"][2].at("lights").at(1).at("masks").is_null());
+  const auto blob = [&](const nlohmann::json& name) {
+    const std::string begin = "<script type=\"text/plain\" id=\"" + name.get<std::string>() + "\">";
+    EXPECT_EQ(occurrences(html, begin), 1u);
+    const std::size_t first = html.find(begin) + begin.size();
+    return html.substr(first, html.find('<', first) - first);
+  };
+  EXPECT_EQ(blob(data["entries"][1]["lights"][1]["v"]), "Vg==");
+  EXPECT_EQ(blob(data["entries"][1]["beauty"]), "QkVBVVRZ");
+  EXPECT_EQ(blob(data["lights"][0]["classes"]), "Q0xBU1M=");
+  // The figure of the last method opens the last entry.
+  EXPECT_EQ(occurrences(html, "data-layer=\"error\" data-entry=\"2\" data-light=\"1\""), 1u);
+  EXPECT_EQ(occurrences(html, "data-entry=\"3\""), 0u);
+}
+
+TEST(Report, JudgesEachLight) {
+  ReportInput in = touchable_input(1, 2);
+  in.metrics.methods[0].lights[1].error->rmse = 0.0625;
+  in.metrics.methods[0].all_lights_error->rmse = 0.0375;
+  const std::string html = report_html(in);
+  for (const char* text : {"under all lights together", "under light “light 0”", "under light “light 1”", ">0.0625<",
+                           ">0.0375<", "each of the scene’s 2 lights is judged by itself"}) {
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  }
+  EXPECT_EQ(occurrences(html, "<img "), 2 + 2 + 5u) << "V of each light, and its error";
+}
+
+/// What looks the same is not called better.
+TEST(Report, ShowsTiesAsTies) {
+  ReportInput in = input_with(3);
+  in.metrics.methods[1].all_lights_error->rmse = in.metrics.methods[1].lights[0].error->rmse = 0.00340001;
+  in.metrics.methods[2].all_lights_error->rmse = in.metrics.methods[2].lights[0].error->rmse = 0.0035;
+  const std::string html = report_html(in);
+  EXPECT_NE(html.find("<b>method-0, method-1</b><br>a tie: V is off by"), std::string::npos);
+  EXPECT_EQ(occurrences(html, "<span class=\"best\">0.0034</span>"), 2u);
+  EXPECT_NE(html.find("<b>method-0, method-1, method-2</b><br>a tie: 2 s for the shadow"), std::string::npos);
+}
+
+TEST(Report, DrawsErrorAgainstTimeAndTheBudget) {
+  ReportInput in = input_with(2);
+  EXPECT_NE(report_html(in).find("Error against time"), std::string::npos);
+  EXPECT_EQ(report_html(in).find("Error budget"), std::string::npos) << "nobody asked for it";
+  in.metrics.methods[1].all_lights_error->rmse = 0;
+  in.methods[0].error_budget = {{"layers & gaps", -0.0025}, {"view", 0.00125}, {"fusion", std::nullopt}};
+  const std::string html = report_html(in);
+  EXPECT_EQ(unbalanced_tag(html), "");
+  // Half as long as the longest, to the right of the line in the middle.
+  EXPECT_NE(html.find("<td data-value=\"0.00125\">+0.00125<svg"), std::string::npos);
+  EXPECT_NE(html.find("class=\"worse\" x=\"40.0\" y=\"2\" width=\"19.0\""), std::string::npos);
+  EXPECT_NE(html.find("class=\"better\" x=\"2.0\" y=\"2\" width=\"38.0\""), std::string::npos);
+  EXPECT_NE(html.find("layers &amp; gaps"), std::string::npos);
+  for (MethodResult& result : in.metrics.methods) result.stats.seconds = {};
+  EXPECT_EQ(report_html(in).find("Error against time"), std::string::npos);
 }
 
 TEST(Report, LinksLeadSomewhere) {
@@ -116,29 +239,31 @@ TEST(Report, LinksLeadSomewhere) {
 
 TEST(Report, SaysTheNumbers) {
   ReportInput in = input_with(1);
-  in.metrics.methods[0].pairs = PairCounts{67108864, 12345678, 37};
-  in.metrics.methods[0].verdicts = PairVerdicts{37, 31, 6, 5};
-  in.metrics.methods[0].horizon_error = VisibilityError{0.25, 0.3125, 0.5, 0.625, 0.75, 0.0625};
+  in.metrics.methods[0].lights[0].same_samples =
+      SameSamples{VisibilityError{.rmse = 0.0078125}, {67108864, 12345678, 37}, {37, 31, 6, 5}};
+  in.metrics.methods[0].lights[0].horizon_error = VisibilityError{0.25, 0.3125, 0.5, 0.625, 0.75, 0.0625};
+  in.metrics.methods[0].lights[0].horizon_pixels = 4321;
   in.metrics.methods[0].beauty_error = BeautyError{0.0625, 0.03125};
-  in.metrics.horizon_pixels = 4321;
   const std::string html = report_html(in);
-  for (const char* text : {"<td>0.0012</td>",
+  for (const char* text : {">0.0012</td>",
                            "0.0034</span></td>",
-                           "<td>0.5</td>",
-                           "<td>0.1 %</td>",
-                           "<td>−0.0002</td>",
-                           "<td>6.25 %</td>",  // error
-                           "<td>0.25</td>",
-                           "<td>+0.0625</td>",
-                           "4\u202f321 horizon pixels",  // horizon's row
-                           "<td>37</td>",
-                           "<td>67\u202f108\u202f864</td>",
-                           "<td>12\u202f345\u202f678</td>",
-                           "<td>31</td>",            // pairs
-                           "<td>2.00× faster</td>",  // 4 s of the reference against 2 s
-                           "<td>500 ms</td>",
+                           ">0.5</td>",
+                           ">0.1 %</td>",
+                           ">−0.0002</td>",
+                           ">6.25 %</td>",  // error
+                           ">0.25</td>",
+                           ">+0.0625</td>",
+                           "4\u202f321 horizon pixels",  // horizon's table
+                           "<td data-value=\"37\">37</td>",
+                           ">67\u202f108\u202f864</td>",
+                           ">12\u202f345\u202f678</td>",
+                           ">31</td>",
+                           ">0.00781</td>",
+                           "37 of 67\u202f108\u202f864 answers differ",  // pairs
+                           "<td data-value=\"2\">2.00× faster</td>",     // 4 s of the reference against 2 s
+                           "<td data-value=\"0.5\">500 ms</td>",
                            "1.5 s",
-                           "<td>1\u202f234\u202f567</td>",
+                           ">1\u202f234\u202f567</td>",
                            "test &amp; count",
                            "./run.sh compare &#39;scenes/my scene.json&#39; -o out",
                            "penumbra 1.2.3"}) {
@@ -193,9 +318,10 @@ TEST(Report, ErrorScaleHasNumbers) {
 TEST(Report, MissingThingsAreLeftOut) {
   ReportInput in = input_with(2);
   in.reference.beauty.reset();
-  in.methods[0].error.reset();
+  in.methods[0].lights[0].error.reset();
   in.methods[1].beauty.reset();
-  in.metrics.methods[0].error.reset();
+  in.metrics.methods[0].lights[0].error.reset();
+  in.metrics.methods[0].all_lights_error.reset();
   in.metrics.methods[1].stats.seconds = {};
   const std::string html = report_html(in);
   EXPECT_EQ(unbalanced_tag(html), "");
@@ -206,8 +332,9 @@ TEST(Report, MissingThingsAreLeftOut) {
 
 TEST(Report, EscapesEverythingThatCameFromOutside) {
   const std::string evil = "<script>alert(\"1\")</script>'&{}";
-  ReportInput in = input_with(1);
-  in.version = in.light = evil;
+  ReportInput in = touchable_input(2, 2);
+  const std::size_t scripts = occurrences(report_html(in), "<script");
+  in.version = in.lights[0].name = in.lights[1].name = evil;
   in.arguments = {evil};
   in.scene = {{evil, evil}};
   in.warnings = {evil};
@@ -220,12 +347,15 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
     stats->warnings = {evil};
   }
   in.metrics.methods[0].entry = evil;
-  in.metrics.methods[0].horizon_error = VisibilityError{};
-  in.metrics.methods[0].pairs = PairCounts{};
-  in.metrics.methods[0].verdicts = PairVerdicts{};
+  in.metrics.methods[0].lights[0].horizon_error = VisibilityError{};
+  in.metrics.methods[0].lights[0].horizon_pixels = 1;
+  in.metrics.methods[0].lights[0].same_samples = SameSamples{.pairs = {1, 1, 1}, .verdicts = {1, 1, 0, 0}};
+  in.metrics.methods[1].failure = MethodFailure{4, evil};
+  in.methods[0].error_budget = {{evil, 1.0}};
   in.methods[0].description.paper = in.methods[0].description.exact_for = evil;
   const std::string html = report_html(in);
-  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(occurrences(html, "<script"), scripts);
+  EXPECT_EQ(data_of(html).at("lights").at(1).at("name"), evil);
   EXPECT_EQ(html.find("alert(\""), std::string::npos);
   EXPECT_EQ(unbalanced_tag(html), "");
 }

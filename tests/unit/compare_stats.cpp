@@ -75,7 +75,9 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   failed.failure = MethodFailure{4, "out of memory"};
   metrics.methods = {result, MethodResult{}, sampled, failed};
   const auto json = to_json(metrics);
-  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "methods"}));
+  EXPECT_EQ(keys_of(json),
+            (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "sameSamples", "methods"}));
+  EXPECT_TRUE(json["sameSamples"].is_null()) << "the reference looked at the methods' own";
   EXPECT_EQ(json["reference"]["method"], "pcss");
   const auto& first = json["methods"][0];
   EXPECT_EQ(first["method"], "pcss");
@@ -103,6 +105,35 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   EXPECT_EQ(fourth["failure"]["exitCode"], 4);
   EXPECT_EQ(fourth["failure"]["message"], "out of memory");
   EXPECT_TRUE(fourth["error"].is_null() && fourth["seconds"]["shadow"].is_null());
+}
+
+/// Every light, and a method with masks against rays on its own light samples whatever the reference is.
+TEST(MetricsJson, JudgesEachLight) {
+  Metrics metrics;
+  metrics.same_samples = SampleCost{some_stats(), {{"key", 10, 1, VisibilityError{.rmse = 0.0625}, {}, {}}}, {}};
+  MethodResult result;
+  result.all_lights_error = VisibilityError{.rmse = 0.5};
+  result.lights = {{"key", 10, 1, VisibilityError{.rmse = 0.25}, VisibilityError{.rmse = 0.75}, {}},
+                   {"rim", 20, 2, {}, {}, SameSamples{VisibilityError{.rmse = 0.125}, {400, 300, 2}, {1, 1, 0, 1}}}};
+  metrics.methods = {result};
+  const auto json = to_json(metrics);
+  EXPECT_EQ(json["sameSamples"]["method"], "pcss");
+  EXPECT_EQ(json["sameSamples"]["lights"][0]["error"]["rmse"], 0.0625);
+  const auto& method = json["methods"][0];
+  EXPECT_EQ(method["errorAllLights"]["rmse"], 0.5);
+  EXPECT_TRUE(method["pairs"].is_null()) << "the reference's alone, which looked at others";
+  ASSERT_EQ(method["lights"].size(), 2u);
+  EXPECT_EQ(keys_of(method["lights"][0]), (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error",
+                                                                    "horizonError", "sameSamples"}));
+  EXPECT_EQ(method["lights"][0]["horizonError"]["rmse"], 0.75);
+  EXPECT_TRUE(method["lights"][0]["sameSamples"].is_null());
+  const auto& same = method["lights"][1]["sameSamples"];
+  EXPECT_EQ(keys_of(same), (std::vector<std::string>{"error", "pairs", "pairsAll", "pairsDiffering", "pairsDecided",
+                                                     "pairsDecidedShare", "pairsZeroPredicate", "pairsMethodRight",
+                                                     "pairsReferenceRight"}));
+  EXPECT_EQ(same["error"]["rmse"], 0.125);
+  EXPECT_EQ(same["pairsDiffering"], 2);
+  EXPECT_EQ(same["pairsDecidedShare"], 0.5);
 }
 
 TEST(JsonText, SurvivesBytesThatAreNoUtf8) {

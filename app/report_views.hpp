@@ -1,0 +1,52 @@
+#pragma once
+
+#include "app/runner.hpp"
+#include "app/session.hpp"
+#include "base/packed.hpp"
+#include "compare/report.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// A run's masks on their way into the report, deflated as they come.
+class PackedMasks {
+ public:
+  explicit PackedMasks(std::size_t lights) : lights_(lights) {}
+  void add(const TileResult& tile);
+  /// base64 of each light's masks; empty for a light without, or whose masks were too many.
+  std::vector<std::string> finish();
+
+  /// Of one light, in a browser's memory. A picture of 512 × 512 pixels with 1024 light samples has 32 MiB.
+  static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  /// Of one light, in the page.
+  static constexpr std::size_t kMostPackedBytes = std::size_t{3} << 20;
+
+ private:
+  struct One {
+    std::optional<Deflated> deflated;
+    std::size_t bytes = 0;
+  };
+  std::vector<One> lights_;
+};
+
+/// What the report's read-out needs to know of each light. `reference`: the lights as the reference sampled them.
+std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
+                                                bool same_samples);
+
+/// Pictures and packed numbers of a run, without errors.
+struct SeenByRun {
+  const MethodRun& run;
+  std::span<const glm::vec3> beauty;  ///< empty: none is shown
+  std::vector<std::string> masks;     ///< PackedMasks::finish()
+};
+compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
+                                  float exposure, SeenByRun seen);
+
+}  // namespace penumbra::app

@@ -1,0 +1,21 @@
+# Turns the report's page into a source: cmake -DFOLDER=… -DSTYLE=a;b -DSCRIPT=… -DMARKUP=… -DSOURCE=out.cpp -P embed_text.cmake
+# Files of one kind follow one another; scripts stand in one strict block, so that none of their names is the window's.
+foreach(kind STYLE SCRIPT MARKUP)
+  set(${kind}_text "")
+  foreach(file ${${kind}})
+    file(READ ${FOLDER}/${file} text)
+    if(text MATCHES "</(script|style)|\\)page\"")
+      message(FATAL_ERROR "${file} would end the element, or the literal, that it is put into")
+    endif()
+    string(APPEND ${kind}_text "${text}")
+  endforeach()
+endforeach()
+set(SCRIPT_text "\"use strict\";\n{\n${SCRIPT_text}}\n")
+file(WRITE ${SOURCE} "// Made by cmake/embed_text.cmake.
+#include \"compare/report_parts.hpp\"
+namespace penumbra::compare {
+const std::string_view kReportStyle = R\"page(${STYLE_text})page\";
+const std::string_view kReportScript = R\"page(${SCRIPT_text})page\";
+const std::string_view kReportViewer = R\"page(${MARKUP_text})page\";
+}  // namespace penumbra::compare
+")

@@ -1,0 +1,71 @@
+// The numbers behind the pictures. The page carries them deflated (zlib) as base64, each in an element that no browser
+// runs; nothing is unpacked before somebody looks at it. compare/report_data.hpp packs what is unpacked here.
+
+const report = JSON.parse(document.getElementById("report-data")?.textContent ?? "null");
+
+// Each thing is made once, at first use: `keep("v0", make)` gives the promise of what make() made.
+const kept = new Map();
+function keep(key, make) {
+  if (!kept.has(key)) kept.set(key, make());
+  return kept.get(key);
+}
+
+async function unpackBytes(id) {
+  const packed = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Planes of bytes, most significant first, back to numbers: `size` bytes each.
+function joinPlanes(planes, size) {
+  const count = planes.length / size;
+  const numbers = size === 4 ? new Uint32Array(count) : new Uint16Array(count);
+  for (let plane = 0; plane < size; ++plane) {
+    for (let i = 0; i < count; ++i) numbers[i] |= planes[plane * count + i] << (8 * (size - 1 - plane));
+  }
+  return numbers;
+}
+
+// V of each pixel, as the float32 that the EXR file has.
+function visibilityOf(entry, light) {
+  const id = report.entries[entry].lights[light].v;
+  return keep(id, async () => new Float32Array(joinPlanes(await unpackBytes(id), 4).buffer));
+}
+
+// The class of each pixel under a light: an index into report.classNames; 0 is background.
+function classesOf(light) {
+  const id = report.lights[light].classes;
+  return keep(id, () => unpackBytes(id));
+}
+
+// One bit a light sample, whole words of 32 a pixel; null for a method without masks.
+function masksOf(entry, light) {
+  const id = report.entries[entry].lights[light].masks;
+  return id ? keep(id, () => unpackBytes(id)) : Promise.resolve(null);
+}
+
+// Linear radiance of each pixel as codes, red green blue: 0 is black, c is 2^((c − 1) / 256 − 64). They come as green,
+// red less green and blue less green, each less its left neighbour, modulo 2^16.
+function radianceCodesOf(entry) {
+  const id = report.entries[entry].beauty;
+  return keep(id, async () => {
+    const count = report.width * report.height;
+    const steps = joinPlanes(await unpackBytes(id), 2);
+    const codes = new Uint16Array(3 * count);
+    for (const [plane, channel] of [[0, 1], [1, 0], [2, 2]]) {
+      for (let i = 0, sum = 0; i < count; ++i) {
+        sum = i % report.width === 0 ? steps[plane * count + i] : (sum + steps[plane * count + i]) & 0xffff;
+        codes[3 * i + channel] = plane === 0 ? sum : (sum + codes[3 * i + 1]) & 0xffff;
+      }
+    }
+    return codes;
+  });
+}
+
+const linearOfCode = (code) => (code === 0 ? 0 : 2 ** ((code - 1) / 256 - 64));
+
+// Which light samples a pixel sees: an array of booleans.
+function seenSamples(masks, pixel, count) {
+  const first = pixel * 4 * Math.ceil(count / 32);
+  return Array.from({ length: count }, (_, j) => (masks[first + (j >> 3)] >> (j & 7) & 1) === 1);
+}

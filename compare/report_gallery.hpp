@@ -1,0 +1,12 @@
+#pragma once
+
+#include "compare/report.hpp"
+
+#include <string>
+
+/// The report's pictures, of every light. Internal to this room.
+namespace penumbra::compare {
+
+std::string gallery_html(const ReportInput& in);
+
+}  // namespace penumbra::compare

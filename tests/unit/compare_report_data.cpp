@@ -1,0 +1,114 @@
+// What the report's script unpacks is what was packed: each packing is undone here in a few lines of C++.
+#include "base/packed.hpp"
+#include "compare/report_data.hpp"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace penumbra::compare {
+namespace {
+
+std::vector<std::uint8_t> from_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<std::uint8_t>(bits >> count & 0xff));
+    }
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> unpack(const std::string& text, std::size_t size) {
+  const std::vector<std::uint8_t> packed = from_base64(text);
+  std::vector<std::uint8_t> bytes(size + 1);
+  uLongf length = bytes.size();
+  EXPECT_EQ(uncompress(bytes.data(), &length, packed.data(), packed.size()), Z_OK);
+  EXPECT_EQ(length, size);
+  bytes.resize(length);
+  return bytes;
+}
+
+/// Number i of `count` whose bytes stand in planes, the most significant first.
+std::uint32_t number_at(const std::vector<std::uint8_t>& planes, std::size_t count, std::size_t i) {
+  std::uint32_t number = 0;
+  for (std::size_t plane = 0; plane < planes.size() / count; ++plane) number = number << 8 | planes[plane * count + i];
+  return number;
+}
+
+TEST(ReportData, Base64IsThatOfTheStandard) {
+  // RFC 4648, section 10.
+  const std::vector<std::string> expected{"", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"};
+  const std::string text = "foobar";
+  for (std::size_t i = 0; i <= text.size(); ++i)
+    EXPECT_EQ(base64(std::as_bytes(std::span(text).first(i))), expected[i]);
+}
+
+TEST(ReportData, DeflatedInPartsIsDeflatedAtOnce) {
+  std::vector<std::byte> bytes(300000);
+  std::mt19937 random(7);  // a quarter of it noise, so that more than one block comes out
+  for (std::size_t i = 0; i < bytes.size(); i += 4) bytes[i] = static_cast<std::byte>(random());
+  Deflated whole, parts;
+  whole.add(bytes);
+  for (std::size_t i = 0; i < bytes.size(); i += 7777)
+    parts.add(std::span(bytes).subspan(i, std::min<std::size_t>(7777, bytes.size() - i)));
+  const auto result = whole.finish();
+  EXPECT_EQ(result, parts.finish());
+  const auto back = unpack(base64(result), bytes.size());
+  EXPECT_EQ(std::memcmp(back.data(), bytes.data(), bytes.size()), 0);
+  Deflated nothing;
+  EXPECT_TRUE(unpack(base64(nothing.finish()), 0).empty());
+}
+
+TEST(ReportData, FloatsComeBackBitByBit) {
+  using Limits = std::numeric_limits<float>;
+  const std::vector<float> values{0.0f, 1.0f, 1.0f / 3, -0.0f, Limits::quiet_NaN(), Limits::denorm_min(), 143.0f / 256};
+  const auto planes = unpack(pack_floats(values), 4 * values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    EXPECT_EQ(number_at(planes, values.size(), i), std::bit_cast<std::uint32_t>(values[i])) << i;
+}
+
+TEST(ReportData, RadianceComesBackWithinHalfAStepOfItsCode) {
+  // Five pixels a row: neighbours that differ by the whole range, black ones, a negative one, one that is no number.
+  const std::vector<glm::vec3> pixels{{0, 0, 0},       {1, 2, 3},          {1e-19f, 1e18f, 0.25f}, {0, 1e18f, 1e-19f},
+                                      {0.3f, 0.3f, 0}, {10, 10, 10},       {9.9f, 0.001f, 5},      {-1, 0.5f, 0.5f},
+                                      {NAN, 1, 1},     {0.5f, 0.25f, 1.0f}};
+  const std::size_t count = pixels.size();
+  const auto planes = unpack(pack_radiance(5, pixels), 6 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto sum = [&](std::size_t plane) {  // of the steps from the row's first pixel to this
+      std::uint32_t code = 0;
+      for (std::size_t k = i / 5 * 5; k <= i; ++k) code += number_at(planes, 3 * count, plane * count + k);
+      return code & 0xffff;
+    };
+    const std::uint32_t green = sum(0), red = (green + sum(1)) & 0xffff, blue = (green + sum(2)) & 0xffff;
+    const std::uint32_t codes[3] = {red, green, blue};
+    for (int c = 0; c < 3; ++c) {
+      const float wanted = pixels[i][c];
+      if (!(wanted > 0)) {
+        EXPECT_EQ(codes[c], 0u) << i << ' ' << c;
+        continue;
+      }
+      const double got = std::exp2((static_cast<double>(codes[c]) - 1) / 256 - 64);
+      // Half a step is 1/512 of a stop; 1e-9 is room for the rounding of log2 and exp2 at 64 stops.
+      EXPECT_LE(std::abs(std::log2(got / static_cast<double>(wanted))), 1.0 / 512 + 1e-9) << i << ' ' << c;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::compare
