@@ -1,0 +1,6 @@
+# The report as people meet it: headless Chromium, driven by Python's standard library through the browser's own pipe.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME browser.report
+         COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/browser/report_page.py $<TARGET_FILE:penumbra>
+                 ${PROJECT_SOURCE_DIR}/scenes/room.json ${PROJECT_BINARY_DIR}/report_photographs)
+set_tests_properties(browser.report PROPERTIES LABELS full TIMEOUT 900)

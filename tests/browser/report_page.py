@@ -1,0 +1,291 @@
+#!/usr/bin/env python3
+"""The report in a browser, by keys and by pointer, against the files beside it.
+  report_page.py PROGRAM SCENE [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from browser import Browser  # noqa: E402
+from exr import read_bits, read_exr  # noqa: E402
+
+WIDTH, HEIGHT, SAMPLES = 96, 96, 64
+METHODS = ["edge-scatter", "pcss", "accumulate:size=16"]
+READY = "document.getElementById('viewer').dataset.drawn !== undefined"
+READ = "document.getElementById('viewer').dataset.read"
+
+failures = 0
+
+
+def expect(claim, what):
+    global failures
+    if not claim:
+        failures += 1
+        print(f"FAILED: {what}")
+
+
+def same(found, wanted, what):
+    expect(found == wanted, f"{what}: {found!r}, not {wanted!r}")
+
+
+class Page:
+    def __init__(self, browser, folder):
+        self.browser, self.folder = browser, pathlib.Path(folder)
+        self.url = (self.folder / "report.html").as_uri()
+        self.metrics = json.loads((self.folder / "metrics.json").read_text())
+        self.lights = [light["name"] for light in self.metrics["methods"][0]["lights"]]
+        # The viewer's entries in order; rays on the methods' samples have no file of their own.
+        self.entries = ["reference", None, *METHODS]
+        self.exr = {name: read_exr(self.folder / f"{name}.exr")[0] for name in self.entries if name}
+        self.bits = {name: read_bits(self.folder / f"{name}.bits") for name in ("edge-scatter", "accumulate:size=16")}
+
+    def v(self, entry, light, pixel):
+        return self.exr[self.entries[entry]][f"V.{self.lights[light]}"][pixel]
+
+    def look(self, words="", **window):
+        self.browser.open(f"{self.url}#look?{words}", **window)
+        self.browser.wait(f"document.getElementById('viewer').open && {READY}")
+
+    def press(self, *keys):
+        for key in keys:
+            self.browser.key(*key.split("+")[::-1]) if "+" in key[1:] else self.browser.key(key)
+        self.browser.wait(READY)
+
+    def title(self):
+        return self.browser.ask("document.getElementById('viewer-title').textContent")
+
+    def values(self):
+        self.browser.wait(READ)
+        return self.browser.ask("""[...document.querySelectorAll('#viewer-values tr')].map(row => ({
+            entry: Number(row.dataset.entry), v: row.cells[1].dataset.value, error: row.cells[2].dataset.value ?? null,
+            seen: row.cells[3].dataset.seen ?? null}))""")
+
+    def stage(self):
+        """Where the stage is, and its size."""
+        return self.browser.ask("""(() => { const b = document.querySelector('#viewer-stage canvas').getBoundingClientRect();
+            return {x: b.x, y: b.y, width: b.width, height: b.height}; })()""")
+
+    def place(self, x, y):
+        """The middle of a pixel on the stage when one whole picture is shown."""
+        stage = self.stage()
+        scale = min(stage["width"] / WIDTH, stage["height"] / HEIGHT)
+        return (stage["width"] / 2 + (x + 0.5 - WIDTH / 2) * scale, stage["height"] / 2 + (y + 0.5 - HEIGHT / 2) * scale)
+
+    def colors(self, places):
+        """What the stage shows there: [red, green, blue] each."""
+        return self.browser.ask(f"""(() => {{ const c = document.querySelector('#viewer-stage canvas').getContext('2d');
+            return {json.dumps(places)}.map(([x, y]) => [...c.getImageData(x, y, 1, 1).data.slice(0, 3)]); }})()""")
+
+
+def check_readout(page):
+    """V, error and masks of pixels of every kind are those of the files, to the last bit."""
+    penumbra = max(range(WIDTH * HEIGHT), key=lambda i: -abs(page.v(2, 0, i) - 0.5))
+    second = max(range(WIDTH * HEIGHT), key=lambda i: -abs(page.v(2, 1, i) - 0.5))
+    differing = next(i for i in range(WIDTH * HEIGHT)
+                     if page.bits["edge-scatter"][i] != page.bits["accumulate:size=16"][i])
+    expect(0 < page.v(2, 0, penumbra) < 1, "a pixel in a penumbra")
+    for pixel, light in ((penumbra, 0), (second, 1), (differing, 0), (0, 0), (WIDTH * HEIGHT - 1, 1)):
+        x, y = pixel % WIDTH, pixel // WIDTH
+        page.look(f"light={light}&pixel={x},{y}")
+        values = page.values()
+        same([value["entry"] for value in values], list(range(len(page.entries))), "a row for each entry")
+        for value, name in zip(values, page.entries):
+            if name is None:
+                continue
+            wanted = page.v(value["entry"], light, pixel)
+            same(float(value["v"]), wanted, f"V of {name} at {x},{y} under light {light}")
+            if name != "reference":
+                same(float(value["error"]), wanted - page.v(0, light, pixel), f"error of {name} at {x},{y}")
+            if light == 0 and name in page.bits:
+                same(value["seen"], page.bits[name][pixel], f"light samples that {name} sees at {x},{y}")
+            if name == "pcss":
+                same(value["seen"], None, "pcss has no masks")
+        text = page.browser.ask("document.querySelector('#viewer-values tr:last-child td:last-child').textContent")
+        others = sum(a != b for a, b in zip(values[-1]["seen"], values[1]["seen"]))
+        same("other than rays" in text, others > 0, f"{others} light samples seen other than by rays, and said: {text}")
+    expect(any("other than rays" in t for t in [page_text(page, differing)]), "a pair that differs is named")
+
+
+def page_text(page, pixel):
+    page.look(f"light=0&pixel={pixel % WIDTH},{pixel // WIDTH}")
+    page.values()
+    return page.browser.ask("document.getElementById('viewer-values').textContent")
+
+
+def check_keys(page):
+    page.look("layer=v&view=one&a=2")
+    same(page.title(), "V: edge-scatter", "the address says what is shown")
+    for keys, title in ((["ArrowRight"], "V: pcss"), (["ArrowLeft", "ArrowLeft"], f"V: raytrace, {SAMPLES} light samples"),
+                        (["ArrowLeft", "ArrowLeft"], "V: accumulate:size=16"), (["ArrowDown"], "Error: accumulate:size=16"),
+                        (["ArrowDown"], "Beauty: accumulate:size=16"), (["ArrowUp", "ArrowUp"], "V: accumulate:size=16"),
+                        (["w"], "V: accumulate:size=16 | V: raytrace (reference)"),
+                        ([" "], "V: raytrace (reference) | V: accumulate:size=16"), (["g"], "V: all"),
+                        (["g"], "V: raytrace (reference)")):
+        page.press(*keys)
+        same(page.title(), title, f"after {keys}")
+    state = "document.getElementById('viewer-zoom-text').value"
+    page.press("+", "+")
+    same(page.browser.ask(state), "400 %", "zoomed twice")
+    page.press("0")
+    same(page.browser.ask(state), "100 %", "the whole picture again")
+    page.press("l")
+    same(page.browser.ask("document.getElementById('viewer-light').value"), "1", "the next light")
+    page.press("w", "]", "]")
+    same(page.browser.ask("document.getElementById('viewer-wipe').value"), "60", "the wipe, two steps to the right")
+    page.look("layer=beauty&stops=1")
+    page.press(".", ".")
+    same(page.browser.ask("document.getElementById('viewer-stops').value"), "2", "exposure, two steps up")
+    page.look("pixel=10,10")
+    page.press("Shift+ArrowRight", "Shift+ArrowDown", "Shift+ArrowDown")
+    page.browser.wait(f"{READ} === '11,12'")
+    expect("Pixel 11, 12" in page.browser.ask("document.querySelector('#viewer-place[role=status]').textContent"),
+           "the read-out is said")
+    # The address keeps the view: opened again it is the same.
+    page.look("layer=error&a=3&light=1&view=one&limit=0.2&pixel=5,6")
+    page.browser.wait("location.hash.includes('limit=0.2')")
+    same((page.title(), page.browser.ask("document.getElementById('viewer-limit').value")), ("Error: pcss", "0.2"), "limit")
+    # What is no view of this report is put right.
+    page.look("layer=nothing&a=99&b=x&light=-7&view=7&wipe=NaN&zoom=1e9&pixel=1e9,-4&limit=-1&constructor=1")
+    same(page.title(), "V: raytrace (reference)", "an address of nonsense")
+    page.values()
+
+
+def check_from_the_page(page):
+    """Tab and Enter open a picture, Escape closes it and the focus is where it was."""
+    browser = page.browser
+    browser.open(page.url)
+    browser.ask("document.querySelector('input[data-layer=error][data-entry=\"3\"][data-light=\"1\"]').focus()")
+    same(browser.ask("document.activeElement.type"), "button", "with script a picture is a button")
+    browser.key("Enter")
+    browser.wait(f"document.getElementById('viewer').open && {READY}")
+    same(page.title(), "Error: pcss", "the picture that was chosen")
+    same(browser.ask("document.activeElement.id"), "viewer-stage", "the focus is on the picture")
+    browser.key("Escape")
+    browser.wait("!document.getElementById('viewer').open")
+    same(browser.ask("document.activeElement.dataset.entry"), "3", "the focus is back")
+    # Tab reaches every control, and stays in the viewer.
+    page.look("view=wipe&layer=error")
+    reached = set()
+    for _ in range(60):
+        browser.key("Tab")
+        reached.add(browser.ask("document.activeElement.id || document.activeElement.name || document.activeElement.tagName"))
+    for control in ("viewer-light", "viewer-a", "viewer-b", "viewer-wipe", "viewer-limit", "viewer-out", "viewer-in",
+                    "viewer-whole", "viewer-close", "viewer-stage", "layer", "view"):
+        expect(control in reached, f"Tab reaches {control}: {sorted(reached)}")
+    names = [node for node in browser.call("Accessibility.getFullAXTree")["nodes"] if not node.get("ignored")]
+    for node in names:
+        if node["role"]["value"] in ("button", "slider", "combobox", "radio", "dialog", "application", "table"):
+            expect(node.get("name", {}).get("value"), f"a {node['role']['value']} without a name")
+
+
+def check_pictures(page):
+    """The viewer paints what the page's own pictures show; the wipe has one on either side."""
+    browser, places = page.browser, [(7 * i % WIDTH, 13 * i % HEIGHT) for i in range(96)]
+    painted = {}
+    for layer, entry, light, most in (("v", 3, 0, 0), ("v", 2, 1, 0), ("error", 3, 0, 0), ("error", 4, 1, 0), ("beauty", 3, 0, 1)):
+        page.look(f"layer={layer}&a={entry}&light={light}&view=one")
+        painted[layer, entry, light] = page.colors([page.place(x, y) for x, y in places])
+        wanted = browser.ask(f"""(async () => {{
+            const image = document.querySelector('input[data-layer={layer}][data-entry="{entry}"][data-light="{light}"]')
+                .parentElement.querySelector('img');
+            await image.decode();
+            const canvas = document.createElement('canvas');
+            canvas.width = {WIDTH}; canvas.height = {HEIGHT};
+            const context = canvas.getContext('2d');
+            context.drawImage(image, 0, 0);
+            return {json.dumps(places)}.map(([x, y]) => [...context.getImageData(x, y, 1, 1).data.slice(0, 3)]);
+        }})()""")
+        # Radiance is packed to 1/512 of a stop, 0.14 %: less than a step of sRGB's 255 (the steepest of them, near white,
+        # is 0.9 % of the light).
+        off = max(abs(a - b) for mine, other in zip(painted[layer, entry, light], wanted) for a, b in zip(mine, other))
+        expect(off <= most, f"{layer} of entry {entry} under light {light} is off by {off} of 255")
+    page.look("layer=v&view=wipe&a=3&b=3&wipe=0.5&bLayer=error&light=0")
+    stage = page.stage()
+    for (x, y), v, error, shown in zip(places, painted["v", 3, 0], painted["error", 3, 0],
+                                       page.colors([page.place(x, y) for x, y in places])):
+        at = page.place(x, y)
+        if abs(at[0] - stage["width"] / 2) > 3 and at[1] > 24:  # beside the line, below the names
+            same(shown, v if at[0] < stage["width"] / 2 else error, f"the wipe at {x},{y}")
+    # The pointer drags it, and reads.
+    middle = (stage["x"] + stage["width"] / 2, stage["y"] + stage["height"] / 2)
+    browser.pointer("mousePressed", *middle, button="left", clickCount=1)
+    browser.pointer("mouseMoved", stage["x"] + stage["width"] / 4, middle[1], button="left", buttons=1)
+    browser.pointer("mouseReleased", stage["x"] + stage["width"] / 4, middle[1], button="left", clickCount=1)
+    same(browser.ask("document.getElementById('viewer-wipe').value"), "25", "dragged to a quarter")
+    page.look("layer=v&view=one&a=3")
+    at = page.place(30, 60)
+    browser.pointer("mouseMoved", stage["x"] + at[0], page.stage()["y"] + at[1])
+    browser.wait(f"{READ} === '30,60'")
+    same(float(page.values()[3]["v"]), page.v(3, 0, 60 * WIDTH + 30), "V under the pointer")
+    # One zoom for all: the wheel at a place keeps that place, whichever picture.
+    browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=stage["x"] + at[0], y=page.stage()["y"] + at[1], deltaX=0, deltaY=-480)
+    browser.wait("document.getElementById('viewer-zoom-text').value === '400 %'")
+    for key in ("ArrowRight", "ArrowLeft"):
+        page.press(key)
+        same(browser.ask("document.getElementById('viewer-zoom-text').value"), "400 %", "the zoom stays")
+    same(browser.ask(READ), "30,60", "and the pixel")
+
+
+def check_tables(page):
+    browser = page.browser
+    browser.open(page.url)
+    columns = "[...document.querySelectorAll('#numbers table.sortable')].find(t => t.caption.textContent.includes('all lights'))"
+    read = f"""[...{columns}.tBodies[0].rows].map(r => r.cells[2].dataset.value)"""
+    original = browser.ask(read)
+    wanted = [method["errorAllLights"]["rmse"] for method in page.metrics["methods"]]
+    wanted.append(page.metrics["sameSamples"]["errorAllLights"]["rmse"])
+    same([float(value) for value in original], wanted, "the table has the numbers of metrics.json")
+    browser.ask(f"{columns}.tHead.rows[0].cells[2].querySelector('button').focus()")
+    for order, values in (("ascending", sorted(wanted)), ("descending", sorted(wanted, reverse=True)), (None, wanted)):
+        browser.key("Enter")
+        same([float(value) for value in browser.ask(read)], values, f"RMSE {order}")
+        same(browser.ask(f"{columns}.tHead.rows[0].cells[2].getAttribute('aria-sort')"), order, "said")
+
+
+def check_windows(page, photographs):
+    """Nothing is wider than the window; what people should look at is photographed."""
+    browser = page.browser
+    wide, narrow = {"width": 1400, "height": 900}, {"width": 390, "height": 844, "phone": True}
+    for name, window in (("wide", wide), ("narrow", narrow), ("dark", {**wide, "dark": True})):
+        browser.open(page.url, **window)
+        expect(browser.ask("document.documentElement.scrollWidth <= innerWidth"), f"the page is too wide: {name}")
+        if photographs:
+            browser.photograph(photographs / f"page-{name}.png", whole=True)
+        for view in ("one", "wipe", "all"):
+            page.look(f"layer=error&view={view}&a=3&b=4&pixel=40,60", **window)
+            page.values()
+            expect(browser.ask("document.getElementById('viewer').scrollWidth <= innerWidth"), f"{view} is too wide: {name}")
+            if photographs:
+                browser.photograph(photographs / f"{view}-{name}.png")
+    browser.open(page.url, script=False)
+    same(browser.ask("document.querySelector('input[data-entry]').type"), "checkbox", "without script")
+    expect(browser.ask("[...document.querySelectorAll('[data-open]')].every(b => b.hidden)"), "no buttons that do nothing")
+    browser.ask("document.querySelector('input[data-entry]').click()")
+    expect(browser.ask("getComputedStyle(document.querySelector('input[data-entry] + img')).position === 'fixed'"),
+           "without script a picture is enlarged")
+
+
+def main():
+    program, scene = sys.argv[1:3]
+    photographs = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+    if photographs:
+        photographs.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([program, "compare", scene, "-o", folder, "--size", f"{WIDTH}x{HEIGHT}", "--light-samples", str(SAMPLES),
+                        "--methods", ",".join(METHODS), "--runs", "1", "--bits", "--quiet"], check=True,
+                       stdout=subprocess.DEVNULL)
+        with Browser() as browser:
+            page = Page(browser, folder)
+            same(len(page.lights), 2, "lights of the scene")
+            for check in (check_readout, check_keys, check_from_the_page, check_pictures, check_tables):
+                check(page)
+            check_windows(page, photographs)
+            same(browser.problems, [], "the page complains, or asks for what is not in it")
+    print("failed" if failures else "all is as it should be")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
