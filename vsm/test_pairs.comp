@@ -30,6 +30,7 @@ vec3 row_s, row_t, row_w;                                 // d ↦ (S, T, W): th
 float r;                                                  // R = max(|u|, |v|) · max(|c − p|, |u|, |v|)
 float light_pad;                                          // what the deviation of the light samples adds to a box
 float edge_error, det_error;                              // errors of edges and of det, to be scaled by lengths
+const float kUnderflow = 1e-36;                           // what underflow makes of a sum of products, and some
 
 vec3 to_light(vec3 d) { return vec3(dot(row_s, d), dot(row_t, d), dot(row_w, d)); }
 
@@ -37,7 +38,7 @@ vec3 to_light(vec3 d) { return vec3(dot(row_s, d), dot(row_t, d), dot(row_w, d))
 // Edges come from edge vectors, so that small triangles keep their shape.
 struct Seen {
   vec3 A, D1, D2;
-  float far;                                              // bounds the distance of each corner
+  float from_a, far;                                      // |a − p|; bounds the distance of each corner
   float error_a;                                          // of A, A + D1, A + D2, each coordinate (bound W)
   float lowest, highest;                                  // W of the corners: the nearest to p's plane, the farthest
   vec4 box;                                               // where on the light (bound box)
@@ -51,7 +52,8 @@ Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
   seen.D1 = to_light(e1);
   seen.D2 = to_light(e2);
   const vec3 B = seen.A + seen.D1, C = seen.A + seen.D2;
-  seen.far = length(d) + sizes.x + sizes.y;
+  seen.from_a = length(d);
+  seen.far = seen.from_a + sizes.x + sizes.y;
   seen.error_a = 16.0 * kRound * r * seen.far;
   seen.lowest = min(seen.A.z, min(B.z, C.z));
   seen.highest = max(seen.A.z, max(B.z, C.z));
@@ -69,7 +71,7 @@ Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
 // Of ab, bc, ca (bound F).
 vec3 error_of_edges(Seen seen, vec2 sizes) { return edge_error * seen.far * vec3(sizes.x, sizes.x + sizes.y, sizes.y); }
 // Is p certainly off the triangle's plane? (bound det)
-bool has_side(float det, Seen seen, vec2 sizes) { return abs(det) > det_error * seen.far * sizes.x * sizes.y; }
+bool has_side(float det, Seen seen, vec2 sizes) { return abs(det) > max(det_error * seen.from_a * sizes.x * sizes.y, kUnderflow); }
 
 // The pairs that float arithmetic settles, which is nearly all: the triangle lies between p and the light, p is off its
 // plane, and no light sample is within the error of an edge. Returns false, having marked only what is certain, where
@@ -191,7 +193,7 @@ void main() {
   const float volume = abs(level);
   light_pad = 4.0 * push.deviation * r / volume;
   edge_error = 176.0 * kRound * r * r + 2.0 * volume * push.deviation;
-  det_error = 256.0 * kRound * r * r * r;
+  det_error = 256.0 * kRound * r * r * size * size;
 
   // The slots of triangles that some lane could not settle quickly are kept, and looked at again.
   const Shaft shaft = make_shaft(on, side);

@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
 #include <tuple>
 
 namespace penumbra {
@@ -20,8 +23,10 @@ class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<
     const auto method = under_test.make(device(), {});
     tests::PairCounts counts;
     std::uint64_t open = 0;
+    double used = 0;
     for (std::uint32_t seed = first; seed < first + count && !HasFailure(); ++seed) {
       const tests::AimedScene scene(aim, seed);
+      used = std::max(used, scene.used);
       const tests::Masks masks = tests::run(*method, scene.floats, scene.light, scene.samples);
       EXPECT_TRUE(equals_truth(scene.floats, scene.light, scene.samples, masks, &counts)) << "seed " << seed;
       const auto counters = method->counters();
@@ -31,11 +36,19 @@ class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<
     }
     fmt::print("{} {}: {} pairs, {} visible, {} blocked, {} with a zero; {} times something was open\n",
                under_test.name, name_of(aim), counts.pairs, counts.visible, counts.blocked, counts.zero, open);
+    if (is_searched(aim)) {
+      fmt::print("up to {:.1f} % of the bound is used\n", 100 * used);
+      EXPECT_LT(used, 1);
+      EXPECT_GT(used, tests::planted_cut(aim)) << "planted_faults cuts it to that";
+    }
     EXPECT_GT(counts.visible, counts.pairs / 20);
     EXPECT_GT(aim == Aim::horizon ? counts.horizon : counts.blocked, counts.pairs / 100);
     // Not every pair that is aimed at within rounding can be certain. (View-sample on vector units does not count the
     // light samples that it decides in double.)
     EXPECT_TRUE(open > 0 || under_test.make == tests::kNativeViewSample.make);
+  }
+  [[nodiscard]] static bool is_searched(Aim aim) {
+    return std::find(tests::kSearchedAims.begin(), tests::kSearchedAims.end(), aim) != tests::kSearchedAims.end();
   }
   [[nodiscard]] static bool on_device() {
     return !std::string_view(std::get<1>(GetParam()).name).starts_with("native");

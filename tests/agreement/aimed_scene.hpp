@@ -4,8 +4,14 @@
 // is aimed at one of its light samples. Where an error bound is too small, some pair is decided wrongly, and exact
 // predicates show it.
 
+#include "mesh/predicates.hpp"
+#include "tests/agreement/device_twins.hpp"
+#include "tests/agreement/most_used.hpp"
 #include "tests/agreement/support.hpp"
+#include "visibility/device_light.hpp"
+#include "visibility/pair_truth.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -26,11 +32,21 @@ enum class Aim : std::uint8_t {
   sliver,   ///< p in the triangle's plane, and near the triangle's edges or in it
   grazing,  ///< an edge just above p, which appears far away
   horizon,  ///< p's own plane through the light sample
+  side,     ///< p in the plane of a triangle that stands above it on a narrow foot, under a panel
+  det,      ///< p in the plane of a triangle that stands above it on a wide foot
+  needle,   ///< the light's corner in a needle between two triangles of a sheet
 };
-inline constexpr std::array kAims{Aim::edge, Aim::corner, Aim::left,    Aim::vertex,
-                                  Aim::row,  Aim::sliver, Aim::grazing, Aim::horizon};
+inline constexpr std::array kAims{Aim::edge,    Aim::corner,  Aim::left, Aim::vertex, Aim::row,   Aim::sliver,
+                                  Aim::grazing, Aim::horizon, Aim::side, Aim::det,    Aim::needle};
+/// Those of which the scene is searched for: that which uses most of a bound.
+inline constexpr std::array kSearchedAims{Aim::side, Aim::det, Aim::needle};
+/// The share of the bound that planted_faults leaves of it.
+inline double planted_cut(Aim aim) {
+  return aim == Aim::det ? 1.0 / 256 : 0.01;
+}
 inline std::string name_of(Aim aim) {
-  static constexpr std::array kNames{"edge", "corner", "left", "vertex", "row", "sliver", "grazing", "horizon"};
+  static constexpr std::array kNames{"edge",    "corner",  "left", "vertex", "row",   "sliver",
+                                     "grazing", "horizon", "side", "det",    "needle"};
   return kNames.at(static_cast<std::size_t>(aim));
 }
 
@@ -42,17 +58,22 @@ class AimedScene {
     // Keeps the origin of scene floats at zero, whatever is added.
     add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}}).casts_shadow = false;
     // From a speck to the whole floor: view samples that are near one another, and far from zero.
+    // The bounds of the searched aims are used most where coordinates are no larger than lengths are; that of det,
+    // where the light is a square, and overhead.
     const double patch = std::exp2(-static_cast<double>(random_() % 8)),
-                 size = std::exp2(1 - static_cast<double>(random_() % 6));
-    const glm::dvec3 middle(4 * real(), real(), 4 * real());
+                 size = std::exp2(1 - static_cast<double>(random_() % 6)), askew = aim_ == Aim::det ? 0.05 : 1;
+    const glm::dvec3 middle = (aim_ >= Aim::side ? 0.25 : 1.0) * glm::dvec3(4 * real(), real(), 4 * real());
     const glm::dvec3 u = patch * glm::normalize(glm::dvec3(1, 0.4 * real(), 0.4 * real()));
     const glm::dvec3 v = patch * glm::normalize(glm::dvec3(0.4 * real(), 0.4 * real(), -1));
-    scene.lights.push_back(rectangle_light(middle + glm::dvec3(3 * real(), 2 + 4 * std::abs(real()), 3 * real()),
-                                           size * glm::normalize(glm::dvec3(1, 0.5 * real(), 0.5 * real())),
-                                           size * glm::normalize(glm::dvec3(0.5 * real(), 0.5 * real(), 1))));
+    const auto beside = [&](double most) { return askew * most * real(); };
+    const glm::dvec3 over = {beside(3), 2 + 4 * std::abs(real()), beside(3)};
+    const glm::dvec3 light_u = glm::normalize(glm::dvec3(1, beside(0.5), beside(0.5))),
+                     light_v = glm::normalize(glm::dvec3(beside(0.5), beside(0.5), 1));
+    scene.lights.push_back(rectangle_light(middle + over, size * light_u, size * light_v));
     std::vector<Corners> floor = quad(middle, u, v);
     const visibility::SampleRequest request{64, 8, 8, visibility::SamplePattern::rows, 0};
     light = visibility::make_light(scene, 0, visibility::make_scene_floats(scene).origin, request);
+    frame_ = visibility::make_device_light(light, 1);
 
     std::vector<Corners> carriers, casters;
     std::vector<glm::dvec2> places;
@@ -72,9 +93,21 @@ class AimedScene {
       points.emplace_back(glm::vec3(a + st.x * (b - a) + st.y * (c - a)));
       // Not at all of them: where view samples are near one another, all triangles are between each of them and the
       // light.
-      const std::uint32_t every = aim_ == Aim::sliver || aim_ == Aim::grazing ? 8 : 3;
-      if (aim_ != Aim::horizon && i % every == 0)
-        casters.push_back(aimed(glm::dvec3(points.back()), glm::dvec3(l), size));
+      const std::uint32_t every = aim_ == Aim::sliver || aim_ >= Aim::grazing ? 8 : 3;
+      if (aim_ == Aim::horizon || i % every != 0) continue;
+      const glm::dvec3 p(points.back());
+      if (aim_ == Aim::needle) {
+        const std::vector<Corners> sheet = needle(p, size);
+        casters.insert(casters.end(), sheet.begin(), sheet.end());
+      } else {
+        casters.push_back(aim_ == Aim::side || aim_ == Aim::det ? standing(p, l) : aimed(p, glm::dvec3(l), size));
+      }
+    }
+    if (aim_ == Aim::side) {  // over half of the light: one layer that a wrong sign takes away
+      const glm::dvec3 center(light.center), half_u = 0.5 * (glm::dvec3(light.center_u) - center);
+      const std::vector<Corners> panel =
+          quad(center + 0.125 * (middle - center) + half_u, half_u, 1.5 * (glm::dvec3(light.center_v) - center));
+      casters.insert(casters.end(), panel.begin(), panel.end());
     }
     add_object(scene, "carriers", carriers);
     if (!casters.empty()) add_object(scene, "casters", casters);
@@ -86,9 +119,11 @@ class AimedScene {
   visibility::SceneFloats floats;
   visibility::Light light;
   visibility::ViewSamples samples;
+  double used = 0;  ///< of kSearchedAims: the share of its bound that it takes to see that a sign is wrong
 
  private:
   static constexpr std::uint32_t kSide = 8;
+  static constexpr int kTries = 1000;
 
   double positive() { return (static_cast<double>(random_() % (1U << 24U)) + 0.5) / (1U << 24U); }
   double real() { return 2 * positive() - 1; }
@@ -131,6 +166,69 @@ class AimedScene {
     }
   }
 
+  /// As scene floats will have it.
+  static FloatCorners stored(const Corners& corners) {
+    FloatCorners at{glm::vec3(corners[0]), glm::vec3(corners[1]), glm::vec3(corners[2])};
+    std::sort(at.begin(), at.end(), [](const glm::vec3& a, const glm::vec3& b) {
+      return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    });
+    return at;
+  }
+
+  /// A triangle above p that hides l, with p within rounding of its plane. Of many it is that where the sign of p's
+  /// side is wrong by most. l is farther from the plane than p, so that the triangle's edges pass at some distance from
+  /// it.
+  Corners standing(const glm::dvec3& p, const glm::vec3& l) {
+    const glm::dvec3 way = glm::dvec3(l) - p;
+    const double length = glm::length(way);
+    const bool on_wide_foot = aim_ == Aim::det;
+    const auto make = [&](Numbers numbers) -> Corners {
+      const glm::dvec3 e = glm::normalize(glm::cross(way, numbers.vector())), n = glm::cross(way, e) / length;
+      // By the length of the way: the foot's height and half its width, p's distance from the plane, l's. The bound of
+      // det grows with the foot, the other one with the distance of the first corner alone, which then must be the top.
+      const double low = std::exp2(-3 - 10 * numbers.next());
+      const auto wide = [&] { return numbers.next() * (on_wide_foot ? 1 : low); };
+      const double off = std::exp2((on_wide_foot ? -18 : -23) - 6 * numbers.next()),
+                   beyond = off / low * numbers.next();
+      const glm::dvec3 tilted = way + length * beyond * n, from = p - length * off * n;
+      return {from + low * tilted + length * wide() * e, from + low * tilted - length * wide() * e,
+              from + (0.3 + 0.6 * numbers.next()) * tilted + 0.4 * length * numbers.real() * e};
+    };
+    const auto sign = [&](const Numbers& numbers) -> Rounded {
+      const FloatCorners at = stored(make(numbers));
+      if (!visibility::segment_meets_triangle(glm::vec3(p), l, at, light).meets) return {};
+      return on_wide_foot ? det_as_rounded(frame_, at, glm::vec3(p)) : side_as_rounded(at, glm::vec3(p));
+    };
+    const Numbers best = most_used(random_, kTries, [&](const Numbers& numbers) { return sign(numbers).far_wrong(); });
+    used = std::max(used, sign(best).wrong());
+    return make(best);
+  }
+
+  /// Two triangles side by side that cover the light's corner and what is around it, and between them one that is as
+  /// narrow as floats let it be: the corner is in it. Of many it is that which rounding mirrors by most.
+  std::vector<Corners> needle(const glm::dvec3& p, double light_size) {
+    const glm::dvec3 center(frame_.center), way = center - glm::dvec3(frame_.u) - glm::dvec3(frame_.v) - p;
+    const auto make = [&](Numbers numbers) -> std::vector<Corners> {
+      const double share = 0.05 + 0.9 * numbers.next(), size = share * light_size * std::exp2(-2 * numbers.next());
+      const glm::dvec3 at = p + share * way, e = glm::normalize(numbers.vector()),
+                       f = glm::normalize(glm::cross(way, e));
+      const glm::dvec3 a = rounded(at + size * e), b = rounded(at - (0.4 + 0.6 * numbers.next()) * size * e);
+      glm::dvec3 c = b;  // beside it by no more than a unit in the last place of each coordinate
+      for (int axis = 0; axis < 3; ++axis)
+        c[axis] += std::ldexp(std::round(1.5 * numbers.real()), std::ilogb(b[axis]) - 23);
+      return {{a, b, rounded(at - size * f)}, {a, b, c}, {a, c, rounded(at + size * f)}};
+    };
+    const auto wrong = [&](const Numbers& numbers) {
+      const std::vector<Corners> sheet = make(numbers);
+      const auto& [a, b, c] = sheet[1];
+      if (mesh::side_of_plane(a, b, c, p) != mesh::side_of_plane(a, b, sheet[2][2], p)) return 0.0;
+      return corner_products(frame_, stored(sheet[1]), glm::vec3(p)).wrong();
+    };
+    const Numbers best = most_used(random_, kTries, wrong);
+    used = std::max(used, wrong(best));
+    return make(best);
+  }
+
   void take_samples(const std::vector<glm::vec3>& points) {
     samples.width = samples.height = kSide;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -151,6 +249,7 @@ class AimedScene {
 
   Aim aim_;
   std::mt19937 random_;
+  visibility::DeviceLight frame_;
 };
 
 }  // namespace penumbra::tests

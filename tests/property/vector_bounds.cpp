@@ -3,6 +3,7 @@
 
 #include "engines/vectors/clusters.hpp"
 #include "engines/vectors/light_grid.hpp"
+#include "tests/agreement/most_used.hpp"
 #include "tests/agreement/support.hpp"
 #include "visibility/device_light.hpp"
 #include "visibility/tree_texels.hpp"
@@ -12,24 +13,21 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 
 namespace penumbra::native {
 namespace {
 
 using Exact = glm::tvec3<long double>;
 
-/// One view sample under a light, and a point whose place on the light is asked for: fourteen numbers in [0, 1].
-struct Try {
-  std::array<double, 20> x{};
-};
-
 struct Use {
   double of_bound = 0, error = 0, bound = 0;
 };
 
+/// One view sample under a light, and a point whose place on the light is asked for.
 class BoundX {
  public:
-  explicit BoundX(const Try& numbers) : numbers_(numbers) {}
+  explicit BoundX(const tests::Numbers& numbers) : numbers_(numbers) {}
 
   /// |X as computed − X| over its bound (docs/edge-scatter.md, "X, relative to a cluster"), the worse of two axes;
   /// nothing if the point is not well above p.
@@ -86,12 +84,9 @@ class BoundX {
   }
 
  private:
-  double next() { return numbers_.x.at(used_++ % numbers_.x.size()); }
-  double real() { return 2 * next() - 1; }
-  glm::dvec3 vector() {
-    const double x = real(), y = real(), z = real();
-    return {x, y, z};
-  }
+  double next() { return numbers_.next(); }
+  double real() { return numbers_.real(); }
+  glm::dvec3 vector() { return numbers_.vector(); }
 
   static Use use_of(const LightGrid& grid, const Cluster& cluster, const ClusterSample& at, const glm::vec3& x) {
     // As the tables and Projection compute it: one order, nothing fused.
@@ -118,43 +113,13 @@ class BoundX {
     return worst;
   }
 
-  const Try& numbers_;
-  std::size_t used_ = 0;
+  tests::Numbers numbers_;
 };
 
-/// Tries at random, then changes of the best of them, number by number.
-template <typename Bound>
-Use most_used(std::uint32_t seed, int tries, int changes) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> real(0, 1);
-  Try best;
-  Use most;
-  const auto ask = [&](const Try& numbers) {
-    const Use use = Bound(numbers)();
-    if (use.of_bound <= most.of_bound) return;
-    most = use;
-    best = numbers;
-  };
-  for (int i = 0; i < tries; ++i) {
-    Try numbers;
-    for (double& x : numbers.x) x = real(random);
-    ask(numbers);
-  }
-  for (int i = 0; i < changes; ++i) {
-    Try numbers = best;
-    for (unsigned k = 0; k <= random() % 3; ++k) {
-      double& x = numbers.x.at(random() % numbers.x.size());
-      x = random() % 4 == 0
-              ? real(random)
-              : std::clamp(x + (real(random) - 0.5) * std::exp2(-static_cast<double>(random() % 20)), 0.0, 1.0);
-    }
-    ask(numbers);
-  }
-  return most;
-}
-
 TEST(VectorBounds, PlacesOfPointsOnTheLight) {
-  const Use most = most_used<BoundX>(1, 20000, 20000);
+  std::mt19937 random(1);
+  const Use most =
+      BoundX(tests::most_used(random, 20000, [](const tests::Numbers& x) { return BoundX(x)().of_bound; }))();
   fmt::print("X: {:.1f} % of the bound used (off by {:.2e} cells, allowed {:.2e})\n", 100 * most.of_bound, most.error,
              most.bound);
   EXPECT_LT(most.of_bound, 1);
