@@ -108,24 +108,19 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   const bool holds_corner = all(lessThanEqual(low - around, vec2(-0.5))) && all(greaterThanEqual(high + around, vec2(-0.5)));
   if (holds_corner && !(abs(at_corner + 0.5) >= error_x)) open_pixel = true;
 
+  // Where it crosses the left side. Should rounding put y on another side of a row, or of the corner, than that row's x, or
+  // at_corner, is of the left side: then these are within error_x of it, and what is on that row, or all, is open. (bound left)
   if ((a.x < -0.5) != (b.x < -0.5)) {
-    const float inverse = way.y / way.x, flat_error = 1.2 * (error_near + error_far * min(1.0, (abs(near.x - first_cell.x) + 2.0 * half_cells.x) / abs(way.x))) * (1.0 + abs(inverse)) +
-                          8.0 * kRound * (half_cells.y + abs(near.y));
-    const float y = clamp(near.y + (-0.5 - near.x) * inverse, low.y, high.y);
-    if (y > -0.5 - flat_error) {
-      const float nearest = round(y);
-      open_row(nearest, abs(y - nearest) < flat_error);
-      if (abs(y + 0.5) < flat_error) open_pixel = true;
-      const int from = max(int(min(ceil(y), 1e6)), first_row);
-      if (y > -0.5 && from <= last_row) {
-        const int up = (a.x < b.x) ? k : -k;              // crossing it upwards, if it runs to the right: +k
-        const uint band_row = uint(from - first_row);
-        const int shift = int(band_row & 3) * 8;
-        const uint old = left_changes[band_row >> 2];
-        const int changed = bitfieldExtract(int(old), shift, 8) + up;
-        out_of_range |= uint(abs(changed) > 63);
-        left_changes[band_row >> 2] = bitfieldInsert(old, uint(changed), shift, 8);
-      }
+    const float y = clamp(near.y + (-0.5 - near.x) * (way.y / way.x), low.y, high.y);
+    if (y > -0.5 && y <= float(last_row)) {
+      const int from = max(int(ceil(y)), first_row);
+      const int up = (a.x < b.x) ? k : -k;                // crossing it upwards, if it runs to the right: +k
+      const uint band_row = uint(from - first_row);
+      const int shift = int(band_row & 3) * 8;
+      const uint old = left_changes[band_row >> 2];
+      const int changed = bitfieldExtract(int(old), shift, 8) + up;
+      out_of_range |= uint(abs(changed) > 63);
+      left_changes[band_row >> 2] = bitfieldInsert(old, uint(changed), shift, 8);
     }
   }
 }
