@@ -6,6 +6,7 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -156,6 +157,28 @@ TEST_P(Predicates, CoplanarIsAllThreeOnThePlane) {
     yes += expected ? 1 : 0;
   }
   EXPECT_GT(yes, 10);
+}
+
+/// The last product takes away what the others add up to, but for rounding.
+TEST_P(Predicates, SumsOfProductsThatNearlyCancel) {
+  std::mt19937 random(GetParam());
+  std::uniform_real_distribution<double> real(-1, 1);
+  int rounded_wrongly = 0;
+  for (int round = 0; round < 20000; ++round) {
+    std::array<double, 4> x{}, y{};
+    for (double& number : x) number = real(random);
+    for (double& number : y) number = real(random);
+    y[3] = -(x[0] * y[0] + x[1] * y[1] + x[2] * y[2]) / x[3];
+    mpq_class sum = 0;
+    double in_double = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      sum += mpq_class(x.at(i)) * mpq_class(y.at(i));
+      in_double += x.at(i) * y.at(i);
+    }
+    rounded_wrongly += in_double * sum.get_d() < 0 ? 1 : 0;
+    ASSERT_EQ(sign_of_products(x, y), sgn(sum)) << "round " << round;
+  }
+  EXPECT_GT(rounded_wrongly, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Predicates, testing::Range(0u, 4u));
