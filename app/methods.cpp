@@ -25,6 +25,8 @@
 #include "maps/backprojection/backproject.hpp"
 #include "maps/backprojection/backproject_peel.hpp"
 #include "maps/backprojection/bitmask.hpp"
+#include "maps/backprojection/contour.hpp"
+#include "maps/backprojection/packet.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"
@@ -110,6 +112,8 @@ const std::vector<TableRow>& table() {
       on_device<maps::bitmask_description, maps::make_bitmask>(),
       on_device<maps::backproject_description, maps::make_backproject>(),
       on_device<maps::backproject_peel_description, maps::make_backproject_peel>(),
+      on_device<maps::packet_description, maps::make_packet>(),
+      on_device<maps::contour_description, maps::make_contour>(),
       on_device<maps::pcss_description, maps::make_pcss>(),
       on_device<maps::vssm_description, maps::make_vssm>(),
       on_device<maps::accumulate_description, maps::make_accumulate>(),
@@ -140,8 +144,6 @@ constexpr std::array kNotThereYet = {"exact",
                                      "shadow-map",
                                      "pcss",
                                      "soft-shadow-map",
-                                     "contour",
-                                     "packet",
                                      "accumulate",
                                      "edge-scatter",
                                      "raytrace"};

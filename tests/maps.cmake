@@ -8,6 +8,8 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps_filters_robust.cpp
   analytic/maps_formulas.cpp
   analytic/maps_layers.cpp
+  analytic/maps_contour.cpp
+  analytic/maps_contour_claims.cpp
   analytic/maps_light_table.cpp
   analytic/maps_light_tree.cpp
   analytic/maps_lists.cpp

@@ -5,10 +5,13 @@
 //   mask_main.glsl     bool sees(LightView view, uint first_map, vec3 d, vec3 m)
 // d: the receiver from the light point, m: its normal away from the light, both in the light's basis. The receiver is on
 // an emitting side. Where many texels answer for one receiver a workgroup looks at them, which defines GROUP_A_RECEIVER
-// before it includes this: group_scalar_main.glsl and group_mask_main.glsl say what they need.
+// before it includes this: group_scalar_main.glsl and group_mask_main.glsl say what they need. Where it answers a packet of
+// pixels it defines GROUP_A_PACKET, and brings its own main.
 #include "maps/host/map_view.shared.h"
 
-#ifdef GROUP_A_RECEIVER
+#ifdef GROUP_A_PACKET
+layout(local_size_x_id = 0) in;  // a subgroup
+#elif defined(GROUP_A_RECEIVER)
 layout(local_size_x = 8, local_size_y = 8) in;
 #else
 layout(local_size_x = kLookupGroup) in;

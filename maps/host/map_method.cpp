@@ -7,6 +7,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "maps/host/receivers.hpp"
+#include "maps/host/sub_lights.hpp"
 #include "render/compute_pass.hpp"
 #include "visibility/visible_share.hpp"
 
@@ -39,6 +40,8 @@ class MapMethod final : public visibility::Method {
     if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
     PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",
                     recipe_.description.name);
+    PENUMBRA_ASSERT(recipe_.sub_lights == 1 || (recipe_.points == MapPoints::centre && !gives_masks()),
+                    "{}: means over sub-lights are V, from maps of their centres", recipe_.description.name);
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return recipe_.description; }
@@ -51,7 +54,7 @@ class MapMethod final : public visibility::Method {
   void read_visibility(std::span<float> visibility) override;
 
   std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
@@ -62,13 +65,29 @@ class MapMethod final : public visibility::Method {
   [[nodiscard]] std::uint64_t result_bytes(std::uint64_t pixels) const {
     return (pixels * words_per_pixel() + (recipe_.group_a_receiver ? 1 : 0)) * sizeof(std::uint32_t);
   }
-  [[nodiscard]] std::uint32_t point_count() const { return static_cast<std::uint32_t>(fitted_.views.size()); }
+  /// Light points whose maps are asked one after the other for the same bits or V.
+  [[nodiscard]] std::uint32_t point_count() const {
+    return recipe_.points == MapPoints::centre ? 1 : static_cast<std::uint32_t>(fitted_.views.size());
+  }
   [[nodiscard]] std::uint32_t total_layers() const { return recipe_.layers.count + (recipe_.layers.farthest ? 1 : 0); }
+
+  /// Workgroups that answer packets of pixels.
+  [[nodiscard]] std::uint64_t packets(const Receivers::Part& part) const {
+    const std::uint32_t width = std::max(receivers_.width(), 1U), rows = part.count / width;
+    return std::uint64_t{(width + recipe_.packet_width - 1) / recipe_.packet_width} *
+           ((rows + recipe_.packet_height - 1) / recipe_.packet_height);
+  }
 
   /// Records maps of light points first … first + count − 1, in submissions that can be timed.
   void render_maps(render::Commands& commands, std::uint32_t first, std::uint32_t count);
-  /// Records what is behind the nearest surfaces in the maps of the light's centre.
-  void render_layers(render::Commands& commands);
+  /// Records what is behind the nearest surfaces in the maps of the centre of a part of the light.
+  void render_layers(render::Commands& commands, std::uint32_t part);
+  /// Makes the maps of the centre of a part of the light, and the products.
+  void make_centre_maps(std::uint32_t part);
+  /// V of a tile from the maps of the light's parts, one after the other.
+  void add_up_parts(const visibility::Tile& tile);
+  /// Asks until the device ran all look-ups to their end.
+  void ask_all(const visibility::Tile& tile);
   /// Whether the device ran the last look-ups to their end; else fewer rows of a map are looked at at a time from now
   /// on.
   [[nodiscard]] bool loops_ended();
@@ -86,12 +105,14 @@ class MapMethod final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
   LightBasis basis_;
+  std::vector<SubLight> parts_;  ///< of the light as maps are made for it; one, unless the recipe says otherwise
   FittedViews fitted_;
   std::vector<std::uint32_t> own_push_;
   std::uint32_t batch_ = 1;         ///< light points at a time
   std::uint32_t rows_at_once_ = 0;  ///< of a map, that one dispatch looks at
   std::uint32_t tile_pixels_ = 0;   ///< of the tile last evaluated
   std::unique_ptr<render::Buffer> views_, depths_, results_;
+  std::vector<double> mean_;  ///< V of the tile last evaluated, if the light has several parts
 };
 
 void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
@@ -104,14 +125,17 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
   light_ = &light;
   basis_ = light_basis(light);
-  const glm::vec3 centre(basis_.center);
+  parts_ = sub_lights(light, recipe_.sub_lights);
+  std::vector<glm::vec3> centres;
+  for (const SubLight& part : parts_) centres.emplace_back(part.basis.center);
   const bool many = recipe_.points == MapPoints::light_samples;
   FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
   if (recipe_.whole_light) {
-    const LightBounds bounds = light_bounds(light, basis_);
+    const LightBounds bounds = light_bounds(parts_.front().light, parts_.front().basis);
     fit.reach = glm::max(-bounds.lower, bounds.upper);
   }
-  fitted_ = fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span(&centre, 1), fit);
+  fitted_ =
+      fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
   check_faces_fit(*device_, options_.size, faces * total_layers());
 
@@ -119,7 +143,7 @@ void MapMethod::prepare_light(const visibility::Light& light) {
       std::uint64_t{faces} * total_layers() * options_.size * options_.size * sizeof(float);
   const std::uint64_t most = std::min(kBatchBytes, device_->limits().max_storage_buffer_range) / point_bytes;
   batch_ = std::bit_floor(std::clamp(static_cast<std::uint32_t>(most), 1u, kBitsPerWord));
-  batch_ = std::min(batch_, std::bit_ceil(point_count()));
+  batch_ = many ? std::min(batch_, std::bit_ceil(point_count())) : 1;
   render::grow(*device_, depths_, "map depths", point_bytes * batch_);
   render::grow(*device_, views_, "map views", fitted_.views.size() * sizeof(gpu::LightView));
   views_->write<gpu::LightView>(fitted_.views);
@@ -136,12 +160,19 @@ void MapMethod::prepare_light(const visibility::Light& light) {
     counters_["mapsPerBatch"] = batch_;
     return;
   }
+  // Parts share the memory for maps: of several, each is made when it is asked.
+  if (parts_.size() == 1) make_centre_maps(0);
+}
+
+void MapMethod::make_centre_maps(std::uint32_t part) {
+  views_->write<gpu::LightView>(std::span(&fitted_.views[part], 1));
   render::Commands commands(*device_);
-  render_maps(commands, 0, 1);
-  render_layers(commands);
+  render_maps(commands, part, 1);
+  render_layers(commands, part);
+  const auto& [light, basis, weight] = parts_[part];
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
     product->record(commands,
-                    {*views_, *depths_, fitted_.faces, options_.size, light, basis_, *scene_, recipe_.layers.count});
+                    {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_, recipe_.layers.count});
   }
   times_.add(commands.submit());
 }
@@ -180,11 +211,11 @@ void MapMethod::render_maps(render::Commands& commands, std::uint32_t first, std
   counters_["mapFaces"] += std::uint64_t{count} * fitted_.faces;
 }
 
-void MapMethod::render_layers(render::Commands& commands) {
+void MapMethod::render_layers(render::Commands& commands, std::uint32_t part) {
   for (std::uint32_t layer = 1; layer < total_layers(); ++layer) {
     times_.add(commands.submit());
     const std::uint64_t first = std::uint64_t{layer} * fitted_.faces;
-    const gpu::LightView& view = fitted_.views.front();
+    const gpu::LightView& view = fitted_.views[part];
     if (layer < recipe_.layers.count) {
       casters_.record_behind(commands, view, basis_, light_->index, *depths_, first, first - fitted_.faces);
     } else {
@@ -212,12 +243,13 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
                          .layers = recipe_.layers.count,
                          .depth_use = static_cast<std::uint32_t>(options_.depth),
                          .first_row = 0,
-                         .last_row = 0};
+                         .last_row = 0,
+                         .width = receivers_.width()};
     std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
     for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
       std::ranges::copy(product->buffers(), std::back_inserter(buffers));
     }
-    const std::uint64_t groups = recipe_.group_a_receiver ? part.count : part.groups();
+    const std::uint64_t groups = recipe_.group_a_receiver ? packets(part) : part.groups();
     for (std::uint32_t row = 0; row < options_.size; row += rows_at_once_) {
       push.first_row = row;
       push.last_row = std::min(row + rows_at_once_, options_.size) - 1;
@@ -233,6 +265,22 @@ void MapMethod::evaluate(const visibility::Tile& tile) {
   tile_pixels_ = tile.row_count * receivers_.width();
   if (tile_pixels_ == 0) return;
   render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility", result_bytes(tile_pixels_));
+  if (parts_.size() > 1) return add_up_parts(tile);
+  ask_all(tile);
+}
+
+void MapMethod::add_up_parts(const visibility::Tile& tile) {
+  mean_.assign(tile_pixels_, 0.0);
+  std::vector<float> visibility(tile_pixels_);
+  for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+    make_centre_maps(part);
+    ask_all(tile);
+    results_->read<float>(visibility);
+    for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i] += parts_[part].weight * static_cast<double>(visibility[i]);
+  }
+}
+
+void MapMethod::ask_all(const visibility::Tile& tile) {
   do {
     render::Commands commands(*device_);
     if (recipe_.group_a_receiver) commands.fill(*results_, 0, results_->bytes() - sizeof(std::uint32_t), 4);
@@ -268,10 +316,21 @@ void MapMethod::read_visibility(std::span<float> visibility) {
   PENUMBRA_ASSERT(visibility.size() == tile_pixels_, "{} values for a tile of {} pixels", visibility.size(),
                   tile_pixels_);
   if (visibility.empty()) return;
+  if (parts_.size() > 1) {
+    std::transform(mean_.begin(), mean_.end(), visibility.begin(), [](double v) { return static_cast<float>(v); });
+    return;
+  }
   if (!gives_masks()) return results_->read(visibility);
   std::vector<std::uint32_t> masks(visibility.size() * words_per_pixel());
   read_masks(masks);
   visibility::visible_shares(*light_, masks, visibility);
+}
+
+std::map<std::string, std::uint64_t> MapMethod::counters() const {
+  std::map<std::string, std::uint64_t> counters = counters_;
+  if (light_ == nullptr) return counters;
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) product->add_counters(counters);
+  return counters;
 }
 
 std::uint64_t MapMethod::memory_bytes() const {

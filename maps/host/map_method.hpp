@@ -78,6 +78,8 @@ class MapProduct {
   /// What a look-up binds, in this order; there are always as many.
   [[nodiscard]] virtual std::vector<render::BufferReference> buffers() const { return {buffer()}; }
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return buffer().bytes(); }
+  /// What its look-ups counted since (Method::counters).
+  virtual void add_counters([[maybe_unused]] std::map<std::string, std::uint64_t>& counters) const {}
 };
 
 /// A struct of 32-bit numbers as the words that a shader's push constants take.
@@ -105,6 +107,12 @@ struct MapRecipe {
   bool whole_light = false;
   /// A workgroup answers one receiver, looking at many texels (group_scalar_main.glsl, group_mask_main.glsl).
   bool group_a_receiver = false;
+  /// With group_a_receiver: it answers so many pixels across and down (GROUP_A_PACKET).
+  std::uint32_t packet_width = 1, packet_height = 1;
+  /// The light is cut into so many parts along each axis, each with a map from its own centre; V is their mean.
+  std::uint32_t sub_lights = 1;
+  /// The look-up's specialization constants.
+  std::vector<std::uint32_t> constants{};
   /// Beside the second one, which the option `depth` may ask for.
   MapLayers layers{};
   /// What the shader's push constants have behind LookupPush: `push_words` of them, for a light.

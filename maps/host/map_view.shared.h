@@ -81,6 +81,7 @@ struct LookupPush {
   uint depth_use;  // kDepthFirst ...
   uint first_row;  // rows of a map that are looked at now; the others, before or after
   uint last_row;
+  uint width;  // receivers a row of the picture
 };
 
 #ifdef __cplusplus

@@ -5,6 +5,8 @@
 #include "maps/backprojection/backproject.hpp"
 #include "maps/backprojection/backproject_peel.hpp"
 #include "maps/backprojection/bitmask.hpp"
+#include "maps/backprojection/contour.hpp"
+#include "maps/backprojection/packet.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"

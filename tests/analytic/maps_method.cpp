@@ -32,6 +32,8 @@ class MapsMethod : public MapsTest {
                                   maps::make_accumulate,
                                   small(maps::make_bitmask),
                                   small(maps::make_backproject),
+                                  small(maps::make_contour),
+                                  small(maps::make_packet),
                                   small(maps::make_backproject_peel),
                                   maps::make_adaptive_light,
                                   maps::make_deep_penumbra,

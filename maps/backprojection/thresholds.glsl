@@ -1,0 +1,74 @@
+// How near to the light what a map has must be to shade the receivers of a group, over a rectangle of texels: nearer than
+// x it shades all of them, at y or farther none. Bounds of what blocks_light (taps.glsl) asks of a single texel, with
+// room for its rounding, so that whoever decides by them and whoever asks each texel decide alike (Yang et al. 2009,
+// equation 3, here with each texel's own depth of the receiver's plane).
+
+// The receivers of a group, as a face has them.
+struct Bounds {
+  vec3 m_low, m_high;            // their normals away from the light, in the face's (a, b, w)
+  float h_low, h_high;           // the distances of their planes from the light's centre
+  float z_low, z_high;           // their own heights
+  float across_low, across_high; // of the normals, across the face
+  int above;                     // the centre is above the horizon of all: 1; of none: 0; of some: -1
+};
+
+// Rounding of a sum of three products is below 3 * 2^-24 of their magnitudes; here a few of them follow each other, and
+// divisions may be off by 2.5 units in the last place.
+const float kSlack = 9.5367431640625e-7;  // 2^-20
+
+Bounds bounds_of(MapFace face, vec3 e, vec3 m) {
+  Bounds one;
+  const vec3 f = to_face(face, m);
+  const float slack = kSlack * dot(abs(m), abs(e)), h = dot(m, e);
+  one.m_low = one.m_high = f;
+  one.h_low = h - slack;
+  one.h_high = h + slack;
+  one.z_low = one.z_high = e.z;
+  one.across_low = one.across_high = abs(f.x) + abs(f.y);
+  one.above = h > 0.0 ? 1 : 0;
+  return one;
+}
+
+Bounds join(Bounds a, Bounds b) {
+  a.m_low = min(a.m_low, b.m_low);
+  a.m_high = max(a.m_high, b.m_high);
+  a.h_low = min(a.h_low, b.h_low);
+  a.h_high = max(a.h_high, b.h_high);
+  a.z_low = min(a.z_low, b.z_low);
+  a.z_high = max(a.z_high, b.z_high);
+  a.across_low = min(a.across_low, b.across_low);
+  a.across_high = max(a.across_high, b.across_high);
+  if (a.above != b.above) a.above = -1;
+  return a;
+}
+
+// m * x over a range of either.
+vec2 product_range(vec2 m, vec2 x) {
+  const vec4 all = vec4(m * x.x, m * x.y);
+  return vec2(min(min(all.x, all.y), min(all.z, all.w)), max(max(all.x, all.y), max(all.z, all.w)));
+}
+
+// Over texels lower ... upper of a face; never beyond `far`, where there is nothing: what is empty shades nobody.
+vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far) {
+  // A surface begins to be shaded elsewhere than at its depth: pyramids and ranges know nothing of it.
+  if (lookup.depth_use != kDepthFirst || group.above < 0) return vec2(-1e30, far);
+  const vec2 from = face.lower + (vec2(lower) + 0.5) * face.texel, to = face.lower + (vec2(upper) + 0.5) * face.texel;
+  vec2 limit = vec2(group.z_low, group.z_high);
+  if (face.axis != 2) limit = vec2(group.z_low / to.y, group.z_high / max(from.y, 0.25 * face.texel.y));
+  const vec2 forgiven = lookup.bias * max(face.texel.x, face.texel.y) * limit;
+  vec2 plane = limit, slope = vec2(0.0);
+  if (group.above > 0) {
+    const vec2 a = product_range(vec2(group.m_low.x, group.m_high.x), vec2(from.x, to.x));
+    const vec2 b = product_range(vec2(group.m_low.y, group.m_high.y), vec2(from.y, to.y));
+    const float slack = kSlack * (max(abs(a.x), abs(a.y)) + max(abs(b.x), abs(b.y)) +
+                                  max(abs(group.m_low.z), abs(group.m_high.z)));
+    const float facing_low = a.x + b.x + group.m_low.z - slack, facing_high = a.y + b.y + group.m_high.z + slack;
+    if (facing_low > 0.0) plane.y = min(limit.y, group.h_high / facing_low);
+    if (facing_high > 0.0) plane.x = min(limit.x, group.h_low / facing_high);
+    slope.x = facing_high > 0.0 ? min(kSteepest, group.across_low / facing_high) : kSteepest;
+    slope.y = facing_low > 0.0 ? min(kSteepest, group.across_high / facing_low) : kSteepest;
+  }
+  const vec2 taken = forgiven * (1.0 + slope);
+  const float slack = 4.0 * kSlack * (plane.y + taken.y);
+  return min(vec2(plane.x - taken.y - slack, plane.y - taken.x + slack), far);
+}
