@@ -27,6 +27,7 @@
 #include "maps/backprojection/bitmask.hpp"
 #include "maps/backprojection/contour.hpp"
 #include "maps/backprojection/packet.hpp"
+#include "maps/backprojection/soft_shadow_map.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"
@@ -116,6 +117,7 @@ const std::vector<TableRow>& table() {
       on_device<maps::contour_description, maps::make_contour>(),
       on_device<maps::pcss_description, maps::make_pcss>(),
       on_device<maps::vssm_description, maps::make_vssm>(),
+      on_device<maps::soft_shadow_map_description, maps::make_soft_shadow_map>(),
       on_device<maps::accumulate_description, maps::make_accumulate>(),
       on_device<maps::adaptive_light_description, maps::make_adaptive_light>(),
       on_device<maps::deep_penumbra_description, maps::make_deep_penumbra>(),
@@ -143,7 +145,6 @@ constexpr std::array kNotThereYet = {"exact",
                                      "hierarchical-penumbra",
                                      "shadow-map",
                                      "pcss",
-                                     "soft-shadow-map",
                                      "accumulate",
                                      "edge-scatter",
                                      "raytrace"};

@@ -22,7 +22,7 @@ entries=(
   soft-volume soft-volume:coverage=table soft-volume:split=3 soft-volume:construction=tight soft-volume:wedges=host
   soft-volume:tests=both soft-volume-blend wedge-ramp hard-volume
   shadow-map pcf pcf:receiverPlane=off pcss vssm vssm:moments=lvsm vssm:moments=csm:filter=mip vssm:moments=esm
-  vssm:moments=evsm:filter=n-buffer convolution occlusion-textures accumulate adaptive-light deep-penumbra layered-attenuation
+  vssm:moments=evsm:filter=n-buffer convolution occlusion-textures accumulate soft-shadow-map adaptive-light deep-penumbra layered-attenuation
   bitmask:size=128 backproject:size=128 backproject-peel:size=128 raytrace exact contour:size=128 packet:size=128
 )
 

@@ -7,6 +7,7 @@
 #include "maps/backprojection/bitmask.hpp"
 #include "maps/backprojection/contour.hpp"
 #include "maps/backprojection/packet.hpp"
+#include "maps/backprojection/soft_shadow_map.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"

@@ -35,6 +35,7 @@ class MapsMethod : public MapsTest {
                                   small(maps::make_contour),
                                   small(maps::make_packet),
                                   small(maps::make_backproject_peel),
+                                  small(maps::make_soft_shadow_map),
                                   maps::make_adaptive_light,
                                   maps::make_deep_penumbra,
                                   maps::make_layered_attenuation};

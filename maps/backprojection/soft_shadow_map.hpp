@@ -1,0 +1,17 @@
+#pragma once
+
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+
+#include <memory>
+
+namespace penumbra::maps {
+
+/// Atty et al. 2006: a map of soft shadows from a map of occluders and one of receivers. docs/soft-shadow-map.md.
+std::unique_ptr<visibility::Method> make_soft_shadow_map(const render::Device& device,
+                                                         const visibility::MethodOptions& options);
+
+/// What it is; needs no device.
+visibility::MethodDescription soft_shadow_map_description();
+
+}  // namespace penumbra::maps
