@@ -111,8 +111,6 @@ struct MapRecipe {
   std::uint32_t packet_width = 1, packet_height = 1;
   /// The light is cut into so many parts along each axis, each with a map from its own centre; V is their mean.
   std::uint32_t sub_lights = 1;
-  /// The look-up's specialization constants.
-  std::vector<std::uint32_t> constants{};
   /// Beside the second one, which the option `depth` may ask for.
   MapLayers layers{};
   /// What the shader's push constants have behind LookupPush: `push_words` of them, for a light.
