@@ -53,8 +53,10 @@ class CompareCommand : public Command {
     cli_.add_option("-o,--output", run_.out, "folder for metrics.json, report.html, and each method's pictures")
         ->required()
         ->type_name("DIR");
-    cli_.add_option("--methods,--method", methods_,
-                    "what to compare: names with options of their own, a:key=value,b; or geometry, image, all")
+    cli_.add_option(
+            "--methods,--method", methods_,
+            "what to compare: names with options of their own, a:key=value,b; or geometry, image, all; default: "
+            "those of geometry and image that do not take minutes")
         ->type_name("LIST")
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
@@ -112,19 +114,9 @@ class CompareCommand : public Command {
     return exceeded;
   }
 
-  /// The main job: all that this build has of geometry-based and image-based methods.
-  static std::string default_methods() {
-    std::string groups;
-    for (const visibility::Family family : {visibility::Family::geometry, visibility::Family::image}) {
-      const char* name = visibility::name_of(family);
-      if (!method_group(name)->empty()) groups += (groups.empty() ? "" : ",") + std::string(name);
-    }
-    return groups;
-  }
-
   RunOptions run_;
   ComparisonOptions options_;
-  std::string methods_ = default_methods();
+  std::string methods_ = "default";
   std::optional<double> max_rmse_;
   std::optional<std::int64_t> frame_;
 };

@@ -176,6 +176,12 @@ std::vector<const MethodDescription*> all_methods() {
 std::optional<std::vector<const MethodDescription*>> method_group(std::string_view group) {
   auto methods = all_methods();
   if (group == "all") return methods;
+  if (group == "default") {
+    std::erase_if(methods, [](const MethodDescription* method) {
+      return method->family == Family::reference || method->on_request;
+    });
+    return methods;
+  }
   for (const Family family : {Family::reference, Family::geometry, Family::image}) {
     if (group != visibility::name_of(family)) continue;
     std::erase_if(methods, [&](const MethodDescription* method) { return method->family != family; });

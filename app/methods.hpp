@@ -13,7 +13,8 @@ namespace penumbra::app {
 /// All methods of this build, in the order of `penumbra methods`. Needs no device.
 std::vector<const visibility::MethodDescription*> all_methods();
 
-/// The members of `reference`, `geometry`, `image` or `all`; nothing for any other word.
+/// The members of `reference`, `geometry`, `image`, `all`, or `default` (geometry-based and image-based ones that do
+/// not take minutes); nothing for any other word.
 std::optional<std::vector<const visibility::MethodDescription*>> method_group(std::string_view group);
 
 /// Throws UsageError, listing what is there, for an unknown name and (in other words) for a method that is not there

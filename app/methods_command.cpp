@@ -57,6 +57,7 @@ void print_json(const std::vector<const MethodDescription*>& methods) {
                     {"lights", light_names(*method)},
                     {"textures", method->textures},
                     {"anyPattern", method->any_pattern},
+                    {"onRequest", method->on_request},
                     {"options", options}});
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"methods", rows}}.dump(2));

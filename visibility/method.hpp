@@ -34,6 +34,7 @@ struct MethodDescription {
   std::vector<LightKind> lights;  ///< shapes it can do
   bool textures = true;           ///< weighs V by a light's texture
   bool any_pattern = true;        ///< otherwise only light samples in rows (patterns rows and grid)
+  bool on_request = false;        ///< takes so long that a comparison has it only by name, or with its whole family
   std::vector<OptionDescription> options;
   /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;

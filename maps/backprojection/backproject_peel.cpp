@@ -41,6 +41,7 @@ visibility::MethodDescription describe() {
           "nothing; in the limit of large maps and all samples, where all that shades lies in one plane "
           "parallel to the light",
       .lights = planar_lights(),
+      .on_request = true,
       .options = single_map_option_descriptions(DepthUse::midpoint),
       .verdict_on = verdict_on};
   description.options.push_back(kLayers.description());

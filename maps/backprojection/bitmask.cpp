@@ -49,6 +49,7 @@ visibility::MethodDescription describe() {
           "nothing; in the limit of large maps every pair of view sample and light sample whose occluders the "
           "light's centre sees",
       .lights = planar_lights(),
+      .on_request = true,
       .options = single_map_option_descriptions(),
       .verdict_on = verdict_on};
   for (const auto& option : {kOccluder.description(), kFill.description(), kLayers.description(), kLevel.description(),

@@ -31,6 +31,7 @@ visibility::MethodDescription describe() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps and bound 0 the share of light samples that are visible",
       .lights = planar_lights(),
+      .on_request = true,
       .options = map_option_descriptions(kSize),
       .verdict_on = verdict_on};
   description.options.push_back(kBound.description());

@@ -35,6 +35,7 @@ visibility::MethodDescription describe() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps and small epsilon the share of light samples that are visible",
       .lights = planar_lights(),
+      .on_request = true,
       .options = map_option_descriptions(kSize),
       .verdict_on = verdict_on};
   description.options.push_back(kEpsilon.description());
