@@ -150,6 +150,10 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
     return (forest && (options.contains("crop") || light_samples == "5x7")) ||
            (!forest && options.contains("counter-bits"));
   }
+  if (method == "soft-shadow-map") return is("form", "scatter") && is("precision", "fp16");
+  if (method == "packet" && options.contains("sublights") && !is("sublights", "1")) {
+    return std::ranges::any_of(scene.lights, [](const std::string& kind) { return kind != "rectangle"; });
+  }
   return false;
 }
 
