@@ -11,10 +11,7 @@
 #include "vsm/view_sample.hpp"
 #include "vsm/view_sample.shared.h"
 
-#include <glm/common.hpp>
-
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -44,8 +41,9 @@ class ViewSampleMapping final : public device::MaskMethod {
   }
 
   device::MaskLayout prepare_casters() override {
-    check_proportions();
+    // The shader multiplies up to six lengths; with the scene scaled to 1, float32 holds that for lights of such sizes.
     const visibility::Light& light = this->light();
+    visibility::check_size(light, device_light(), view_sample_description().name);
     const std::uint32_t words_per_row = (light.columns + 31) / 32;
     const bool rows = device_light().rows && light.rows * words_per_row * lanes() * 4 <= kSharedBudget;
     SampleTable table = make_sample_table(device_light(), rows);
@@ -62,22 +60,6 @@ class ViewSampleMapping final : public device::MaskMethod {
     if (std::ranges::is_sorted(table.bit_of)) return {.words = light.words_per_mask()};
     table.bit_of.resize(std::size_t{32} * light.words_per_mask(), device::MaskLayout::kNone);
     return {.words = light.words_per_mask(), .light_sample = std::move(table.bit_of)};
-  }
-
-  /// The shader multiplies up to six lengths; with the scene scaled to 1, float32 holds that for lights from 2⁻²⁸ to
-  /// 2²⁸.
-  void check_proportions() const {
-    const visibility::DeviceLight& frame = device_light();
-    const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
-    const float largest = size(frame.center) + size(frame.u) + size(frame.v);
-    const float smallest = std::min(size(frame.u), size(frame.v));
-    if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
-    throw InputError(
-        "light \"{}\": view-sample handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size "
-        "{:.3g} "
-        "and reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in "
-        "scale",
-        light().name, smallest, largest);
   }
 
   /// How the kernels are specialised for a light.
