@@ -8,9 +8,10 @@ die() { say "$1"; exit 4; }
 # built and run; `install_packages all` installs the second, too: what tests and developers need.
 install_packages() {
   local missing=() package
-  # Ask for all packages at once: dpkg-query answers in milliseconds, apt would take seconds.
+  # Ask for all packages at once: dpkg-query answers in milliseconds, apt would take seconds. Of the three letters of a
+  # status the second says what is (`i`: installed), the first what is wanted (`h`: held as it is), the third what is broken.
   local installed
-  installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' 2>/dev/null | sed -n 's/^ii  *//p') ||
+  installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' 2>/dev/null | sed -n 's/^.i  //p') ||
     die "cannot ask dpkg what is installed; this script is for Debian 12 and its kin"
   while read -r package _; do
     if [[ -z $package ]]; then

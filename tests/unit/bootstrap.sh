@@ -1,0 +1,55 @@
+#!/bin/bash
+# Which packages cmake/bootstrap.sh installs, with a dpkg-query and an apt-get of this test's own.
+#   bootstrap.sh SOURCE WORK
+set -euo pipefail
+source=$1 work=$2
+rm -rf -- "$work"
+mkdir -p "$work/bin" "$work/root"
+WORK=$(cd -- "$work" && pwd)
+export WORK
+export PATH=$WORK/bin:$PATH
+
+printf 'there\nheld\nremoved\nhalf\nbroken\nunknown\nthere-too\n\nof-tests\nof-tests-there\n' >"$work/root/packages.txt"
+# As dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' prints: what is wanted, what is, what is broken.
+cat >"$work/dpkg" <<'END'
+ii  there
+hi  held
+rc  removed
+iH  half
+iiR broken
+ii  unknown-but-longer
+ri  there-too
+ii  of-tests-there
+END
+cat >"$work/bin/dpkg-query" <<'END'
+#!/bin/bash
+[[ $1 == -W && $2 == "-f=\${db:Status-Abbrev} \${Package}\\n" && $# == 2 ]] || { echo "dpkg-query $*?" >&2; exit 2; }
+cat "$WORK/dpkg"
+END
+cat >"$work/bin/apt-get" <<'END'
+#!/bin/bash
+echo "$*" >>"$WORK/apt"
+END
+printf '#!/bin/bash\nexec "$@"\n' >"$work/bin/sudo"
+chmod +x "$work"/bin/*
+
+failed=0
+# expect CALL PACKAGES: what apt-get is asked to install; '' where it must not be called.
+expect() {
+  local asked
+  rm -f "$work/apt"
+  : >"$work/apt"
+  # shellcheck disable=SC2034
+  (root=$WORK/root && source "$source/cmake/bootstrap.sh" && $1) 2>"$work/said" || { cat "$work/said" >&2; failed=1; }
+  asked=$(sed -n 's/.* install --no-install-recommends -y //p' "$work/apt")
+  [[ $asked == "$2" && $(wc -l <"$work/apt") == "$([[ $2 ]] && echo 1 || echo 0)" ]] && return
+  printf '%s: installs "%s", not "%s"; apt-get was called with:\n' "$1" "$asked" "$2" >&2
+  cat "$work/apt" >&2
+  failed=1
+}
+expect install_packages 'removed half broken unknown'
+expect 'install_packages all' 'removed half broken unknown of-tests'
+printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' 'ii  there-too' >"$work/dpkg"
+expect install_packages ''
+[[ ! -s $work/said ]] || { echo "not quiet where nothing is missing" >&2; failed=1; }
+exit $failed
