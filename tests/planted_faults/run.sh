@@ -59,11 +59,13 @@ passes() {
   (cd "$work/tree/build" && timeout 1200 "./$1" --gtest_filter="$2" --gtest_brief=1 --gtest_fail_fast) >"$work/test.log" 2>&1
 }
 
-# Makes $work/tree what the source is. What is the same already stays, and its objects with it.
+# Makes $work/tree what the source is, without builds, their outputs and $work itself. What is the same already stays, and
+# its objects with it.
 copy_tree() {
   local file
   mkdir -p "$work/tree/build"  # in it, as builds mostly are: so compiler caches know them
-  git -C "$source" ls-files -z --cached --others --exclude-standard | sort -z >"$work/files"
+  (cd "$source" && find . \( -name .git -o -path ./out -o -path ./.cache -o -samefile "$work" -o \
+    -type d -exec test -e {}/CMakeCache.txt \; \) -prune -o -type f -printf '%P\0') | sort -z >"$work/files"
   while IFS= read -r -d '' file; do
     cmp -s "$source/$file" "$work/tree/$file" || (cd "$source" && cp --parents -t "$work/tree" -- "$file")
   done <"$work/files"
