@@ -46,7 +46,7 @@ std::size_t LightTree::new_points(const Cell& cell) const {
     }
   }
   std::ranges::sort(needed);
-  return static_cast<std::size_t>(std::ranges::unique(needed).begin() - needed.begin());
+  return static_cast<std::size_t>(std::unique(needed.begin(), needed.end()) - needed.begin());
 }
 
 std::uint32_t LightTree::add(const glm::uvec2& point) {

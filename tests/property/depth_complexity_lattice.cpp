@@ -41,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Range, DepthLatticeFull, testing::Values(1, 2, 4));
 using DepthHard = tests::DeviceTest;
 
 /// Triangles that reach behind p, past the light and through it, in general position: all of it must be right, for
-/// every kind of light and pattern. For half of the soups next to nothing is left to exact predicates; in the others
-/// whole view samples are, and most of them. This share may not grow.
+/// every kind of light and pattern. Next to nothing is left to exact predicates (3 % when this was written, nearly all
+/// of it in two soups whose view samples see something in the light's plane at a flat angle). This share may not grow.
 TEST_F(DepthHard, SoupsAllAroundTheLight) {
   const auto method = make_depth_complexity(device(), {});
   PairCounts counts;
@@ -76,8 +76,8 @@ TEST_F(DepthHard, SoupsAllAroundTheLight) {
   EXPECT_GT(counts.visible, counts.pairs / 20);
   EXPECT_GT(counts.blocked, counts.pairs / 10);
   fmt::print("{} of {} pairs open, in {} of 24 soups hardly any\n", open, counts.pairs, hardly_open);
-  EXPECT_LT(open, counts.pairs / 3);
-  EXPECT_GE(hardly_open, 10U);
+  EXPECT_LT(open, counts.pairs / 25);
+  EXPECT_GE(hardly_open, 20U);
 }
 
 TEST_F(DepthHard, WrongOptionsAndLightsAreRefused) {

@@ -51,9 +51,12 @@ TEST_P(MaskLamps, EveryPairIsTheExactDecision) {
   look(0, std::get<1>(GetParam()).any_light ? 12 : 25);
 }
 /// Found among thousands of lamps: a corner of the light whose depth was counted at a light sample that had been
-/// rounded again.
+/// rounded again; a panel in the plane of a tilted light, whose samples are off that plane by a rounding each (wrong
+/// where touched light samples are not left to the exact decision).
 TEST_P(MaskLamps, WhatWasWrong) {
-  if (std::get<0>(GetParam()) == Hostility::panels) look(5983, 3);
+  if (std::get<0>(GetParam()) != Hostility::panels) return;
+  look(5983, 3);
+  look(1002, 3);
 }
 TEST_P(MaskLamps, TensOfThousandsFull) {
   const std::uint32_t last = std::get<0>(GetParam()) == Hostility::panels ? 61000 : 21000;

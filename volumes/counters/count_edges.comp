@@ -34,6 +34,7 @@ layout(scalar, binding = 15) buffer Questions {
   DepthQuestion questions[];
 };
 layout(scalar, binding = 16) writeonly buffer Depths { int depths[]; };
+layout(scalar, binding = 17) readonly buffer Touched { uint touched_words[]; };  // light samples that something touches
 
 const uint kQueue = 64;
 const uint kEach = 8;                                     // light samples of a lane at a time
@@ -367,7 +368,7 @@ void main() {
   uint j = gl_SubgroupInvocationID, word = j;
   for (; j < kSamples; j += kLanes) counters[j] = depth;
   for (; word < kWords; word += kLanes) {
-    open_words[word] = 0;
+    open_words[word] = touched_words[word];
     visible_words[word] = 0;
   }
   cut_off = cut_off || j < kSamples || word < kWords;
@@ -378,10 +379,10 @@ void main() {
     for (j = gl_SubgroupInvocationID; j < kSamples; j += kLanes) depths[pixel * kSamples + j] = counters[j];
     cut_off = cut_off || j < kSamples;
   }
-  const bool touched = (push.touched_low | push.touched_high) != 0 || sees_flat(length(from_center), at.height);
+  const bool flat_way = sees_flat(length(from_center), at.height);
   // On a triangle within rounding: half of all ways from p depend on which side of it p is. (bound on)
   const bool on_some = subgroupAny(side_in_doubt) && subgroupAny(on_triangle);
-  if (subgroupAny(open_pixel || cut_off) || on_some || touched || below) {
+  if (subgroupAny(open_pixel || cut_off) || on_some || flat_way || below) {
     settle_whole(pixel, false, !below);
     return;
   }

@@ -110,6 +110,9 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
     std::vector<glm::vec2> places;
     for (const glm::vec2& at : device_light().coordinates) places.push_back(at + 1.0F);
     places_.emplace(render::make_buffer<glm::vec2>(device(), "places of light samples", places));
+    std::vector<std::uint32_t> touched(light().words_per_mask());
+    for (const std::uint32_t sample : edges().touch().samples) touched[sample / 32] |= 1U << (sample % 32);
+    touched_.emplace(render::make_buffer<std::uint32_t>(device(), "touched light samples", touched));
     build_pass();
     return {.words = light().words_per_mask()};
   }
@@ -162,7 +165,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
 
   void record(const gpu::ScatterPush& push, std::vector<render::BufferReference> inputs,
               const visibility::Tile& band) override {
-    inputs.insert(inputs.end(), {*places_, masks(), counts(), questions().buffer(), *depths_});
+    inputs.insert(inputs.end(), {*places_, masks(), counts(), questions().buffer(), *depths_, *touched_});
     count_->record(commands(), std::as_bytes(std::span(&push, 1)), inputs, std::uint64_t{band.row_count} * push.width);
   }
 
@@ -224,7 +227,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   bool keeps_depths_;
   std::optional<render::ComputePass> count_;
   std::vector<std::uint32_t> constants_;
-  std::optional<render::Buffer> places_;
+  std::optional<render::Buffer> places_, touched_;
   std::unique_ptr<render::Buffer> depths_;
   std::vector<gpu::DepthQuestion> asked_;                           // of the tile
   std::vector<device::OpenBits> reference_rays_;                    // of the band, laine's

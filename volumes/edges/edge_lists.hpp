@@ -58,6 +58,7 @@ class EdgeLists {
   [[nodiscard]] bool find(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input);
 
   [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< records, none cut
+  [[nodiscard]] const visibility::LightTouch& touch() const { return touch_; }
   // Of the last find:
   [[nodiscard]] std::uint64_t words() const { return words_; }  ///< of the lists
   [[nodiscard]] std::uint64_t retries() const { return retries_; }

@@ -25,7 +25,7 @@ class EdgeMethod : public device::MaskMethod {
   }
 
  protected:
-  /// Once a light, before its lists.
+  /// Once a light, after what the lists need of it.
   virtual device::MaskLayout prepare_kernel() = 0;
   /// What the kernel is told beside what the lists say.
   [[nodiscard]] virtual gpu::ScatterPush make_push() const = 0;
@@ -57,9 +57,8 @@ class EdgeMethod : public device::MaskMethod {
 
  private:
   device::MaskLayout prepare_casters() override {
-    device::MaskLayout layout = prepare_kernel();
     edges_.prepare_light(light(), device_light());
-    return layout;
+    return prepare_kernel();
   }
 
   EdgeLists edges_;
