@@ -1,5 +1,5 @@
 // Drivers and layers stay loaded, so that the leak checker knows where their frames are and can tell theirs from ours
-// (tests/lsan.supp). Linked into every program of a build with AddressSanitizer.
+// (tests/sanitizers/leak.supp). Linked into every program of a build with AddressSanitizer.
 
 extern "C" int dlclose(void* /*handle*/) noexcept {
   return 0;

@@ -24,7 +24,7 @@ function(penumbra_fuzz_target name)
   math(EXPR timeout "${PENUMBRA_FUZZ_SECONDS} + 3600")
   set_tests_properties(fuzz.${name} PROPERTIES LABELS full RUN_SERIAL ON TIMEOUT ${timeout})
   set_property(TEST fuzz_replay.${name} fuzz.${name} PROPERTY ENVIRONMENT
-    "LSAN_OPTIONS=suppressions=${CMAKE_CURRENT_SOURCE_DIR}/lsan.supp:print_suppressions=0"
+    "LSAN_OPTIONS=suppressions=${CMAKE_CURRENT_SOURCE_DIR}/sanitizers/leak.supp:print_suppressions=0"
     "UBSAN_OPTIONS=print_stacktrace=1")
 endfunction()
 
