@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/process.hpp"
+#include "app/unknown_arguments.hpp"
 #include "base/error.hpp"
 #include "render/device.hpp"
 
@@ -64,8 +65,10 @@ int run(int argc, char** argv) {
       penumbra::app::check_stdout();
       return 0;
     }
+    const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     penumbra::app::say(
-        fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n", error.what(),
+        fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n",
+                    unknown ? penumbra::app::explain_unknown_arguments(app) : error.what(),
                     app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " "));
     return static_cast<int>(ExitCode::usage);
   }

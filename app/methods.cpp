@@ -1,5 +1,6 @@
 #include "app/methods.hpp"
 
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 
 #include <fmt/ranges.h>
@@ -162,7 +163,8 @@ const TableRow& find_row(std::string_view name) {
   if (std::ranges::find(kNotThereYet, name) != kNotThereYet.end()) {
     throw UsageError("method \"{}\" is not there yet; what is: {}", name, there);
   }
-  throw UsageError("there is no method \"{}\"; what is there: {}", name, there);
+  throw UsageError("there is no method \"{}\"; what is there: {}{}", name, there,
+                   did_you_mean(name, names_of(all_methods())));
 }
 
 }  // namespace

@@ -55,6 +55,9 @@ class RenderCommand : public Command {
     outputs.add("--bits", bits_);
     outputs.refuse_inputs({&options_.scene, 1});
     outputs.require_writable();
+    if (!png_.empty() && png_.extension() != ".png") {
+      throw UsageError("--png {}: expected a name that ends in .png", png_.string());
+    }
 
     Progress progress(!global.quiet);
     DeviceSource devices(options_.device);

@@ -3,6 +3,7 @@
 #include "app/interrupt.hpp"
 #include "app/stopwatch.hpp"
 #include "base/assert.hpp"
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "render/visibility_buffer.hpp"
@@ -25,7 +26,8 @@ std::size_t find_named(const std::vector<Named>& elements, const std::string& wa
   if (found != elements.end()) return static_cast<std::size_t>(found - elements.begin());
   std::vector<std::string> names;
   for (const Named& element : elements) names.push_back(element.name);
-  throw UsageError("{} {}: {} has no such name; it has: {}", option, wanted, scene, fmt::join(names, ", "));
+  throw UsageError("{} {}: {} has no such name; it has: {}{}", option, wanted, scene, fmt::join(names, ", "),
+                   did_you_mean(wanted, names));
 }
 
 /// Refuses an image that this machine has no memory for, before minutes of work end in a killed process.

@@ -1,12 +1,12 @@
 #include "visibility/method_options.hpp"
 
 #include "base/assert.hpp"
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -32,29 +32,6 @@ std::optional<double> parse_value(const OptionDescription& option, const std::st
   if (option.whole && text.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
   const std::optional<double> number = number_in(text);
   return number && *number >= option.least && *number <= option.most ? number : std::nullopt;
-}
-
-/// Levenshtein's distance: how many letters must be changed, added or left out to make one of the other.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-/// "; did you mean X?" for the nearest name if at most a third of its letters differ, else nothing.
-std::string suggestion(std::string_view text, const std::vector<std::string>& names) {
-  const auto distance = [&](const std::string& name) { return edit_distance(text, name); };
-  const auto nearest = std::ranges::min_element(names, {}, distance);
-  if (nearest == names.end() || 3 * distance(*nearest) > nearest->size()) return {};
-  return fmt::format("; did you mean {}?", *nearest);
 }
 
 }  // namespace
@@ -96,12 +73,12 @@ ParsedOptions::ParsedOptions(std::string_view method, std::span<const OptionDesc
         names.push_back(has.name);
       }
       throw UsageError("method {} has no option \"{}\"; it has {}{}", method, key, known.empty() ? "none" : known,
-                       suggestion(key, names));
+                       did_you_mean(key, names));
     }
     const std::optional<double> number = parse_value(*option, value);
     if (!number) {
       throw UsageError("method {}: option {} is \"{}\"; it must be {}{}", method, key, value, option->values(),
-                       suggestion(value, option->choices));
+                       did_you_mean(value, option->choices));
     }
     entries_[key] = {.number = *number, .given = true};
   }

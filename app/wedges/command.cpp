@@ -4,6 +4,7 @@
 #include "app/output_files.hpp"
 #include "app/wedges/report.hpp"
 #include "base/atomic_file.hpp"
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
 #include "volumes/wedges/wedge_export.hpp"
@@ -49,7 +50,8 @@ std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
   if (found != scene.lights.end()) return static_cast<std::uint32_t>(found - scene.lights.begin());
   std::vector<std::string> names;
   for (const scenes::AreaLight& light : scene.lights) names.push_back(light.name);
-  throw UsageError("--light {}: {} has no such name; it has: {}", name, scene.name, fmt::join(names, ", "));
+  throw UsageError("--light {}: {} has no such name; it has: {}{}", name, scene.name, fmt::join(names, ", "),
+                   did_you_mean(name, names));
 }
 
 /// What the light itself is, where its hull is larger: points of a disk's rim. A sphere's outline changes with the

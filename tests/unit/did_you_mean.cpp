@@ -1,0 +1,27 @@
+// Which name a misspelt one is near to.
+
+#include "base/did_you_mean.hpp"
+
+#include <gtest/gtest.h>
+
+namespace penumbra {
+namespace {
+
+TEST(DidYouMean, TheNearestNameIfAThirdOfItsLettersDifferAtMost) {
+  const std::vector<std::string> names = {"render", "compare", "key"};
+  EXPECT_EQ(did_you_mean("rendr", names), "; did you mean render?");      // one left out
+  EXPECT_EQ(did_you_mean("comparee", names), "; did you mean compare?");  // one too many
+  EXPECT_EQ(did_you_mean("remdet", names), "; did you mean render?");     // two of six
+  EXPECT_EQ(did_you_mean("kay", names), "; did you mean key?");           // one of three
+  EXPECT_EQ(did_you_mean("remdex", {"rendering"}), "");                   // four of nine
+  EXPECT_EQ(did_you_mean("ka", names), "");
+  EXPECT_EQ(did_you_mean("", names), "");
+  EXPECT_EQ(did_you_mean("render", {}), "");
+}
+
+TEST(DidYouMean, OfTwoAsNearTheFirst) {
+  EXPECT_EQ(did_you_mean("lights", {"light", "light."}), "; did you mean light?");
+}
+
+}  // namespace
+}  // namespace penumbra
