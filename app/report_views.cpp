@@ -36,8 +36,8 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
     compare::ReportLight& shown = lights.emplace_back();
     shown.name = light.name;
     shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(session.classes[i])));
-    shown.round = light.kind == visibility::LightKind::disk || light.kind == visibility::LightKind::sphere;
-    if (light.kind == visibility::LightKind::rectangle) {
+    shown.round = is_round(light.kind);
+    if (light.kind == visibility::LightKind::rectangle || light.kind == visibility::LightKind::ellipse) {
       const visibility::LightFrame frame = visibility::light_frame(light);
       shown.aspect = glm::length(frame.u) / glm::length(frame.v);
     }

@@ -55,6 +55,7 @@ Region light_region(const visibility::Light& light) {
     case visibility::LightKind::polygon:
       return projected_outline(light);
     case visibility::LightKind::disk:
+    case visibility::LightKind::ellipse:
     case visibility::LightKind::sphere:
       return disk_polygon();
   }

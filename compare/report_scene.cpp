@@ -22,6 +22,10 @@ struct ShapeText {
   std::string operator()(const scenes::Disk& d) const {
     return fmt::format("a disk of radius {:.4g} at {}", d.radius, text_of(d.center));
   }
+  std::string operator()(const scenes::Ellipse& e) const {
+    return fmt::format("an ellipse with half axes of {:.4g} and {:.4g} at {}", glm::length(e.half_u),
+                       glm::length(e.half_v), text_of(e.center));
+  }
   std::string operator()(const scenes::Polygon& p) const {
     return fmt::format("a polygon of {} corners", p.vertices.size());
   }

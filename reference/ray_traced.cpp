@@ -134,7 +134,8 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
       "(2013)";
   description_.output = visibility::Output::mask;
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
-  description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon, LightKind::sphere};
+  description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon,
+                         LightKind::sphere};
   description_.verdict_on = verdict_on;
   description_.options = {kPacket.description()};
   width_ = visibility::parse_options(description_, options)[kPacket];

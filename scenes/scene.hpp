@@ -36,6 +36,11 @@ struct Sphere {
   glm::dvec3 center;
   double radius = 0;
 };
+/// The points center + s half_u + t half_v with s² + t² ≤ 1; emits to the side that half_u × half_v points to.
+struct Ellipse {
+  glm::dvec3 center, half_u, half_v;
+};
+using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse>;
 
 /// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
 /// the right and half_v upward: texel (0, 0), the picture's top left, lies in the corner −half_u + half_v. Each texel
@@ -49,7 +54,7 @@ struct Texture {
 /// An area light in world space: of constant radiance, or with a texture that multiplies it.
 struct AreaLight {
   std::string name;
-  std::variant<Rectangle, Disk, Polygon, Sphere> shape;
+  LightShape shape;
   glm::dvec3 radiance{10.0};
   bool two_sided = false;
   std::optional<Texture> texture = {};  ///< of a rectangle only

@@ -37,9 +37,10 @@ struct PutShape {
   void operator()(const Disk& shape) const { to.put(shape.center), to.put(shape.normal), to.put(shape.radius); }
   void operator()(const Polygon& shape) const { to.put_array(std::span<const glm::dvec3>(shape.vertices)); }
   void operator()(const Sphere& shape) const { to.put(shape.center), to.put(shape.radius); }
+  void operator()(const Ellipse& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
 };
 
-std::variant<Rectangle, Disk, Polygon, Sphere> get_shape(WireReader& from) {
+LightShape get_shape(WireReader& from) {
   switch (from.get<std::uint8_t>()) {
     case 0: {
       Rectangle shape;
@@ -63,6 +64,11 @@ std::variant<Rectangle, Disk, Polygon, Sphere> get_shape(WireReader& from) {
     case 3: {
       Sphere shape;
       shape.center = get_vector(from), shape.radius = get_number(from);
+      return shape;
+    }
+    case 4: {
+      Ellipse shape;
+      shape.center = get_vector(from), shape.half_u = get_vector(from), shape.half_v = get_vector(from);
       return shape;
     }
     default:

@@ -44,7 +44,7 @@ const std::filesystem::path& refuse_sphere(const std::filesystem::path& path, co
   if (light.kind == LightKind::sphere) {
     throw UsageError(
         "cannot write \"{}\": light \"{}\" is a sphere, whose light samples differ from pixel to pixel; "
-        "--bits needs a rectangle, disk or polygon (choose one with --light)",
+        "--bits needs a light of another kind (choose one with --light)",
         path.string(), light.name);
   }
   return path;

@@ -22,8 +22,8 @@ struct DeviceLight {
   float deviation = 0;                 ///< the largest distance of a stored sample from its place in this frame
 };
 
-/// Of a rectangle its own frame; of a disk or polygon a rectangle around it along the first stored axis. `scale` is a
-/// power of two. Not for spheres.
+/// Of a rectangle its own frame; of a disk, ellipse or polygon a rectangle around it along the first stored axis.
+/// `scale` is a power of two. Not for spheres.
 DeviceLight make_device_light(const Light& light, float scale);
 
 /// At least the largest coordinate, in size, of anything in scene and light, times `scale`: what rounding errors of

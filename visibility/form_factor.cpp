@@ -1,9 +1,13 @@
 #include "visibility/form_factor.hpp"
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace penumbra::visibility {
@@ -77,6 +81,40 @@ class Rim {
   double b_, a_, least_, most_, root_;
 };
 
+/// A symmetric matrix turned to its axes by Jacobi's rotations: eigenvalues on the diagonal, eigenvectors in columns.
+/// An off-diagonal element is taken off the diagonal, t · b each, so that small eigenvalues beside large ones keep
+/// their digits.
+struct Axes3 {
+  glm::dmat3 matrix, vectors{1.0};
+
+  explicit Axes3(const glm::dmat3& symmetric) : matrix(symmetric) {
+    for (int sweep = 0; sweep < 16; ++sweep) {
+      const bool turned = turn(0, 1), again = turn(0, 2), more = turn(1, 2);
+      if (!turned && !again && !more) return;
+    }
+  }
+
+ private:
+  bool turn(int i, int j) {
+    const double b = matrix[i][j];
+    if (b * b <= 0x1p-120 * std::abs(matrix[i][i] * matrix[j][j])) return false;
+    const double theta = (matrix[j][j] - matrix[i][i]) / (2 * b);
+    const double t = (theta < 0 ? -1 : 1) / (std::abs(theta) + std::hypot(theta, 1.0));
+    const double c = 1 / std::hypot(t, 1.0), s = t * c;
+    matrix[i][i] -= t * b;
+    matrix[j][j] += t * b;
+    matrix[i][j] = matrix[j][i] = 0;
+    const int k = 3 - i - j;
+    const double at_i = matrix[k][i], at_j = matrix[k][j];
+    matrix[k][i] = matrix[i][k] = c * at_i - s * at_j;
+    matrix[k][j] = matrix[j][k] = s * at_i + c * at_j;
+    const glm::dvec3 column = vectors[i];
+    vectors[i] = c * column - s * vectors[j];
+    vectors[j] = s * column + c * vectors[j];
+    return true;
+  }
+};
+
 }  // namespace
 
 double form_factor_term(const FormFactorEdge& edge, const glm::dvec3& n) {
@@ -147,6 +185,37 @@ double form_factor(const FormFactorDisk& disk, const glm::dvec3& n) {
   const auto at = [&](double angle) { return disk.center + r * (std::cos(angle) * x + std::sin(angle) * y); };
   const glm::dvec3 down = at(to), up = at(from);
   return std::max(0.0, -sum / (2 * pi) - form_factor_term({down, up, up - down}, n));
+}
+
+double form_factor(const FormFactorEllipse& ellipse, const glm::dvec3& n) {
+  // Planes through the element that touch the ellipse have normals m with (m · u)² + (m · v)² = (m · c)²: the cone's
+  // dual is u uᵀ + v vᵀ − c cᵀ. Along c its elements are as graded as its eigenvalues, however far away the ellipse is.
+  const double distance = glm::length(ellipse.center);
+  if (distance == 0) return 0;
+  const glm::dvec3 z = ellipse.center / distance;
+  const glm::dvec3 side = std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 y = glm::normalize(glm::cross(z, side)), x = glm::cross(y, z);
+  const glm::dmat3 basis(x, y, z);
+  const glm::dvec3 u = ellipse.u * basis, v = ellipse.v * basis, c(0, 0, distance);
+  const Axes3 axes(glm::outerProduct(u, u) + glm::outerProduct(v, v) - glm::outerProduct(c, c));
+
+  // In its axes the cone is X² / α² + Y² / β² = Z², α ≥ β.
+  std::array<int, 3> order{0, 1, 2};
+  std::ranges::sort(order, std::ranges::greater(), [&](int i) { return axes.matrix[i][i]; });
+  const double along = -axes.matrix[order[2]][order[2]];
+  const double alpha = axes.matrix[order[0]][order[0]] / along,
+               beta = axes.matrix[order[1]][order[1]] / along;  // squares
+  if (!(along > 0) || !(beta > 0)) return 0;                    // no wider than rounding
+  // The plane Z = 1 + m Y cuts it in a circle: m² = (α² − β²) / (β² (1 + α²)). With q = β m it reaches from
+  // Y = −β / (1 + q) to β / (1 − q).
+  const double q = std::sqrt((alpha - beta) / (1 + alpha)), b = std::sqrt(beta), m = q / b;
+  const double reach = b * (1 + alpha) / (1 + beta);  // β / (1 − q²)
+  const double stretch = std::hypot(1.0, m);
+  const glm::dvec3 &to_y = axes.vectors[order[1]], &axis = axes.vectors[order[2]];
+  const glm::dvec3 to_z = axis.z < 0 ? -axis : axis;
+  const FormFactorDisk disk{basis * (reach * q * to_y + (1 + m * reach * q) * to_z),
+                            basis * ((to_z - m * to_y) / stretch), reach * stretch};
+  return form_factor(disk, n);
 }
 
 }  // namespace penumbra::visibility

@@ -70,4 +70,13 @@ struct FormFactorDisk {
 };
 double form_factor(const FormFactorDisk& disk, const glm::dvec3& n);
 
+/// Of an ellipse, center + s u + t v with s² + t² ≤ 1, whose plane does not contain the element: never negative. What
+/// an element sees of a light depends on the cone of ways to its rim alone, and every cone over an ellipse is a cone
+/// over a circle, too: that circle's disk is integrated. Errors beside the disk's: a few ε of the cone's axes.
+struct FormFactorEllipse {
+  glm::dvec3 center{0};  ///< relative to the element
+  glm::dvec3 u{0}, v{0};
+};
+double form_factor(const FormFactorEllipse& ellipse, const glm::dvec3& n);
+
 }  // namespace penumbra::visibility

@@ -93,6 +93,23 @@ struct Builder {
     }
   }
 
+  /// The unit disk of a frame.
+  void add_round(const glm::dvec3& c, const glm::dvec3& u, const glm::dvec3& v) const {
+    store_frame(c, c + u, c + v);
+    light.outline = {stored(c - u - v), stored(c + u - v), stored(c + u + v), stored(c - u + v)};
+    for (const glm::dvec2& sample : unit) {
+      const glm::dvec2 st = concentric_disk(sample);
+      add(st, c + st.x * u + st.y * v);
+    }
+  }
+
+  void operator()(const scenes::Ellipse& shape) const {
+    light.kind = LightKind::ellipse;
+    light.area = std::numbers::pi * glm::length(glm::cross(shape.half_u, shape.half_v));
+    if (!(light.area > 0)) refuse_zero_area(" (halfU and halfV are parallel or zero)");
+    add_round(shape.center, shape.half_u, shape.half_v);
+  }
+
   void operator()(const scenes::Disk& shape) const {
     light.kind = LightKind::disk;
     light.radius = shape.radius;
@@ -101,13 +118,7 @@ struct Builder {
     if (!(length > 0)) refuse_zero_area(" (its normal is zero)");
     light.area = std::numbers::pi * shape.radius * shape.radius;
     const Axes axes = axes_around(shape.normal / length);
-    const glm::dvec3 &c = shape.center, u = shape.radius * axes.u, v = shape.radius * axes.v;
-    store_frame(c, c + u, c + v);
-    light.outline = {stored(c - u - v), stored(c + u - v), stored(c + u + v), stored(c - u + v)};
-    for (const glm::dvec2& sample : unit) {
-      const glm::dvec2 st = concentric_disk(sample);
-      add(st, c + st.x * u + st.y * v);
-    }
+    add_round(shape.center, shape.radius * axes.u, shape.radius * axes.v);
   }
 
   void operator()(const scenes::Polygon& shape) const;
@@ -212,8 +223,14 @@ const char* name_of(LightKind kind) {
       return "polygon";
     case LightKind::sphere:
       return "sphere";
+    case LightKind::ellipse:
+      return "ellipse";
   }
   return "?";
+}
+
+bool is_round(LightKind kind) {
+  return kind == LightKind::disk || kind == LightKind::ellipse || kind == LightKind::sphere;
 }
 
 Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const glm::dvec3& origin,

@@ -13,8 +13,10 @@
 
 namespace penumbra::visibility {
 
-enum class LightKind { rectangle, disk, polygon, sphere };
+enum class LightKind { rectangle, disk, polygon, sphere, ellipse };
 const char* name_of(LightKind kind);
+/// Is it the unit disk of its frame? (Disks, ellipses; spheres as each p sees them.)
+bool is_round(LightKind kind);
 
 enum class SamplePattern { rows, grid, sobol, jittered };
 const char* name_of(SamplePattern pattern);
@@ -38,11 +40,12 @@ struct Light {
   double area = 0;  ///< |L| in world units, double (a sphere's: its facing disk's)
 
   /// The stored frame: three points that span the light's plane and say where it emits: (u − c) × (v − c) points to
-  /// the emitting side. rectangle: centre, centre + halfU, centre + halfV; disk: centre and two points of its rim;
-  /// polygon: its first three non-collinear vertices. (sphere: centre and radius only.)
+  /// the emitting side. rectangle, ellipse: centre, centre + halfU, centre + halfV; disk: centre and two points of its
+  /// rim; polygon: its first three non-collinear vertices. (sphere: centre and radius only.)
   glm::vec3 center{0}, center_u{0}, center_v{0};
   std::vector<glm::vec3> outline;  ///< stored corners that bound the light: rectangle 4, polygon all, disk a
-                                   ///< circumscribed square's 4; conservative hull of light and samples
+                                   ///< circumscribed square's 4, ellipse a circumscribed parallelogram's 4;
+                                   ///< conservative hull of light and samples
   double radius = 0;               ///< disk, sphere
 
   SamplePattern pattern = SamplePattern::rows;
@@ -50,8 +53,8 @@ struct Light {
   std::vector<double> row_shift;        ///< rows pattern: each row's shift in cells, in (−0.5, 0.5); else empty
   std::vector<glm::vec3> points;        ///< the light samples as stored in float32 (a sphere's: empty)
   std::vector<glm::dvec2> coordinates;  ///< the same samples before rounding, in [−1, 1]² along (u − c, v − c)
-                                        ///< (rectangle); a disk's and a sphere's: on the unit disk; a polygon's:
-                                        ///< over its bounding rectangle
+                                        ///< (rectangle); a disk's, an ellipse's and a sphere's: on the unit disk;
+                                        ///< a polygon's: over its bounding rectangle
 
   std::optional<LightTexture> texture = {};  ///< of a rectangle; none: the radiance is constant
   std::vector<double> weights;           ///< with a texture, of each light sample: V = Σ weight · visible; they add
@@ -78,11 +81,11 @@ Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dve
 glm::vec3 center_of(const Light& light);
 
 /// The frame that a light is stored with, in double: its plane's points are center + s·u + t·v. A rectangle is
-/// s, t ∈ [−1, 1], a disk the unit disk. u and v are differences of stored points, rounded once; u × v points to the
-/// emitting side. What else describes a light's plane is made from this: DeviceLight (a rectangle around the samples in
-/// the floats of device passes), maps::LightBasis (orthonormal), native::LightGrid (in cells of light samples),
-/// volumes::gpu::WedgePush (the duals of u and v). Only areas::IntegerFrame takes the stored points themselves, since
-/// it is exact.
+/// s, t ∈ [−1, 1], a disk or ellipse the unit disk. u and v are differences of stored points, rounded once; u × v
+/// points to the emitting side. What else describes a light's plane is made from this: DeviceLight (a rectangle around
+/// the samples in the floats of device passes), maps::LightBasis (orthonormal), native::LightGrid (in cells of light
+/// samples), volumes::gpu::WedgePush (the duals of u and v). Only areas::IntegerFrame takes the stored points
+/// themselves, since it is exact.
 struct LightFrame {
   glm::dvec3 center{0}, u{0}, v{0};
 };

@@ -50,6 +50,8 @@ double UnshadowedLight::whole() const {
     case LightKind::disk:
     case LightKind::sphere:
       return form_factor(FormFactorDisk{center_, along_, light_.radius}, n_);
+    case LightKind::ellipse:
+      return form_factor(FormFactorEllipse{center_, u_, v_}, n_);
     case LightKind::polygon:
       break;
   }

@@ -24,7 +24,8 @@ class UnshadowedLight {
   [[nodiscard]] bool shines() const { return side_ != 0; }
   /// Is every corner that bounds the light (Light::outline; a sphere: its disk) above the element's plane?
   [[nodiscard]] bool above_horizon() const;
-  /// Of all the light: rectangle c ± u ± v, polygon by its outline, disk and (facing p) a sphere's disk as a circle.
+  /// Of all the light: rectangle c ± u ± v, polygon by its outline, disk and (facing p) a sphere's disk as a circle,
+  /// ellipse as its frame's.
   [[nodiscard]] double whole() const;
   /// Of a polygon in the frame's coordinates (s, t), counter-clockwise.
   [[nodiscard]] double part(std::span<const glm::dvec2> corners) const;

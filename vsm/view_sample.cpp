@@ -98,7 +98,8 @@ const visibility::MethodDescription& view_sample_description() {
       .paper = "Eisemann and Décoret 2007; Sintorn, Eisemann and Assarsson 2008",
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
-      .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon},
+      .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
+                 visibility::LightKind::polygon},
       .options = {engines::kEngine.description()},
       .verdict_on = verdict_on,
   };

@@ -75,8 +75,7 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
     outcome.hidden[i] = 1 - area.visibility({samples[i].p, samples[i].carrier, samples[i].facing});
   });
   // A disk is a polygon of equal area there, whose part differs from the disk's by 7.6e-8 at most (docs/exact.md).
-  using visibility::LightKind;
-  const double error = light.kind == LightKind::disk || light.kind == LightKind::sphere ? 1e-7 : 0;
+  const double error = is_round(light.kind) ? 1e-7 : 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     volumes::check_union(outcome.points[i], outcome.hidden[i], error, report);
   }

@@ -33,7 +33,7 @@ struct ContourLight {
   vec2 to_unit_x;      // a light point s is (dot(to_unit_x, s), dot(to_unit_y, s)) in [-1, 1]^2 of a rectangle, on a
   vec2 to_unit_y;      // disk of radius 1; a polygon's are its own coordinates
   uint corners;        // of a polygon: (x, y, share of the light swept up to it) each; 0: a rectangle
-  uint disk;           // 1: a disk
+  uint disk;           // 1: a disk or an ellipse
   float inverse_area;  // of a polygon
 };
 

@@ -33,14 +33,19 @@ ContourLightData contour_light(const visibility::Light& light, const LightBasis&
     set_to_unit(data.head, {light.radius, 0}, {0, light.radius});
     return data;
   }
+  if (light.kind == visibility::LightKind::ellipse) {
+    const LightAxes axes = light_axes(light, basis);
+    data.head.disk = 1;
+    set_to_unit(data.head, axes.u, axes.v);
+    return data;
+  }
   if (light.kind == visibility::LightKind::rectangle) {
     const visibility::LightFrame frame = visibility::light_frame(light);
     const glm::dvec3 u = basis.local(basis.center + frame.u), v = basis.local(basis.center + frame.v);
     set_to_unit(data.head, glm::dvec2(u), glm::dvec2(v));
     return data;
   }
-  std::vector<glm::dvec2> outline;
-  for (const glm::vec3& corner : light.outline) outline.emplace_back(basis.local(corner));
+  std::vector<glm::dvec2> outline = light_outline(light, basis);
   double twice = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) twice += cross(outline[i], outline[(i + 1) % outline.size()]);
   if (twice < 0) std::reverse(outline.begin(), outline.end());

@@ -113,8 +113,7 @@ LightTableData light_table(const visibility::Light& light, const LightBasis& bas
     data.shares = shares_at_nodes([](const glm::dvec2& at) { return disk_share(2 * at.x - 1, 2 * at.y - 1); });
     return data;
   }
-  std::vector<glm::dvec2> outline;
-  for (const glm::vec3& corner : light.outline) outline.emplace_back(basis.local(corner));
+  const std::vector<glm::dvec2> outline = light_outline(light, basis);
   for (const glm::dvec2& corner : outline) {
     data.outline.push_back(static_cast<float>(corner.x));
     data.outline.push_back(static_cast<float>(corner.y));

@@ -3,6 +3,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
 namespace penumbra::maps {
 glm::dvec3 LightBasis::local(const glm::dvec3& x) const {
   const glm::dvec3 d = x - center;
@@ -22,12 +26,41 @@ LightBasis light_basis(const visibility::Light& light) {
 LightBounds light_bounds(const visibility::Light& light, const LightBasis& basis) {
   if (light.kind == visibility::LightKind::disk) return {glm::dvec2(-light.radius), glm::dvec2(light.radius)};
   LightBounds bounds;
+  if (light.kind == visibility::LightKind::ellipse) {
+    const LightAxes axes = light_axes(light, basis);
+    bounds.upper = {std::hypot(axes.u.x, axes.v.x), std::hypot(axes.u.y, axes.v.y)};
+    bounds.lower = -bounds.upper;
+    return bounds;
+  }
   for (const glm::vec3& corner : light.outline) {
     const glm::dvec2 at(basis.local(corner));
     bounds.lower = glm::min(bounds.lower, at);
     bounds.upper = glm::max(bounds.upper, at);
   }
   return bounds;
+}
+
+LightAxes light_axes(const visibility::Light& light, const LightBasis& basis) {
+  const visibility::LightFrame frame = visibility::light_frame(light);
+  const auto in_basis = [&](const glm::dvec3& d) { return glm::dvec2(glm::dot(d, basis.u), glm::dot(d, basis.v)); };
+  return {in_basis(frame.u), in_basis(frame.v)};
+}
+
+std::vector<glm::dvec2> light_outline(const visibility::Light& light, const LightBasis& basis) {
+  std::vector<glm::dvec2> outline;
+  if (light.kind == visibility::LightKind::ellipse) {
+    constexpr std::uint32_t kSides = 256;
+    constexpr double kStep = 2 * std::numbers::pi / kSides;
+    const double reach = std::sqrt(kStep / std::sin(kStep));  // ½ m reach² sin(2π/m) = π
+    const LightAxes axes = light_axes(light, basis);
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const double angle = kStep * (i + 0.5);
+      outline.push_back(reach * (std::cos(angle) * axes.u + std::sin(angle) * axes.v));
+    }
+    return outline;
+  }
+  for (const glm::vec3& corner : light.outline) outline.emplace_back(basis.local(corner));
+  return outline;
 }
 
 }  // namespace penumbra::maps

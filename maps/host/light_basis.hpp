@@ -6,6 +6,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <vector>
+
 namespace penumbra::maps {
 
 /// Axes of a planar light: orthonormal, n toward its emitting side, u along its first stored axis.
@@ -26,5 +28,15 @@ struct LightBounds {
   glm::dvec2 lower{0}, upper{0};
 };
 LightBounds light_bounds(const visibility::Light& light, const LightBasis& basis);
+
+/// The light's own axes (visibility::LightFrame) in the basis.
+struct LightAxes {
+  glm::dvec2 u{0}, v{0};
+};
+LightAxes light_axes(const visibility::Light& light, const LightBasis& basis);
+
+/// The corners of a rectangle or polygon in the basis; of an ellipse those of a polygon of its area, the image of a
+/// regular one. (What of it lies outside the ellipse: areas/light_region.hpp; 256 sides are 2e-5 of the area off.)
+std::vector<glm::dvec2> light_outline(const visibility::Light& light, const LightBasis& basis);
 
 }  // namespace penumbra::maps

@@ -343,7 +343,8 @@ std::uint64_t MapMethod::memory_bytes() const {
 }  // namespace
 
 std::vector<visibility::LightKind> planar_lights() {
-  return {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::polygon};
+  return {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
+          visibility::LightKind::polygon};
 }
 
 std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,

@@ -52,13 +52,21 @@ class Fan {
 }  // namespace
 
 std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count) {
-  std::vector<glm::dvec2> outline;
-  for (const glm::vec3& corner : light.outline) outline.emplace_back(basis.local(corner));
-  const Fan fan(std::move(outline));
   std::vector<glm::vec2> pattern(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    pattern[i] = light.kind == visibility::LightKind::disk ? light.radius * disk_point(i) : fan.at(r2_point(i));
+  if (light.kind == visibility::LightKind::disk) {
+    for (std::uint32_t i = 0; i < count; ++i) pattern[i] = light.radius * disk_point(i);
+    return pattern;
   }
+  if (light.kind == visibility::LightKind::ellipse) {
+    const LightAxes axes = light_axes(light, basis);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::dvec2 at = disk_point(i);
+      pattern[i] = at.x * axes.u + at.y * axes.v;
+    }
+    return pattern;
+  }
+  const Fan fan(light_outline(light, basis));
+  for (std::uint32_t i = 0; i < count; ++i) pattern[i] = fan.at(r2_point(i));
   return pattern;
 }
 
@@ -74,7 +82,7 @@ LightSquare::LightSquare(const visibility::Light& light)
 }
 
 glm::dvec3 LightSquare::outline(double share) const {
-  if (light_->kind == visibility::LightKind::disk) {
+  if (is_round(light_->kind)) {
     const double angle = 2 * std::numbers::pi * (share - 0.375);  // the square's lower left corner: 225 degrees
     return frame_.center + std::cos(angle) * frame_.u + std::sin(angle) * frame_.v;
   }

@@ -17,7 +17,8 @@ namespace penumbra::maps {
 std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count);
 
 /// The unit square laid onto a planar light, areas in proportion, its outline on the light's: squares around its middle
-/// become the light's own shape around the centroid (Shirley and Chiu 1997 for a disk; a rectangle as it is).
+/// become the light's own shape around the centroid (Shirley and Chiu 1997 for a disk or ellipse; a rectangle as it
+/// is).
 class LightSquare {
  public:
   explicit LightSquare(const visibility::Light& light);

@@ -32,9 +32,11 @@ glm::dvec2 second_moments(const std::vector<glm::dvec2>& corners) {
 
 glm::dvec2 half_box(const visibility::Light& light, const LightBasis& basis) {
   if (light.kind == visibility::LightKind::disk) return glm::dvec2(std::sqrt(3.0) / 2 * light.radius);
-  std::vector<glm::dvec2> corners;
-  for (const glm::vec3& corner : light.outline) corners.emplace_back(basis.local(corner));
-  return glm::sqrt(3.0 * second_moments(corners));
+  if (light.kind == visibility::LightKind::ellipse) {
+    const LightBounds bounds = light_bounds(light, basis);  // the mean of x² is a quarter of the farthest
+    return std::sqrt(3.0) / 2 * bounds.upper;
+  }
+  return glm::sqrt(3.0 * second_moments(light_outline(light, basis)));
 }
 
 MapFrame::MapFrame(const render::Device& device) : frame_(device, "map frame", sizeof(gpu::MapFrame)) {}

@@ -45,16 +45,26 @@ void check_radius(double radius, const std::string& where) {
     throw InputError("{}: the radius is {}; at most {:g}", where, radius, kLargestCoordinate);
 }
 
-void check_shape(const Rectangle& rectangle, const std::string& where) {
-  check_position(rectangle.center, where, "center");
-  check_position(rectangle.half_u, where, "halfU");
-  check_position(rectangle.half_v, where, "halfV");
-  const double u = glm::length(rectangle.half_u), v = glm::length(rectangle.half_v);
+/// Rectangle or Ellipse.
+template <typename Halved>
+void check_halves(const Halved& shape, const std::string& where) {
+  check_position(shape.center, where, "center");
+  check_position(shape.half_u, where, "halfU");
+  check_position(shape.half_v, where, "halfV");
+  const double u = glm::length(shape.half_u), v = glm::length(shape.half_v);
   // The cross product of parallel vectors is off by a few roundings of its terms, which are at most u · v.
-  if (!(glm::length(glm::cross(rectangle.half_u, rectangle.half_v)) > 8 * kEpsilon * u * v)) {
+  if (!(glm::length(glm::cross(shape.half_u, shape.half_v)) > 8 * kEpsilon * u * v)) {
     throw InputError("{}: the light has no area: halfU {} and halfV {} must be neither zero nor parallel", where,
-                     show(rectangle.half_u), show(rectangle.half_v));
+                     show(shape.half_u), show(shape.half_v));
   }
+}
+
+void check_shape(const Rectangle& rectangle, const std::string& where) {
+  check_halves(rectangle, where);
+}
+
+void check_shape(const Ellipse& ellipse, const std::string& where) {
+  check_halves(ellipse, where);
 }
 
 void check_shape(const Disk& disk, const std::string& where) {

@@ -108,13 +108,18 @@ std::vector<glm::dvec3> outline(const AreaLight& light) {
   }
   if (const auto* polygon = std::get_if<Polygon>(&light.shape)) return polygon->vertices;
   std::vector<glm::dvec3> points;
+  const auto add_rim = [&](const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v) {
+    for (unsigned i = 0; i < kDiskSides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kDiskSides;
+      points.push_back(center + (std::cos(angle) * u + std::sin(angle) * v));
+    }
+  };
   if (const auto* disk = std::get_if<Disk>(&light.shape)) {
     const glm::dvec3 aside = std::abs(disk->normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 v = glm::normalize(glm::cross(disk->normal, aside)), u = glm::cross(v, disk->normal);
-    for (unsigned i = 0; i < kDiskSides; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kDiskSides;
-      points.push_back(disk->center + disk->radius * (std::cos(angle) * u + std::sin(angle) * v));
-    }
+    add_rim(disk->center, disk->radius * u, disk->radius * v);
+  } else if (const auto* ellipse = std::get_if<Ellipse>(&light.shape)) {
+    add_rim(ellipse->center, ellipse->half_u, ellipse->half_v);
   }
   return points;
 }
@@ -125,9 +130,9 @@ void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
     notes.push_back(fmt::format("light \"{}\": glTF has no sphere lights; left out", light.name));
     return;
   }
-  if (std::holds_alternative<Disk>(light.shape)) {
+  if (std::holds_alternative<Disk>(light.shape) || std::holds_alternative<Ellipse>(light.shape)) {
     notes.push_back(
-        fmt::format("light \"{}\": glTF has no disk lights; written with {} sides", light.name, kDiskSides));
+        fmt::format("light \"{}\": glTF has no round lights; written with {} sides", light.name, kDiskSides));
   }
   const std::vector<glm::vec3> positions(points.begin(), points.end());
   std::vector<std::uint32_t> fan;

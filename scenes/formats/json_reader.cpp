@@ -82,16 +82,20 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
   if (value.contains("radiance")) light.radiance = read_vector(value["radiance"]);
   light.two_sided = value.value("twoSided", false);
   const auto check = [&](const char* kind) { check_light(light, (place / kind).str()); };
-  if (value.contains("rectangle")) {
-    const json& shape = value["rectangle"];
-    const Rectangle rectangle{read_vector(shape["center"]), read_vector(shape["halfU"]), read_vector(shape["halfV"])};
-    light.shape = rectangle;
-    check("rectangle");
-    const double cosine = glm::dot(glm::normalize(rectangle.half_u), glm::normalize(rectangle.half_v));
+  const auto halves = [&](const json& shape, const char* kind, const char* oblique, auto halved) {
+    halved = {read_vector(shape["center"]), read_vector(shape["halfU"]), read_vector(shape["halfV"])};
+    light.shape = halved;
+    check(kind);
+    const double cosine = glm::dot(glm::normalize(halved.half_u), glm::normalize(halved.half_v));
     if (std::abs(cosine) > 1e-3) {  // only a hint: what decimals leave of a right angle is no reason to speak
-      scene.warnings.push_back(fmt::format("{}: halfU and halfV are not at right angles; the light is a parallelogram",
-                                           (place / "rectangle").str()));
+      scene.warnings.push_back(
+          fmt::format("{}: halfU and halfV are not at right angles; {}", (place / kind).str(), oblique));
     }
+  };
+  if (value.contains("rectangle")) {
+    halves(value["rectangle"], "rectangle", "the light is a parallelogram", Rectangle{});
+  } else if (value.contains("ellipse")) {
+    halves(value["ellipse"], "ellipse", "they are conjugate half diameters of the ellipse, not its axes", Ellipse{});
   } else if (value.contains("disk")) {
     const json& shape = value["disk"];
     light.shape = Disk{read_vector(shape["center"]), unit(read_vector(shape["normal"])), shape["radius"].get<double>()};

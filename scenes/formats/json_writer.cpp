@@ -44,6 +44,12 @@ void write_shape(const Sphere& sphere, TextStream& text) {
   text.print(R"(, "radius": )").number(sphere.radius).print("}}");
 }
 
+void write_shape(const Ellipse& ellipse, TextStream& text) {
+  text.print(R"("ellipse": {{"center": )").array(ellipse.center);
+  text.print(R"(, "halfU": )").array(ellipse.half_u);
+  text.print(R"(, "halfV": )").array(ellipse.half_v).print("}}");
+}
+
 void write_light(const AreaLight& light, const std::string& texture_file, TextStream& text) {
   text.print(R"({{"name": {}, )", quoted(light.name));
   std::visit([&](const auto& shape) { write_shape(shape, text); }, light.shape);

@@ -241,6 +241,10 @@ inline scenes::Scene moved(scenes::Scene scene, double scale, const glm::dvec3& 
     } else if (auto* disk = std::get_if<scenes::Disk>(&light.shape)) {
       place(disk->center);
       disk->radius *= scale;
+    } else if (auto* ellipse = std::get_if<scenes::Ellipse>(&light.shape)) {
+      place(ellipse->center);
+      ellipse->half_u *= scale;
+      ellipse->half_v *= scale;
     } else if (auto* polygon = std::get_if<scenes::Polygon>(&light.shape)) {
       for (glm::dvec3& vertex : polygon->vertices) place(vertex);
     } else if (auto* sphere = std::get_if<scenes::Sphere>(&light.shape)) {

@@ -219,6 +219,44 @@ TEST(FormFactor, OfADiskIsThatOfItsPolygon) {
   EXPECT_GT(cut, 50);
 }
 
+TEST(FormFactor, OfAnEllipseIsThatOfItsPolygon) {
+  constexpr unsigned kSeed = 11;
+  constexpr int kSides = 20000;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> one(-1, 1);
+  const auto vector = [&] { return glm::dvec3(one(random), one(random), one(random)); };
+  int cut = 0;
+  for (int round = 0; round < 300; ++round) {
+    const double distance = std::exp2(8 * one(random)), slim = round % 3 == 0 ? 0.01 : 1.0;
+    const FormFactorEllipse ellipse{distance * glm::normalize(vector()), vector(), slim * vector()};
+    const glm::dvec3 n = glm::normalize(vector()), across = glm::cross(ellipse.u, ellipse.v);
+    const double h = std::abs(glm::dot(glm::normalize(across), ellipse.center));
+    if (h < 0.05) continue;
+    cut += std::abs(glm::dot(n, ellipse.center)) < std::hypot(glm::dot(n, ellipse.u), glm::dot(n, ellipse.v)) ? 1 : 0;
+    const double step = 2 * pi / kSides, reach = std::sqrt(step / std::sin(step));  // of equal area
+    std::vector<glm::dvec3> corners;
+    for (int i = 0; i < kSides; ++i)
+      corners.push_back(ellipse.center + reach * (std::cos(i * step) * ellipse.u + std::sin(i * step) * ellipse.v));
+    // As for a disk, of a radius no ellipse's axis reaches; every corner's share may be off by an ulp of its edge.
+    const double size = std::hypot(glm::length(ellipse.u), glm::length(ellipse.v));
+    const double stray = size * std::pow(pi / kSides, 2) / 2 * (2 * pi * size) / (pi * h * h);
+    EXPECT_NEAR(form_factor(ellipse, n), std::abs(form_factor(corners, n)), stray + 1e-13)
+        << "seed " << kSeed << ", " << round;
+  }
+  EXPECT_GT(cut, 30);
+}
+
+TEST(FormFactor, OfARoundEllipseIsTheDisks) {
+  for (const double distance : {0.3, 1.0, 17.0, 1e5}) {
+    const glm::dvec3 center = distance * glm::normalize(glm::dvec3(0.3, 0.2, 1)), normal(0, 0.6, -0.8);
+    const glm::dvec3 n = glm::normalize(glm::dvec3(0.1, 0.5, 1)), u(0.5, 0, 0), v(0, 0.4, 0.3);
+    const double disk = form_factor(FormFactorDisk{center, normal, 0.5}, n);
+    // Of ε of the cone's axes, and ε d / a of the disk's own (form_factor.hpp).
+    EXPECT_NEAR(form_factor(FormFactorEllipse{center, u, v}, n) / disk, 1, 64 * kUlp * (1 + distance)) << distance;
+    EXPECT_NEAR(form_factor(FormFactorEllipse{center, v, -u}, n) / disk, 1, 64 * kUlp * (1 + distance)) << distance;
+  }
+}
+
 TEST(FormFactor, OfADiskHasNoSeams) {
   // Where formulas change (horizon just touching; B/A = 1/64; ρ² = R² + h²), both sides agree.
   const auto value = [](double rho, double h, double tilt) {

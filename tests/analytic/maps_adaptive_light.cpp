@@ -81,7 +81,9 @@ TEST_F(AdaptiveLight, WithoutToleranceIsAccumulateOverTheCornersOfAllCells) {
   add_quad(room, {4, 3, 0}, {0, 3, 0}, {0, 0, 4});  // up to beyond the light: hemicubes
   add_quad(both, {0, 9, 0}, {3, 0, 0}, {0, 0, 3});
   both.lights.front().two_sided = true;
-  for (const scenes::Scene& scene : {sphere_scene(0.5), disk, polygon, room, both}) {
+  scenes::Scene ellipse = sphere_scene(0.5);
+  ellipse.lights.front().shape = scenes::Ellipse{{0, 5, 0}, {0.6, 0, 0}, {0.1, 0, 0.3}};
+  for (const scenes::Scene& scene : {sphere_scene(0.5), disk, ellipse, polygon, room, both}) {
     Stage stage(scene, 32, 32, light_samples(4));
     const Run all = adaptive(stage, {{"levels", "2"}, {"epsilon", "0"}, {"pcf", "off"}, {"size", "64"}});
     EXPECT_EQ(all.maps, 25U);

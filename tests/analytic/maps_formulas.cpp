@@ -94,11 +94,13 @@ TEST_F(PcssFormulas, NearPlaneNoNearerThanTheLightsRadius) {
   expect_predicted(under_boards(boards), boards, "boards at 3.95 and 2");
 }
 
-TEST_F(PcssFormulas, DisksAndPolygons) {
+TEST_F(PcssFormulas, DisksEllipsesAndPolygons) {
   const std::vector<Board> boards{{2, -6, 1}};
   scenes::Scene scene = under_boards(boards);
   scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
   expect_predicted(scene, boards, "disk");
+  scene.lights.front().shape = scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0}, {0, 0, 0.4}};
+  expect_predicted(scene, boards, "ellipse");
   scene.lights.front().shape = scenes::Polygon{{{-1, 5, -0.5}, {1, 5, -0.5}, {0.2, 5, 1}}};  // its basis's u is along x
   expect_predicted(scene, boards, "polygon");
 }
@@ -120,6 +122,7 @@ TEST(LightPattern, IsSpreadEvenly) {
   const Shape shapes[] = {
       {"rectangle", scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}}, 2.0 / 3, 2},
       {"disk", scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9}, 0.405, 0.81},
+      {"ellipse", scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0}, {0.2, 0, 0.4}}, (0.81 + 0.04 + 0.16) / 4, 0.9},
       {"polygon", scenes::Polygon{{{-1, 5, -1}, {1, 5, -0.5}, {0, 5, 1}}}, (corners[0] + corners[1] + corners[2]) / 12,
        std::max({corners[0], corners[1], corners[2]})}};
   for (const Shape& shape : shapes) {

@@ -35,12 +35,14 @@ TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
   scenes::Scene scene = bare_floor(1);
   const auto inside_disk = [](const glm::dvec2& at) { return glm::length(2.0 * at - 1.0) <= 1; };
   const std::vector<glm::dvec3> corners{{-1, 5, -1}, {1, 5, -0.5}, {0, 5, 1}};
-  for (const bool disk : {true, false}) {
-    if (disk) {
-      scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.7};
-    } else {
-      scene.lights.front().shape = scenes::Polygon{corners};
-    }
+  for (const char* kind : {"disk", "ellipse", "oblique ellipse", "polygon"}) {
+    const bool disk = kind == std::string("disk") || kind == std::string("ellipse");
+    scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.7};
+    if (kind == std::string("ellipse"))
+      scene.lights.front().shape = scenes::Ellipse{{0, 5, 0}, {0.7, 0, 0}, {0, 0, 0.3}};
+    if (kind == std::string("oblique ellipse"))
+      scene.lights.front().shape = scenes::Ellipse{{0, 5, 0}, {0.7, 0, 0}, {0.4, 0, 0.3}};
+    if (kind == std::string("polygon")) scene.lights.front().shape = scenes::Polygon{corners};
     const visibility::Light light = light_of(scene);
     const maps::LightBasis basis = maps::light_basis(light);
     const maps::LightTableData data = maps::light_table(light, basis);
@@ -48,6 +50,11 @@ TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
     const auto inside = [&](const glm::dvec2& at) {
       if (disk) return inside_disk(at);
       const glm::dvec2 p = glm::mix(bounds.lower, bounds.upper, at);
+      if (light.kind == visibility::LightKind::ellipse) {
+        const auto [u, v] = maps::light_axes(light, basis);
+        const glm::dvec2 st(p.x * v.y - p.y * v.x, u.x * p.y - u.y * p.x);
+        return glm::length(st) <= u.x * v.y - u.y * v.x;
+      }
       int left = 0;
       for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 a(basis.local(light.outline[i])), b(basis.local(light.outline[(i + 1) % 3]));
@@ -68,7 +75,7 @@ TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
         }
       }
       EXPECT_NEAR(share(data, corner), static_cast<double>(below) / static_cast<double>(all), 2e-3)
-          << (disk ? "disk " : "polygon ") << corner.x << ", " << corner.y;
+          << kind << " " << corner.x << ", " << corner.y;
     }
   }
 }
@@ -126,6 +133,7 @@ TEST_F(MapsLightTable, TheHorizonCutsLightsOfAnyShape) {
   for (const Shape& shape : {Shape(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}}),
                              Shape(scenes::Rectangle{{0, 5, 0}, {1, 0, 0.3}, {-0.2, 0, 0.8}}),
                              Shape(scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.7}),
+                             Shape(scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0.1}, {-0.2, 0, 0.4}}),
                              Shape(scenes::Polygon{{{-1, 5, -1}, {1, 5, -0.5}, {0, 5, 1}}})}) {
     scene.lights.front().shape = shape;
     const Stage stage(scene, 24, 24, light_samples(1));
@@ -133,8 +141,9 @@ TEST_F(MapsLightTable, TheHorizonCutsLightsOfAnyShape) {
     const Masks found = run(maps::make_backproject, stage, {{"size", "16"}});
     std::size_t cut = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      // Closed forms in float: a light of size 1 at coordinates of some units.
-      EXPECT_NEAR(found.visibility[i], exact.visibility[i], 2e-5) << i;
+      // Closed forms in float: a light of size 1 at coordinates of some units. An ellipse is a polygon of 256 sides.
+      const double polygon = stage.light.kind == visibility::LightKind::ellipse ? 1.27 / (256 * 256) : 0;
+      EXPECT_NEAR(found.visibility[i], exact.visibility[i], 2e-5 + polygon) << i;
       cut += exact.visibility[i] > 0 && exact.visibility[i] < 1 ? 1 : 0;
     }
     EXPECT_GT(cut, 20U);

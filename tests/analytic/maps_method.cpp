@@ -127,14 +127,13 @@ TEST_F(MapsMethod, AnyNumberOfLightSamplesAndNoBitBeyond) {
   }
 }
 
-TEST_F(MapsMethod, DiskAndPolygonShapesAreDone) {
-  for (const bool disk : {true, false}) {
+TEST_F(MapsMethod, DiskEllipseAndPolygonShapesAreDone) {
+  for (const scenes::LightShape& shape :
+       {scenes::LightShape(scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.7}),
+        scenes::LightShape(scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0}, {0.1, 0, 0.5}}),
+        scenes::LightShape(scenes::Polygon{{{-1, 5, -1}, {1, 5, -0.5}, {0, 5, 1}}})}) {
     scenes::Scene scene = parallel_square();
-    if (disk) {
-      scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.7};
-    } else {
-      scene.lights.front().shape = scenes::Polygon{{{-1, 5, -1}, {1, 5, -0.5}, {0, 5, 1}}};
-    }
+    scene.lights.front().shape = shape;
     const Stage stage(scene, 40, 40, light_samples(64));
     const ParallelSquare exact(stage);
     const auto on_floor = [&](std::size_t i) { return exact.on_floor(i); };

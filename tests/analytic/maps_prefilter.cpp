@@ -295,6 +295,7 @@ TEST(LightBox, HasTheLightsOwnMoments) {
   for (const Shape& one :
        {Shape{scenes::Rectangle{{0, 3, 0}, {0.7, 0, 0}, {0, 0, 0.2}}, {0.7, 0.2}},
         Shape{scenes::Disk{{0, 3, 0}, {0, -1, 0}, 0.5}, glm::dvec2(std::sqrt(0.75) * 0.5)},
+        Shape{scenes::Ellipse{{0, 3, 0}, {0.4, 0, 0}, {0.3, 0, 0.2}}, std::sqrt(0.75) * glm::dvec2(0.5, 0.2)},
         Shape{scenes::Polygon{{{0, 3, 0}, {2, 3, 0}, {0, 3, 2}}}, glm::dvec2(std::sqrt(3 * 4.0 / 18))}}) {
     scene.lights.front().shape = one.shape;
     const Stage stage(scene, 4, 4, light_samples(1));

@@ -62,6 +62,7 @@ TEST_F(DepthHard, SoupsAllAroundTheLight) {
     tests::add_object(scene, "soup", soup);
     scene.lights.push_back(tests::rectangle_light(0.5 * point(), 0.4 * point(), 0.4 * point()));
     if (seed % 4 == 1) scene.lights[0].shape = scenes::Disk{0.5 * point(), glm::normalize(point()), 0.3};
+    if (seed % 4 == 3) scene.lights[0].shape = scenes::Ellipse{0.5 * point(), 0.4 * point(), 0.2 * point()};
     scene.lights[0].two_sided = seed % 2 == 0;
     const SceneFloats floats = visibility::make_scene_floats(scene);
     const auto pattern = seed % 3 == 0 ? visibility::SamplePattern::rows : visibility::SamplePattern::sobol;

@@ -355,12 +355,15 @@ TEST_F(HardVolume, NeitherOrderNorWindingNorTilesChangeAByte) {
   }
 }
 
-TEST_F(HardVolume, DisksAndPolygonsHaveACenterToo) {
+TEST_F(HardVolume, DisksEllipsesAndPolygonsHaveACenterToo) {
   scenes::Scene scene = stack(2, {2, 1.5, 2});
   scene.lights[0].shape = scenes::Disk{{0.25, 4, 0}, {0, -1, 0}, 0.5};
   const Picture disk(scene, device(), 48, 36);
   EXPECT_EQ(run(disk).center, disk.light.center);
   expect_exact("disk", disk);
+  scene.lights[0].shape = scenes::Ellipse{{0.25, 4, 0}, {0.5, 0, 0}, {0, 0, 0.25}};
+  const Picture ellipse(scene, device(), 48, 36);
+  EXPECT_EQ(run(ellipse).counts, run(disk).counts);                            // of the same centre
   scene.lights[0].shape = scenes::Polygon{{{0, 4, 0}, {3, 4, 0}, {0, 4, 3}}};  // centroid (1, 4, 1)
   const Picture polygon(scene, device(), 48, 36);
   // Rounded to float32, and the corners before: a few times 2⁻²⁴ · 4.

@@ -120,6 +120,7 @@ TEST_F(Packed, SoupsAroundEveryKindOfLight) {
       const glm::dvec3 o = 0.8 * point(), u = 0.4 * point(), v = 0.4 * point();
       scene.lights[0].shape = scenes::Polygon{{o, o + u, o + 0.7 * (u + v), o + v}};
     }
+    if (seed % 4 == 3) scene.lights[0].shape = scenes::Ellipse{0.8 * point(), 0.4 * point(), 0.2 * point()};
     scene.lights[0].two_sided = seed % 2 == 0;
     scene.cameras.push_back(tests::camera(2.0 * point(), 0.3 * point(), 60));
     try {

@@ -31,7 +31,8 @@ scenes::Scene soup_over_floor(std::uint32_t seed) {
   tests::add_object(scene, "soup", soup);
   const glm::dvec3 center(real(random), 3, real(random));
   scene.lights.push_back(tests::rectangle_light(center, {0.6, 0.1, 0.03}, {0.05, 0.1, 0.7}));
-  if (seed % 4 == 1) scene.lights[0].shape = scenes::Disk{center, {0.1, -1, 0.2}, 0.7};
+  if (seed % 8 == 1) scene.lights[0].shape = scenes::Disk{center, {0.1, -1, 0.2}, 0.7};
+  if (seed % 8 == 5) scene.lights[0].shape = scenes::Ellipse{center, {0.6, 0.1, 0.03}, {0.05, 0.1, 0.3}};
   if (seed % 4 == 2) scene.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.5}, {0.7, 3, -0.4}, {0.1, 3, 0.8}}};
   if (seed % 4 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.6};
   scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));

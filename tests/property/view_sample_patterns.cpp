@@ -10,7 +10,7 @@ using tests::PairCounts;
 using visibility::SamplePattern;
 using visibility::SampleRequest;
 
-enum class Shape { rectangle, tilted, disk, polygon };
+enum class Shape { rectangle, tilted, disk, ellipse, polygon };
 
 scenes::Scene soup_under(Shape shape, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -28,6 +28,7 @@ scenes::Scene soup_under(Shape shape, std::uint32_t seed) {
   scene.lights.push_back(tests::rectangle_light(center, {0.6, 0, 0}, {0, 0, 0.7}));
   if (shape == Shape::tilted) scene.lights[0] = tests::rectangle_light(center, {0.6, 0.37, 0.03}, {-0.11, 0.21, 0.7});
   if (shape == Shape::disk) scene.lights[0].shape = scenes::Disk{center, glm::normalize(glm::dvec3(0.1, -1, 0.2)), 0.7};
+  if (shape == Shape::ellipse) scene.lights[0].shape = scenes::Ellipse{center, {0.6, 0.1, 0.03}, {-0.11, 0.21, 0.3}};
   if (shape == Shape::polygon) {
     scene.lights[0].shape = scenes::Polygon{{{-0.5, 2.2, -0.5}, {0.7, 2.2, -0.4}, {0.9, 2.2, 0.3}, {0.1, 2.2, 0.8}}};
   }
@@ -80,8 +81,8 @@ TEST_P(Patterns, RowsByColumns) {
   }
 }
 
-TEST_P(Patterns, DisksAndPolygons) {
-  for (const Shape shape : {Shape::disk, Shape::polygon}) {
+TEST_P(Patterns, DisksEllipsesAndPolygons) {
+  for (const Shape shape : {Shape::disk, Shape::ellipse, Shape::polygon}) {
     for (const SamplePattern pattern :
          {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
       for (const std::uint32_t count : {1U, 33U, 256U, 1000U}) check(shape, {count, 0, 0, pattern, 7});

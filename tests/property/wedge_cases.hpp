@@ -19,6 +19,7 @@ inline std::vector<visibility::Light> lights_at(const glm::dvec3& center, double
   scene.lights = {
       {"rectangle", scenes::Rectangle{center, v, u}, glm::dvec3(1), false},
       {"disk", scenes::Disk{center, glm::dvec3(0, -1, 0), size}, glm::dvec3(1), false},
+      {"ellipse", scenes::Ellipse{center, v, 0.5 * u}, glm::dvec3(1), false},
       {"polygon", scenes::Polygon{{center, center + u, center + 0.5 * (u + v), center + v}}, glm::dvec3(1), false},
       {"sphere", scenes::Sphere{center, size}, glm::dvec3(1), false}};
   std::vector<visibility::Light> lights;

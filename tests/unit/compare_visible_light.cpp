@@ -35,6 +35,7 @@ Light light_of(const scenes::AreaLight& source, const SampleRequest& request) {
 scenes::AreaLight shape(const char* kind) {
   scenes::AreaLight light = tests::ceiling_light(2, 0.75);
   if (kind == std::string("disk")) light.shape = scenes::Disk{{0, 2, 0}, {0.1, -1, 0.2}, 0.8};
+  if (kind == std::string("ellipse")) light.shape = scenes::Ellipse{{0, 2, 0}, {0.5, 0.1, 0}, {0.1, 0, 0.9}};
   if (kind == std::string("sphere")) light.shape = scenes::Sphere{{0, 2, 0}, 0.8};
   if (kind == std::string("polygon")) light.shape = scenes::Polygon{{{1, 2, 0}, {0, 2, 1}, {-1, 2, 0}, {0, 2, -1}}};
   return light;
@@ -95,7 +96,7 @@ TEST(VisibleLight, ARunIsTheSumOfItsCells) {
 TEST(VisibleLight, AllVisibleIsTheWholeToTheLastBit) {
   // The last point's horizon cuts the lights: there all samples above it, and no others, are visible.
   const glm::vec3 up(0, 1, 0), slanted = glm::normalize(glm::vec3(1, 0.02f, 0.1f));
-  for (const char* kind : {"rectangle", "disk", "polygon", "sphere"}) {
+  for (const char* kind : {"rectangle", "disk", "ellipse", "polygon", "sphere"}) {
     for (const SamplePattern pattern :
          {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
       const Light light = light_of(shape(kind), {53, 0, 0, pattern, 1});

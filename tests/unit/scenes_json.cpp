@@ -108,7 +108,8 @@ const BadScene kStructure[] = {
     {"FitAndTransform", mesh(R"("shape": {"type": "box"}, "fit": {"height": 1}, "transform": {})"),
      R"(/meshes/0: the keys ["fit","transform"] exclude one another)"},
     {"NoLightShape", light(R"("radiance": [1,1,1])"),
-     "/lights/0: expected exactly one of the keys \"rectangle\", \"disk\", \"polygon\", \"sphere\", found none"},
+     "/lights/0: expected exactly one of the keys \"rectangle\", \"disk\", \"ellipse\", \"polygon\", \"sphere\", found "
+     "none"},
     {"ColorTooBright", mesh(R"("shape": {"type": "box"}, "color": [1, 1, 1.5])"),
      "/meshes/0/color/2: expected a number from 0 to 1, found the number 1.5"},
     {"NegativeRadiance", light(R"("sphere": {"center": [0,5,0], "radius": 1}, "radiance": [-1, 0, 0])"),
@@ -165,6 +166,11 @@ const BadScene kMeaning[] = {
      "/lights/0/rectangle: the light has no area: halfU (1, 0, 0) and halfV (2, 0, 0)"},
     {"RectangleZero", light(R"("rectangle": {"center": [0,5,0], "halfU": [0,0,0], "halfV": [0,0,1]})"),
      "/lights/0/rectangle: the light has no area"},
+    {"EllipseOfParallelAxes", light(R"("ellipse": {"center": [0,5,0], "halfU": [1,0,0], "halfV": [-2,0,0]})"),
+     "/lights/0/ellipse: the light has no area: halfU (1, 0, 0) and halfV (-2, 0, 0) must be neither zero nor "
+     "parallel"},
+    {"EllipseWithoutAnAxis", light(R"("ellipse": {"center": [0,5,0], "halfU": [1,0,0]})"),
+     "/lights/0/ellipse: missing key \"halfV\""},
     {"DiskRadius", light(R"("disk": {"center": [0,5,0], "normal": [0,-1,0], "radius": 0})"),
      "/lights/0/disk/radius: expected a number above 0, found the number 0"},
     {"DiskNormal", light(R"("disk": {"center": [0,5,0], "normal": [0,0,0], "radius": 1})"),
@@ -240,7 +246,8 @@ TEST(JsonScene, ReadsTheContractsExample) {
     {"name": "key", "rectangle": {"center": [0, 5, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10], "twoSided": false},
     {"name": "rim", "disk": {"center": [2, 5, 0], "normal": [0, -1, 0], "radius": 0.4}},
     {"name": "poly", "polygon": [[0,5,0],[1,5,0],[0,5,1]]},
-    {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}}
+    {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}},
+    {"name": "oval", "ellipse": {"center": [0, 5, 0], "halfU": [0.6, 0, 0], "halfV": [0, 0, 0.3]}}
   ] })");
   const scenes::Scene scene = read_scene(file);
   ASSERT_EQ(scene.objects.size(), 5u);
@@ -250,9 +257,10 @@ TEST(JsonScene, ReadsTheContractsExample) {
   EXPECT_EQ(scene.soup.triangles.size(), 1u + 69'666 + 2 + 2 * 64 * 31 + 1);
   EXPECT_EQ(scene.soup.triangles.size(), scene.soup.object.size());
   EXPECT_EQ(scene.soup.triangles.size(), scene.soup.source_face.size());
-  ASSERT_EQ(scene.lights.size(), 4u);
+  ASSERT_EQ(scene.lights.size(), 5u);
   EXPECT_TRUE(std::holds_alternative<scenes::Disk>(scene.lights[1].shape));
   EXPECT_EQ(scene.lights[2].radiance, glm::dvec3(10));
+  EXPECT_EQ(std::get<scenes::Ellipse>(scene.lights[4].shape).half_v, glm::dvec3(0, 0, 0.3));
   // A quarter turn about Y takes X to −Z, exactly.
   EXPECT_EQ(scene.soup.positions[1], glm::dvec3(0, 0, -1));
 }
@@ -311,6 +319,10 @@ TEST(JsonScene, SkewedRectangleIsSaid) {
       read_text(scene_text(kMesh, R"({"rectangle": {"center": [0,5,0], "halfU": [1,0,0], "halfV": [1,0,1]}})"));
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("/lights/0/rectangle: halfU and halfV are not at right angles"), std::string::npos);
+  const auto oval =
+      read_text(scene_text(kMesh, R"({"ellipse": {"center": [0,5,0], "halfU": [1,0,0], "halfV": [1,0,1]}})"));
+  ASSERT_EQ(oval.warnings.size(), 1u);
+  EXPECT_NE(oval.warnings[0].find("/lights/0/ellipse: halfU and halfV are not at right angles"), std::string::npos);
 }
 
 }  // namespace

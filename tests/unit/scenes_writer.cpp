@@ -35,12 +35,15 @@ void expect_same_shape(const scenes::AreaLight& a, const scenes::AreaLight& b) {
     const auto& s = std::get<scenes::Rectangle>(b.shape);
     EXPECT_TRUE(same_bits(r->center, s.center) && same_bits(r->half_u, s.half_u) && same_bits(r->half_v, s.half_v));
   } else if (const auto* d = std::get_if<scenes::Disk>(&a.shape)) {
-    const auto& e = std::get<scenes::Disk>(b.shape);
-    EXPECT_TRUE(same_bits(d->center, e.center) && same_bits(d->normal, e.normal) && same_bits(d->radius, e.radius));
+    const auto& c = std::get<scenes::Disk>(b.shape);
+    EXPECT_TRUE(same_bits(d->center, c.center) && same_bits(d->normal, c.normal) && same_bits(d->radius, c.radius));
   } else if (const auto* p = std::get_if<scenes::Polygon>(&a.shape)) {
     const auto& q = std::get<scenes::Polygon>(b.shape);
     ASSERT_EQ(p->vertices.size(), q.vertices.size());
     for (std::size_t i = 0; i < p->vertices.size(); ++i) EXPECT_TRUE(same_bits(p->vertices[i], q.vertices[i]));
+  } else if (const auto* e = std::get_if<scenes::Ellipse>(&a.shape)) {
+    const auto& f = std::get<scenes::Ellipse>(b.shape);
+    EXPECT_TRUE(same_bits(e->center, f.center) && same_bits(e->half_u, f.half_u) && same_bits(e->half_v, f.half_v));
   } else {
     const auto &s = std::get<scenes::Sphere>(a.shape), &t = std::get<scenes::Sphere>(b.shape);
     EXPECT_TRUE(same_bits(s.center, t.center) && same_bits(s.radius, t.radius));
@@ -95,6 +98,7 @@ constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [
     {"name": "key", "rectangle": {"center": [0, 5, 0], "halfU": [0.1, 0, 0], "halfV": [0, 0, 0.3]}, "radiance": [1.5, 0, 1e-7], "twoSided": true},
     {"name": "rim", "disk": {"center": [2, 5, 0], "normal": [0.3, -1, 0.1], "radius": 0.4}},
     {"name": "poly", "polygon": [[0,5,0],[1,5,0],[0,5,1]]},
+    {"name": "oval", "ellipse": {"center": [0, 5, 0.1], "halfU": [0.6, 0, 0], "halfV": [0, 0.1, 0.3]}},
     {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}}] })";
 
 TEST(JsonWriter, RoundTripIsBitExact) {
@@ -146,7 +150,7 @@ TEST(ObjWriter, TrianglesInOrderUnderTheirObjects) {
   const Scene scene = read_text(kEverything);
   const auto notes = write_scene(scene, folder / "scene.obj");
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 4 and 2"), std::string::npos);
+  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 5 and 2"), std::string::npos);
   std::istringstream lines(read_file(folder / "scene.obj"));
   std::vector<glm::dvec3> positions;
   std::vector<std::string> objects;
@@ -216,12 +220,13 @@ TEST(GlbWriter, ReadsBackInSinglePrecision) {
 TEST(GlbWriter, SaysWhatGltfCannotHold) {
   const TemporaryFolder folder;
   const auto notes = write_scene(read_text(kEverything), folder / "scene.glb");
-  ASSERT_EQ(notes.size(), 4u);
-  EXPECT_NE(notes[0].find("light \"rim\": glTF has no disk lights; written with 64 sides"), std::string::npos);
-  EXPECT_NE(notes[1].find("light \"bulb\": glTF has no sphere lights; left out"), std::string::npos);
-  EXPECT_NE(notes[2].find("glTF has no shadow flags"), std::string::npos);
+  ASSERT_EQ(notes.size(), 5u);
+  EXPECT_NE(notes[0].find("light \"rim\": glTF has no round lights; written with 64 sides"), std::string::npos);
+  EXPECT_NE(notes[1].find("light \"oval\": glTF has no round lights; written with 64 sides"), std::string::npos);
+  EXPECT_NE(notes[2].find("light \"bulb\": glTF has no sphere lights; left out"), std::string::npos);
+  EXPECT_NE(notes[3].find("glTF has no shadow flags"), std::string::npos);
   const Scene again = read_scene(folder / "scene.glb");
-  EXPECT_EQ(again.lights.size(), 3u);
+  EXPECT_EQ(again.lights.size(), 4u);
   for (const auto& light : again.lights) {
     if (light.name == "rim") {
       EXPECT_EQ(std::get<scenes::Polygon>(light.shape).vertices.size(), 64u);

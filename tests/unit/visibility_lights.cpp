@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace penumbra::visibility {
 namespace {
@@ -118,6 +119,25 @@ TEST(Lights, DiskSamplesAreSpreadEvenly) {
   }
 }
 
+TEST(Lights, EllipseSamplesAreADisksInTheEllipsesFrame) {
+  const SampleRequest request{1000, 0, 0, SamplePattern::sobol, 3};
+  const scenes::Ellipse shape{{1, 2, 3}, {0.5, 0.25, 2}, {1, -0.125, 0.25}};
+  const Light light = light_of(shape, request), disk = light_of(scenes::Disk{{1, 2, 3}, {0, -1, 0}, 2}, request);
+  EXPECT_EQ(light.kind, LightKind::ellipse);
+  EXPECT_NEAR(light.area, kPi * glm::length(glm::cross(shape.half_u, shape.half_v)), 1e-12);
+  EXPECT_EQ(light.coordinates, disk.coordinates);
+  ASSERT_EQ(light.points.size(), 1000u);
+  for (std::size_t j = 0; j < light.points.size(); ++j) {
+    const auto [s, t] = std::pair(light.coordinates[j].x, light.coordinates[j].y);
+    EXPECT_LE(std::hypot(s, t), 1);
+    EXPECT_EQ(light.points[j], glm::vec3(shape.center + s * shape.half_u + t * shape.half_v));
+  }
+  EXPECT_EQ(light.outline[2], glm::vec3(shape.center + shape.half_u + shape.half_v));
+  const glm::dvec3 front = glm::cross(shape.half_u, shape.half_v);
+  EXPECT_TRUE(in_front_of_light(light, glm::vec3(shape.center + front)));
+  EXPECT_FALSE(in_front_of_light(light, glm::vec3(shape.center - front)));
+}
+
 TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
   const scenes::Polygon house{{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 4, 0}, {0, 2, 0}}};  // area 8 + 4
   const Light light = light_of(house, {4096, 0, 0, SamplePattern::sobol, 1});
@@ -159,6 +179,7 @@ TEST(Lights, RefusesWhatHasNoAreaOrIsNotFinite) {
   EXPECT_NE(refusal(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {2, 0, 0}}).find("light \"key\": its area is zero"),
             std::string::npos);
   EXPECT_NE(refusal(scenes::Rectangle{{1e9, 5, 0}, {1, 0, 0}, {0, 0, 1}}).find("in float32"), std::string::npos);
+  EXPECT_NE(refusal(scenes::Ellipse{{0, 5, 0}, {1, 0, 0}, {2, 0, 0}}).find("parallel"), std::string::npos);
   EXPECT_NE(refusal(scenes::Disk{{0, 0, 0}, {0, 1, 0}, 0}).find("radius"), std::string::npos);
   EXPECT_NE(refusal(scenes::Disk{{0, 0, 0}, {0, 0, 0}, 1}).find("normal"), std::string::npos);
   EXPECT_NE(refusal(scenes::Polygon{{{0, 0, 0}, {1, 0, 0}}}).find("three corners"), std::string::npos);
@@ -167,6 +188,7 @@ TEST(Lights, RefusesWhatHasNoAreaOrIsNotFinite) {
   for (const double bad : {inf, nan, 1e200}) {
     EXPECT_NE(refusal(scenes::Rectangle{{bad, 5, 0}, {1, 0, 0}, {0, 0, 1}}), "") << bad;
     EXPECT_NE(refusal(scenes::Disk{{0, bad, 0}, {0, 1, 0}, 1}), "") << bad;
+    EXPECT_NE(refusal(scenes::Ellipse{{0, 5, 0}, {bad, 0, 0}, {0, 0, 1}}), "") << bad;
     EXPECT_NE(refusal(scenes::Polygon{{{0, 0, 0}, {bad, 0, 0}, {0, 1, 0}}}), "") << bad;
     EXPECT_NE(refusal(scenes::Sphere{{0, 0, bad}, 1}), "") << bad;
   }

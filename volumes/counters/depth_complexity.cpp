@@ -248,7 +248,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
           "the same for closed meshes whose triangles all have an area, approximate for others; variant=forest: the "
           "same where no occluding triangle's "
           "plane passes through the light, too bright elsewhere",
-      .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
+      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
       .options = {kVariant.description(), kCrop.description(), kCounterBits.description()},
       .verdict_on = verdict_on};
   parse(description, options);

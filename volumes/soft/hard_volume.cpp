@@ -30,7 +30,7 @@ visibility::MethodDescription describe() {
           .paper = "Crow 1977, Heidmann 1991, Everitt and Kilgard 2002",
           .output = visibility::Output::scalar,
           .exact_for = "the hard shadow of the light's centre, of any triangle soup (z-fail)",
-          .lights = {LightKind::rectangle, LightKind::disk, LightKind::polygon},
+          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
           .options = {kVariant.description()},
           .verdict_on = verdict_on};
 }

@@ -75,7 +75,7 @@ visibility::MethodDescription describe() {
           .exact_for =
               "occluders that do not overlap as seen from the view sample and whose silhouettes are those that "
               "the light's centre sees: planar ones, say",
-          .lights = {LightKind::rectangle, LightKind::disk},
+          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse},
           .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
                       kTests.description()},
           .verdict_on = verdict_on};
@@ -200,7 +200,7 @@ class SoftVolume final : public visibility::Method {
 
 /// The shader's constants depend on the light's shape and texture.
 void SoftVolume::make_raster(const Light& light) {
-  const gpu::uint shape = light.kind == LightKind::disk ? gpu::kDisk : gpu::kRectangle;
+  const gpu::uint shape = is_round(light.kind) ? gpu::kDisk : gpu::kRectangle;
   const gpu::uint measure = table_ ? gpu::kTable : light.texture ? gpu::kTexture : gpu::kArea;
   const std::vector<gpu::uint> kind{shape, measure};
   if (raster_ && kind == kind_) return;

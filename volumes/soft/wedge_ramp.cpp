@@ -1,6 +1,7 @@
 // T. Akenine-Möller, U. Assarsson, Approximate soft shadows on arbitrary surfaces using penumbra wedges, EGWR 2002:
 // hard shadow volumes of the light's centre, and between the front and back plane of a wedge an edge, in place of the
-// hard step, light that falls linearly. Departures: any soup and rectangle and disk lights, not a sphere; integer sums.
+// hard step, light that falls linearly. Departures: any soup and rectangle, disk and ellipse lights, not a sphere;
+// integer sums.
 
 #include "volumes/soft/wedge_ramp.hpp"
 
@@ -37,7 +38,7 @@ visibility::MethodDescription describe() {
           .paper = "Akenine-Möller and Assarsson 2002",
           .output = visibility::Output::scalar,
           .exact_for = "nothing but umbra and full light of one occluder with a simple silhouette",
-          .lights = {LightKind::rectangle, LightKind::disk},
+          .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse},
           .textures = false,
           .options = {},
           .verdict_on = verdict_on};

@@ -15,15 +15,21 @@ using visibility::LightKind;
 
 /// By how much of the radius the hull is made larger, for rounding here and for what storage in float32 may have moved
 /// points by: half an ulp of each coordinate of the centre and of a point of the rim, less than 2⁻²² of their size.
-double margin_of(const visibility::Light& light) {
+double margin_of(const visibility::Light& light, double radius) {
   const double farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
-  return 0x1p-20 + 0x1p-22 * (farthest + light.radius) / light.radius;
+  return 0x1p-20 + 0x1p-22 * (farthest + radius) / radius;
 }
 
-LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
+/// Of a disk or ellipse: what is circumscribed to the unit disk, in the frame's coordinates.
+LightHull round_hull(const visibility::Light& light, std::uint32_t sides) {
   const auto [center, u, v] = visibility::light_frame(light);
-  const double angle = 2 * std::numbers::pi / sides, reach = (1 + margin_of(light)) / std::cos(angle / 2);
-  LightHull hull{{}, center, light.radius * (reach - 1), false};
+  double least = light.radius, most = light.radius;
+  if (light.kind == LightKind::ellipse) {  // bounds of its axes: their squares add up to u² + v²
+    most = std::hypot(glm::length(u), glm::length(v));
+    least = glm::length(glm::cross(u, v)) / most;
+  }
+  const double angle = 2 * std::numbers::pi / sides, reach = (1 + margin_of(light, least)) / std::cos(angle / 2);
+  LightHull hull{{}, center, most * (reach - 1), false};
   for (std::uint32_t i = 0; i < sides; ++i) {
     hull.corners.push_back(center + reach * (std::cos(i * angle) * u + std::sin(i * angle) * v));
   }
@@ -34,7 +40,7 @@ LightHull disk_hull(const visibility::Light& light, std::uint32_t sides) {
 LightHull sphere_hull(const visibility::Light& light) {
   const double golden = std::numbers::phi;
   const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2
-  const double scale = light.radius * (1 + margin_of(light)) / inradius;
+  const double scale = light.radius * (1 + margin_of(light, light.radius)) / inradius;
   LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius, true};
   for (const double one : {-1.0, 1.0}) {
     for (const double other : {-golden, golden}) {
@@ -51,8 +57,8 @@ LightHull sphere_hull(const visibility::Light& light) {
 
 LightHull light_hull(const visibility::Light& light, std::uint32_t sides) {
   PENUMBRA_ASSERT(sides >= 3, "{} sides", sides);
-  if (light.kind == LightKind::disk) return disk_hull(light, sides);
   if (light.kind == LightKind::sphere) return sphere_hull(light);
+  if (is_round(light.kind)) return round_hull(light, sides);
   LightHull hull{{}, glm::dvec3(visibility::center_of(light))};
   for (const glm::vec3& corner : light.outline) hull.corners.emplace_back(corner);
   return hull;

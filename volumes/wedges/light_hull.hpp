@@ -10,8 +10,8 @@
 namespace penumbra::volumes {
 
 /// The corners of a convex polygon or polyhedron that contains every point of a light, relative to the scene's origin.
-/// Rectangles and polygons are their own stored corners. A disk becomes a circumscribed regular polygon, a sphere a
-/// circumscribed polyhedron: they stick out by at most `slack`.
+/// Rectangles and polygons are their own stored corners. A disk becomes a circumscribed regular polygon, an ellipse an
+/// affine image of one, a sphere a circumscribed polyhedron: they stick out by at most `slack`.
 struct LightHull {
   std::vector<glm::dvec3> corners;
   glm::dvec3 center{0};

@@ -78,8 +78,8 @@ Projected mix(const Projected& a, const Projected& b, double t) {
 
 LightOutline light_outline(const visibility::Light& light) {
   using visibility::LightKind;
-  if (light.kind == LightKind::disk || light.kind == LightKind::sphere) return {{}, std::numbers::pi};
-  if (light.kind == visibility::LightKind::rectangle) return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
+  if (is_round(light.kind)) return {{}, std::numbers::pi};
+  if (light.kind == LightKind::rectangle) return {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
   const auto [center, u, v] = visibility::light_frame(light);
   const glm::dvec3 n = glm::cross(u, v);
   LightOutline outline;
