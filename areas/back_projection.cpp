@@ -17,6 +17,7 @@ IntegerFrame integer_frame(const visibility::Light& light, const glm::vec3& p) {
   frame.c = light.center;
   if (light.kind == visibility::LightKind::sphere) {
     const visibility::LightFrame facing = light_frame_from(light, p);
+    frame.c = facing.center;
     frame.u_end = facing.u;
     frame.v_end = facing.v;
   } else {

@@ -57,7 +57,7 @@ class ExactArea {
 
   /// `light` must outlive its use.
   void set_light(const visibility::Light& light);
-  /// In [0, 1]; 0 if p is not strictly on an emitting side of the light (or is the centre of a sphere).
+  /// In [0, 1]; 0 if p is not strictly on an emitting side of the light.
   [[nodiscard]] double visibility(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded,
                                   AreaWork* work = nullptr) const;
   /// The visible share, and the form factor (visibility/form_factor.hpp) of the visible region: the trapezoids that the

@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "reference/embree_packets.hpp"
 #include "reference/tracing_order.hpp"
+#include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
 
 #include <glm/common.hpp>
@@ -70,16 +71,9 @@ void PlainRays::prepare_light(const visibility::Light& light) {
   order_.resize(light.sample_count());
   std::iota(order_.begin(), order_.end(), 0u);
   if (options_.neighbours) order_ = tracing_order(light);
-  if (light.kind == visibility::LightKind::sphere) {
-    const auto radius = static_cast<float>(light.radius);
-    return embree_->range().require_light(light, light.center - radius, light.center + radius);
-  }
-  glm::vec3 lower = light.points.front(), upper = lower;
-  for (const glm::vec3& point : light.points) {
-    lower = glm::min(lower, point);
-    upper = glm::max(upper, point);
-  }
-  embree_->range().require_light(light, lower, upper);
+  const visibility::PointBounds bounds = point_bounds(light);
+  embree_->range().require_light(light, bounds.lower, bounds.upper);
+  if (light.kind == visibility::LightKind::sphere) return;
   points_.assign(light.points, order_, embree_->range());
 }
 
@@ -158,6 +152,7 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
         visibility[pixel] = 0;
         const glm::vec3 n = samples.n[pixel], p = range.scaled(samples.p[pixel]) + offset_ * n;
         if (sphere) {
+          if (!in_front_of_light(light, samples.p[pixel])) continue;
           light_points_for(light, samples.p[pixel], own_points.data());
           own_arrays.assign(own_points, order_, range);
         } else {

@@ -164,18 +164,9 @@ void RayTraced::prepare_light(const Light& light) {
   full_mask_.assign(light.words_per_mask(), 0xffffffffu);
   if (light.sample_count() % 32 != 0) full_mask_.back() = (1u << (light.sample_count() % 32)) - 1;
 
-  if (light.kind == LightKind::sphere) {
-    const float reach =
-        std::nextafter(static_cast<float>(light.radius) * 1.0001f, std::numeric_limits<float>::infinity());
-    lower_ = light.center - reach;
-    upper_ = light.center + reach;
-  } else {
-    lower_ = upper_ = light.points.front();
-    for (const glm::vec3& point : light.points) {
-      lower_ = glm::min(lower_, point);
-      upper_ = glm::max(upper_, point);
-    }
-  }
+  const visibility::PointBounds bounds = point_bounds(light);
+  lower_ = bounds.lower;
+  upper_ = bounds.upper;
   embree_->range().require_light(light, lower_, upper_);
   scaled_points_.clear();
   for (const glm::vec3& point : light.points) scaled_points_.push_back(embree_->range().scaled(point));
@@ -214,6 +205,7 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   const EmbreeRange& range = embree_->range();
   const bool sphere = light_->kind == LightKind::sphere;
   if (sphere) {
+    if (!in_front_of_light(*light_, p)) return;
     light_points_for(*light_, p, work.points.data());
     std::ranges::transform(work.points, work.scaled.begin(), [&](const glm::vec3& l) { return range.scaled(l); });
   }

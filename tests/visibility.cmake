@@ -5,6 +5,7 @@ penumbra_test(visibility
   property/signed_crossings.cpp
   property/signed_crossings_sum.cpp
   property/visibility_invariance.cpp
+  property/visibility_pair_kinds.cpp
   property/visibility_pair_truth.cpp
   property/visibility_planes.cpp
   property/visibility_triangle_tree.cpp

@@ -127,7 +127,7 @@ struct Builder {
     light.kind = LightKind::sphere;
     light.radius = shape.radius;
     if (!(shape.radius > 0)) refuse_zero_area(" (its radius is not positive)");
-    light.area = std::numbers::pi * shape.radius * shape.radius;  // of the disk that faces the view sample
+    light.area = std::numbers::pi * shape.radius * shape.radius;
     light.center = light.center_u = light.center_v = stored(shape.center);
     if (!finite(stored(shape.center + shape.radius)) || !finite(stored(shape.center - shape.radius))) {
       light.center.x = std::numeric_limits<float>::infinity();  // refused by make_light
@@ -293,10 +293,30 @@ LightFrame light_frame(const Light& light) {
 
 LightFrame light_frame_from(const Light& light, const glm::vec3& p) {
   if (light.kind != LightKind::sphere) return light_frame(light);
-  const glm::dvec3 c = light.center, to_p = glm::dvec3(p) - c;
-  const double distance = glm::length(to_p);
-  const Axes axes = axes_around(distance > 0 ? to_p / distance : glm::dvec3(0, 0, 1));
-  return {c, light.radius * axes.u, light.radius * axes.v};
+  const glm::dvec3 c = light.center, q = glm::dvec3(p) - c;
+  const double r = light.radius, d = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+  const double touching = (d - r) * (d + r);  // the square of the tangents' length
+  if (!(touching > 0)) return {c, glm::dvec3(0), glm::dvec3(0)};
+  const Axes axes = axes_around(q / d);
+  const double k = (r / d) * (r / d), radius = r * std::sqrt(touching) / d;
+  return {c + k * q, radius * axes.u, radius * axes.v};
+}
+
+PointBounds point_bounds(const Light& light) {
+  if (light.kind == LightKind::sphere) {
+    // The disks are inside the ball; their points are rounded to float32, as the bounds are.
+    const float farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
+    const float reach =
+        std::nextafter(static_cast<float>(light.radius) * 1.0001f, std::numeric_limits<float>::infinity()) +
+        0x1p-22f * farthest;
+    return {light.center - reach, light.center + reach};
+  }
+  PointBounds bounds{light.points.front(), light.points.front()};
+  for (const glm::vec3& point : light.points) {
+    bounds.lower = glm::min(bounds.lower, point);
+    bounds.upper = glm::max(bounds.upper, point);
+  }
+  return bounds;
 }
 
 void light_points_for(const Light& light, const glm::vec3& p, glm::vec3* out) {

@@ -37,7 +37,7 @@ struct Light {
   LightKind kind = LightKind::rectangle;
   bool two_sided = false;
   glm::dvec3 radiance{0};
-  double area = 0;  ///< |L| in world units, double (a sphere's: its facing disk's)
+  double area = 0;  ///< |L| in world units, double (a sphere's: that of the disk of its radius)
 
   /// The stored frame: three points that span the light's plane and say where it emits: (u − c) × (v − c) points to
   /// the emitting side. rectangle, ellipse: centre, centre + halfU, centre + halfV; disk: centre and two points of its
@@ -65,6 +65,12 @@ struct Light {
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
 };
 
+/// Bounds all light points of all view samples.
+struct PointBounds {
+  glm::vec3 lower{0}, upper{0};
+};
+PointBounds point_bounds(const Light& light);
+
 /// The unit-square samples of a pattern, in [0, 1)², in the order of every method (row-major for rows and grid: x along
 /// the row). rows: L = round(√N) rows of B = ceil(N / L) points, cell-centred, each row shifted along itself by its own
 /// fixed fraction of a cell. grid: the same without shifts. sobol: Owen-scrambled. jittered: one point in each of N
@@ -91,12 +97,18 @@ struct LightFrame {
 };
 /// As stored. Not for spheres, which have no stored axes.
 LightFrame light_frame(const Light& light);
-/// As p sees the light: a planar one as stored; of a sphere the disk through its centre that faces p: u and v are one
-/// radius long and u × v points to p.
+/// As p sees the light: a planar one as stored; of a sphere the disk that the circle bounds along which lines from p
+/// touch it, u × v toward p. With c and r the sphere's centre and radius, in double, each operation rounded to nearest
+/// and in this order:
+///
+///   q = p − c;  d = √((q.x q.x + q.y q.y) + q.z q.z);  centre = c + (r / d) (r / d) q
+///   ρ = r √(max(0, (d − r) (d + r))) / d;  u = ρ a, v = ρ b,  a, b the axes around q / d (Duff et al. 2017)
+///
+/// Of a p that the sphere contains (in_front_of_light is false) there is no such circle: a point, the sphere's centre.
 LightFrame light_frame_from(const Light& light, const glm::vec3& p);
 
-/// The light points of one view sample: `light.points`, or for a sphere the disk through its centre that faces p.
-/// Writes sample_count() points to `out`.
+/// The light points of one view sample: `light.points`, or for a sphere those on its disk that p sees: each coordinate
+/// of (centre + s u) + t v, computed in double, rounded to float32 once. Writes sample_count() points to `out`.
 void light_points_for(const Light& light, const glm::vec3& p, glm::vec3* out);
 
 }  // namespace penumbra::visibility

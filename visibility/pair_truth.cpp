@@ -150,8 +150,24 @@ bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, 
   return static_cast<int>(side_of_plane(carrier[0], carrier[1], carrier[2], l)) * facing > 0;
 }
 
+namespace {
+
+/// |p − c| > r, for the stored centre and the radius in double.
+bool outside_sphere(const Light& light, const glm::vec3& p) {
+  const glm::dvec3 d = glm::dvec3(p) - glm::dvec3(light.center);
+  const double far = glm::dot(d, d), near = light.radius * light.radius;
+  // Differences, squares and two sums: less than 8 roundings of either; what underflows is not certain.
+  const double error = 0x1p-49 * (far + near);
+  if (error > 0x1p-900 && std::abs(far - near) > error) return far > near;
+  const ExactVector exact = difference(p, light.center);
+  const Exact r(light.radius);
+  return CGAL::sign(exact.x * exact.x + exact.y * exact.y + exact.z * exact.z - r * r) == CGAL::POSITIVE;
+}
+
+}  // namespace
+
 bool in_front_of_light(const Light& light, const glm::vec3& p) {
-  if (light.kind == LightKind::sphere) return true;
+  if (light.kind == LightKind::sphere) return outside_sphere(light, p);
   const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
   return light.two_sided ? side != Side::on : side == Side::front;
 }
@@ -162,6 +178,8 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
   PENUMBRA_ASSERT(light_sample < light.sample_count(), "light sample {} of {}", light_sample, light.sample_count());
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   const glm::vec3& p = samples.p[pixel];
+  // In a sphere there are no light points that could be above or below anything.
+  if (light.kind == LightKind::sphere && !in_front_of_light(light, p)) return {PairOutcome::behind, false};
   std::vector<glm::vec3> points(light.sample_count());
   light_points_for(light, p, points.data());
   const glm::vec3& l = points[light_sample];

@@ -63,7 +63,7 @@ struct PairTruth {
 /// viewer is where (b − a) × (c − a) points, −1: behind). Exact.
 bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l);
 
-/// Condition (2): p strictly on an emitting side of the light's plane. Exact. Always true for a sphere.
+/// Condition (2): p strictly on an emitting side of the light's plane; of a sphere, strictly outside it. Exact.
 bool in_front_of_light(const Light& light, const glm::vec3& p);
 
 /// Can this triangle hide the light from a view sample on `carrier`? (It casts shadow, has area, is not coplanar with

@@ -12,15 +12,17 @@
 namespace penumbra::visibility {
 
 UnshadowedLight::UnshadowedLight(const Light& light, const glm::vec3& p, const glm::vec3& n)
-    : light_(light), p_(p), n_(glm::normalize(glm::dvec3(n))), center_(glm::dvec3(light.center) - p_) {
+    : light_(light), p_(p), n_(glm::normalize(glm::dvec3(n))) {
   const LightFrame frame = light_frame_from(light, p);
+  center_ = frame.center - p_;
   u_ = frame.u;
   v_ = frame.v;
   if (light.kind == LightKind::sphere) {
-    const double distance = glm::length(center_);
-    side_ = distance > 0 ? 1 : 0;
-    if (side_ != 0) along_ = center_ / distance;
+    radius_ = glm::length(u_);
+    side_ = in_front_of_light(light, p) && radius_ > 0 ? 1 : 0;
+    if (side_ != 0) along_ = glm::normalize(glm::dvec3(light.center) - p_);
   } else {
+    radius_ = light.radius;
     const glm::dvec3 front = glm::normalize(glm::cross(u_, v_));
     // Which side is exact, as for a pair; a point of the plane itself is on neither.
     const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
@@ -49,7 +51,7 @@ double UnshadowedLight::whole() const {
       return box(glm::dvec2(-1), glm::dvec2(1));
     case LightKind::disk:
     case LightKind::sphere:
-      return form_factor(FormFactorDisk{center_, along_, light_.radius}, n_);
+      return form_factor(FormFactorDisk{center_, along_, radius_}, n_);
     case LightKind::ellipse:
       return form_factor(FormFactorEllipse{center_, u_, v_}, n_);
     case LightKind::polygon:

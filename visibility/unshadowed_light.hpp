@@ -10,8 +10,8 @@
 namespace penumbra::visibility {
 
 /// A light as a surface element (p, n) sees it that nothing shadows: form factors (form_factor.hpp) of the light and of
-/// parts of it. All are 0 if p is not strictly on an emitting side (pair_truth.hpp, exact) or is the centre of a
-/// sphere, and what is below the element's plane is cut off. `n` is normalised here: stored normals are float32.
+/// parts of it. All are 0 if p is not strictly on an emitting side (pair_truth.hpp, exact), and what is below the
+/// element's plane is cut off. `n` is normalised here: stored normals are float32.
 ///
 /// Errors beside form_factor.hpp's: a point of the light is c + s u + t v in double, relative to p, off by a few 2⁻⁵³
 /// of its distance. A disk is a circle with its stored radius: its stored axes are off that by float32's 6e-8.
@@ -24,7 +24,7 @@ class UnshadowedLight {
   [[nodiscard]] bool shines() const { return side_ != 0; }
   /// Is every corner that bounds the light (Light::outline; a sphere: its disk) above the element's plane?
   [[nodiscard]] bool above_horizon() const;
-  /// Of all the light: rectangle c ± u ± v, polygon by its outline, disk and (facing p) a sphere's disk as a circle,
+  /// Of all the light: rectangle c ± u ± v, polygon by its outline, disk and what p sees of a sphere as a circle,
   /// ellipse as its frame's.
   [[nodiscard]] double whole() const;
   /// Of a polygon in the frame's coordinates (s, t), counter-clockwise.
@@ -36,8 +36,9 @@ class UnshadowedLight {
  private:
   const Light& light_;
   glm::dvec3 p_, n_;
-  glm::dvec3 along_{0};        ///< unit, perpendicular to the light, away from the side that p is on
-  glm::dvec3 center_, u_, v_;  ///< the frame, relative to p
+  glm::dvec3 along_{0};                 ///< unit, perpendicular to the light, away from the side that p is on
+  glm::dvec3 center_{0}, u_{0}, v_{0};  ///< the frame, relative to p
+  double radius_ = 0;                   ///< disk, and a sphere's
   double height_ = 0, height_u_ = 0, height_v_ = 0;  ///< n · these
   int side_ = 0;  ///< +1: p is where u × v points, −1: behind (and the light has two sides), 0: dark
 };

@@ -52,7 +52,7 @@ struct ToExplain {
 /// "X,Y" as a pixel of the scene's image; throws UsageError if it is not.
 std::pair<std::uint32_t, std::uint32_t> parse_pixel(const std::string& text, const scenes::Scene& scene);
 
-/// Of the scene's first camera. A sphere light is the disk that faces p.
+/// Of the scene's first camera. A sphere light is the disk that p sees.
 Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y);
 
 nlohmann::ordered_json explain_json(const Explanation& explanation, const std::filesystem::path& svg);

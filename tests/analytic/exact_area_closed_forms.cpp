@@ -175,14 +175,14 @@ TEST(ExactAreaClosedForm, PolygonLights) {
 
 TEST(ExactAreaClosedForm, DiskAndSphereLightsLoseACircularSegment) {
   // From p = 0 a board over x ≥ c at half height hides x ≥ 2 c of a disk of radius 1: acos(2c) − 2c √(1 − 4c²) of π.
-  // The disk that stands for the sphere is square to the way to its centre: here the same disk.
+  // Of a sphere p sees the disk at its tangents; this one is of radius 1 at the height 4, as the disk is.
   constexpr double kDiskError = 8e-8;  // light_region.hpp: 7.6e-8, and the frame's float32 is exact here
   for (const double c : {-0.5, -0.375, 0.0, 0.125, 0.25, 0.484375}) {
     scenes::Scene scene = area_scene(tests::quad({8 + c, 2, 0}, {8, 0, 0}, {0, 0, 16}));
     scene.lights.emplace_back().shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 1};
     const double visible = 1 - (std::acos(2 * c) - 2 * c * std::sqrt(1 - 4 * c * c)) / std::numbers::pi;
     EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), visible, kDiskError) << c;
-    scene.lights[0].shape = scenes::Sphere{{0, 4, 0}, 1};
+    scene.lights[0].shape = scenes::Sphere{{0, 4.25, 0}, std::sqrt(1.0625)};  // d − r²/d = 4, r √(1 − r²/d²) = 1
     EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), visible, kDiskError) << c;
   }
 }

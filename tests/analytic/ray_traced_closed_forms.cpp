@@ -169,7 +169,7 @@ TEST(ClosedForm, ASphereHidesTheDiskOfItsTangentCone) {
 }
 
 TEST(ClosedForm, HalfOfASphereLightBehindAWall) {
-  // The wall's edge is in the plane through p and the light's centre: it hides half of the facing disk.
+  // The wall's edge is in the plane through p and the light's centre: it hides half of the disk that p sees.
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   tests::add_object(scene, "wall", tests::quad({2, 1, 0}, {2, 0, 0}, {0, 0, -3}));
@@ -179,6 +179,51 @@ TEST(ClosedForm, HalfOfASphereLightBehindAWall) {
   const Light light = visibility::make_light(scene, 0, floats.origin, {4096, 0, 0, SamplePattern::sobol, 2});
   const Masks masks = tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, {0, 0, 0}));
   EXPECT_NEAR(masks.visibility[0], 0.5, 0.005);
+}
+
+TEST(ClosedForm, ASphereLightBehindAHalfPlaneLosesASegmentOfItsDisk) {
+  // From p at distance d the tangents meet the disk, of radius ρ = r √(1 − r²/d²), at the height (d² − r²) / d. A
+  // board's edge at half of that height and x = c appears at 2 c on it.
+  const double r = 0.75, d = 3, height = (d * d - r * r) / d, rho = r * std::sqrt(1 - r * r / (d * d));
+  for (const double share : {-0.75, -0.25, 0.0, 0.5}) {
+    scenes::Scene scene;
+    tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+    tests::add_object(scene, "board", tests::quad({2 + share * rho / 2, height / 2, 0}, {2, 0, 0}, {0, 0, -3}));
+    scene.lights.emplace_back();
+    scene.lights[0].shape = scenes::Sphere{{0, d, 0}, r};
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light = visibility::make_light(scene, 0, floats.origin, {4096, 0, 0, SamplePattern::sobol, 2});
+    const Masks masks = tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, {0, 0, 0}));
+    const double hidden = (std::acos(share) - share * std::sqrt(1 - share * share)) / std::numbers::pi;
+    EXPECT_NEAR(masks.visibility[0], 1 - hidden, 0.004) << share;
+  }
+}
+
+TEST(ClosedForm, ASphereLightBehindABallLosesTheBallsCone) {
+  // Ball and light on one axis: the ball's cone over the light's, in the plane of the light's disk.
+  const double r = 0.75, d = 4, tangent = r / std::sqrt(d * d - r * r);
+  for (const double radius : {0.1, 0.2, 0.3}) {
+    scenes::Scene scene;
+    tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+    tests::add_object(scene, "ball", sphere({0, 2, 0}, radius, 96));
+    scene.lights.emplace_back();
+    scene.lights[0].shape = scenes::Sphere{{0, d, 0}, r};
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light = visibility::make_light(scene, 0, floats.origin, {4096, 0, 0, SamplePattern::sobol, 2});
+    const Masks masks = tests::trace(floats, light, one_sample(floats, {3, 0.5, 0}, {0, 0, 0}));
+    EXPECT_NEAR(masks.visibility[0], 1 - std::pow(std::tan(std::asin(radius / 2)) / tangent, 2), 0.006) << radius;
+  }
+}
+
+TEST(ClosedForm, InsideASphereLightNothingIsVisible) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  scene.lights.emplace_back();
+  scene.lights[0].shape = scenes::Sphere{{0, 0.5, 0}, 1};
+  const SceneFloats floats = visibility::make_scene_floats(scene);
+  const Light light = visibility::make_light(scene, 0, floats.origin, {64, 0, 0, SamplePattern::grid, 0});
+  EXPECT_EQ(tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, {0, 0, 0})).visibility[0], 0);
+  EXPECT_GT(tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, {2, 0, 0})).visibility[0], 0.4);
 }
 
 }  // namespace

@@ -142,8 +142,8 @@ TEST(Beauty, ALightPointOnTheSurfaceAddsNothing) {
   EXPECT_EQ(floor.shade({{seen, {}}})[0], glm::vec3(0));
 }
 
-TEST(Beauty, ASphereIsTheDiskThatFacesThePoint) {
-  Floor floor({{0, 0, 0}, {30, 0, 0}});
+TEST(Beauty, ASphereShinesOverItsSolidAngle) {
+  Floor floor({{0, 0, 0}, {30, 0, 0}, {0, 39.5, 0}});
   Light light;
   light.kind = LightKind::sphere;
   light.center = {0, 40, 0};
@@ -152,11 +152,12 @@ TEST(Beauty, ASphereIsTheDiskThatFacesThePoint) {
   light.radiance = {10, 20, 30};
   light.coordinates = {{0.5, 0}, {-0.5, 0}, {0, 0.5}, {0, -0.5}};
   floor.lights = {light};
-  const std::vector<std::uint32_t> seen{15, 15};
+  const std::vector<std::uint32_t> seen{15, 15, 15};
   const auto colors = floor.shade({{seen, {}}});
-  // Nearly a point: colour / π · π r² · radiance · cos θp / d²; cosines at the disk are nearly 1.
-  EXPECT_NEAR(colors[0].r, 0.5 * 10 / 1600, 0.5 * 10 / 1600 * 1e-3);
-  EXPECT_NEAR(colors[1].r, 0.5 * 10 * 0.8 / 2500, 0.5 * 10 * 0.8 / 2500 * 1e-3);
+  // A sphere that is all above the horizon: colour · radiance · cos θp · (r / d)², as a point light of its intensity.
+  EXPECT_FLOAT_EQ(colors[0].r, static_cast<float>(0.5 * 10 / 1600));
+  EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(0.5 * 10 * 0.8 / 2500));
+  EXPECT_EQ(colors[2].r, 0) << "in the sphere";
 }
 
 TEST(Beauty, FormFactorsAreTakenAsTheyAre) {

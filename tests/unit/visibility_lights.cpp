@@ -155,23 +155,71 @@ TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
   EXPECT_NEAR(static_cast<double>(left) / 4096, 0.5, 0.005);
 }
 
-TEST(Lights, SphereShowsEachPointADiskThroughItsCentre) {
-  const Light light = light_of(scenes::Sphere{{0, 4, 2}, 0.5}, {64, 0, 0, SamplePattern::grid, 0});
+/// What p sees of a sphere is the cone of angle asin(r / d), and the disk's rim touches the sphere and that cone.
+TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
+  const double r = 0.5;
+  const Light light = light_of(scenes::Sphere{{0, 4, 2}, r}, {256, 0, 0, SamplePattern::grid, 0});
   EXPECT_TRUE(light.points.empty());
-  ASSERT_EQ(light.sample_count(), 64u);
-  std::vector<glm::vec3> points(64), again(64);
-  for (const glm::vec3 p : {glm::vec3(0), glm::vec3(3, -1, 2), glm::vec3(0, 4, 7), light.center}) {
+  ASSERT_EQ(light.sample_count(), 256u);
+  const glm::dvec3 c = light.center;
+  std::vector<glm::vec3> points(256), again(256);
+  for (const glm::vec3 p :
+       {glm::vec3(0), glm::vec3(3, -1, 2), glm::vec3(0, 4, 7), glm::vec3(0, 3.49f, 2), glm::vec3(300, 20, -1000)}) {
     light_points_for(light, p, points.data());
     light_points_for(light, p, again.data());
     EXPECT_EQ(points, again);
-    for (const glm::vec3& l : points) {
-      EXPECT_LE(glm::length(l - light.center), 0.5f + 1e-6f);
-      EXPECT_NEAR(glm::dot(l - light.center, p - light.center), 0, 1e-5);
-    }
-    const LightFrame frame = light_frame_from(light, p);
-    EXPECT_GE(glm::dot(glm::cross(frame.u, frame.v), glm::dvec3(p - light.center)), 0);
     EXPECT_TRUE(in_front_of_light(light, p));
+    const glm::dvec3 q = glm::dvec3(p) - c;
+    const double d = glm::length(q), sine = r / d, cosine = std::sqrt(1 - sine * sine);
+    const LightFrame frame = light_frame_from(light, p);
+    EXPECT_GT(glm::dot(glm::cross(frame.u, frame.v), q), 0);
+    EXPECT_NEAR(glm::dot(frame.u, frame.v), 0, 1e-15);
+    for (int i = 0; i < 16; ++i) {
+      const double angle = 2 * kPi * i / 16;
+      const glm::dvec3 rim = frame.center + std::cos(angle) * frame.u + std::sin(angle) * frame.v,
+                       way = glm::dvec3(p) - rim;
+      EXPECT_NEAR(glm::length(rim - c), r, 1e-14);
+      EXPECT_NEAR(glm::dot(way, rim - c), 0, 1e-14 * d);  // the line touches the sphere there
+      EXPECT_NEAR(glm::dot(way, q), glm::length(way) * d * cosine, 1e-14 * d * d);
+    }
+    const double disk = r * cosine;
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const glm::dvec3 l = points[j],
+                       exact = frame.center + light.coordinates[j].x * frame.u + light.coordinates[j].y * frame.v;
+      EXPECT_EQ(points[j], glm::vec3(exact));  // rounded once
+      EXPECT_LE(glm::length(exact - frame.center), disk * (1 + 1e-15));
+      EXPECT_LE(glm::length(l - c), r + 1e-6);
+    }
   }
+}
+
+/// The share of samples within a part of the disk is the part's share of its area.
+TEST(Lights, SphereSamplesKeepAreasOfTheDisk) {
+  const Light light = light_of(scenes::Sphere{{0, 0, 0}, 1}, {4096, 0, 0, SamplePattern::sobol, 4});
+  std::vector<glm::vec3> points(4096);
+  light_points_for(light, {0, -1.25f, 0}, points.data());  // the disk at −0.8, of radius 0.6
+  std::size_t inner = 0, right = 0;
+  for (const glm::vec3& l : points) {
+    EXPECT_NEAR(l.y, -0.8, 1e-6);
+    inner += std::hypot(l.x, l.z) < 0.3f ? 1 : 0;
+    right += l.x > 0.3f ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(inner) / 4096, 0.25, 0.005);
+  EXPECT_NEAR(static_cast<double>(right) / 4096, (std::acos(0.5) - 0.5 * std::sqrt(0.75)) / kPi, 0.005);
+}
+
+TEST(Lights, InsideASphereNothingShines) {
+  const Light light = light_of(scenes::Sphere{{1, 2, 3}, 0.5}, {64, 0, 0, SamplePattern::grid, 0});
+  std::vector<glm::vec3> points(64);
+  for (const glm::vec3 p : {glm::vec3(1, 2, 3), glm::vec3(1.25f, 2, 3), glm::vec3(1.5f, 2, 3), glm::vec3(1, 1.5f, 3)}) {
+    EXPECT_FALSE(in_front_of_light(light, p)) << "strictly outside, or not";
+    light_points_for(light, p, points.data());
+    for (const glm::vec3& l : points) EXPECT_EQ(l, light.center);
+  }
+  // 0.3² + 0.4² is 0.25 but for what rounds 0.3 and 0.4 to floats: exactly on neither side is certain in double.
+  EXPECT_TRUE(in_front_of_light(light, {1.0f + 0x1.333334p-2f, 2.0f + 0x1.99999ap-2f, 3}));
+  EXPECT_TRUE(in_front_of_light(light, {std::nextafter(1.5f, 2.0f), 2, 3}));
+  EXPECT_FALSE(in_front_of_light(light, {std::nextafter(1.5f, 1.0f), 2, 3}));
 }
 
 TEST(Lights, RefusesWhatHasNoAreaOrIsNotFinite) {

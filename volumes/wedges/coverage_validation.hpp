@@ -30,7 +30,7 @@ inline constexpr double kMostOverlap = 4;
 
 /// Invariant `coverage` (f): the receiver's silhouettes add up to its layers, to kCoverageTolerance, at each sample,
 /// which must be in front of the light (asserted). The difference of the centre's is only told. Parallel; violations
-/// are added in the order of samples. A sphere is at each sample the disk that faces it. Under a texture areas are
+/// are added in the order of samples. A sphere is at each sample the disk that it sees. Under a texture areas are
 /// weights, and the tolerance grows by how much brighter than the mean its brightest texel is.
 std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visibility::Light& light,
                                           std::span<const LitPoint> samples, ValidationReport& report);

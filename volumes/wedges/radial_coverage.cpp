@@ -6,6 +6,7 @@
 
 #include "base/assert.hpp"
 #include "mesh/predicates.hpp"
+#include "visibility/pair_truth.hpp"
 #include "volumes/wedges/planar.hpp"
 
 #include <glm/common.hpp>
@@ -125,7 +126,7 @@ double Projected::error() const {
 // areas/back_projection.hpp. d is taken first: an edge that nearly touches p is seen as sharply as any other.
 LightProjection::LightProjection(const visibility::Light& light, const glm::vec3& p) : p_(p) {
   if (light.kind == visibility::LightKind::sphere) {
-    turn_ = p == light.center ? 0 : 1;
+    turn_ = in_front_of_light(light, p) ? 1 : 0;
   } else {
     turn_ = static_cast<int>(mesh::side_of_plane(light.center, light.center_u, light.center_v, p));
   }

@@ -11,8 +11,7 @@
 /// What one edge, as seen from a view sample p, cuts off a planar light L as seen from a point C of it (Assarsson and
 /// Akenine-Möller 2003; derived in docs/coverage.md). All in *frame coordinates* (s, t): centre + s u + t v, with u, v
 /// the light's stored frame; the rectangle is [−1, 1]², the disk the unit disk. A sphere is, at each p, the disk
-/// through its centre that faces p, in visibility::light_frame_from (what its light samples and `exact` are of). Double
-/// throughout.
+/// that p sees, in visibility::light_frame_from (what its light samples and `exact` are of). Double throughout.
 namespace penumbra::volumes {
 
 /// The light as a convex region of its own plane.
@@ -20,7 +19,7 @@ struct LightOutline {
   std::vector<glm::dvec2> corners;  ///< counter-clockwise; none: the unit disk
   double area = 0;                  ///< in frame coordinates
 };
-/// A sphere's is the unit disk: the disk that faces p.
+/// A sphere's is the unit disk: the disk that p sees.
 LightOutline light_outline(const visibility::Light& light);
 
 /// Of the outline's area, the part where at + s · along.x + t · along.y ≥ 0, in [0, 1].
@@ -37,7 +36,7 @@ struct Projected {
   [[nodiscard]] double error() const;
 };
 
-/// The back-projection of one view sample, which must be off the light's plane, or a sphere's centre (asserted).
+/// The back-projection of one view sample, which must be off the light's plane, or outside a sphere (asserted).
 class LightProjection {
  public:
   LightProjection(const visibility::Light& light, const glm::vec3& p);

@@ -141,7 +141,13 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoi
   return viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample);
 }
 
-/// What bounds the light as p sees it: of a sphere, the square around the disk that faces p, in floats.
+/// The light's centre, or that of what p sees of a sphere.
+glm::vec3 SoftVisibility::center_from(const glm::vec3& p) const {
+  if (light_.kind != visibility::LightKind::sphere) return center_;
+  return glm::vec3(visibility::light_frame_from(light_, p).center);
+}
+
+/// What bounds the light as p sees it: of a sphere, the square around its disk, in floats.
 std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
   if (light_.kind != visibility::LightKind::sphere) return light_.outline;
   const auto [c, u, v] = visibility::light_frame_from(light_, p);
@@ -149,7 +155,7 @@ std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
 }
 
 /// The centre; or, if an edge's end appears there, a point half or a quarter of the way to a corner. (Of a sphere that
-/// point is an ulp off the disk: it stands for where the line from p through it meets the disk.)
+/// point, and its disk's centre, are an ulp off the disk: they stand for where lines from p through them meet it.)
 glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjection& projection,
                                            std::span<const Candidate> edges) const {
   const auto clear = [&](const glm::vec3& l) {
@@ -160,14 +166,15 @@ glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjec
              coverage.is_clear_of(edge.clipped.to, edge.clipped.to_error + at.error());
     });
   };
-  if (clear(center_)) return center_;
+  const glm::vec3 center = center_from(p);
+  if (clear(center)) return center;
   for (const float share : {0.25F, 0.5F, 0.3125F, 0.4375F, 0.375F}) {
     for (const glm::vec3& corner : corners_from(p)) {
-      const glm::vec3 l = center_ + share * (corner - center_);
+      const glm::vec3 l = center + share * (corner - center);
       if (clear(l)) return l;
     }
   }
-  return center_;  // vertices at every one of them: then no point is better
+  return center;  // vertices at every one of them: then no point is better
 }
 
 /// D at a point of the light: the triangles that p→l meets, each with the sign that its edges have been given.
@@ -230,8 +237,9 @@ double SoftVisibility::area_beyond(const Candidate& edge, int side, const Radial
 
 LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   LayerSum result;
-  const bool at_center = light_.kind == visibility::LightKind::sphere && sample.p == light_.center;
-  result.in_front = visibility::in_front_of_light(light_, sample.p) && !at_center;
+  const bool no_disk = light_.kind == visibility::LightKind::sphere &&  // p is outside by less than double holds
+                       visibility::light_frame_from(light_, sample.p).u == glm::dvec3(0);
+  result.in_front = visibility::in_front_of_light(light_, sample.p) && !no_disk;
   if (!result.in_front) return result;
   const LightProjection projection(light_, sample.p);
   std::vector<Candidate> candidates;
@@ -245,7 +253,7 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
 
   result.reference = choose_reference(sample.p, projection, candidates);
   result.reference_at = projection(glm::dvec3(result.reference)).point();
-  result.moved = result.reference != center_;
+  result.moved = result.reference != center_from(sample.p);
   result.constant = layers_at(sample, result.reference, viewer);
   const RadialCoverage coverage(outline_, result.reference_at);
   // k counts triangles counter-clockwise as the viewer sees them; between c and p, c sees them the other way around.

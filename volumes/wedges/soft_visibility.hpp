@@ -56,7 +56,7 @@ struct LayerSum {
 };
 
 /// Soft shadow volumes (Assarsson and Akenine-Möller 2003) at one view sample: the plain C++ twin of the method
-/// `soft-volume`, for rectangle, convex polygon and disk lights; and for spheres, each p with the disk that faces it.
+/// `soft-volume`, for rectangle, convex polygon and disk lights; and for spheres, each p with the disk that it sees.
 /// docs/coverage.md derives it.
 ///
 /// A textured light weighs: in place of |L| and areas stand the integral of its luminance and the shares of that.
@@ -101,6 +101,7 @@ class SoftVisibility {
   [[nodiscard]] bool counts_for_receiver(std::uint32_t caster, mesh::Side seen) const;
   [[nodiscard]] std::vector<Silhouette> center_silhouettes(const LitPoint& sample) const;
   [[nodiscard]] std::vector<Silhouette> receiver_silhouettes(const LitPoint& sample) const;
+  [[nodiscard]] glm::vec3 center_from(const glm::vec3& p) const;
   [[nodiscard]] std::vector<glm::vec3> corners_from(const glm::vec3& p) const;
   [[nodiscard]] glm::vec3 choose_reference(const glm::vec3& p, const LightProjection& projection,
                                            std::span<const Candidate> edges) const;
