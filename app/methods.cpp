@@ -217,11 +217,14 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
 
 const MethodDescription& default_method(const std::vector<Light>& lights) {
   std::vector<std::string> others;
+  const MethodDescription* rays = nullptr;
   for (const MethodDescription* method : all_methods()) {
     if (!can_do(*method, lights)) continue;
     if (method->family == Family::geometry) return *method;
+    if (method->family == Family::reference && rays == nullptr) rays = method;
     others.push_back(method->name);
   }
+  if (rays != nullptr) return *rays;
   std::vector<std::string> kinds;
   for (const Light& light : lights)
     kinds.emplace_back(fmt::format("{} ({})", light.name, visibility::name_of(light.kind)));

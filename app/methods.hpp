@@ -34,7 +34,8 @@ std::unique_ptr<visibility::Method> make_method(std::string_view name, const vis
 
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 
-/// The best geometry-based method that can do all these lights. Throws InputError, naming what else can, if none.
+/// The best geometry-based method that can do all these lights; if there is none, the reference's rays. Throws
+/// InputError, naming what else can, if those cannot either.
 const visibility::MethodDescription& default_method(const std::vector<visibility::Light>& lights);
 
 }  // namespace penumbra::app

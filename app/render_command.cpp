@@ -27,7 +27,7 @@ class RenderCommand : public Command {
         ->type_name("OUT.exr");
     cli_.add_option("--method", method_,
                     "shadow method, see `penumbra methods` (default: the best geometry-based one "
-                    "that can do the scene's lights)")
+                    "that can do the scene's lights; where none can, raytrace)")
         ->type_name("NAME");
     cli_.add_option("--stats", stats_, "times, counters and warnings as JSON; times of one run, the first")
         ->type_name("FILE.json");

@@ -57,6 +57,7 @@ Region light_region(const visibility::Light& light) {
     case visibility::LightKind::disk:
     case visibility::LightKind::ellipse:
     case visibility::LightKind::sphere:
+    case visibility::LightKind::sun:
       return disk_polygon();
   }
   PENUMBRA_ASSERT(false, "light kind {}", static_cast<int>(light.kind));

@@ -26,6 +26,9 @@ struct ShapeText {
     return fmt::format("an ellipse with half axes of {:.4g} and {:.4g} at {}", glm::length(e.half_u),
                        glm::length(e.half_v), text_of(e.center));
   }
+  std::string operator()(const scenes::Sun& s) const {
+    return fmt::format("a sun of {:.4g}° that shines along {}", s.angle, text_of(s.direction));
+  }
   std::string operator()(const scenes::Polygon& p) const {
     return fmt::format("a polygon of {} corners", p.vertices.size());
   }

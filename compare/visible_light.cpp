@@ -172,13 +172,14 @@ glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask)
     facing.resize(light_->sample_count());
     visibility::light_points_for(*light_, at.p, facing.data());
   }
+  const glm::dvec3 from = light_->sun ? glm::dvec3(0) : glm::dvec3(at.p);  // directions are ways already
   const Points own(facing);
   const Points& points = facing.empty() ? points_ : own;
   double all = 0, some = 0;
   glm::dvec3 colored(0);
   for (std::size_t word = 0; word < all_.size(); ++word) {
     const std::size_t i = word * kBlock;
-    const auto weight = weigh(glm::dvec3(at.p), at.seen.normal(), {&points.x[i], &points.y[i], &points.z[i]});
+    const auto weight = weigh(from, at.seen.normal(), {&points.x[i], &points.y[i], &points.z[i]});
     const std::uint32_t bits = mask[word] & all_[word];
     all += sum_of(weight, all_[word]);
     if (light_->texture) {

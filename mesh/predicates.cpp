@@ -45,6 +45,28 @@ Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, c
   return side(a, b, c, p);
 }
 
+Side side_of_direction(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
+  const glm::dvec3 u = glm::dvec3(b) - glm::dvec3(a), v = glm::dvec3(c) - glm::dvec3(a), w(d);
+  const auto determinant = [](const auto& x, const auto& y, const auto& z) {
+    return z.x * (x.y * y.z - x.z * y.y) + z.y * (x.z * y.x - x.x * y.z) + z.z * (x.x * y.y - x.y * y.x);
+  };
+  const auto size = [](const glm::dvec3& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); };
+  const double value = determinant(u, v, w);
+  // Two differences, two products of two of them, a product, three sums, of no more than these sizes: fewer than 16
+  // roundings of 2⁻⁵³. Products of three floats' sizes do not underflow but to 2⁻⁵⁰⁰.
+  const double error = 0x1p-49 * size(u) * size(v) * size(w);
+  if (error > 0x1p-900 && std::abs(value) > error) return value > 0 ? Side::front : Side::back;
+  using Exact = CGAL::MP_Float;
+  struct Vector {
+    Exact x, y, z;
+  };
+  const auto exact = [](const glm::vec3& to, const glm::vec3& from) {
+    const auto one = [](double p, double q) { return Exact(p) - Exact(q); };
+    return Vector{one(to.x, from.x), one(to.y, from.y), one(to.z, from.z)};
+  };
+  return static_cast<Side>(static_cast<int>(CGAL::sign(determinant(exact(b, a), exact(c, a), exact(d, glm::vec3(0))))));
+}
+
 bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return CGAL::collinear(point(a), point(b), point(c));
 }

@@ -23,6 +23,10 @@ constexpr Side opposite(Side side) {
 Side side_of_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p);
 Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p);
 
+/// Which side of the plane (a, b, c) the direction d points to: the sign of det(b − a, c − a, d); `on`: along the
+/// plane.
+Side side_of_direction(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d);
+
 /// Do the three points lie on a line (a triangle of zero area)?
 bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);

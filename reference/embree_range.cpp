@@ -42,8 +42,13 @@ EmbreeRange::EmbreeRange(const visibility::SceneFloats& scene, std::span<const s
   shortest_ray_ = static_cast<float>(kLeastTerm / (smallest * smallest));
 }
 
-void EmbreeRange::require_light(const visibility::Light& light, const glm::vec3& lower, const glm::vec3& upper) const {
-  const double farthest = std::max(largest_component(lower), largest_component(upper));
+glm::vec3 EmbreeRange::direction(const glm::vec3& d) {
+  const int exponent = kMeshExponent - 1 - std::ilogb(largest_component(d));
+  return glm::vec3(glm::dvec3(d) * std::ldexp(1.0, exponent));
+}
+
+void EmbreeRange::require_light(const visibility::Light& light, const visibility::PointBounds& bounds) const {
+  const double farthest = std::max(largest_component(bounds.lower), largest_component(bounds.upper));
   if (farthest * scale_ <= kFarthest) return;
   throw InputError(
       "light \"{}\" is {} away from a scene of {}: Embree's float32 cannot hold both; bring the light nearer (compare: "

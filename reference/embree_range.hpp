@@ -19,16 +19,19 @@ namespace penumbra::reference {
 /// triangle whose largest edge component is e and
 /// a ray of length R, the terms that are added up are of the size e² R, and of e² before the ray comes in; what
 /// underflows loses at most 2⁻¹²⁶. That is less than a thirtieth of their rounding error where e ≥ 2⁻⁵⁰ and
-/// e² R ≥ 2⁻⁹⁵.
+/// e² R ≥ 2⁻⁹⁵. A direction to a sun is multiplied by a power of two that makes its largest component 2¹³ to 2¹⁴.
 class EmbreeRange {
  public:
   /// Throws InputError where a casting triangle is too small beside the scene.
   EmbreeRange(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casting);
 
-  /// Throws InputError if the light, within `lower` to `upper`, is too far away for the size of the scene.
-  void require_light(const visibility::Light& light, const glm::vec3& lower, const glm::vec3& upper) const;
+  /// Throws InputError if the light's points are too far away for the size of the scene.
+  void require_light(const visibility::Light& light, const visibility::PointBounds& bounds) const;
 
   [[nodiscard]] glm::vec3 scaled(const glm::vec3& x) const { return glm::vec3(glm::dvec3(x) * scale_); }
+
+  /// A direction, as long as the mesh is large: rays along it are never too short.
+  [[nodiscard]] static glm::vec3 direction(const glm::vec3& d);
 
   /// The shortest ray, by the largest component of its scaled direction, that Embree can be asked about.
   [[nodiscard]] float shortest_ray() const { return shortest_ray_; }

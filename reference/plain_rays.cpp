@@ -15,6 +15,7 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace penumbra::reference {
@@ -71,19 +72,21 @@ void PlainRays::prepare_light(const visibility::Light& light) {
   order_.resize(light.sample_count());
   std::iota(order_.begin(), order_.end(), 0u);
   if (options_.neighbours) order_ = tracing_order(light);
-  const visibility::PointBounds bounds = point_bounds(light);
-  embree_->range().require_light(light, bounds.lower, bounds.upper);
+  if (!light.sun) embree_->range().require_light(light, point_bounds(light));
   if (light.kind == visibility::LightKind::sphere) return;
-  points_.assign(light.points, order_, embree_->range());
+  const EmbreeRange& range = embree_->range();
+  points_.assign(light.points, order_,
+                 [&](const glm::vec3& l) { return light.sun ? EmbreeRange::direction(l) : range.scaled(l); });
 }
 
+template <typename Scaled>
 void PlainRays::PointArrays::assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order,
-                                    const EmbreeRange& range) {
+                                    const Scaled& scaled) {
   constexpr std::size_t kWidest = 16;
   const std::size_t padded = (order.size() + kWidest - 1) / kWidest * kWidest;
   for (std::vector<float>* axis : {&x, &y, &z}) axis->resize(padded);
   for (std::size_t i = 0; i < padded; ++i) {
-    const glm::vec3 point = range.scaled(points[order[std::min(i, order.size() - 1)]]);
+    const glm::vec3 point = scaled(points[order[std::min(i, order.size() - 1)]]);
     x[i] = point.x;
     y[i] = point.y;
     z[i] = point.z;
@@ -105,20 +108,22 @@ int PlainRays::trace_pixel(const glm::vec3& p, const glm::vec3& n, const PointAr
     lanes(rays.id)[lane] = 0;
     lanes(rays.flags)[lane] = 0;
   }
+  const glm::vec3 from = light_->sun ? glm::vec3(0) : p;
+  const float end = light_->sun ? std::numeric_limits<float>::infinity() : 1.0F;
   int visible = 0;
   const std::size_t count = light_->sample_count();
   for (std::size_t first = 0; first < count; first += kWidth) {
     int alive = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane) {  // branch-free: the compiler makes vectors of it
-      const float dx = points.x[first + lane] - p.x, dy = points.y[first + lane] - p.y,
-                  dz = points.z[first + lane] - p.z;
+      const float dx = points.x[first + lane] - from.x, dy = points.y[first + lane] - from.y,
+                  dz = points.z[first + lane] - from.z;
       const bool above = n.x * dx + n.y * dy + n.z * dz > 0;
       valid[lane] = -static_cast<int>(above & (first + lane < count));
       alive |= valid[lane];
       lanes(rays.dir_x)[lane] = dx;
       lanes(rays.dir_y)[lane] = dy;
       lanes(rays.dir_z)[lane] = dz;
-      lanes(rays.tfar)[lane] = 1;
+      lanes(rays.tfar)[lane] = end;
     }
     if (alive == 0) continue;
     Packet<kWidth>::occluded(valid, embree_->handle(), &context, &rays);
@@ -154,8 +159,8 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
         if (sphere) {
           if (!in_front_of_light(light, samples.p[pixel])) continue;
           light_points_for(light, samples.p[pixel], own_points.data());
-          own_arrays.assign(own_points, order_, range);
-        } else {
+          own_arrays.assign(own_points, order_, [&](const glm::vec3& l) { return range.scaled(l); });
+        } else if (!light.sun) {
           const double front = glm::dot(light_normal, glm::dvec3(p - light_center));
           if (light.two_sided ? front == 0 : front <= 0) continue;
         }

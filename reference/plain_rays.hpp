@@ -38,7 +38,8 @@ class PlainRays {
   /// The light points, scaled, in the order of tracing, by axis, padded to whole packets.
   struct PointArrays {
     std::vector<float> x, y, z;
-    void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order, const EmbreeRange& range);
+    template <typename Scaled>
+    void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order, const Scaled& scaled);
   };
 
   template <int kWidth>

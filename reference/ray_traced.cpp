@@ -2,9 +2,10 @@
 //
 // Conditions (1) and (2) of the truth of a pair (horizon, emitting side) are decided exactly; (3) is Embree's. The open
 // segment p→l is the ray p + t (l − p), 0 < t < 1: Embree reports t > tnear = 0 and t ≤ tfar, so tfar is the largest
-// float below 1. A filter function turns away hits on the carrying triangle and on what is exactly coplanar with it,
-// and on the light's own body: an offset origin would lose contact shadows. Triangles that cast none are not in the
-// scene. Scene and rays are scaled to where float32 neither underflows nor overflows (EmbreeRange).
+// float below 1 (of a sun, whose light points are directions, infinity). A filter function turns away hits on the
+// carrying triangle and on what is exactly coplanar with it, and on the light's own body: an offset origin would lose
+// contact shadows. Triangles that cast none are not in the scene. Scene and rays are scaled to where float32 neither
+// underflows nor overflows (EmbreeRange).
 
 #include "reference/ray_traced.hpp"
 
@@ -27,6 +28,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace penumbra::reference {
@@ -110,7 +112,7 @@ class RayTraced final : public visibility::Method {
   std::vector<glm::vec3> scaled_points_;  // of a light that is no sphere
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> full_mask_;
-  glm::vec3 lower_{0}, upper_{0};     // bounds of all light points
+  visibility::PointBounds bounds_;
   std::vector<std::uint32_t> masks_;  // of the tile last evaluated
   Counts counts_;
 };
@@ -134,8 +136,8 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
       "(2013)";
   description_.output = visibility::Output::mask;
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
-  description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon,
-                         LightKind::sphere};
+  description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
+                         LightKind::polygon,   LightKind::sphere, LightKind::sun};
   description_.verdict_on = verdict_on;
   description_.options = {kPacket.description()};
   width_ = visibility::parse_options(description_, options)[kPacket];
@@ -164,12 +166,12 @@ void RayTraced::prepare_light(const Light& light) {
   full_mask_.assign(light.words_per_mask(), 0xffffffffu);
   if (light.sample_count() % 32 != 0) full_mask_.back() = (1u << (light.sample_count() % 32)) - 1;
 
-  const visibility::PointBounds bounds = point_bounds(light);
-  lower_ = bounds.lower;
-  upper_ = bounds.upper;
-  embree_->range().require_light(light, lower_, upper_);
+  bounds_ = point_bounds(light);
+  if (!light.sun) embree_->range().require_light(light, bounds_);
   scaled_points_.clear();
-  for (const glm::vec3& point : light.points) scaled_points_.push_back(embree_->range().scaled(point));
+  for (const glm::vec3& point : light.points) {
+    scaled_points_.push_back(light.sun ? EmbreeRange::direction(point) : embree_->range().scaled(point));
+  }
   counts_.rays = counts_.short_rays = counts_.horizon_pairs = 0;
 }
 
@@ -212,17 +214,23 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   const std::vector<glm::vec3>& points = sphere ? work.points : light_->points;
   const std::vector<glm::vec3>& scaled_points = sphere ? work.scaled : scaled_points_;
   const glm::vec3 origin = range.scaled(p);
-  const visibility::HorizonTest horizon(scene_->corners(carrier), samples_->facing[pixel], lower_, upper_);
+  const visibility::HorizonTest horizon(*light_, scene_->corners(carrier), samples_->facing[pixel], bounds_);
   horizon.mask(points, work.above);
   std::uint64_t above_count = 0;
   for (const std::uint32_t word : work.above) above_count += static_cast<std::uint64_t>(std::popcount(word));
   counts_.horizon_pairs.fetch_add(points.size() - above_count, std::memory_order_relaxed);
   if (above_count == 0 || !in_front_of_light(*light_, p)) return;
   counts_.rays.fetch_add(above_count, std::memory_order_relaxed);
-  const glm::vec3 nearest = glm::max(glm::max(range.scaled(lower_) - origin, origin - range.scaled(upper_)), 0.0f);
-  if (std::max({nearest.x, nearest.y, nearest.z}) < range.shortest_ray()) {
-    decide_short_rays(pixel, scaled_points, work.above, visible);
+  if (!light_->sun) {  // whose rays are long enough
+    const glm::vec3 nearest =
+        glm::max(glm::max(range.scaled(bounds_.lower) - origin, origin - range.scaled(bounds_.upper)), 0.0f);
+    if (std::max({nearest.x, nearest.y, nearest.z}) < range.shortest_ray()) {
+      decide_short_rays(pixel, scaled_points, work.above, visible);
+    }
   }
+  const glm::vec3 start = light_->sun ? glm::vec3(0) : origin;  // of what is scaled, to its end
+  // The largest float below 1; the rays of a sun have no end.
+  const float end = light_->sun ? std::numeric_limits<float>::infinity() : 0x1.fffffep-1f;
 
   PixelContext context{};
   rtcInitIntersectContext(&context.embree);
@@ -245,11 +253,11 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
       const bool traced = first + lane < points.size() && ((work.above[sample / 32] >> (sample % 32)) & 1u) != 0;
       valid[lane] = traced ? -1 : 0;
       alive |= valid[lane];
-      const glm::vec3 direction = scaled_points[sample] - origin;
+      const glm::vec3 direction = scaled_points[sample] - start;
       lanes(rays.dir_x)[lane] = direction.x;
       lanes(rays.dir_y)[lane] = direction.y;
       lanes(rays.dir_z)[lane] = direction.z;
-      lanes(rays.tfar)[lane] = 0x1.fffffep-1f;  // the largest float below 1
+      lanes(rays.tfar)[lane] = end;
     }
     if (alive == 0) continue;
     Packet<kWidth>::occluded(valid, embree_->handle(), &context.embree, &rays);

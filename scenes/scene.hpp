@@ -40,7 +40,12 @@ struct Sphere {
 struct Ellipse {
   glm::dvec3 center, half_u, half_v;
 };
-using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse>;
+/// A disk infinitely far away.
+struct Sun {
+  glm::dvec3 direction;  ///< the way its light travels (unit length)
+  double angle = 0;      ///< its full apparent diameter in degrees, 0 ≤ angle < 180; 0: a point
+};
+using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse, Sun>;
 
 /// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
 /// the right and half_v upward: texel (0, 0), the picture's top left, lies in the corner −half_u + half_v. Each texel
@@ -55,7 +60,7 @@ struct Texture {
 struct AreaLight {
   std::string name;
   LightShape shape;
-  glm::dvec3 radiance{10.0};
+  glm::dvec3 radiance{10.0};  ///< of a sun of angle 0, which has none: irradiance of what faces it
   bool two_sided = false;
   std::optional<Texture> texture = {};  ///< of a rectangle only
 };

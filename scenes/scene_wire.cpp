@@ -38,6 +38,7 @@ struct PutShape {
   void operator()(const Polygon& shape) const { to.put_array(std::span<const glm::dvec3>(shape.vertices)); }
   void operator()(const Sphere& shape) const { to.put(shape.center), to.put(shape.radius); }
   void operator()(const Ellipse& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
+  void operator()(const Sun& shape) const { to.put(shape.direction), to.put(shape.angle); }
 };
 
 LightShape get_shape(WireReader& from) {
@@ -69,6 +70,11 @@ LightShape get_shape(WireReader& from) {
     case 4: {
       Ellipse shape;
       shape.center = get_vector(from), shape.half_u = get_vector(from), shape.half_v = get_vector(from);
+      return shape;
+    }
+    case 5: {
+      Sun shape;
+      shape.direction = get_vector(from), shape.angle = get_number(from);
       return shape;
     }
     default:

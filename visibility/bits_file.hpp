@@ -17,7 +17,7 @@ namespace penumbra::visibility {
 //
 //   ASCII          "penumbra-bits/1 W H N\n"
 //   3 double       origin of the scene floats
-//   N × 3 float    light samples, relative to the origin
+//   N × 3 float    light samples, relative to the origin; of a sun, directions
 //   W·H times, in scan-line order:
 //     3 float      view sample, relative to the origin (0 for background)
 //     1 int32      carrying triangle, −1 background

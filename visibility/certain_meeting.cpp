@@ -6,10 +6,17 @@
 #include <cstddef>
 
 namespace penumbra::visibility {
+namespace {
 
-std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
-                                    double off) {
-  const glm::dvec3 way = l - p;
+/// The way from p; `off`: how far from its end that may be, if it has one.
+struct Way {
+  glm::dvec3 way;
+  double off = 0;
+  bool ends = true;
+};
+
+std::optional<bool> decide(const glm::dvec3& p, const Way& from_p, const std::array<glm::vec3, 3>& corners) {
+  const auto& [way, off, ends] = from_p;
   const std::array d{glm::dvec3(corners[0]) - p, glm::dvec3(corners[1]) - p, glm::dvec3(corners[2]) - p};
   const std::array squared{glm::dot(d[0], d[0]), glm::dot(d[1], d[1]), glm::dot(d[2], d[2])};
   // What l is off by adds as much to a determinant as a way that is longer by 2⁴⁶ of it.
@@ -34,10 +41,23 @@ std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, co
   // The differences of differences are right to the lengths of what they are differences of.
   const double largest = std::fmax(squared[0], std::fmax(squared[1], squared[2])), area = largest * largest;
   const int at_p = sign(-glm::dot(n, d[0]), 16 * area * largest);
-  const int at_l = sign(glm::dot(n, way - d[0]), 16 * area * (largest + way_squared));
+  const int at_l = ends ? sign(glm::dot(n, way - d[0]), 16 * area * (largest + way_squared))
+                        : sign(glm::dot(n, way), 16 * area * way_squared);
   if (at_p * at_l > 0) return false;
   if ((left < 3 && right < 3) || at_p == 0 || at_l == 0) return std::nullopt;
   return true;
+}
+
+}  // namespace
+
+std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
+                                    double off) {
+  return decide(p, {l - p, off, true}, corners);
+}
+
+std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& way,
+                                        const std::array<glm::vec3, 3>& corners) {
+  return decide(p, {way, 0, false}, corners);
 }
 
 }  // namespace penumbra::visibility

@@ -13,4 +13,8 @@ namespace penumbra::visibility {
 std::optional<bool> certainly_meets(const glm::dvec3& p, const glm::dvec3& l, const std::array<glm::vec3, 3>& corners,
                                     double off = 0);
 
+/// Likewise of the ray p + t · way, t > 0.
+std::optional<bool> ray_certainly_meets(const glm::dvec3& p, const glm::dvec3& way,
+                                        const std::array<glm::vec3, 3>& corners);
+
 }  // namespace penumbra::visibility

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "visibility/light_samples.hpp"
+
 #include <glm/vec3.hpp>
 
 #include <array>
@@ -9,12 +11,12 @@
 namespace penumbra::visibility {
 
 /// Condition (1) for many light points at once: above_horizon() of pair_truth, answered in plain double arithmetic
-/// wherever its rounding error cannot reach zero, and exactly elsewhere. `lower` and `upper` bound all points asked
-/// for.
+/// wherever its rounding error cannot reach zero, and exactly elsewhere. `bounds` are those of all points asked for:
+/// point_bounds, say. Must not outlive the light.
 class HorizonTest {
  public:
-  HorizonTest(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& lower,
-              const glm::vec3& upper);
+  HorizonTest(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing,
+              const PointBounds& bounds);
 
   [[nodiscard]] bool all_above() const { return lowest_ > error_; }
   [[nodiscard]] bool none_above() const { return highest_ < -error_; }
@@ -24,9 +26,10 @@ class HorizonTest {
   void mask(std::span<const glm::vec3> points, std::span<std::uint32_t> words) const;
 
  private:
+  const Light* light_;
   std::array<glm::vec3, 3> carrier_;
-  glm::dvec3 a_, normal_;
-  double error_ = 0;  ///< bounds the rounding error of every height between lower and upper
+  glm::dvec3 a_, normal_;  ///< a point of the plane; 0 for directions
+  double error_ = 0;       ///< bounds the rounding error of every height between lower and upper
   double lowest_ = 0, highest_ = 0;
   std::int8_t facing_;
 };

@@ -10,6 +10,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -134,6 +135,29 @@ struct Builder {
     }
     for (const glm::dvec2& sample : unit) light.coordinates.push_back(concentric_disk(sample));
   }
+
+  void operator()(const scenes::Sun& shape) const {
+    light.kind = LightKind::sun;
+    const double length = glm::length(shape.direction);
+    if (!(length > 0) || !(shape.angle >= 0 && shape.angle < 180)) {
+      throw InputError(
+          "light \"{}\": a sun needs a direction and an angle from 0 to less than 180 degrees; they are ({}, {}, {}) "
+          "and {}",
+          light.name, shape.direction.x, shape.direction.y, shape.direction.z, shape.angle);
+    }
+    const glm::dvec3 travels = shape.direction / length;
+    const Axes axes = axes_around(travels);
+    const double tangent = std::tan(glm::radians(shape.angle) / 2);
+    light.sun = Light::Directions{glm::vec3(axes.u) + 0.0f, glm::vec3(axes.v) + 0.0f, tangent};
+    light.area = std::numbers::pi * tangent * tangent;
+    light.center = light.center_u = light.center_v = glm::vec3(-travels) + 0.0f;
+    if (tangent == 0) light.radiance /= std::numbers::pi;
+    for (const glm::dvec2& sample : unit) {
+      const glm::dvec2 st = concentric_disk(sample);
+      light.coordinates.push_back(st);
+      light.points.push_back(glm::vec3(-travels + tangent * (st.x * axes.u + st.y * axes.v)) + 0.0f);
+    }
+  }
 };
 
 /// A fan around the first corner: x runs along the far edges in proportion to the fan triangles' areas, √y from the
@@ -225,12 +249,18 @@ const char* name_of(LightKind kind) {
       return "sphere";
     case LightKind::ellipse:
       return "ellipse";
+    case LightKind::sun:
+      return "sun";
   }
   return "?";
 }
 
 bool is_round(LightKind kind) {
-  return kind == LightKind::disk || kind == LightKind::ellipse || kind == LightKind::sphere;
+  return kind != LightKind::rectangle && kind != LightKind::polygon;
+}
+
+bool is_planar(LightKind kind) {
+  return kind != LightKind::sphere && kind != LightKind::sun;
 }
 
 Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const glm::dvec3& origin,
@@ -288,6 +318,9 @@ glm::vec3 center_of(const Light& light) {
 LightFrame light_frame(const Light& light) {
   PENUMBRA_ASSERT(light.kind != LightKind::sphere, "light {} is a sphere and has no stored axes", light.name);
   const glm::dvec3 c = light.center;
+  if (light.sun) {
+    return {c, light.sun->tangent * glm::dvec3(light.sun->axis_u), light.sun->tangent * glm::dvec3(light.sun->axis_v)};
+  }
   return {c, glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c};
 }
 
@@ -300,6 +333,10 @@ LightFrame light_frame_from(const Light& light, const glm::vec3& p) {
   const Axes axes = axes_around(q / d);
   const double k = (r / d) * (r / d), radius = r * std::sqrt(touching) / d;
   return {c + k * q, radius * axes.u, radius * axes.v};
+}
+
+glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
+  return light.sun ? glm::dvec3(l) : glm::dvec3(l) - glm::dvec3(p);
 }
 
 PointBounds point_bounds(const Light& light) {

@@ -13,10 +13,12 @@
 
 namespace penumbra::visibility {
 
-enum class LightKind { rectangle, disk, polygon, sphere, ellipse };
+enum class LightKind { rectangle, disk, polygon, sphere, ellipse, sun };
 const char* name_of(LightKind kind);
-/// Is it the unit disk of its frame? (Disks, ellipses; spheres as each p sees them.)
+/// Is it the unit disk of its frame? (Disks, ellipses, suns; spheres as each p sees them.)
 bool is_round(LightKind kind);
+/// Has it a plane, which stored points span? (All but spheres and suns.)
+bool is_planar(LightKind kind);
 
 enum class SamplePattern { rows, grid, sobol, jittered };
 const char* name_of(SamplePattern pattern);
@@ -36,17 +38,26 @@ struct Light {
   std::int32_t index = 0;  ///< in Scene::lights
   LightKind kind = LightKind::rectangle;
   bool two_sided = false;
-  glm::dvec3 radiance{0};
-  double area = 0;  ///< |L| in world units, double (a sphere's: that of the disk of its radius)
+  glm::dvec3 radiance{0};  ///< of a sun of one direction: irradiance / π
+  double area = 0;  ///< |L| in world units, double (a sphere's: that of the disk of its radius; a sun's: at distance 1)
 
   /// The stored frame: three points that span the light's plane and say where it emits: (u − c) × (v − c) points to
   /// the emitting side. rectangle, ellipse: centre, centre + halfU, centre + halfV; disk: centre and two points of its
-  /// rim; polygon: its first three non-collinear vertices. (sphere: centre and radius only.)
+  /// rim; polygon: its first three non-collinear vertices. (sphere: centre and radius only. sun: see `sun`.)
   glm::vec3 center{0}, center_u{0}, center_v{0};
-  std::vector<glm::vec3> outline;  ///< stored corners that bound the light: rectangle 4, polygon all, disk a
+  std::vector<glm::vec3> outline;  ///< stored corners that bound a planar light: rectangle 4, polygon all, disk a
                                    ///< circumscribed square's 4, ellipse a circumscribed parallelogram's 4;
                                    ///< conservative hull of light and samples
   double radius = 0;               ///< disk, sphere
+
+  /// A sun is no place but directions: `center`, the unit vector toward its middle, and `points`, which are not of unit
+  /// length: middle + tangent · (s axis_u + t axis_v) over the unit disk, each rounded once. A pair's way is the ray p
+  /// + t · d, t > 0.
+  struct Directions {
+    glm::vec3 axis_u{0}, axis_v{0};  ///< unit, at right angles; u × v is the way light travels
+    double tangent = 0;              ///< tan(angle / 2); 0: one direction
+  };
+  std::optional<Directions> sun = {};
 
   SamplePattern pattern = SamplePattern::rows;
   std::uint32_t rows = 0, columns = 0;  ///< rows and grid: sample j = row · columns + column; else rows = 0
@@ -64,6 +75,10 @@ struct Light {
   [[nodiscard]] std::uint32_t sample_count() const { return static_cast<std::uint32_t>(coordinates.size()); }
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
 };
+
+/// The way from p to one of its light points; of a sun, whose points are directions, that itself. Not rounded where
+/// double holds the difference.
+glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
 
 /// Bounds all light points of all view samples.
 struct PointBounds {
@@ -95,7 +110,7 @@ glm::vec3 center_of(const Light& light);
 struct LightFrame {
   glm::dvec3 center{0}, u{0}, v{0};
 };
-/// As stored. Not for spheres, which have no stored axes.
+/// As stored. Not for spheres, which have no stored axes. Of a sun, directions: center is the middle's.
 LightFrame light_frame(const Light& light);
 /// As p sees the light: a planar one as stored; of a sphere the disk that the circle bounds along which lines from p
 /// touch it, u × v toward p. With c and r the sphere's centre and radius, in double, each operation rounded to nearest

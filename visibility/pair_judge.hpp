@@ -28,7 +28,7 @@ struct PairJudge {
   /// How many triangles the segment to l meets.
   [[nodiscard]] std::uint32_t depth(std::size_t pixel, const glm::vec3& l) const {
     std::uint32_t met = 0;
-    static_cast<void>(tree.any_along(samples.p[pixel], l, [&](std::uint32_t triangle) {
+    static_cast<void>(any_along(pixel, l, [&](std::uint32_t triangle) {
       met += meets(pixel, l, triangle) ? 1 : 0;
       return false;
     }));
@@ -51,9 +51,17 @@ struct PairJudge {
   }
   [[nodiscard]] bool is_visible(std::size_t pixel, const glm::vec3& l) const {
     const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
-    return above_horizon(scene.corners(carrier), samples.facing[pixel], l) &&
+    return above_horizon(light, scene.corners(carrier), samples.facing[pixel], l) &&
            in_front_of_light(light, samples.p[pixel]) &&
-           !tree.any_along(samples.p[pixel], l, [&](std::uint32_t triangle) { return meets(pixel, l, triangle); });
+           !any_along(pixel, l, [&](std::uint32_t triangle) { return meets(pixel, l, triangle); });
+  }
+
+ private:
+  template <typename Visit>
+  bool any_along(std::size_t pixel, const glm::vec3& l, Visit&& visit) const {
+    const glm::dvec3 p(samples.p[pixel]);
+    if (light.sun) return tree.any_along_ray(p, glm::dvec3(l), visit);
+    return tree.any_along(p, glm::dvec3(l), visit);
   }
 };
 

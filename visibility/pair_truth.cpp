@@ -42,9 +42,10 @@ struct EdgeSign {
 /// det(l − p, a − p, b − p), affine in l; so at l + ε·u + ε²·v it is, where it vanishes at l, the sign of
 /// det(u, a − p, b − p), and where that vanishes too, of det(v, a − p, b − p). Antisymmetric in a and b: neighbouring
 /// triangles agree about their edge. All three vanish only if p is on the line a b (then p is on the triangle's plane,
-/// and it is not met anyway) or on the light's plane (then condition (2) has already refused the pair).
+/// and it is not met anyway) or on the light's plane (then condition (2) has already refused the pair). Of a sun l is a
+/// direction and stands for l − p; its axes span a plane that holds no direction to it.
 EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const glm::vec3& b, const Light& light) {
-  const int sign = static_cast<int>(side_of_plane(p, l, a, b));
+  const int sign = static_cast<int>(light.sun ? side_of_direction(p, a, b, l) : side_of_plane(p, l, a, b));
   if (sign != 0) return {sign, false};
   const ExactVector pa = difference(a, p), pb = difference(b, p);
   ExactVector u, v;
@@ -52,6 +53,9 @@ EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, c
     const LightFrame frame = light_frame_from(light, p);
     u = difference(frame.u, glm::dvec3(0));
     v = difference(frame.v, glm::dvec3(0));
+  } else if (light.sun) {
+    u = difference(light.sun->axis_u, glm::vec3(0));
+    v = difference(light.sun->axis_v, glm::vec3(0));
   } else {
     u = difference(light.center_u, light.center);
     v = difference(light.center_v, light.center);
@@ -60,9 +64,14 @@ EdgeSign edge_sign(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, c
   return {along_u != 0 ? along_u : sign_of_determinant(v, pa, pb), true};
 }
 
-bool boxes_touch(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners) {
+bool boxes_touch(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners, const Light& light) {
   const auto& [a, b, c] = corners;
   for (int i = 0; i < 3; ++i) {
+    if (light.sun) {  // the box of a ray has no end
+      if (l[i] >= 0 && glm::max(a[i], glm::max(b[i], c[i])) < p[i]) return false;
+      if (l[i] <= 0 && glm::min(a[i], glm::min(b[i], c[i])) > p[i]) return false;
+      continue;
+    }
     if (glm::max(a[i], glm::max(b[i], c[i])) < glm::min(p[i], l[i])) return false;
     if (glm::min(a[i], glm::min(b[i], c[i])) > glm::max(p[i], l[i])) return false;
   }
@@ -77,10 +86,12 @@ int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const 
 
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light) {
-  if (const std::optional<bool> certain = certainly_meets(glm::dvec3(p), glm::dvec3(l), corners))
-    return {*certain, false};
+  const std::optional<bool> certain = light.sun ? ray_certainly_meets(glm::dvec3(p), glm::dvec3(l), corners)
+                                                : certainly_meets(glm::dvec3(p), glm::dvec3(l), corners);
+  if (certain) return {*certain, false};
   const auto& [a, b, c] = corners;
-  const Side side_p = side_of_plane(a, b, c, p), side_l = side_of_plane(a, b, c, l);
+  const Side side_p = side_of_plane(a, b, c, p);
+  const Side side_l = light.sun ? side_of_direction(a, b, c, l) : side_of_plane(a, b, c, l);
   const bool plane_zero = side_p == Side::on || side_l == Side::on;
   if (!plane_zero && side_p == side_l) return {};
 
@@ -152,6 +163,11 @@ bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, 
 
 namespace {
 
+int sign_above(const Light& light, const std::array<glm::vec3, 3>& carrier, const glm::vec3& l) {
+  const auto& [a, b, c] = carrier;
+  return static_cast<int>(light.sun ? side_of_direction(a, b, c, l) : side_of_plane(a, b, c, l));
+}
+
 /// |p − c| > r, for the stored centre and the radius in double.
 bool outside_sphere(const Light& light, const glm::vec3& p) {
   const glm::dvec3 d = glm::dvec3(p) - glm::dvec3(light.center);
@@ -166,7 +182,13 @@ bool outside_sphere(const Light& light, const glm::vec3& p) {
 
 }  // namespace
 
+bool above_horizon(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing,
+                   const glm::vec3& l) {
+  return sign_above(light, carrier, l) * facing > 0;
+}
+
 bool in_front_of_light(const Light& light, const glm::vec3& p) {
+  if (light.sun) return true;
   if (light.kind == LightKind::sphere) return outside_sphere(light, p);
   const Side side = side_of_plane(light.center, light.center_u, light.center_v, p);
   return light.two_sided ? side != Side::on : side == Side::front;
@@ -185,9 +207,8 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
   const glm::vec3& l = points[light_sample];
 
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
-  if (!above_horizon(corners, samples.facing[pixel], l)) {
-    return {PairOutcome::horizon, side_of_plane(corners[0], corners[1], corners[2], l) == Side::on};
-  }
+  const int above = sign_above(light, corners, l) * samples.facing[pixel];
+  if (above <= 0) return {PairOutcome::horizon, above == 0};
   if (!in_front_of_light(light, p)) {
     return {PairOutcome::behind, side_of_plane(light.center, light.center_u, light.center_v, p) == Side::on};
   }
@@ -196,7 +217,7 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
   for (std::uint32_t triangle = 0; triangle < scene.triangles.size(); ++triangle) {
     if (!may_occlude(scene, light, carrier, triangle)) continue;
     const std::array<glm::vec3, 3> occluder = scene.corners(triangle);
-    if (!boxes_touch(p, l, occluder)) continue;
+    if (!boxes_touch(p, l, occluder, light)) continue;
     const Meeting meeting = segment_meets_triangle(p, l, occluder, light);
     if (meeting.meets) truth.outcome = PairOutcome::blocked;
     if (meeting.meets && !meeting.zero_predicate) return {PairOutcome::blocked, false};

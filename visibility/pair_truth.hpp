@@ -13,7 +13,7 @@
 
 namespace penumbra::visibility {
 
-using mesh::collinear, mesh::coplanar, mesh::Side, mesh::side_of_plane;
+using mesh::collinear, mesh::coplanar, mesh::Side, mesh::side_of_direction, mesh::side_of_plane;
 
 /// What an exact segment–triangle test found, and whether some predicate on the way was exactly zero.
 struct Meeting {
@@ -22,6 +22,8 @@ struct Meeting {
                                 ///< the signs that are not zero do not already say that the line passes the triangle by
 };
 
+/// Everywhere below, of a sun l is a direction: the way is the ray p + t · l, t > 0, and l − p is to be read as l.
+///
 /// On which side of the line p→l the edge a→b passes: the sign of det(l − p, a − p, b − p), and where that is zero what
 /// docs/definitions.md reads it as, so that neighbouring triangles agree about their edge. 0 only if p is on the line a
 /// b or on the light's plane. Exact.
@@ -33,7 +35,7 @@ int edge_side(const glm::vec3& p, const glm::vec3& l, const glm::vec3& a, const 
 Meeting segment_meets_triangle(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 3>& corners,
                                const Light& light);
 
-/// The point centre + s u + t v of a light's plane, of its stored points. Not of a sphere.
+/// The point centre + s u + t v of a light's plane, of its stored points. Not of a sphere or sun.
 struct PlanePoint {
   PlanePoint(const Light& light, const glm::dvec2& at);
 
@@ -62,8 +64,11 @@ struct PairTruth {
 /// Condition (1): l strictly on the viewer's side of the carrier's plane; `facing` is ViewSamples::facing (+1: the
 /// viewer is where (b − a) × (c − a) points, −1: behind). Exact.
 bool above_horizon(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l);
+/// The same of any light's points, a sun's directions among them.
+bool above_horizon(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const glm::vec3& l);
 
-/// Condition (2): p strictly on an emitting side of the light's plane; of a sphere, strictly outside it. Exact.
+/// Condition (2): p strictly on an emitting side of the light's plane; of a sphere, strictly outside it; always of a
+/// sun. Exact.
 bool in_front_of_light(const Light& light, const glm::vec3& p);
 
 /// Can this triangle hide the light from a view sample on `carrier`? (It casts shadow, has area, is not coplanar with

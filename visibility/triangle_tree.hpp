@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,13 @@ struct TriangleTree {
   /// the first. Boxes are taken a little larger than they are (2⁻⁴⁰ of the segment), which outweighs double rounding.
   template <typename Visit>
   bool any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const;
+  /// Likewise of the ray p + t · way, t ≥ 0.
+  template <typename Visit>
+  bool any_along_ray(const glm::dvec3& p, const glm::dvec3& way, Visit&& visit) const;
+
+ private:
+  template <typename Way, typename Visit>
+  bool any_touched(const Way& way, Visit&& visit) const;
 };
 
 TriangleTree make_triangle_tree(const SceneFloats& scene);
@@ -98,9 +106,44 @@ class SegmentInBox {
   glm::dvec3 p_, inverse_;
 };
 
+/// Does the ray p + t · way, t ≥ 0, touch a box? p is a float, so where it begins is not rounded; ends are taken a
+/// little apart, by more than double rounding of them.
+class RayInBox {
+ public:
+  RayInBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
+
+  [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
+    double enter = 0, leave = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      const double from = lower[axis] - p_[axis], to = upper[axis] - p_[axis];
+      if (std::isinf(inverse_[axis])) {
+        if (from > 0 || to < 0) return false;
+        continue;
+      }
+      const double t0 = from * inverse_[axis], t1 = to * inverse_[axis];
+      const double first = std::min(t0, t1), last = std::max(t0, t1);
+      enter = std::max(enter, first - 0x1p-40 * std::abs(first));
+      leave = std::min(leave, last + 0x1p-40 * std::abs(last));
+    }
+    return enter <= leave;
+  }
+
+ private:
+  glm::dvec3 p_, inverse_;
+};
+
 template <typename Visit>
 bool TriangleTree::any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const {
-  const SegmentInBox segment(p, l - p);
+  return any_touched(SegmentInBox(p, l - p), visit);
+}
+
+template <typename Visit>
+bool TriangleTree::any_along_ray(const glm::dvec3& p, const glm::dvec3& way, Visit&& visit) const {
+  return any_touched(RayInBox(p, way), visit);
+}
+
+template <typename Way, typename Visit>
+bool TriangleTree::any_touched(const Way& segment, Visit&& visit) const {
   std::vector<std::uint32_t> stack;
   if (!nodes.empty()) stack.push_back(0);
   while (!stack.empty()) {

@@ -14,13 +14,17 @@ namespace penumbra::visibility {
 UnshadowedLight::UnshadowedLight(const Light& light, const glm::vec3& p, const glm::vec3& n)
     : light_(light), p_(p), n_(glm::normalize(glm::dvec3(n))) {
   const LightFrame frame = light_frame_from(light, p);
-  center_ = frame.center - p_;
+  center_ = light.sun ? frame.center : frame.center - p_;
   u_ = frame.u;
   v_ = frame.v;
   if (light.kind == LightKind::sphere) {
     radius_ = glm::length(u_);
     side_ = in_front_of_light(light, p) && radius_ > 0 ? 1 : 0;
     if (side_ != 0) along_ = glm::normalize(glm::dvec3(light.center) - p_);
+  } else if (light.sun) {
+    radius_ = light.sun->tangent;
+    along_ = glm::normalize(center_);
+    side_ = 1;
   } else {
     radius_ = light.radius;
     const glm::dvec3 front = glm::normalize(glm::cross(u_, v_));
@@ -51,6 +55,8 @@ double UnshadowedLight::whole() const {
       return box(glm::dvec2(-1), glm::dvec2(1));
     case LightKind::disk:
     case LightKind::sphere:
+    case LightKind::sun:
+      if (light_.sun && radius_ == 0) return std::max(0.0, glm::dot(n_, along_));
       return form_factor(FormFactorDisk{center_, along_, radius_}, n_);
     case LightKind::ellipse:
       return form_factor(FormFactorEllipse{center_, u_, v_}, n_);

@@ -25,7 +25,7 @@ class UnshadowedLight {
   /// Is every corner that bounds the light (Light::outline; a sphere: its disk) above the element's plane?
   [[nodiscard]] bool above_horizon() const;
   /// Of all the light: rectangle c ± u ± v, polygon by its outline, disk and what p sees of a sphere as a circle,
-  /// ellipse as its frame's.
+  /// ellipse as its frame's, sun as a disk at distance 1. Of a sun of one direction, of irradiance: n · d.
   [[nodiscard]] double whole() const;
   /// Of a polygon in the frame's coordinates (s, t), counter-clockwise.
   [[nodiscard]] double part(std::span<const glm::dvec2> corners) const;

@@ -8,6 +8,7 @@
 #include "visibility/receivers.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/MP_Float.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -60,12 +61,36 @@ bool sphere_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, c
   return facing * glm::dot(normal, glm::dvec3(light.center) - a) > light.radius * glm::length(normal);
 }
 
+/// The cone of a sun as a whole strictly above the carrier's plane: n · c > tan |(n · u, n · v)|, exactly, for what is
+/// stored.
+bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Light& light) {
+  using Exact = CGAL::MP_Float;
+  const auto along = [&](const glm::vec3& d) {  // det(b − a, c − a, d)
+    const auto edge = [&](std::size_t corner, int axis) {
+      return Exact(carrier[corner][axis]) - Exact(carrier[0][axis]);
+    };
+    Exact sum(0);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      sum += Exact(d[i]) * (edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j));
+    }
+    return sum;
+  };
+  const Exact middle = along(light.center) * Exact(static_cast<double>(facing));
+  if (CGAL::sign(middle) != CGAL::POSITIVE) return false;
+  const Exact u = along(light.sun->axis_u), v = along(light.sun->axis_v), tangent(light.sun->tangent);
+  return CGAL::sign(middle * middle - tangent * tangent * (u * u + v * v)) == CGAL::POSITIVE;
+}
+
 PixelClass classify(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light) {
   if (samples.triangle[pixel] == ViewSamples::kBackground) return PixelClass::background;
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   if (!is_receiver(scene, carrier)) return scene.emits[carrier] >= 0 ? PixelClass::emitter : PixelClass::unshadowed;
   if (!in_front_of_light(light, samples.p[pixel])) return PixelClass::behind;
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
+  if (light.sun) {
+    return cone_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
+  }
   if (light.kind == LightKind::sphere) {
     return sphere_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
   }

@@ -27,6 +27,7 @@ LightKind kind_of(const scenes::AreaLight& light) {
     LightKind operator()(const scenes::Rectangle&) const { return LightKind::rectangle; }
     LightKind operator()(const scenes::Disk&) const { return LightKind::disk; }
     LightKind operator()(const scenes::Ellipse&) const { return LightKind::ellipse; }
+    LightKind operator()(const scenes::Sun&) const { return LightKind::sun; }
     LightKind operator()(const scenes::Polygon&) const { return LightKind::polygon; }
     LightKind operator()(const scenes::Sphere&) const { return LightKind::sphere; }
   };

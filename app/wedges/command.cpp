@@ -112,6 +112,9 @@ class WedgesCommand : public Command {
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
+    if (light.sun) {
+      throw InputError("light \"{}\" is a sun; wedges are of lights in the scene: take another (--light)", light.name);
+    }
     const volumes::LightHull hull = volumes::light_hull(light);
     const volumes::Casters casters = volumes::casters_of(floats, light);
     const bool tight = chosen.construction == volumes::Construction::tight;

@@ -5,10 +5,12 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <type_traits>
 
@@ -79,6 +81,16 @@ void check_shape(const Sphere& sphere, const std::string& where) {
   check_radius(sphere.radius, where);
 }
 
+void check_shape(const Sun& sun, const std::string& where) {
+  check_position(sun.direction, where, "direction");
+  if (glm::length(sun.direction) == 0)
+    throw InputError("{}: the direction is zero; expected the way light travels", where);
+  if (!(sun.angle >= 0 && sun.angle < 180)) {
+    throw InputError("{}: the angle is {} degrees; expected the sun's apparent diameter, from 0 to less than 180",
+                     where, sun.angle);
+  }
+}
+
 void check_shape(const Polygon& polygon, const std::string& where) {
   const std::vector<glm::dvec3>& vertices = polygon.vertices;
   const std::size_t count = vertices.size();
@@ -138,6 +150,11 @@ glm::dvec3 polygon_normal(const Polygon& polygon) {
   }
   const double length = glm::length(sum);
   return length > 0 ? sum / length : sum;
+}
+
+double irradiance_of_radiance(const Sun& sun) {
+  const double sine = std::sin(glm::radians(sun.angle) / 2);
+  return std::numbers::pi * sine * sine;
 }
 
 void check_light(const AreaLight& light, const std::string& where) {

@@ -127,7 +127,8 @@ std::vector<glm::dvec3> outline(const AreaLight& light) {
 void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
   const std::vector<glm::dvec3> points = outline(light);
   if (points.empty()) {
-    notes.push_back(fmt::format("light \"{}\": glTF has no sphere lights; left out", light.name));
+    notes.push_back(fmt::format("light \"{}\": glTF has no {} lights; left out", light.name,
+                                std::holds_alternative<Sphere>(light.shape) ? "sphere" : "sun"));
     return;
   }
   if (std::holds_alternative<Disk>(light.shape) || std::holds_alternative<Ellipse>(light.shape)) {

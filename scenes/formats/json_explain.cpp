@@ -75,6 +75,9 @@ class Explainer {
     if (schema.contains("exclusiveMinimum") && schema.contains("exclusiveMaximum")) {
       return " above " + number("exclusiveMinimum") + " and below " + number("exclusiveMaximum");
     }
+    if (schema.contains("minimum") && schema.contains("exclusiveMaximum")) {
+      return " from " + number("minimum") + " up and below " + number("exclusiveMaximum");
+    }
     if (schema.contains("minimum")) return " from " + number("minimum") + " up";
     if (schema.contains("exclusiveMinimum")) return " above " + number("exclusiveMinimum");
     return "";

@@ -75,6 +75,19 @@ Texture read_light_texture(const json& value, const Place& place, const ReadOpti
   return texture;
 }
 
+/// What a sun sends, by its radiance or by the irradiance of what faces it. A point has no radiance.
+void read_sun_light(const json& value, const Place& place, AreaLight& light, Scene& scene) {
+  const Sun& sun = std::get<Sun>(light.shape);
+  if (value.contains("irradiance")) {
+    light.radiance = read_vector(value["irradiance"]);
+    if (sun.angle > 0) light.radiance /= irradiance_of_radiance(sun);
+  } else if (sun.angle == 0 && value.contains("radiance")) {
+    scene.warnings.push_back(
+        fmt::format("{}: a sun of angle 0 is a point and has no radiance; taken as its irradiance (\"irradiance\")",
+                    (place / "radiance").str()));
+  }
+}
+
 AreaLight read_light(const json& value, const Place& place, std::string fallback_name, const ReadOptions& options,
                      Scene& scene) {
   AreaLight light;
@@ -105,10 +118,18 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
     for (const json& vertex : value["polygon"]) polygon.vertices.push_back(read_vector(vertex));
     light.shape = std::move(polygon);
     check("polygon");
+  } else if (value.contains("sun")) {
+    const json& shape = value["sun"];
+    light.shape = Sun{unit(read_vector(shape["direction"])), shape["angle"].get<double>()};
+    check("sun");
+    read_sun_light(value, place, light, scene);
   } else {
     const json& shape = value["sphere"];
     light.shape = Sphere{read_vector(shape["center"]), shape["radius"].get<double>()};
     check("sphere");
+  }
+  if (value.contains("irradiance") && !value.contains("sun")) {
+    throw InputError("{}: only a \"sun\" has an irradiance; expected \"radiance\"", (place / "irradiance").str());
   }
   if (value.contains("texture")) light.texture = read_light_texture(value, place / "texture", options, scene);
   return light;

@@ -50,10 +50,16 @@ void write_shape(const Ellipse& ellipse, TextStream& text) {
   text.print(R"(, "halfV": )").array(ellipse.half_v).print("}}");
 }
 
+void write_shape(const Sun& sun, TextStream& text) {
+  text.print(R"("sun": {{"direction": )").array(sun.direction);
+  text.print(R"(, "angle": )").number(sun.angle).print("}}");
+}
+
 void write_light(const AreaLight& light, const std::string& texture_file, TextStream& text) {
   text.print(R"({{"name": {}, )", quoted(light.name));
   std::visit([&](const auto& shape) { write_shape(shape, text); }, light.shape);
-  text.print(R"(, "radiance": )").array(light.radiance);
+  const auto* sun = std::get_if<Sun>(&light.shape);
+  text.print(R"(, "{}": )", sun != nullptr && sun->angle == 0 ? "irradiance" : "radiance").array(light.radiance);
   text.print(R"(, "twoSided": {})", light.two_sided);
   if (light.texture) text.print(R"(, "texture": {})", quoted(texture_file));
   text.print("}}");

@@ -226,5 +226,60 @@ TEST(ClosedForm, InsideASphereLightNothingIsVisible) {
   EXPECT_GT(tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, {2, 0, 0})).visibility[0], 0.4);
 }
 
+TEST(ClosedForm, ASunsPenumbraIsAsWideAsDistanceTimesTangent) {
+  // Straight above, a board's edge at the height h over x = 0 and beyond: from x the board appears from (−x / h) on,
+  // and the sun's disk has the radius tan(angle / 2). A tilted sun moves the shadow, and its frame's plane is not the
+  // board's.
+  constexpr double kHeight = 2;
+  for (const double angle : {0.53, 10.0, 60.0}) {
+    const double tangent = std::tan(angle * std::numbers::pi / 360);
+    scenes::Scene scene;
+    tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {8, 0, 0}, {0, 0, -8}));
+    tests::add_object(scene, "board", tests::quad({4, kHeight, 0}, {4, 0, 0}, {0, 0, -8}));
+    scene.lights.emplace_back();
+    scene.lights[0].shape = scenes::Sun{{0, -1, 0}, angle};
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light = visibility::make_light(scene, 0, floats.origin, {4096, 0, 0, SamplePattern::sobol, 2});
+    for (const double share : {-1.01, -0.99, -0.5, 0.0, 0.25, 0.99, 1.01}) {
+      const glm::dvec3 at(-share * kHeight * tangent, 0, 0);
+      const Masks masks = tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, at));
+      const double s = std::clamp(share, -1.0, 1.0);
+      const double hidden = (std::acos(s) - s * std::sqrt(1 - s * s)) / std::numbers::pi;
+      // At ±0.99 a few samples in 4096 are left: hidden is not 0 or 1.
+      EXPECT_NEAR(masks.visibility[0], 1 - hidden, 0.003) << angle << " at " << share;
+      if (std::abs(share) > 1) {
+        EXPECT_EQ(masks.visibility[0], share > 0 ? 1 : 0) << angle << " at " << share;
+      } else {
+        EXPECT_TRUE(masks.visibility[0] > 0 && masks.visibility[0] < 1) << angle << " at " << share;
+      }
+    }
+  }
+}
+
+TEST(ClosedForm, ASunOfAngleZeroCastsHardShadows) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {8, 0, 0}, {0, 0, -8}));
+  tests::add_object(scene, "board", tests::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}));
+  scene.lights.emplace_back();
+  scene.lights[0].shape = scenes::Sun{{-1, -1, 0}, 0};  // moves the board's shadow by −2
+  const SceneFloats floats = visibility::make_scene_floats(scene);
+  const Light light = visibility::make_light(scene, 0, floats.origin, {16, 4, 4, SamplePattern::grid, 0});
+  for (const double x : {-3.01, -2.99, -2.0, -1.01, -0.99}) {
+    const Masks masks = tests::trace(floats, light, one_sample(floats, {-6, 0.5, 0}, {x, 0, 0.25}));
+    EXPECT_EQ(masks.visibility[0], x > -3 && x < -1 ? 0 : 1) << x;
+  }
+}
+
+TEST(ClosedForm, TheHorizonCutsASun) {
+  // At the elevation 0 the floor sees the upper half of the disk.
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  scene.lights.emplace_back();
+  scene.lights[0].shape = scenes::Sun{{1, 0, 0}, 20};
+  const SceneFloats floats = visibility::make_scene_floats(scene);
+  const Light light = visibility::make_light(scene, 0, floats.origin, {4096, 0, 0, SamplePattern::sobol, 2});
+  EXPECT_NEAR(tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, {0, 0, 0})).visibility[0], 0.5, 0.001);
+}
+
 }  // namespace
 }  // namespace penumbra::reference

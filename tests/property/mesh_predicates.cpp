@@ -29,6 +29,10 @@ Side exact_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, c
   const Vector n = cross(difference(b, a), difference(c, a)), d = difference(p, a);
   return static_cast<Side>(sgn(n[0] * d[0] + n[1] * d[1] + n[2] * d[2]));
 }
+Side exact_direction(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
+  const Vector n = cross(difference(b, a), difference(c, a));
+  return static_cast<Side>(sgn(n[0] * mpq_class(d.x) + n[1] * mpq_class(d.y) + n[2] * mpq_class(d.z)));
+}
 bool exactly_collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const Vector n = cross(difference(b, a), difference(c, a));
   return n[0] == 0 && n[1] == 0 && n[2] == 0;
@@ -62,6 +66,7 @@ void expect_exact(const Point& point, int rounds, Tally& tally) {
     if (!finite(fa) || !finite(fb) || !finite(fc) || !finite(fp)) continue;
     ASSERT_EQ(side_of_plane(fa, fb, fc, fp), exact_side(fa, fb, fc, fp)) << "float, round " << round;
     ASSERT_EQ(collinear(fa, fb, fc), exactly_collinear(fa, fb, fc)) << "float, round " << round;
+    ASSERT_EQ(side_of_direction(fa, fb, fc, fp), exact_direction(fa, fb, fc, fp)) << "direction, round " << round;
   }
 }
 
@@ -140,6 +145,23 @@ TEST_P(Predicates, NearlyCoplanarAndNearlyCollinear) {
   EXPECT_GT(tally.front, 100);
   EXPECT_GT(tally.back, 100);
   EXPECT_GT(tally.on, 10);
+}
+
+TEST_P(Predicates, DirectionsNearlyAlongAPlane) {
+  int on = 0, off = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const auto point = [&] { return glm::vec3(number(-40, 40), number(-40, 40), number(-40, 40)) / 16.0f; };
+    const glm::vec3 a = point(), b = point(), c = point();
+    glm::vec3 d = static_cast<float>(number(-3, 3)) * (b - a) + static_cast<float>(number(-3, 3)) * (c - a);
+    d /= number(0, 1) == 0 ? 1.0f : 3.0f;
+    if (number(0, 2) == 0) d.x = std::nextafter(d.x, 9.0f);
+    const Side side = exact_direction(a, b, c, d);
+    ASSERT_EQ(side_of_direction(a, b, c, d), side) << round;
+    ASSERT_EQ(side_of_direction(b, a, c, d), opposite(side)) << round;
+    ++(side == Side::on ? on : off);
+  }
+  EXPECT_GT(on, 300);
+  EXPECT_GT(off, 300);
 }
 
 TEST_P(Predicates, CoplanarIsAllThreeOnThePlane) {

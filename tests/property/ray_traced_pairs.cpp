@@ -34,7 +34,8 @@ scenes::Scene soup_over_floor(std::uint32_t seed) {
   if (seed % 8 == 1) scene.lights[0].shape = scenes::Disk{center, {0.1, -1, 0.2}, 0.7};
   if (seed % 8 == 5) scene.lights[0].shape = scenes::Ellipse{center, {0.6, 0.1, 0.03}, {0.05, 0.1, 0.3}};
   if (seed % 4 == 2) scene.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.5}, {0.7, 3, -0.4}, {0.1, 3, 0.8}}};
-  if (seed % 4 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.6};
+  if (seed % 8 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.6};
+  if (seed % 8 == 7) scene.lights[0].shape = scenes::Sun{-center, 25};
   scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));
   return scene;
 }
@@ -66,7 +67,7 @@ TEST_P(RayTracedPairs, AgreeWithTheExactDecision) {
   EXPECT_LE(differing, pairs / 10000) << differing << " of " << pairs << ", " << zeros << " with a zero";
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RayTracedPairs, testing::Range(0u, 12u));
+INSTANTIATE_TEST_SUITE_P(Seeds, RayTracedPairs, testing::Range(0u, 16u));
 
 }  // namespace
 }  // namespace penumbra::reference

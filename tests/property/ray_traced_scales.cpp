@@ -48,7 +48,8 @@ scenes::Scene soup_over_floor(std::uint32_t seed) {
   scene.lights.push_back(tests::rectangle_light(center, {0.6, 0.1, 0}, {0, 0.1, 0.7}));
   if (seed % 4 == 1) scene.lights[0].shape = scenes::Disk{center, {0.1, -1, 0.2}, 0.7};
   if (seed % 4 == 2) scene.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.5}, {0.7, 3, -0.4}, {0.1, 3, 0.8}}};
-  if (seed % 4 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.5};
+  if (seed == 3) scene.lights[0].shape = scenes::Sphere{center, 0.5};
+  if (seed == 4) scene.lights[0].shape = scenes::Sun{-center, 20};
   scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));
   return scene;
 }
@@ -68,11 +69,10 @@ Stage snapped_stage(std::uint32_t seed) {
 Stage scaled(Stage stage, int exponent) {
   for (glm::vec3& x : stage.floats.positions) x = scaled(x, exponent);
   for (glm::vec3& x : stage.samples.p) x = scaled(x, exponent);
+  for (glm::vec3* x : {&stage.floats.lower, &stage.floats.upper}) *x = scaled(*x, exponent);
+  if (stage.light.sun) return stage;  // directions have no scale
   for (glm::vec3& x : stage.light.points) x = scaled(x, exponent);
-  for (glm::vec3* x :
-       {&stage.light.center, &stage.light.center_u, &stage.light.center_v, &stage.floats.lower, &stage.floats.upper}) {
-    *x = scaled(*x, exponent);
-  }
+  for (glm::vec3* x : {&stage.light.center, &stage.light.center_u, &stage.light.center_v}) *x = scaled(*x, exponent);
   stage.light.radius = std::ldexp(stage.light.radius, exponent);
   return stage;
 }
@@ -107,7 +107,7 @@ TEST_P(Scales, ChangeNoBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lights, Scales, testing::Range(0U, 4U));
+INSTANTIATE_TEST_SUITE_P(Lights, Scales, testing::Range(0U, 5U));
 
 TEST(ScaleLimits, ALightTooFarForTheSceneIsRefused) {
   Stage stage = snapped_stage(0);

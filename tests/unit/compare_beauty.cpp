@@ -160,6 +160,27 @@ TEST(Beauty, ASphereShinesOverItsSolidAngle) {
   EXPECT_EQ(colors[2].r, 0) << "in the sphere";
 }
 
+/// A sun of radiance L gives what faces it π sin²(angle / 2) L; what is turned by 60° gets half of that.
+TEST(Beauty, ASunShinesOverItsSolidAngle) {
+  Floor floor({{0, 0, 0}, {1000, -7, 30}});
+  scenes::Scene scene;
+  scene.lights.emplace_back();
+  scene.lights[0].radiance = {10, 20, 30};
+  const std::vector<std::uint32_t> seen{15, 15};
+  for (const double angle : {0.01, 0.53, 30.0}) {
+    for (const glm::dvec3 direction : {glm::dvec3(0, -1, 0), glm::dvec3(std::sqrt(0.75), -0.5, 0)}) {
+      scene.lights[0].shape = scenes::Sun{direction, angle};
+      floor.lights = {visibility::make_light(scene, 0, glm::dvec3(0), {4, 2, 2, visibility::SamplePattern::grid, 0})};
+      const double sine = std::sin(angle * kPi / 360), expected = 0.5 * 10 * sine * sine * -direction.y;
+      for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r / expected, 1, 1e-6) << angle;
+    }
+  }
+  // Of angle 0, `radiance` is the irradiance of what faces it: a diffuse surface shows colour / π of that.
+  scene.lights[0].shape = scenes::Sun{{std::sqrt(0.75), -0.5, 0}, 0};
+  floor.lights = {visibility::make_light(scene, 0, glm::dvec3(0), {4, 2, 2, visibility::SamplePattern::grid, 0})};
+  for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r, 0.5 * 10 / kPi / 2, 1e-6);
+}
+
 TEST(Beauty, FormFactorsAreTakenAsTheyAre) {
   Floor floor({{0, 0, 0}, {1, 0, 0}});
   floor.lights = {rectangle(2, 1, 1, 2, 2)};

@@ -108,12 +108,14 @@ TEST(RayTraced, TilesRepeatsAndPacketsAgree) {
 }
 
 TEST(RayTraced, EveryKindOfLightIsTraced) {
-  for (int kind = 0; kind < 4; ++kind) {
+  for (int kind = 0; kind < 6; ++kind) {
     scenes::Scene scene = board_over_floor();
     auto& shape = scene.lights[0].shape;
     if (kind == 1) shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 1};
     if (kind == 2) shape = scenes::Polygon{{{-1, 4, -1}, {1, 4, -1}, {0, 4, 1}}};
     if (kind == 3) shape = scenes::Sphere{{0, 4, 0}, 1};
+    if (kind == 4) shape = scenes::Ellipse{{0, 4, 0}, {1, 0, 0}, {0, 0, 0.5}};
+    if (kind == 5) shape = scenes::Sun{{0, -1, 0}, 30};
     const Masks masks = trace(Stage(scene, 30, 30));
     const auto partly = [](float v) { return v > 0 && v < 1; };
     EXPECT_GT(std::count_if(masks.visibility.begin(), masks.visibility.end(), partly), 8) << kind;

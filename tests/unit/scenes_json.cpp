@@ -1,6 +1,9 @@
 #include "scenes/formats/json_schema.hpp"
 #include "tests/unit/scenes_support.hpp"
 
+#include <glm/geometric.hpp>
+#include <fmt/format.h>
+#include <numbers>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -108,8 +111,8 @@ const BadScene kStructure[] = {
     {"FitAndTransform", mesh(R"("shape": {"type": "box"}, "fit": {"height": 1}, "transform": {})"),
      R"(/meshes/0: the keys ["fit","transform"] exclude one another)"},
     {"NoLightShape", light(R"("radiance": [1,1,1])"),
-     "/lights/0: expected exactly one of the keys \"rectangle\", \"disk\", \"ellipse\", \"polygon\", \"sphere\", found "
-     "none"},
+     "/lights/0: expected exactly one of the keys \"rectangle\", \"disk\", \"ellipse\", \"polygon\", \"sphere\", "
+     "\"sun\", found none"},
     {"ColorTooBright", mesh(R"("shape": {"type": "box"}, "color": [1, 1, 1.5])"),
      "/meshes/0/color/2: expected a number from 0 to 1, found the number 1.5"},
     {"NegativeRadiance", light(R"("sphere": {"center": [0,5,0], "radius": 1}, "radiance": [-1, 0, 0])"),
@@ -171,6 +174,17 @@ const BadScene kMeaning[] = {
      "parallel"},
     {"EllipseWithoutAnAxis", light(R"("ellipse": {"center": [0,5,0], "halfU": [1,0,0]})"),
      "/lights/0/ellipse: missing key \"halfV\""},
+    {"SunOfHalfTheSky", light(R"("sun": {"direction": [0,-1,0], "angle": 180})"),
+     "/lights/0/sun/angle: expected a number from 0 up and below 180, found the number 180"},
+    {"SunOfNegativeAngle", light(R"("sun": {"direction": [0,-1,0], "angle": -1})"), "/lights/0/sun/angle: expected"},
+    {"SunWithoutAngle", light(R"("sun": {"direction": [0,-1,0]})"), "/lights/0/sun: missing key \"angle\""},
+    {"SunWithoutDirection", light(R"("sun": {"direction": [0,0,0], "angle": 1})"),
+     "/lights/0/sun: the direction is zero"},
+    {"SunSaidTwice", light(R"("sun": {"direction": [0,-1,0], "angle": 1}, "radiance": [1,1,1], "irradiance": [1,1,1])"),
+     "/lights/0: "},
+    {"IrradianceOfADisk",
+     light(R"("disk": {"center": [0,5,0], "normal": [0,-1,0], "radius": 1}, "irradiance": [1,1,1])"),
+     "/lights/0/irradiance: only a \"sun\" has an irradiance"},
     {"DiskRadius", light(R"("disk": {"center": [0,5,0], "normal": [0,-1,0], "radius": 0})"),
      "/lights/0/disk/radius: expected a number above 0, found the number 0"},
     {"DiskNormal", light(R"("disk": {"center": [0,5,0], "normal": [0,0,0], "radius": 1})"),
@@ -247,7 +261,8 @@ TEST(JsonScene, ReadsTheContractsExample) {
     {"name": "rim", "disk": {"center": [2, 5, 0], "normal": [0, -1, 0], "radius": 0.4}},
     {"name": "poly", "polygon": [[0,5,0],[1,5,0],[0,5,1]]},
     {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}},
-    {"name": "oval", "ellipse": {"center": [0, 5, 0], "halfU": [0.6, 0, 0], "halfV": [0, 0, 0.3]}}
+    {"name": "oval", "ellipse": {"center": [0, 5, 0], "halfU": [0.6, 0, 0], "halfV": [0, 0, 0.3]}},
+    {"name": "sun", "sun": {"direction": [-0.35, -0.87, -0.35], "angle": 0.53}, "radiance": [60000, 58000, 50000]}
   ] })");
   const scenes::Scene scene = read_scene(file);
   ASSERT_EQ(scene.objects.size(), 5u);
@@ -257,12 +272,33 @@ TEST(JsonScene, ReadsTheContractsExample) {
   EXPECT_EQ(scene.soup.triangles.size(), 1u + 69'666 + 2 + 2 * 64 * 31 + 1);
   EXPECT_EQ(scene.soup.triangles.size(), scene.soup.object.size());
   EXPECT_EQ(scene.soup.triangles.size(), scene.soup.source_face.size());
-  ASSERT_EQ(scene.lights.size(), 5u);
+  ASSERT_EQ(scene.lights.size(), 6u);
   EXPECT_TRUE(std::holds_alternative<scenes::Disk>(scene.lights[1].shape));
   EXPECT_EQ(scene.lights[2].radiance, glm::dvec3(10));
   EXPECT_EQ(std::get<scenes::Ellipse>(scene.lights[4].shape).half_v, glm::dvec3(0, 0, 0.3));
+  const auto& sun = std::get<scenes::Sun>(scene.lights[5].shape);
+  EXPECT_EQ(sun.angle, 0.53);
+  EXPECT_NEAR(glm::length(sun.direction), 1, 1e-15);
+  EXPECT_LT(glm::length(glm::cross(sun.direction, glm::dvec3(-0.35, -0.87, -0.35))), 1e-15);
   // A quarter turn about Y takes X to −Z, exactly.
   EXPECT_EQ(scene.soup.positions[1], glm::dvec3(0, 0, -1));
+}
+
+TEST(JsonScene, ASunsIrradianceIsThatOfWhatFacesIt) {
+  const auto light = [](const char* angle, const char* what) {
+    return read_text(
+        scene_text(kMesh, fmt::format(R"({{"sun": {{"direction": [0,-2,0], "angle": {}}}, {}}})", angle, what)));
+  };
+  const scenes::Scene wide = light("60", R"("irradiance": [1, 2, 4])");  // π sin² 30° = π / 4
+  EXPECT_NEAR(wide.lights[0].radiance.y * std::numbers::pi / 4, 2, 1e-15);
+  EXPECT_EQ(std::get<scenes::Sun>(wide.lights[0].shape).direction, glm::dvec3(0, -1, 0));
+  const scenes::Scene hard = light("0", R"("irradiance": [1, 2, 4])");
+  EXPECT_EQ(hard.lights[0].radiance, glm::dvec3(1, 2, 4));
+  EXPECT_TRUE(hard.warnings.empty());
+  const scenes::Scene read_so = light("0", R"("radiance": [1, 2, 4])");
+  EXPECT_EQ(read_so.lights[0].radiance, glm::dvec3(1, 2, 4));
+  ASSERT_EQ(read_so.warnings.size(), 1u);
+  EXPECT_NE(read_so.warnings[0].find("/lights/0/radiance: a sun of angle 0"), std::string::npos);
 }
 
 TEST(JsonScene, RotatesAboutXThenYThenZThenTranslates) {

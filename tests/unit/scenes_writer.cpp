@@ -44,6 +44,9 @@ void expect_same_shape(const scenes::AreaLight& a, const scenes::AreaLight& b) {
   } else if (const auto* e = std::get_if<scenes::Ellipse>(&a.shape)) {
     const auto& f = std::get<scenes::Ellipse>(b.shape);
     EXPECT_TRUE(same_bits(e->center, f.center) && same_bits(e->half_u, f.half_u) && same_bits(e->half_v, f.half_v));
+  } else if (const auto* u = std::get_if<scenes::Sun>(&a.shape)) {
+    const auto& v = std::get<scenes::Sun>(b.shape);
+    EXPECT_TRUE(same_bits(u->direction, v.direction) && same_bits(u->angle, v.angle));
   } else {
     const auto &s = std::get<scenes::Sphere>(a.shape), &t = std::get<scenes::Sphere>(b.shape);
     EXPECT_TRUE(same_bits(s.center, t.center) && same_bits(s.radius, t.radius));
@@ -99,6 +102,8 @@ constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [
     {"name": "rim", "disk": {"center": [2, 5, 0], "normal": [0.3, -1, 0.1], "radius": 0.4}},
     {"name": "poly", "polygon": [[0,5,0],[1,5,0],[0,5,1]]},
     {"name": "oval", "ellipse": {"center": [0, 5, 0.1], "halfU": [0.6, 0, 0], "halfV": [0, 0.1, 0.3]}},
+    {"name": "sun", "sun": {"direction": [-0.35, -0.87, -0.35], "angle": 0.53}, "irradiance": [3, 2.9, 2.5]},
+    {"name": "point", "sun": {"direction": [0.1, -0.87, -0.35], "angle": 0}, "irradiance": [0.1, 0.2, 0.3]},
     {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}}] })";
 
 TEST(JsonWriter, RoundTripIsBitExact) {
@@ -150,7 +155,7 @@ TEST(ObjWriter, TrianglesInOrderUnderTheirObjects) {
   const Scene scene = read_text(kEverything);
   const auto notes = write_scene(scene, folder / "scene.obj");
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 5 and 2"), std::string::npos);
+  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 7 and 2"), std::string::npos);
   std::istringstream lines(read_file(folder / "scene.obj"));
   std::vector<glm::dvec3> positions;
   std::vector<std::string> objects;
@@ -220,11 +225,12 @@ TEST(GlbWriter, ReadsBackInSinglePrecision) {
 TEST(GlbWriter, SaysWhatGltfCannotHold) {
   const TemporaryFolder folder;
   const auto notes = write_scene(read_text(kEverything), folder / "scene.glb");
-  ASSERT_EQ(notes.size(), 5u);
+  ASSERT_EQ(notes.size(), 7u);
   EXPECT_NE(notes[0].find("light \"rim\": glTF has no round lights; written with 64 sides"), std::string::npos);
   EXPECT_NE(notes[1].find("light \"oval\": glTF has no round lights; written with 64 sides"), std::string::npos);
-  EXPECT_NE(notes[2].find("light \"bulb\": glTF has no sphere lights; left out"), std::string::npos);
-  EXPECT_NE(notes[3].find("glTF has no shadow flags"), std::string::npos);
+  EXPECT_NE(notes[2].find("light \"sun\": glTF has no sun lights; left out"), std::string::npos);
+  EXPECT_NE(notes[4].find("light \"bulb\": glTF has no sphere lights; left out"), std::string::npos);
+  EXPECT_NE(notes[5].find("glTF has no shadow flags"), std::string::npos);
   const Scene again = read_scene(folder / "scene.glb");
   EXPECT_EQ(again.lights.size(), 4u);
   for (const auto& light : again.lights) {

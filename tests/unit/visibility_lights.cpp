@@ -5,6 +5,7 @@
 #include "visibility/pair_truth.hpp"
 
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -220,6 +221,44 @@ TEST(Lights, InsideASphereNothingShines) {
   EXPECT_TRUE(in_front_of_light(light, {1.0f + 0x1.333334p-2f, 2.0f + 0x1.99999ap-2f, 3}));
   EXPECT_TRUE(in_front_of_light(light, {std::nextafter(1.5f, 2.0f), 2, 3}));
   EXPECT_FALSE(in_front_of_light(light, {std::nextafter(1.5f, 1.0f), 2, 3}));
+}
+
+/// Directions: middle + tan(angle / 2) · disk, each rounded once.
+TEST(Lights, SunSamplesAreDirectionsOverItsDisk) {
+  const SampleRequest request{1024, 0, 0, SamplePattern::sobol, 3};
+  for (const double angle : {1e-3, 0.53, 30.0, 170.0}) {
+    const glm::dvec3 travels = glm::normalize(glm::dvec3(-0.35, -0.87, -0.35));
+    const Light light = light_of(scenes::Sun{travels, angle}, request, {100, 200, 300});
+    EXPECT_EQ(light.kind, LightKind::sun);
+    EXPECT_EQ(light.center, glm::vec3(-travels)) << "the scene's origin moves no direction";
+    const double tangent = std::tan(glm::radians(angle) / 2);
+    EXPECT_EQ(light.sun->tangent, tangent);
+    EXPECT_NEAR(light.area, kPi * tangent * tangent, 1e-12 * light.area);
+    EXPECT_LT(glm::dot(light.sun->axis_u, light.sun->axis_v), 1e-6f);
+    EXPECT_GT(glm::dot(glm::dvec3(glm::cross(light.sun->axis_u, light.sun->axis_v)), travels), 0.999999);
+    std::size_t inner = 0;
+    for (std::size_t j = 0; j < light.points.size(); ++j) {
+      const glm::dvec3 d = light.points[j];
+      const double along = -glm::dot(d, travels);
+      // Rounded once: half an ulp of each coordinate, which are no longer than the direction.
+      const double off = std::sqrt(3.0) * 0x1p-24 * glm::length(d);
+      EXPECT_NEAR(along, 1, off);
+      EXPECT_LE(glm::length(d + along * travels), tangent + 2 * off);
+      inner += glm::length(light.coordinates[j]) < std::sqrt(0.5) ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(inner) / 1024, 0.5, 0.01);
+    EXPECT_TRUE(in_front_of_light(light, {1, 2, 3}));
+  }
+}
+
+TEST(Lights, ASunOfAngleZeroIsOneDirection) {
+  const Light light = light_of(scenes::Sun{{0, -1, 0}, 0}, {9, 3, 3, SamplePattern::grid, 0});
+  ASSERT_EQ(light.points.size(), 9u);
+  for (const glm::vec3& d : light.points) EXPECT_EQ(d, glm::vec3(0, 1, 0));
+  EXPECT_EQ(light.area, 0);
+  for (const double angle : {-1.0, 180.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_NE(refusal(scenes::Sun{{0, -1, 0}, angle}).find("angle"), std::string::npos) << angle;
+  EXPECT_NE(refusal(scenes::Sun{{0, 0, 0}, 1}).find("direction"), std::string::npos);
 }
 
 TEST(Lights, RefusesWhatHasNoAreaOrIsNotFinite) {

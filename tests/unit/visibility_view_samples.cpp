@@ -5,7 +5,9 @@
 #include "visibility/horizon.hpp"
 #include "visibility/pair_truth.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -101,6 +103,26 @@ TEST(Classify, EveryKindOfPixel) {
   EXPECT_EQ(class_at({0, 9, 0.5}, {50, 0, 50}), PixelClass::background);
 }
 
+TEST(Classify, AllOfASunsConeIsAboveOrNot) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}));
+  scene.lights.emplace_back();
+  const SceneFloats floats = make_scene_floats(scene);
+  const PinholeCamera pinhole = make_camera(tests::camera({0.1, 3, 1}, {0.1, 0, 0.1}), floats.origin, 1, 1);
+  const ViewSamples samples = brute_force_view_samples(floats, pinhole);
+  const auto class_under = [&](double elevation, double angle) {
+    const double e = glm::radians(elevation);
+    scene.lights[0].shape = scenes::Sun{{-std::cos(e), -std::sin(e), 0}, angle};
+    return classify_pixels(floats, samples, make_light(scene, 0, floats.origin, {}))[0];
+  };
+  EXPECT_EQ(class_under(90, 179), PixelClass::judged);
+  EXPECT_EQ(class_under(20, 39.999), PixelClass::judged);
+  EXPECT_EQ(class_under(20, 40.001), PixelClass::horizon);
+  EXPECT_EQ(class_under(20, 0), PixelClass::judged);
+  EXPECT_EQ(class_under(-20, 0), PixelClass::horizon);
+  EXPECT_EQ(class_under(0, 0), PixelClass::horizon) << "along the plane is not strictly above it";
+}
+
 TEST(Horizon, BulkAnswersAreTheExactOnes) {
   // Planes through lattice points and light points on, next to and far from them.
   std::mt19937 random(7);
@@ -117,11 +139,19 @@ TEST(Horizon, BulkAnswersAreTheExactOnes) {
       points.push_back(q);
     }
     const std::int8_t facing = round % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
-    const HorizonTest horizon(carrier, facing, glm::vec3(-2.001f), glm::vec3(2.001f));
+    Light light;
+    if (round % 4 > 1) light.sun.emplace();  // points are directions
+    const HorizonTest horizon(light, carrier, facing, {glm::vec3(-2.001f), glm::vec3(2.001f)});
     std::array<std::uint32_t, 2> words{~0u, ~0u};
     horizon.mask(points, words);
     for (std::size_t j = 0; j < points.size(); ++j) {
-      const bool above = above_horizon(carrier, facing, points[j]);
+      const bool above = above_horizon(light, carrier, facing, points[j]);
+      if (light.sun) {
+        const glm::dvec3 a(carrier[0]), n = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
+        const glm::dvec3 lattice_point = glm::round(glm::dvec3(points[j]));  // all but the step of nextafter
+        const double whole = glm::dot(n, lattice_point), rest = glm::dot(n, glm::dvec3(points[j]) - lattice_point);
+        EXPECT_EQ(above, (whole != 0 ? whole : rest) * facing > 0);
+      }
       EXPECT_EQ((words[j / 32] >> (j % 32)) & 1u, above ? 1u : 0u);
       on_plane += side_of_plane(carrier[0], carrier[1], carrier[2], points[j]) == Side::on ? 1 : 0;
     }
