@@ -27,10 +27,13 @@ def escape(text):
 
 
 class Drawing:
-    def __init__(self, width, height, title):
+    def __init__(self, width, height, title, description=None):
         self.width, self.height = width, height
-        self.parts = [f"<title>{escape(title)}</title>",
-                      f'<rect width="{width}" height="{height}" rx="6" fill="#ffffff"/>']
+        self.parts = [f"<title>{escape(title)}</title>"]
+        if description:
+            self.parts.append(f"<desc>{escape(description)}</desc>")
+        self.parts += [
+            f'<rect width="{width}" height="{height}" rx="6" fill="#ffffff"/>']
 
     def raw(self, text):
         self.parts.append(text)

@@ -13,10 +13,13 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).parent))
 
+import family  # noqa: E402
+import filters  # noqa: E402
 import maps  # noqa: E402
 import pairs  # noqa: E402
 import rooms  # noqa: E402
 import scatter  # noqa: E402
+import texels  # noqa: E402
 import volumes  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -25,7 +28,7 @@ IMAGES = ROOT / "docs" / "images"
 
 def stale_figures(check):
     stale = []
-    for module in (scatter, pairs, volumes, maps, rooms):
+    for module in (scatter, pairs, volumes, maps, filters, texels, family, rooms):
         for name, draw in module.FIGURES.items():
             path, text = IMAGES / f"{name}.svg", draw()
             if not check:
