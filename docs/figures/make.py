@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Writes the figures of docs/ into docs/images/. Each is computed here, from a few points and the formula that its page
-explains. Python's standard library is all that it needs.
+explains; and into papers/ the papers' figures, from the measured numbers that are kept there. Python's standard library is all
+that it needs.
 
   docs/figures/make.py            writes all of them
   docs/figures/make.py --check    exits 1 if a committed figure is not what this script draws, or if a page shows a
@@ -12,11 +13,13 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "papers"))
 
 import family  # noqa: E402
 import filters  # noqa: E402
 import maps  # noqa: E402
 import pairs  # noqa: E402
+import papers  # noqa: E402
 import rooms  # noqa: E402
 import scatter  # noqa: E402
 import texels  # noqa: E402
@@ -35,7 +38,7 @@ def stale_figures(check):
                 path.write_text(text, encoding="utf-8")
             elif not path.is_file() or path.read_text(encoding="utf-8") != text:
                 stale.append(f"{path.name}: not what docs/figures/make.py draws; run it")
-    return stale
+    return stale + papers.stale(check)
 
 
 def anchor_of(heading):

@@ -1,0 +1,128 @@
+"""Scenes of the papers' figures, runs of `penumbra compare` on them, and what is measured in its pictures.
+
+Truth is V of `edge-scatter:rows=exact`, exact areas, at every pixel of the same run. The floor is looked at from just above it
+and from below the casters, straight down: its pixels are evenly spread and nothing stands before them. Lengths are in the
+scenes' unit, errors in V."""
+
+import base64
+import json
+import subprocess
+import sys
+import tempfile
+from math import atan, degrees, sqrt
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "browser"))
+sys.path.insert(0, str(ROOT / "docs" / "figures"))
+
+from exr import read_exr  # noqa: E402
+from png import write_grey  # noqa: E402
+
+TRUTH = "edge-scatter:rows=exact"
+
+
+def square(name, center, half, half_z=None, **more):
+    half_z = half if half_z is None else half_z
+    return {"name": name, "quad": {"center": center, "halfU": [half, 0, 0], "halfV": [0, 0, -half_z]}, **more}
+
+
+def ball(y=2.0, x=0.0, radius=1.0, segments=48):
+    return {"name": "ball", "shape": {"type": "sphere", "center": [x, y, 0], "radius": radius, "segments": segments}}
+
+
+def box(center, half):
+    return {"name": "box", "shape": {"type": "box", "center": center, "halfSize": half}}
+
+
+def bunny(base=0.02, height=2.0):
+    return {"name": "bunny", "package": {"name": "glmark2-data", "file": "models/bunny.obj"},
+            "fit": {"height": height, "base": [0, base, 0]}}
+
+
+def scene(casters, half=0.5, light_y=5.0, floor=2.5, eye=0.01, half_z=None, center=(0.0, 0.0), floor_casts=False, strip=1):
+    """Casters under a square light above a square floor at height 0, which the camera sees all of from `eye` above it; or only
+    the middle of, a part in `strip`."""
+    return {
+        "format": "penumbra-scene/1",
+        "size": [48, 48],
+        "camera": {"eye": [center[0], eye, center[1]], "target": [center[0], 0, center[1]], "up": [0, 0, -1],
+                   "verticalFov": degrees(2 * atan(0.98 * floor / strip / eye))},
+        "meshes": [square("floor", [center[0], 0, center[1]], floor, castsShadow=floor_casts)] + casters,
+        "lights": [{"name": "key", "rectangle": {"center": [0, light_y, 0], "halfU": [half, 0, 0],
+                                                 "halfV": [0, 0, half if half_z is None else half_z]}}],
+    }
+
+
+class Runner:
+    """Runs the program, and keeps what each run was."""
+
+    def __init__(self, program):
+        self.program = Path(program).resolve()
+        self.commands = []
+        self.device = None
+
+    def compare(self, world, methods, size=48, runs=1, samples=None, more=()):
+        """{entry: {"V": pixels, "A", "counters", "passes", "evaluate", "light", "rmse"}}, with "truth" among them. `size`: pixels on
+        a side, or (width, height)."""
+        width, height = size if isinstance(size, tuple) else (size, size)
+        entries = list(dict.fromkeys([TRUTH, *methods]))
+        args = ["--methods", ",".join(entries), "--reference", "raytrace", "--reference-samples", "16", "--runs", str(runs),
+                "--size", f"{width}x{height}", *more]
+        if samples:
+            args += ["--light-samples", str(samples)]
+        command = "penumbra compare SCENE -o OUT " + " ".join(args)
+        if command not in self.commands:
+            self.commands.append(command)
+        with tempfile.TemporaryDirectory() as folder:
+            path, out = Path(folder) / "scene.json", Path(folder) / "out"
+            if isinstance(world, dict):
+                path.write_text(json.dumps(world), encoding="utf-8")
+            else:
+                path = ROOT / world
+            subprocess.run([self.program, "-q", "compare", path, "-o", out, *args], check=True, stdout=subprocess.DEVNULL)
+            metrics = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+            found = {}
+            for entry in metrics["methods"]:
+                assert entry["failure"] is None, (entry["entry"], entry["failure"])
+                channels, _ = read_exr(out / f"{entry['entry']}.exr")
+                found[entry["entry"]] = {
+                    "V": channels["V"], "A": channels["A"], "counters": entry["counters"], "device": entry["device"],
+                    "passes": {p["name"]: p["milliseconds"] for p in entry["passes"]},
+                    "evaluate": entry["seconds"]["evaluate"], "light": entry["seconds"]["light"],
+                    "rmse": entry["error"]["rmse"]}
+                if entry["entry"] != TRUTH:
+                    self.device = entry["device"]
+        found["truth"] = found.pop(TRUTH)
+        return found
+
+
+def measures(found, entry, keep=None):
+    """Errors of an entry against the truth of its run. `s0` is the measure of Atty et al. 2006: the sum of |V − V_ref| over the
+    pixels in umbra or penumbra, a pixel. `leak`: share of the umbra with V > 0.05; `dark`: of what is lit with V < 0.95."""
+    pairs = [(v, r) for v, r, a in zip(found[entry]["V"], found["truth"]["V"], found["truth"]["A"]) if a > 0]
+    shadow = sum(r < 1 for _, r in pairs)
+    umbra = [v for v, r in pairs if r == 0]
+    lit = [v for v, r in pairs if r == 1]
+    result = {
+        "s0": sum(abs(v - r) for v, r in pairs) / max(shadow, 1),
+        "rmse": sqrt(sum((v - r) ** 2 for v, r in pairs) / len(pairs)),
+        "penumbraRmse": sqrt(sum((v - r) ** 2 for v, r in pairs if 0 < r < 1) / max(shadow - len(umbra), 1)),
+        "bias": sum(v - r for v, r in pairs) / len(pairs),
+        "leak": sum(v > 0.05 for v in umbra) / max(len(umbra), 1),
+        "dark": sum(v < 0.95 for v in lit) / max(len(lit), 1),
+        "shadow": shadow,
+        "umbra": len(umbra),
+    }
+    return {name: rounded(value) for name, value in result.items() if keep is None or name in keep}
+
+
+def rounded(x):
+    """Four significant digits: what is kept of a measured number."""
+    return x if isinstance(x, int) else float(f"{x:.4g}")
+
+
+def picture(found, entry, size):
+    """V as a grey PNG in base64."""
+    values = [round(255 * min(max(v, 0), 1)) for v in found[entry]["V"]]
+    return base64.b64encode(write_grey([bytes(values[y * size:(y + 1) * size]) for y in range(size)])).decode()

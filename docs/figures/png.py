@@ -1,0 +1,64 @@
+"""8-bit PNG, RGB or grey, as far as the pictures of docs/ need it."""
+
+import struct
+import zlib
+
+
+def read_png(data):
+    """Rows of bytes of an 8-bit RGB picture that is not interlaced, as penumbra writes it."""
+    at, body = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, *form = struct.unpack(">IIBBBBB", data[at + 8:at + 8 + length])
+            assert form == [8, 2, 0, 0, 0], form
+        elif kind == b"IDAT":
+            body += data[at + 8:at + 8 + length]
+        at += length + 12
+    raw, stride, rows = zlib.decompress(body), 3 * width, []
+    before = bytes(stride)
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = line[i - 3] if i > 2 else 0, before[i], before[i - 3] if i > 2 else 0
+            line[i] = line[i] + (0, a, b, (a + b) // 2, paeth(a, b, c))[kind] & 255
+        rows.append(bytes(line))
+        before = line
+    return rows
+
+
+def paeth(a, b, c):
+    p = a + b - c
+    return min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+
+
+def write_png(path, rows):
+    path.write_bytes(encoded(rows, 3))
+
+
+def write_grey(rows):
+    """Rows of one byte a pixel as the bytes of a file."""
+    return encoded(rows, 1)
+
+
+def encoded(rows, channels):
+    def filtered(line, before):
+        """Of the five filters the one whose differences are smallest in sum."""
+        choices = []
+        for kind in range(5):
+            out = bytearray([kind])
+            for i, value in enumerate(line):
+                a, c = (line[i - channels], before[i - channels]) if i >= channels else (0, 0)
+                b = before[i]
+                out.append(value - (0, a, b, (a + b) // 2, paeth(a, b, c))[kind] & 255)
+            choices.append((sum(min(x, 256 - x) for x in out[1:]), kind, bytes(out)))
+        return min(choices)[2]
+
+    body = b"".join(filtered(line, rows[y - 1] if y else bytes(len(line))) for y, line in enumerate(rows))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = struct.pack(">IIBBBBB", len(rows[0]) // channels, len(rows), 8, 2 if channels == 3 else 0, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(body, 9)) +
+            chunk(b"IEND", b""))
