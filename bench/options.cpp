@@ -21,6 +21,9 @@ const char* const kHelp =
                        (default: all shipped scenes but terrain-1m, and bunny with light half sizes 0.3 and 2)
   --all                terrain-1m too
   --light-half H       half size of each scene's first rectangle light instead of the scene's; may be given again
+  --light KIND         turns each scene's first light, a rectangle, into a disk, an ellipse (one axis twice the other) or
+                       a polygon (a hexagon) with its area; may be given again
+  --sample-pattern P   rows, grid, sobol or jittered (default: rows); may be given again
   --size N             pixels on a side (default 512); may be given again
   --light-samples N    1 to 4096 (default 256); may be given again
   --method NAME[:KEY=VALUE...]
@@ -115,6 +118,8 @@ const std::map<std::string, Take>& options_with_value() {
   static const std::map<std::string, Take> takes = {
       {"--scene", [](Reading& r, auto&, auto& value) { r.subjects.scenes.push_back(value); }},
       {"--light-half", [](Reading& r, auto&, auto& value) { r.subjects.halves.push_back(value); }},
+      {"--light", [](Reading& r, auto&, auto& value) { r.subjects.lights.push_back(value); }},
+      {"--sample-pattern", [](Reading& r, auto&, auto& value) { r.subjects.patterns.push_back(value); }},
       {"--size", [](Reading& r, auto& option,
                     auto& value) { r.subjects.sizes.push_back(parse_number<std::uint32_t>(option, value, 16384)); }},
       {"--light-samples",

@@ -82,6 +82,7 @@ bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top)
 Ground make_ground(const Subject& subject, const render::Device& device) {
   Ground ground;
   ground.scene = read_subject(subject);
+  ground.pattern = subject.pattern;
   ground.floats = visibility::make_scene_floats(ground.scene);
   const auto camera =
       visibility::make_camera(ground.scene.cameras.front(), ground.floats.origin, subject.size, subject.size);
@@ -91,10 +92,10 @@ Ground make_ground(const Subject& subject, const render::Device& device) {
   return ground;
 }
 
-visibility::Light light_of(const Ground& ground, std::uint32_t samples, visibility::SamplePattern pattern,
-                           std::uint32_t seed) {
+visibility::Light light_of(const Ground& ground, std::uint32_t samples,
+                           std::optional<visibility::SamplePattern> pattern, std::uint32_t seed) {
   return visibility::make_light(ground.scene, 0, ground.floats.origin,
-                                {.count = samples, .pattern = pattern, .seed = seed});
+                                {.count = samples, .pattern = pattern.value_or(ground.pattern), .seed = seed});
 }
 
 ReferenceVisibility make_reference(const Ground& ground, const Options& options) {

@@ -7,6 +7,7 @@
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,15 @@ struct Ground {
   scenes::Scene scene;
   visibility::SceneFloats floats;
   visibility::ViewSamples samples;
-  std::vector<visibility::PixelClass> classes;  ///< for the first light
-  std::vector<std::uint32_t> judged;            ///< pixels of that class, in order
+  std::vector<visibility::PixelClass> classes;                          ///< for the first light
+  std::vector<std::uint32_t> judged;                                    ///< pixels of that class, in order
+  visibility::SamplePattern pattern = visibility::SamplePattern::rows;  ///< of light samples
 };
 Ground make_ground(const Subject& subject, const render::Device& device);
 
-/// The first light with light samples: those that methods get, or jittered ones (seed 0).
+/// The first light with light samples: those that methods get, or others.
 visibility::Light light_of(const Ground& ground, std::uint32_t samples,
-                           visibility::SamplePattern pattern = visibility::SamplePattern::rows, std::uint32_t seed = 0);
+                           std::optional<visibility::SamplePattern> pattern = {}, std::uint32_t seed = 0);
 
 /// What all contestants are asked, and what the oracle (`raytrace`) answers.
 struct Question {

@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 namespace penumbra::bench {
@@ -61,27 +63,71 @@ Subject find_subject(const std::string& scene) {
   return subject;
 }
 
-/// All sizes of one scene and one half size (empty: the scene's own).
-void add_subjects(std::vector<Subject>& subjects, const Subject& scene, const std::string& half,
-                  const std::vector<std::uint32_t>& sizes) {
-  Subject subject = scene;
-  if (!half.empty()) {
-    subject.light_half = parse_half(half);
-    subject.name += "/half=" + half;
+visibility::LightKind parse_kind(const std::string& text) {
+  using enum visibility::LightKind;
+  for (const auto kind : {disk, ellipse, polygon}) {
+    if (text == visibility::name_of(kind)) return kind;
   }
-  if (sizes.empty()) subjects.push_back(subject);
-  for (const std::uint32_t size : sizes) {
-    subjects.push_back(subject);
-    subjects.back().size = size;
-    subjects.back().name += fmt::format("/size={}", size);
+  throw UsageError("--light {}: expected disk, ellipse or polygon", text);
+}
+
+visibility::SamplePattern parse_pattern(const std::string& text) {
+  using enum visibility::SamplePattern;
+  for (const auto pattern : {rows, grid, sobol, jittered}) {
+    if (text == visibility::name_of(pattern)) return pattern;
   }
+  throw UsageError("--sample-pattern {}: expected rows, grid, sobol or jittered", text);
+}
+
+/// Of each subject as many as there are values; as it is if there are none. `set` gives a subject one of them.
+template <typename Value, typename Set>
+void multiply(std::vector<Subject>& subjects, const std::vector<Value>& values, const std::string& name, Set set) {
+  if (values.empty()) return;
+  std::vector<Subject> all;
+  for (const Subject& subject : subjects) {
+    for (const Value& value : values) {
+      all.push_back(subject);
+      all.back().name += fmt::format("/{}={}", name, value);
+      set(all.back(), value);
+    }
+  }
+  subjects = std::move(all);
+}
+
+scenes::Rectangle& first_rectangle(scenes::Scene& scene, const char* option) {
+  auto* rectangle = std::get_if<scenes::Rectangle>(&scene.lights.front().shape);
+  if (rectangle == nullptr) throw UsageError("{}: the first light of {} is no rectangle", option, scene.name);
+  return *rectangle;
 }
 
 void resize_first_light(scenes::Scene& scene, double half) {
-  auto* rectangle = std::get_if<scenes::Rectangle>(&scene.lights.front().shape);
-  if (rectangle == nullptr) throw UsageError("--light-half: the first light of {} is no rectangle", scene.name);
-  rectangle->half_u = glm::normalize(rectangle->half_u) * half;
-  rectangle->half_v = glm::normalize(rectangle->half_v) * half;
+  scenes::Rectangle& rectangle = first_rectangle(scene, "--light-half");
+  rectangle.half_u = glm::normalize(rectangle.half_u) * half;
+  rectangle.half_v = glm::normalize(rectangle.half_v) * half;
+}
+
+/// A disk, an ellipse along the rectangle's sides, one axis twice the other, or a hexagon, affinely regular; with the
+/// rectangle's area.
+void reshape_first_light(scenes::Scene& scene, visibility::LightKind kind) {
+  const scenes::Rectangle from = first_rectangle(scene, "--light");
+  const glm::dvec3 normal = glm::cross(from.half_u, from.half_v);
+  if (kind == visibility::LightKind::disk) {
+    const double radius = std::sqrt(4 * glm::length(normal) / std::numbers::pi);
+    scene.lights.front().shape = scenes::Disk{from.center, glm::normalize(normal), radius};
+    return;
+  }
+  if (kind == visibility::LightKind::ellipse) {
+    const double axis = std::sqrt(2 / std::numbers::pi);  // π · axis · 2 axis = 4
+    scene.lights.front().shape = scenes::Ellipse{from.center, 2 * axis * from.half_u, axis * from.half_v};
+    return;
+  }
+  scenes::Polygon hexagon;
+  const double radius = std::sqrt(8 / (3 * std::sqrt(3.0)));  // of a regular one with an area of 4
+  for (int i = 0; i < 6; ++i) {
+    const double angle = i * std::numbers::pi / 3;
+    hexagon.vertices.push_back(from.center + radius * (std::cos(angle) * from.half_u + std::sin(angle) * from.half_v));
+  }
+  scene.lights.front().shape = hexagon;
 }
 
 void append(scenes::Scene& scene, const std::string& name, const mesh::TriangleSoup& soup) {
@@ -107,10 +153,17 @@ std::vector<Subject> make_subjects(const SubjectRequest& request) {
   std::vector<Subject> subjects;
   for (const std::string& name : names) {
     const Subject scene = find_subject(name);
-    if (request.halves.empty()) add_subjects(subjects, scene, "", request.sizes);
-    std::vector<std::string> halves = request.halves;
-    if (halves.empty() && shipped && name == "bunny") halves = {"0.3", "2"};
-    for (const std::string& half : halves) add_subjects(subjects, scene, half, request.sizes);
+    std::vector<Subject> its{scene};
+    const bool more = shipped && request.halves.empty() && name == "bunny";  // and its own half size
+    multiply(its, more ? std::vector<std::string>{"0.3", "2"} : request.halves, "half",
+             [](Subject& subject, const std::string& half) { subject.light_half = parse_half(half); });
+    if (more) its.insert(its.begin(), scene);
+    multiply(its, request.lights, "light",
+             [](Subject& subject, const std::string& kind) { subject.light_kind = parse_kind(kind); });
+    multiply(its, request.patterns, "pattern",
+             [](Subject& subject, const std::string& pattern) { subject.pattern = parse_pattern(pattern); });
+    multiply(its, request.sizes, "size", [](Subject& subject, std::uint32_t size) { subject.size = size; });
+    subjects.insert(subjects.end(), its.begin(), its.end());
   }
   return subjects;
 }
@@ -118,6 +171,7 @@ std::vector<Subject> make_subjects(const SubjectRequest& request) {
 scenes::Scene read_subject(const Subject& subject) {
   scenes::Scene scene = subject.scene.empty() ? knot_scene(subject.knot) : scenes::read_scene(subject.scene);
   if (subject.light_half) resize_first_light(scene, *subject.light_half);
+  if (subject.light_kind) reshape_first_light(scene, *subject.light_kind);
   return scene;
 }
 
