@@ -18,8 +18,9 @@ inline constexpr visibility::ChoiceOption kEngine{
     "engine",
     {{"auto", Engine::automatic}, {"vulkan", Engine::vulkan}, {"native", Engine::vectors}},
     Engine::automatic,
-    "vulkan: on the device; native: light samples in rows of a rectangle on the processor's own vector units; auto: "
-    "native where the Vulkan device is the processor anyway. The same bits"};
+    "vulkan: on the device alone; native: on the processor's own vector units, where they can do the light; auto: "
+    "native "
+    "where the Vulkan device is the processor anyway, or cannot do the light. The same bits"};
 
 /// On vector units, what they can do?
 bool runs_on_vectors(const render::Device& device, Engine engine);

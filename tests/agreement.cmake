@@ -17,6 +17,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   property/adversarial_soups.cpp
   property/mask_lamps.cpp
   property/mask_lattice.cpp
+  property/point_lights.cpp
   unit/textured_lights_files.cpp
   unit/textured_lights_weights.cpp
   ${soup_sources}

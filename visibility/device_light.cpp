@@ -92,6 +92,10 @@ DeviceLight make_device_light(const Light& light, float scale) {
   return frame;
 }
 
+bool has_rows(const Light& light) {
+  return shift_step_of(light).has_value();
+}
+
 float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale) {
   float reach = 0;
   for (int i = 0; i < 3; ++i) {

@@ -26,6 +26,9 @@ struct DeviceLight {
 /// `scale` is a power of two. Not for spheres.
 DeviceLight make_device_light(const Light& light, float scale);
 
+/// Whether the light samples are rows of a rectangle: DeviceLight::rows.
+bool has_rows(const Light& light);
+
 /// At least the largest coordinate, in size, of anything in scene and light, times `scale`: what rounding errors of
 /// positions grow with.
 float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale);

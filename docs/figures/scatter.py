@@ -275,4 +275,73 @@ def open_figure():
     return d.finish()
 
 
-FIGURES = {"edge-scatter-rows": rows_figure, "edge-scatter-shaft": shaft_figure, "edge-scatter-open": open_figure}
+def scattered_samples(count):
+    """Points of the unit disk (Kronecker's sequence of the golden ratio and its square, area-preserving)."""
+    golden = 0.6180339887498949
+    points = []
+    for i in range(count):
+        radius, angle = ((i + 0.5) / count) ** 0.5, 2 * pi * ((i * golden) % 1)
+        points.append((0.97 * radius * cos(angle), 0.97 * radius * sin(angle)))
+    return points
+
+
+def tiles_figure():
+    """Light samples of a disk in rows of tiles, and what one edge changes there."""
+    tile, rows, count = 16, 6, 192
+    a, b = (-0.46, -0.83), (0.17, 0.72)     # an edge that runs upward
+    by_height = sorted(scattered_samples(count), key=lambda q: (q[1], q[0]))
+    of_row = count // rows
+
+    def line_at(y):
+        return a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+
+    d = Drawing(760, 420, "Light samples of a disk in tiles of sixteen, and an edge among them")
+    d.text((20, 26), "Sixteen light samples are a tile; an edge is tested against few tiles",
+           14, bold=True)
+    view = View(d, (20, 42, 356, 356), (-1.05, 1.05), (-1.05, 1.05))
+    view.polygon([(cos(i * pi / 60), sin(i * pi / 60)) for i in range(120)], "#fffdf5", LIGHT, 2)
+    tested = whole = 0
+    seen_right, expected = set(), set()
+    for r in range(rows):
+        row = sorted(by_height[r * of_row:(r + 1) * of_row])
+        low, high = min(q[1] for q in row), max(q[1] for q in row)
+        has_some = a[1] <= high and low < b[1]
+        has_all = a[1] <= low and high < b[1]
+        bottom, top = max(low, a[1]), min(high, b[1])
+        left, right = sorted((line_at(bottom), line_at(top)))
+        for first in range(0, of_row, tile):
+            its = row[first:first + tile]
+            box = (min(q[0] for q in its), max(q[0] for q in its))
+            kind = "none"
+            if has_some and box[1] >= left:
+                kind = "whole" if has_all and box[0] > right else "tested"
+            fill = {"none": None, "tested": GREEN, "whole": RED}[kind]
+            corners = [(box[0] - .02, low - .015), (box[1] + .02, low - .015), (box[1] + .02, high + .015),
+                       (box[0] - .02, high + .015)]
+            view.polygon(corners, fill, FAINT, 0.9, opacity=0.2 if fill else 1)
+            tested += kind == "tested"
+            whole += kind == "whole"
+            for q in its:
+                is_right = a[1] <= q[1] < b[1] and q[0] > line_at(q[1])
+                if is_right:
+                    expected.add(q)
+                if kind == "whole" or (kind == "tested" and is_right):
+                    seen_right.add(q)
+                view.dot(q, 2.6, RED if is_right else LIGHT, stroke=INK, width=0.5)
+    assert seen_right == expected and tested and whole, "tiles change as their light samples do"
+    view.line(a, b, INK, 2.2)
+    middle = mix(a, b, 0.5)
+    view.arrow(sub(middle, mul(0.02, sub(b, a))), add(middle, mul(0.02, sub(b, a))), INK, 1, 9)
+    d.legend((410, 84), [("line", INK, "an edge, *k* > 0"), ("dot", RED, "changes by −*k*: right of it, at its height"),
+                         ("dot", LIGHT, "does not change"), ("box", "#d3e6d4", f"{tested} tiles are tested, sample by sample"),
+                         ("box", "#f4d6d2", f"{whole} tiles change as a whole: one number")], step=24)
+    d.text((410, 226), "A tile left of the edge, or above or below it, is not", 12.5)
+    d.text((410, 243), "touched. Of a row that has all of the edge's heights", 12.5)
+    d.text((410, 260), "between, all tiles to the right change by one number;", 12.5)
+    d.text((410, 277), "where an end of the edge is in the row, they are", 12.5)
+    d.text((410, 294), "tested: which of their samples are at its height?", 12.5)
+    return d.finish()
+
+
+FIGURES = {"edge-scatter-rows": rows_figure, "edge-scatter-shaft": shaft_figure, "edge-scatter-open": open_figure,
+           "edge-scatter-tiles": tiles_figure}

@@ -27,6 +27,30 @@ std::array<glm::dvec3, 3> axes_of(const glm::dvec3& u, const glm::dvec3& v, floa
           static_cast<double>(side) * n / std::sqrt(squared)};
 }
 
+/// A place in the plane of a light's stored points.
+struct Corner {
+  glm::dvec3 at{0};
+  double off = 0;
+};
+/// The lower left end of the rectangle around a light, moved into that plane.
+Corner corner_around(const LightGridInput& input) {
+  const auto& [c, to_u, to_v] = input.plane;
+  const glm::dvec3 u = to_u - c, v = to_v - c, n = glm::cross(u, v);
+  const glm::dvec3 from = glm::dvec3(input.light.center) - glm::dvec3(input.light.u) - glm::dvec3(input.light.v) - c;
+  const double s = glm::dot(from, glm::cross(v, n)) / glm::dot(n, n),
+               t = glm::dot(from, glm::cross(n, u)) / glm::dot(n, n);
+  // In the plane for whatever s and t; then as visibility::PlanePoint rounds.
+  return {c + s * u + t * v, 0x1p-50 * (glm::length(c) + std::abs(s) * glm::length(u) + std::abs(t) * glm::length(v))};
+}
+
+/// Light samples in cells: within `deviation` of where they are stored.
+LightTiles tiles_of(const LightGrid& grid, const visibility::DeviceLight& light) {
+  std::vector<glm::vec2> places;
+  places.reserve(light.coordinates.size());
+  for (const glm::vec2& st : light.coordinates) places.push_back(grid.first_cell + grid.half_cells * st);
+  return make_light_tiles(places);
+}
+
 }  // namespace
 
 LightGrid make_light_grid(const LightGridInput& input) {
@@ -34,9 +58,21 @@ LightGrid make_light_grid(const LightGridInput& input) {
   const double squared = glm::dot(n, n);
   LightGrid grid;
   grid.center = input.light.center;
-  grid.corner = 3.0 * input.plane[0] - input.plane[1] - input.plane[2];
+  if (input.is_rectangle) {
+    // Three times a point and two more, with a rounding each.
+    grid.corner = 3.0 * input.plane[0] - input.plane[1] - input.plane[2];
+    grid.corner_off = 0x1p-49 * static_cast<double>(input.reach);
+  } else {
+    const Corner corner = corner_around(input);
+    grid.corner = corner.at;
+    grid.corner_off = corner.off;
+  }
+  const bool in_rows = input.rows > 0;
+  const auto some = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(input.points.size()))));
+  grid.rows = in_rows ? input.rows : some;
+  grid.columns = in_rows ? input.columns : some;
   grid.radius = (glm::length(input.light.u) + glm::length(input.light.v)) * 1.0001F + input.light.deviation;
-  grid.half_cells = 0.5F * glm::vec2(static_cast<float>(input.columns), static_cast<float>(input.rows));
+  grid.half_cells = 0.5F * glm::vec2(static_cast<float>(grid.columns), static_cast<float>(grid.rows));
   grid.first_cell = grid.half_cells - 0.5F;
   const std::array axes = axes_of(u, v, input.side, grid.half_cells);
   grid.across = glm::vec3(axes[0]);
@@ -50,14 +86,16 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.reach = input.reach;
   grid.cut_reach = input.cut_reach;
   grid.side = input.side;
-  grid.rows = input.rows;
-  grid.columns = input.columns;
   grid.light = input.light_index;
+  for (const glm::vec3& point : input.points) grid.points.push_back(point * input.scale);
+  if (!in_rows) {
+    grid.tiles = tiles_of(grid, input.light);
+    return grid;
+  }
   grid.padded_rows = (input.rows + 15) / 16 * 16;
   for (std::uint32_t row = 0; row < grid.padded_rows; ++row) {
     grid.shift.push_back(row < input.rows ? shift_of(row, input.light.shift_step) : 0);
   }
-  for (const glm::vec3& point : input.points) grid.points.push_back(point * input.scale);
   return grid;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engines/vectors/light_tiles.hpp"
 #include "visibility/device_light.hpp"
 
 #include <glm/vec2.hpp>
@@ -7,36 +8,42 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-/// Methods on the processor's own vector units: what they share. The rows of a rectangle light, as seen from view
-/// samples that lie together. Bounds are derived in docs/edge-scatter.md; names are those of the device's passes
+/// Methods on the processor's own vector units: what they share. A light as seen from view samples that lie
+/// together. Bounds are derived in docs/edge-scatter.md; names are those of the device's passes
 /// (volumes/edges/edge_scatter.glsl). Lengths are scene floats times visibility::device_scale.
 namespace penumbra::native {
 
 constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 
-/// The light as a grid of cells, one a light sample, for one of its two sides. A point x of its plane has the grid
-/// coordinates (X, Y) = (across, along) · (x − center) + first_cell: column and row of the light sample there, before
-/// the row's shift. Made from a DeviceLight and the light's stored points.
+/// The light, or a rectangle around it, as a grid of cells, for one of its two sides. A point x of its plane has the
+/// grid coordinates (X, Y) = (across, along) · (x − center) + first_cell: where samples are in rows, column and row of
+/// the light sample there, before the row's shift; else there are about as many cells as light samples, which are in
+/// tiles. Made from a DeviceLight and the light's stored points.
 struct LightGrid {
   glm::vec3 center{0}, axis{0}, axis_size{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
-  glm::dvec3 corner{0};              ///< of the light, in the plane of its stored points: where rows and columns begin
+  glm::dvec3 corner{0};              ///< in the plane of the light's stored points: where rows and columns begin
+  double corner_off = 0;             ///< how far it may be off that plane
   float radius = 0;                  ///< no light sample is farther from the centre
-  std::array<glm::dvec3, 3> axes{};  ///< across, along, axis in double, of the light's stored points
+  std::array<glm::dvec3, 3> axes{};  ///< of a rectangle: across, along, axis in double, of its stored points
   float per_length = 0, skew = 1, deviation = 0, reach = 0, cut_reach = 0;
   float side = 1;
-  std::uint32_t rows = 0, columns = 0, light = 0;
-  std::uint32_t padded_rows = 0;  ///< to a multiple of 16
-  std::vector<float> shift;       ///< of each (padded) row, in cells
-  std::vector<glm::vec3> points;  ///< the light samples as stored, scaled
+  std::uint32_t rows = 0, columns = 0, light = 0;  ///< cells; the light's number
+  std::uint32_t padded_rows = 0;                   ///< to a multiple of 16
+  std::vector<float> shift;                        ///< of each (padded) row, in cells
+  std::vector<glm::vec3> points;                   ///< the light samples as stored, scaled
+  std::optional<LightTiles> tiles;                 ///< where they form no rows
 };
 struct LightGridInput {
   const visibility::DeviceLight& light;
   std::array<glm::dvec3, 3> plane;  ///< the light's stored points: centre, centre + halfU, centre + halfV, scaled
-  std::uint32_t rows, columns, light_index;
+  bool is_rectangle;                ///< else `light` is a rectangle around it
+  std::uint32_t rows, columns;      ///< of light samples; 0: they form none
+  std::uint32_t light_index;
   float side, reach, cut_reach, scale;
   std::span<const glm::vec3> points;  ///< light samples
 };

@@ -69,7 +69,6 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   light_ = &light;
   counters_.clear();
   device_light_ = visibility::make_device_light(light, scale_);
-  PENUMBRA_ASSERT(device_light_.rows, "light {} has no rows that a step describes", light.name);
   visibility::check_size(light, device_light_, description_.name);
   const bool cut = prepare_casters();
   const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale_); };
@@ -79,8 +78,9 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
     if (side < 0 && !light.two_sided) continue;
     grids_.push_back(make_light_grid({device_light_,
                                       {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
-                                      light.rows,
-                                      light.columns,
+                                      light.kind == visibility::LightKind::rectangle,
+                                      device_light_.rows ? light.rows : 0,
+                                      device_light_.rows ? light.columns : 0,
                                       static_cast<std::uint32_t>(light.index),
                                       side,
                                       reach,
@@ -185,8 +185,11 @@ void MaskMethod::decide_all(const GridSample& sample, OpenJudge& judge) {
 }
 
 void MaskMethod::read_masks(std::span<std::uint32_t> masks) {
-  const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count(), columns = light_->columns;
-  const std::size_t own = mask_words(grids_[0]), padded = grids_[0].padded_rows;
+  const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count();
+  const LightGrid& grid = grids_[0];
+  const std::size_t own = mask_words(grid);
+  std::vector<std::uint32_t> bit_of(count);
+  for (std::uint32_t j = 0; j < count; ++j) bit_of[j] = static_cast<std::uint32_t>(mask_bit(grid, j));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible_.size(), 256), [&](const auto& range) {
     for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
       const auto mask = masks.subspan(pixel * words, words);
@@ -194,7 +197,7 @@ void MaskMethod::read_masks(std::span<std::uint32_t> masks) {
       if (visible_[pixel] == 0) continue;
       const std::uint16_t* from = &masks_[pixel * own];
       for (std::uint32_t j = 0; j < count; ++j) {
-        const std::size_t bit = j % columns * padded + j / columns;
+        const std::uint32_t bit = bit_of[j];
         const bool visible = visible_[pixel] == count || (from[bit / 16] >> bit % 16 & 1) != 0;
         mask[j / 32] |= (visible ? 1U : 0U) << (j % 32);
       }

@@ -24,7 +24,7 @@ enum class Blocks : std::uint8_t {
 };
 
 /// A method on all of the processor's cores, one region of pixels after the other, each from its lists to its bits in
-/// one go: for rectangle lights with light samples in rows. All methods share what comes before and after the lists.
+/// one go. All methods share what comes before and after the lists.
 class MaskMethod : public visibility::Method {
  public:
   /// `pass`: the name of its one stage in the pass times.

@@ -10,16 +10,21 @@
 /// Which light samples are visible from a view sample, and what is not certain of that.
 namespace penumbra::native {
 
-/// Sixteen light samples each: bit column · padded_rows + row.
+/// Sixteen light samples each.
 inline std::size_t mask_words(const LightGrid& grid) {
-  return std::size_t{grid.columns} * grid.padded_rows / 16;
+  return grid.tiles ? grid.tiles->tile_count() : std::size_t{grid.columns} * grid.padded_rows / 16;
+}
+/// The bit of a light sample: its slot; in rows column · padded_rows + row.
+inline std::size_t mask_bit(const LightGrid& grid, std::uint32_t light_sample) {
+  if (grid.tiles) return grid.tiles->slot_of[light_sample];
+  return std::size_t{light_sample % grid.columns} * grid.padded_rows + light_sample / grid.columns;
 }
 
 /// What float arithmetic left open of a view sample.
 struct Open {
   bool pixel = false;                        ///< all of it
   bool corner = false;                       ///< how many triangles the segment to the light's corner meets
-  std::vector<std::uint32_t> rows, samples;  ///< light samples: row · columns + column; some twice
+  std::vector<std::uint32_t> rows, samples;  ///< rows of light samples; light samples; some twice
 
   void clear() {
     pixel = corner = false;

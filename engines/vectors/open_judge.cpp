@@ -49,7 +49,7 @@ void ExactOpenJudge::decide(const GridSample& sample, const Open& open, SampleMa
     for (const std::uint32_t number : numbers_) visit(number);
   };
   if (open.pixel) {
-    for (std::uint32_t row = 0; row < grid_.rows; ++row) decide_row(sample, row, mask);
+    for (std::uint32_t one = 0; one < grid_.points.size(); ++one) decide_one(sample, one, mask);
   } else {
     each(open.rows, [&](std::uint32_t row) { decide_row(sample, row, mask); });
     each(open.samples, [&](std::uint32_t one) { decide_one(sample, one, mask); });
@@ -66,9 +66,9 @@ void ExactOpenJudge::decide_row(const GridSample& sample, std::uint32_t row, Sam
 
 void ExactOpenJudge::decide_one(const GridSample& sample, std::uint32_t light_sample, SampleMask& mask) {
   ++pairs_;
-  const std::uint32_t row = light_sample / grid_.columns, column = light_sample % grid_.columns;
-  std::uint16_t& word = mask.bits[(std::size_t{column} * grid_.padded_rows + row) / 16];
-  const std::uint32_t bit = 1U << row % 16;
+  const std::size_t at = mask_bit(grid_, light_sample);
+  std::uint16_t& word = mask.bits[at / 16];
+  const std::uint32_t bit = 1U << at % 16;
   const bool visible = judge_.is_visible(sample.pixel, judge_.light.points[light_sample]);
   word = static_cast<std::uint16_t>(visible ? word | bit : word & ~bit);
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <ostream>
+#include <string_view>
 
 namespace penumbra::tests {
 
@@ -16,7 +17,10 @@ namespace penumbra::tests {
 struct MaskMethod {
   const char* name;
   std::unique_ptr<visibility::Method> (*make)(const render::Device&, const visibility::MethodOptions&);
-  bool any_light;  ///< otherwise only light samples in rows of a rectangle
+  bool any_light;        ///< otherwise only light samples in rows of a rectangle
+  bool no_rows = false;  ///< given none: light samples of rows that are not called that
+
+  [[nodiscard]] bool on_device() const { return !std::string_view(name).starts_with("native"); }
 
   friend std::ostream& operator<<(std::ostream& out, const MaskMethod& method) { return out << method.name; }
 };
@@ -38,7 +42,10 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
   return volumes::make_edge_scatter(device, options);
 }
 inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false>, false};
-inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, false};
+inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, true};
+
+/// Its path for light samples that form no rows.
+inline constexpr MaskMethod kNativeEdgeScatterPoints{"native_edge_scatter_points", make_edge_scatter<true>, true, true};
 
 inline std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
                                                                  const visibility::MethodOptions& options) {
@@ -49,7 +56,7 @@ inline constexpr MaskMethod kDepthComplexity{"depth_complexity", make_depth_comp
 /// The two fast methods, each on both engines.
 inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter};
 /// All methods that promise every bit.
-inline constexpr std::array kAllMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter,
-                                            kDepthComplexity};
+inline constexpr std::array kAllMaskMethods{kViewSample,        kNativeViewSample,        kEdgeScatter,
+                                            kNativeEdgeScatter, kNativeEdgeScatterPoints, kDepthComplexity};
 
 }  // namespace penumbra::tests

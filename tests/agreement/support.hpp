@@ -10,6 +10,7 @@
 #include "visibility/method.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
+#include "visibility/visible_share.hpp"
 #include "vsm/view_sample.hpp"
 
 #include <fmt/format.h>
@@ -145,7 +146,7 @@ inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floa
       if (row.wrong++ == 0) row.first = what;
     };
     const std::uint32_t set = masks.visible_count(pixel);
-    if (masks.visibility[pixel] != static_cast<float>(set) / static_cast<float>(n)) {
+    if (masks.visibility[pixel] != visibility::visible_share(light, masks.of(pixel))) {
       wrong(fmt::format("pixel {}: V is {}, but {} of {} bits are set", pixel, masks.visibility[pixel], set, n));
     }
     if (n % 32 != 0 && masks.word(pixel, light.words_per_mask() - 1) >> (n % 32) != 0) {
@@ -178,6 +179,15 @@ inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floa
   }
   if (wrong == 0) return testing::AssertionSuccess();
   return testing::AssertionFailure() << wrong << " wrong, the first: " << first;
+}
+
+/// The light with its samples not in rows, so that methods take the path for samples anywhere.
+inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
+  light.pattern = visibility::SamplePattern::sobol;
+  light.rows = light.columns = 0;
+  light.row_shift.clear();
+  if (as_polygon) light.kind = visibility::LightKind::polygon;
+  return light;
 }
 
 /// A picture below another; the same width.

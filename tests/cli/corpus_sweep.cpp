@@ -93,7 +93,7 @@ class CorpusSweep : public ProgramTest {
         run({"compare", is_scene ? file.string() : path("scene.json"), "-o", path("out"), "--methods",
              "edge-scatter,view-sample", "--reference", "raytrace", "--reference-samples", "same", "--light-samples",
              "64", "--size", "96x96", "--runs", "1", "--allow-outside", "--quiet"});
-    // A mesh at the end of double's range is a bad input to a scene; a light that is no rectangle, to edge-scatter.
+    // A mesh at the end of double's range is a bad input to a scene; a sphere light, to these methods.
     EXPECT_TRUE(outcome.code == 0 || outcome.code == 2 || outcome.code == 3) << outcome.code << ": " << outcome.err;
     if (outcome.code != 0) {
       fmt::print("not compared: {}: {}\n", file.string(), outcome.err);

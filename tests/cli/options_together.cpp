@@ -130,7 +130,7 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
       return !has_scene || scene.lights.front() != "sphere";  // some method can
     if (method == nullptr) return true;
     return table_.can_do(*method, scene, row["pattern"]) &&
-           !options_exclude(row["method"], options_of(row, *method), scene, row["light-samples"]);
+           !options_exclude(row["method"], options_of(row, *method), scene, row);
   }
 
   void render(const Row& row) {
@@ -192,7 +192,7 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
       const LitScene any{"", "", {}};
       const LitScene& scene = row.has("scene") ? scene_of(row) : any;
       if (!table_.can_do(method, scene, row["pattern"])) return false;
-      if (options_exclude(name, options_of(row, method), scene, row["light-samples"])) return false;
+      if (options_exclude(name, options_of(row, method), scene, row)) return false;
     }
     return true;
   }

@@ -52,7 +52,7 @@ std::vector<std::string> values_to_try(const nlohmann::json& option);
 
 /// Do these options of a method exclude one another, or the other choices? Only as far as its page says so.
 bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,
-                     const LitScene& scene, const std::string& light_samples);
+                     const LitScene& scene, const Row& row);
 
 /// Options chosen for the method: factors are named METHOD.OPTION.
 std::map<std::string, std::string> options_of(const Row& row, const nlohmann::json& method);

@@ -139,20 +139,26 @@ std::vector<std::string> values_to_try(const json& option) {
 }
 
 bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,
-                     const LitScene& scene, const std::string& light_samples) {
+                     const LitScene& scene, const Row& row) {
   const auto is = [&](const char* key, const char* value) {
     const auto found = options.find(key);
     return found != options.end() && found->second == value;
   };
-  if (method == "edge-scatter" && is("rows", "exact")) return is("engine", "vulkan") || scene.texture;
+  const auto is_rectangle = [](const std::string& kind) { return kind == "rectangle"; };
+  if (method == "edge-scatter") {
+    const bool exact = is("rows", "exact"), on_device = is("engine", "vulkan");
+    const bool in_rows = row["pattern"].empty() || row["pattern"] == "rows" || row["pattern"] == "grid";
+    return (exact && (on_device || scene.texture)) || (on_device && !in_rows) ||
+           ((exact || on_device) && !std::ranges::all_of(scene.lights, is_rectangle));
+  }
   if (method == "depth-complexity") {
     const bool forest = is("variant", "forest");
-    return (forest && (options.contains("crop") || light_samples == "5x7")) ||
+    return (forest && (options.contains("crop") || row["light-samples"] == "5x7")) ||
            (!forest && options.contains("counter-bits"));
   }
   if (method == "soft-shadow-map") return is("form", "scatter") && is("precision", "fp16");
   if (method == "packet" && options.contains("sublights") && !is("sublights", "1")) {
-    return std::ranges::any_of(scene.lights, [](const std::string& kind) { return kind != "rectangle"; });
+    return !std::ranges::all_of(scene.lights, is_rectangle);
   }
   return false;
 }

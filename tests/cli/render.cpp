@@ -184,11 +184,12 @@ TEST_F(RenderOnce, DefaultMethodIsGeometryBased) {
 TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
   const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "sobol"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "view-sample");
-  const Outcome named =
-      run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered", "--method", "edge-scatter"});
+  EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "edge-scatter");
+  const Outcome named = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered", "--method",
+                             "edge-scatter", "--method-option", "engine=vulkan"});
   EXPECT_EQ(named.code, 3);
   EXPECT_THAT(named.err, HasSubstr("--sample-pattern rows"));
+  EXPECT_THAT(named.err, HasSubstr("without engine=vulkan"));
 }
 
 TEST_F(RenderOnce, MeshesOutsideTheRuleAreAlwaysLit) {

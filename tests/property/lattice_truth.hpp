@@ -27,15 +27,6 @@ inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const vis
   return samples;
 }
 
-/// The light with its samples not in rows, so that shaders take the path for samples anywhere.
-inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
-  light.pattern = visibility::SamplePattern::sobol;
-  light.rows = light.columns = 0;
-  light.row_shift.clear();
-  if (as_polygon) light.kind = visibility::LightKind::polygon;
-  return light;
-}
-
 /// `count` soups with corners in −range … range. Without `any_light`, only light samples in rows.
 struct LatticeRun {
   int range = 1;

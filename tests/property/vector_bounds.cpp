@@ -49,6 +49,7 @@ class BoundX {
     const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale); };
     const LightGrid grid = make_light_grid({device_light,
                                             {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                            true,
                                             light.rows,
                                             light.columns,
                                             0,

@@ -19,6 +19,9 @@ struct Masks {
   std::vector<std::uint32_t> words;
   std::vector<float> visibility;
 
+  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t pixel) const {
+    return std::span(words).subspan(pixel * words_per_pixel, words_per_pixel);
+  }
   [[nodiscard]] std::uint32_t word(std::size_t pixel, std::size_t i) const {
     return words[pixel * words_per_pixel + i];
   }

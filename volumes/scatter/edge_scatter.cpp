@@ -5,14 +5,17 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
+#include "visibility/device_light.hpp"
 #include "volumes/edges/edge_method.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
 #include "volumes/scatter/scatter_edges.comp.spv.hpp"
 #include "volumes/scatter/vectors/edge_scatter_native.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
 #include <utility>
@@ -20,6 +23,8 @@
 namespace penumbra::volumes {
 namespace {
 
+constexpr std::array kPlanar{visibility::LightKind::rectangle, visibility::LightKind::disk,
+                             visibility::LightKind::ellipse, visibility::LightKind::polygon};
 constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
 constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: what a question can name
 
@@ -40,6 +45,16 @@ class EdgeScatter final : public EdgeMethod {
  public:
   EdgeScatter(const render::Device& device, visibility::MethodDescription given)
       : EdgeMethod(device, std::move(given), sizeof(gpu::RowQuestion)) {}
+
+  void prepare_light(const visibility::Light& light) override {
+    if (!visibility::has_rows(light) && std::ranges::find(kPlanar, light.kind) != kPlanar.end()) {
+      throw InputError(
+          "light \"{}\": edge-scatter with engine=vulkan takes light samples in rows of a rectangle (--sample-pattern "
+          "rows or grid); without engine=vulkan it takes every planar light and pattern",
+          light.name);
+    }
+    EdgeMethod::prepare_light(light);
+  }
 
  private:
   /// As many light rows at a time as the histograms of a subgroup leave room for.
@@ -150,9 +165,8 @@ visibility::MethodDescription describe() {
           .family = visibility::Family::geometry,
           .paper = "ours; after Laine et al. 2005 and Bergeron 1986",
           .output = visibility::Output::mask,
-          .exact_for = "every pair of view sample and light sample, for any triangle soup (rows of a rectangle light)",
-          .lights = {visibility::LightKind::rectangle},
-          .any_pattern = false,
+          .exact_for = "every pair of view sample and light sample, for any triangle soup",
+          .lights = {kPlanar.begin(), kPlanar.end()},
           .options = {engines::kEngine.description(), kExactRows.description()},
           .verdict_on = verdict_on};
 }
@@ -162,10 +176,13 @@ visibility::MethodDescription describe() {
 visibility::MethodDescription edge_scatter_description(const visibility::MethodOptions& given) {
   visibility::MethodDescription description = describe();
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
-  if (!options[kExactRows]) return description;
-  if (options[engines::kEngine] == engines::Engine::vulkan) {
+  const bool on_device = options[engines::kEngine] == engines::Engine::vulkan;
+  if (on_device && options[kExactRows])
     throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
-  }
+  // Other lights are refused by the engine itself, which knows what can do them.
+  if (on_device) description.exact_for += " (rows of a rectangle light)";
+  if (!options[kExactRows]) return description;
+  description.lights = {visibility::LightKind::rectangle};
   description.output = visibility::Output::radiance;
   description.exact_for =
       "the visible share of a rectangle light, to float32, for any triangle soup; the beauty under constant radiance";
@@ -178,10 +195,12 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
   visibility::MethodDescription description = edge_scatter_description(given);
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool exact = options[kExactRows];
-  if (exact || engines::runs_on_vectors(device, options[engines::kEngine])) {
-    return make_native_edge_scatter(std::move(description), exact);
-  }
-  return std::make_unique<EdgeScatter>(device, std::move(description));
+  const engines::Engine engine = options[engines::kEngine];
+  if (exact || engines::runs_on_vectors(device, engine)) return make_native_edge_scatter(std::move(description), exact);
+  if (engine == engines::Engine::vulkan) return std::make_unique<EdgeScatter>(device, std::move(description));
+  return engines::make_engine_by_light(
+      {[&device, description] { return std::make_unique<EdgeScatter>(device, description); },
+       [description] { return make_native_edge_scatter(description, false); }, visibility::has_rows});
 }
 
 }  // namespace penumbra::volumes

@@ -24,8 +24,6 @@ using namespace native::HWY_NAMESPACE;
 /// Of the triangles that float arithmetic leaves open.
 std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Open& open) {
   std::uint32_t met = 0;
-  // Three times a point and two more, with a rounding each.
-  const double off = 0x1p-49 * static_cast<double>(in.grid.reach);
   for_each_lane(which, [&](std::size_t lane) {
     if (std::bit_cast<std::uint32_t>(in.triangles[kTrianglePlane][i + lane]) == in.light_plane) return;
     const auto slot = std::bit_cast<std::uint32_t>(in.triangles[kTriangleSlot][i + lane]);
@@ -35,7 +33,8 @@ std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Ope
       const WidePoints& x = leaf.corner[corner];
       corners[corner] = {x[0][slot % kWide], x[1][slot % kWide], x[2][slot % kWide]};
     }
-    const std::optional<bool> meets = visibility::certainly_meets(glm::dvec3(in.at.p), in.grid.corner, corners, off);
+    const std::optional<bool> meets =
+        visibility::certainly_meets(glm::dvec3(in.at.p), in.grid.corner, corners, in.grid.corner_off);
     if (!meets) open.corner = true;
     met += meets.value_or(false) ? 1 : 0;
   });

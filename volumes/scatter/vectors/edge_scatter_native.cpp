@@ -26,9 +26,9 @@ constexpr std::size_t kGroup = 16, kDenseGroup = 8;  // view samples
 /// Finds each cluster's edges and triangles.
 class NativeEdges : public native::MaskMethod {
  public:
-  /// `between_rows`: edges that cross no light row matter, too.
-  NativeEdges(visibility::MethodDescription given, bool between_rows)
-      : MaskMethod(std::move(given), "scatter edges"), between_rows_(between_rows), sides_(description().name) {}
+  /// `exact_area`: not of light samples but of the light.
+  NativeEdges(visibility::MethodDescription given, bool exact_area)
+      : MaskMethod(std::move(given), "scatter edges"), exact_area_(exact_area), sides_(description().name) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     MaskMethod::prepare_mesh(scene);
@@ -52,10 +52,10 @@ class NativeEdges : public native::MaskMethod {
     front_ = edges.has_body ? &without_body_->edges : &whole_;
     back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
     const std::int32_t without = edges.has_body ? light().index : -1;
-    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, between_rows_});
-    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, between_rows_});
-    touch_ = between_rows_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
-    return edges.front.has_value() && !between_rows_;  // whose edges stay whole
+    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_});
+    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_});
+    touch_ = exact_area_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
+    return edges.front.has_value() && !exact_area_;  // whose edges stay whole
   }
   native::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
     Scratch& scratch = scratch_.local();
@@ -80,7 +80,7 @@ class NativeEdges : public native::MaskMethod {
     scratch.samples.clear();
     for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
     do_occluded({grid, touch_, edges_of(grid), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
-                 scratch.dense ? kDenseGroup : kGroup, between_rows_, cut_edges(grid).ends(), front_->plane_of_light()},
+                 scratch.dense ? kDenseGroup : kGroup, exact_area_, cut_edges(grid).ends(), front_->plane_of_light()},
                 judge, masks);
   }
 
@@ -102,7 +102,7 @@ class NativeEdges : public native::MaskMethod {
     }
   }
 
-  bool between_rows_;
+  bool exact_area_;
   visibility::LightTouch touch_;
   EdgeSides sides_;
   CutEdges whole_;

@@ -94,7 +94,7 @@ class GroupFilter {
       const M before = hn::And(hn::And(hn::Le(low_x, set(columns)), hn::Ge(high_x, set(-0.5F))),
                                hn::And(hn::Le(low_y, set(rows)), hn::Ge(high_y, set(-0.5F))));
       const M crosses = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Ge(hn::Floor(high_y), hn::Ceil(low_y)));
-      const M matters = in_.between_rows ? before : hn::And(before, crosses);
+      const M matters = in_.between_rows() ? before : hn::And(before, crosses);
       const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * grid.reach));
       kept = hn::AndNot(behind, kept);
       store(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));

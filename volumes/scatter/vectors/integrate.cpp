@@ -105,22 +105,19 @@ double form_factor_of(const IntegralInput& in, const GridSample& at, const std::
 void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
   const ScatterInput& in = input.scatter;
   Rows rows{RowSum(in.grid, input.scene, input.scale), {}, !out.radiance.empty()};
-  for (std::size_t first = 0; first < in.samples.size(); first += in.group) {
-    const auto group = in.samples.subspan(first, std::min(in.group, in.samples.size() - first));
-    sort_out(in, group, scratch.lists);
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      const std::optional<double> share = share_of(in, scratch, group[i], rows, judge);
-      if (!share) {
-        ++scratch.unproven;
-        const areas::ExactView exact = input.areas.view(input.samples, group[i].pixel);
-        out.shares[first + i] = static_cast<float>(exact.visibility);
-        if (!out.radiance.empty()) out.radiance[first + i] = exact.form_factor.x;
-        continue;
-      }
-      out.shares[first + i] = static_cast<float>(*share);
-      if (!out.radiance.empty()) out.radiance[first + i] = form_factor_of(input, group[i], rows.parts, *share);
+  for_each_sample(in, scratch.lists, [&](std::size_t i) {
+    const ClusterSample& at = in.samples[i];
+    const std::optional<double> share = share_of(in, scratch, at, rows, judge);
+    if (!share) {
+      ++scratch.unproven;
+      const areas::ExactView exact = input.areas.view(input.samples, at.pixel);
+      out.shares[i] = static_cast<float>(exact.visibility);
+      if (!out.radiance.empty()) out.radiance[i] = exact.form_factor.x;
+      return;
     }
-  }
+    out.shares[i] = static_cast<float>(*share);
+    if (!out.radiance.empty()) out.radiance[i] = form_factor_of(input, at, rows.parts, *share);
+  });
 }
 
 }  // namespace

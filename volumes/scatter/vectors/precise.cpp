@@ -33,7 +33,6 @@ class Marks {
   void sample(float row, float column) {
     open_.samples.push_back(static_cast<std::uint32_t>(row) * grid_.columns + static_cast<std::uint32_t>(column));
   }
-  void pixel() { open_.pixel = true; }
   void corner() { open_.corner = true; }
 
   /// What is open where the changes at (row, x) may be anywhere within `error` of x: the nearest light sample, if it is
@@ -52,15 +51,6 @@ class Marks {
   Open& open_;
 };
 
-/// An edge as it appears, from the end nearer to the light's middle, so that far ends' errors, which grow with their
-/// distance, stay small.
-struct ProjectedEdge {
-  glm::vec2 near, far, low, high;
-  float error_near, error_far, slope, steep;
-  bool turn;
-  bool may_be_cut = false;  // at the light's plane: its stored ends are rounded
-};
-
 ProjectedEdge project_edge(const LightGrid& grid, const glm::vec2& a, const glm::vec2& b, float error_a,
                            float error_b) {
   const glm::vec2 to_a = glm::abs(a - grid.first_cell), to_b = glm::abs(b - grid.first_cell);
@@ -73,7 +63,8 @@ ProjectedEdge project_edge(const LightGrid& grid, const glm::vec2& a, const glm:
                   turn ? error_a : error_b,
                   0,
                   0,
-                  turn};
+                  turn,
+                  false};
   const glm::vec2 way = s.far - s.near;
   s.slope = way.x / way.y;
   s.steep = way.y == 0 ? 1e30F : std::abs(s.slope);
@@ -82,25 +73,6 @@ ProjectedEdge project_edge(const LightGrid& grid, const glm::vec2& a, const glm:
 
 float row_at_least(const LightGrid& grid, float y) {
   return std::clamp(std::ceil(y), 0.0F, static_cast<float>(grid.rows));
-}
-
-/// On which side of the edge's plane through p is a light sample: > 0 left of the edge a→b as it appears; 0: within
-/// double rounding.
-int side_of_sample(const PreciseInput& in, std::uint32_t light_sample) {
-  const auto slot = std::bit_cast<std::uint32_t>(in.scatter.edges[kEdgeSlot][in.edge]);
-  const WideEdges& leaf = in.scatter.edge_tree.leaves[slot / kWide];
-  const auto from_p = [&](const WidePoints& end) {
-    const std::size_t lane = slot % kWide;
-    return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]) - glm::dvec3(in.at.p);
-  };
-  const glm::dvec3 l = glm::dvec3(in.scatter.grid.points[light_sample]) - glm::dvec3(in.at.p);
-  const glm::dvec3 a = from_p(leaf.a), b = from_p(leaf.b);
-  const double side = glm::dot(l, glm::cross(a, b));
-  // As in visibility::certainly_meets.
-  const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
-  if (std::abs(side) <= error) return 0;
-  // From above, where the light is, the grid is turned over.
-  return (side > 0) == (in.scatter.grid.side < 0) ? 1 : -1;
 }
 
 /// Of the light samples of a row, the first that the edge is left of: between `lowest` and one after `highest`.
@@ -241,22 +213,36 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
   return k;
 }
 
-template <typename Counter>
-void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, Open& open) {
+int side_of_sample(const PreciseInput& in, std::uint32_t light_sample) {
+  const auto slot = std::bit_cast<std::uint32_t>(in.scatter.edges[kEdgeSlot][in.edge]);
+  const WideEdges& leaf = in.scatter.edge_tree.leaves[slot / kWide];
+  const auto from_p = [&](const WidePoints& end) {
+    const std::size_t lane = slot % kWide;
+    return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]) - glm::dvec3(in.at.p);
+  };
+  const glm::dvec3 l = glm::dvec3(in.scatter.grid.points[light_sample]) - glm::dvec3(in.at.p);
+  const glm::dvec3 a = from_p(leaf.a), b = from_p(leaf.b);
+  const double side = glm::dot(l, glm::cross(a, b));
+  // As in visibility::certainly_meets.
+  const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
+  if (std::abs(side) <= error) return 0;
+  // From above, where the light is, the grid is turned over.
+  return (side > 0) == (in.scatter.grid.side < 0) ? 1 : -1;
+}
+
+std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
   const LightGrid& grid = in.scatter.grid;
   const ClusterSample& at = in.at;
   const EdgeTable& edges = in.scatter.edges;
   const std::size_t edge = in.edge;
-  const float k = in.k;
-  Marks marks(grid, open);
   const Way a(edges[kAx][edge] - at.in_grid.x, edges[kAy][edge] - at.in_grid.y, at.in_grid.z - edges[kAh][edge]);
   const Way b(edges[kBx][edge] - at.in_grid.x, edges[kBy][edge] - at.in_grid.y, at.in_grid.z - edges[kBh][edge]);
   const float far = edges[kFar][edge], through_p = 64 * kRound * (far + at.far);
   const WindowPart part = in.settled ? WindowPart{a, b} : cut_to_window(grid, at, a, b, at.per_lift * (far + at.far));
-  if (part.is_empty || k == 0) return;
+  if (part.is_empty || in.k == 0) return std::nullopt;
   if (!in.settled && std::min(part.start.z, part.end.z) < through_p) {
-    marks.pixel();
-    return;
+    open.pixel = true;
+    return std::nullopt;
   }
   const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : appears(at, part.start);
   const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : appears(at, part.end);
@@ -265,6 +251,17 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
                                              error_of(at, far, part.end.z, foot_b));
   const float lowest_over_light = at.height - std::max(a.z, b.z);
   edge_on_light.may_be_cut = grid.cut_reach > 0 && lowest_over_light < 256 * kRound * grid.reach;
+  return edge_on_light;
+}
+
+template <typename Counter>
+void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, Open& open) {
+  const std::optional<ProjectedEdge> placed = place_edge(in, open);
+  if (!placed) return;
+  const ProjectedEdge& edge_on_light = *placed;
+  const LightGrid& grid = in.scatter.grid;
+  const float k = in.k;
+  Marks marks(grid, open);
   for (const auto& [end, error] : {std::pair(edge_on_light.near, edge_on_light.error_near),
                                    std::pair(edge_on_light.far, edge_on_light.error_far)}) {
     const float row = std::round(end.y);
@@ -273,9 +270,9 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
   const auto jump = static_cast<Counter>((edge_on_light.near.y < edge_on_light.far.y) == edge_on_light.turn ? k : -k);
   const float from = cross_rows(in, edge_on_light, jump, changes, marks);
   if (passes_corner(grid, edge_on_light)) marks.corner();
-  if ((projected_a.x < -0.5F) == (projected_b.x < -0.5F)) return;
-  cross_left_side(in, edge_on_light, from, static_cast<Counter>(projected_a.x < projected_b.x ? k : -k), changes,
-                  marks);
+  const float a = edge_on_light.a().x, b = edge_on_light.b().x;
+  if ((a < -0.5F) == (b < -0.5F)) return;
+  cross_left_side(in, edge_on_light, from, static_cast<Counter>(a < b ? k : -k), changes, marks);
 }
 
 template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>&, Open&);

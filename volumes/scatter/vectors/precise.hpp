@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
 /// One edge for one view sample, number by number: edges that come near p's height, and whatever may be within rounding
@@ -34,7 +35,24 @@ struct PreciseInput {
 std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge, const ClusterSample& at,
                                         OpenJudge& judge);
 
-/// Adds what the edge changes, and marks what is open because of it.
+/// An edge as it appears on the light, from the end nearer to the light's middle, so that far ends' errors, which grow
+/// with their distance, stay small.
+struct ProjectedEdge {
+  glm::vec2 near{0}, far{0}, low{0}, high{0};
+  float error_near = 0, error_far = 0, slope = 0, steep = 0;
+  bool turn = false;        ///< near is b
+  bool may_be_cut = false;  ///< at the light's plane: its stored ends are rounded
+
+  [[nodiscard]] const glm::vec2& a() const { return turn ? far : near; }
+  [[nodiscard]] const glm::vec2& b() const { return turn ? near : far; }
+};
+/// Nothing: no part of it is near the light, or it passes through p within rounding, which opens the pixel.
+std::optional<ProjectedEdge> place_edge(const PreciseInput& input, Open& open);
+/// On which side of the edge's plane through p a light sample is, exactly: > 0 left of the edge a→b as it appears; 0:
+/// within double rounding.
+int side_of_sample(const PreciseInput& input, std::uint32_t light_sample);
+
+/// Adds what the edge changes, and marks what is open because of it. For light samples in rows.
 template <typename Counter>
 void scatter_precisely(const PreciseInput& input, const Changes<Counter>& changes, Open& open);
 

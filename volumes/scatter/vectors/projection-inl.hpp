@@ -65,7 +65,7 @@ class Projection {
 
  private:
   /// Without light samples a sign within rounding moves an outline by no more than rounding.
-  [[nodiscard]] M open_ones(const Multiplicity& m) const { return in_.between_rows ? hn::FirstN(D(), 0) : m.open; }
+  [[nodiscard]] M open_ones(const Multiplicity& m) const { return in_.exact_area ? hn::FirstN(D(), 0) : m.open; }
 
   struct Ways {
     V x, y, w;
@@ -166,7 +166,7 @@ class Projection {
     const M left = hn::And(hn::Lt(low_x, set(-0.5F)), hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows)));
     const M before = hn::And(hn::Le(low_x, columns), hn::Ge(high_x, set(-0.5F)));
     const M on_light = hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows));
-    const M matters = in_.between_rows ? on_light : hn::Or(left, hn::Le(first, last));
+    const M matters = in_.between_rows() ? on_light : hn::Or(left, hn::Le(first, last));
     const M kept = hn::And(live, hn::And(before, matters));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;

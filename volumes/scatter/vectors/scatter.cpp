@@ -275,27 +275,22 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counte
 }
 
 void scatter_here(const ScatterInput& in, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
-  const std::span<const ClusterSample> samples = in.samples;
   if (scratch.landing.empty()) {
     scratch.landing.resize(4096);
     scratch.jump.resize(4096);
   }
-  for (std::size_t first = 0; first < samples.size(); first += in.group) {
-    const auto group = samples.subspan(first, std::min(in.group, samples.size() - first));
-    sort_out(in, group, scratch.lists);
+  for_each_sample(in, scratch.lists, [&](std::size_t i) {
     // Changes of a cell and its depth stay within ±(2 edges + triangles).
     const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      reset_open(in.grid, in.touch, group[i], scratch.open);
-      SampleMask& mask = masks[first + i];
-      if (narrow) {
-        scatter_sample(in, scratch, scratch.histogram, scratch.left, group[i], judge, mask);
-      } else {
-        scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, group[i], judge, mask);
-      }
-      if (scratch.open.any()) judge.decide(group[i], scratch.open, mask);
+    const ClusterSample& at = in.samples[i];
+    reset_open(in.grid, in.touch, at, scratch.open);
+    if (narrow) {
+      scatter_sample(in, scratch, scratch.histogram, scratch.left, at, judge, masks[i]);
+    } else {
+      scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, at, judge, masks[i]);
     }
-  }
+    if (scratch.open.any()) judge.decide(at, scratch.open, masks[i]);
+  });
 }
 
 }  // namespace
@@ -316,6 +311,7 @@ void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, cons
 HWY_EXPORT(scatter_here);
 
 void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+  if (input.grid.tiles) return scatter_points(input, scratch, judge, masks);
   HWY_DYNAMIC_DISPATCH(scatter_here)(input, scratch, judge, masks);
 }
 

@@ -11,6 +11,7 @@
 #include "volumes/scatter/vectors/areas_on_demand.hpp"
 #include "volumes/edges/cut_ends.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,6 +32,7 @@ using native::kPerReach;
 using native::kRound;
 using native::kWide;
 using native::LightGrid;
+using native::LightTiles;
 using native::Open;
 using native::OpenJudge;
 using native::SampleMask;
@@ -64,9 +66,12 @@ struct ScatterInput {
   const EdgeTable& edges;
   const TriangleTable& triangles;
   std::size_t group;          ///< view samples that sort out edges together
-  bool between_rows;          ///< edges that cross no light row matter, too
+  bool exact_area;            ///< not of light samples but of the light
   const CutEnds* ends;        ///< of edges of the tree (WideEdges::cut); null: none is cut
   std::uint32_t light_plane;  ///< CutEdges::plane_of_light
+
+  /// Edges that cross no light row matter, too.
+  [[nodiscard]] bool between_rows() const { return exact_area || grid.tiles; }
 };
 /// Sets what of a view sample is open before any caster is tested: light samples that a triangle touches.
 void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open);
@@ -76,6 +81,15 @@ struct GroupLists {
   TriangleTable triangles;
 };
 void sort_out(const ScatterInput& input, std::span<const ClusterSample> group, GroupLists& lists);
+/// Calls `visit(i)` for each view sample, with the lists of its group.
+template <typename Visit>
+void for_each_sample(const ScatterInput& input, GroupLists& lists, Visit visit) {
+  for (std::size_t first = 0; first < input.samples.size(); first += input.group) {
+    const auto group = input.samples.subspan(first, std::min(input.group, input.samples.size() - first));
+    sort_out(input, group, lists);
+    for (std::size_t i = first; i < first + group.size(); ++i) visit(i);
+  }
+}
 
 /// How many triangles the segment from p to the light's lower left corner meets. One is as good as many where no edge
 /// changes the count (`one_will_do`).
@@ -101,11 +115,13 @@ struct Scratch {
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
+  std::vector<float> depths, tile_changes, row_changes;  // PointChanges
   Open open;
   std::uint64_t listed = 0, dense_regions = 0, unproven = 0;  // counted
 };
 
-/// `masks`: one for each view sample; of its bits all or none are written.
+/// `masks`: one for each view sample; of its bits all or none are written. scatter_points: light samples in tiles.
+void scatter_points(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 
 /// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample whose share double cannot

@@ -1,0 +1,72 @@
+#include "engines/vectors/light_tiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace penumbra::native {
+namespace {
+
+std::uint32_t divided_up(std::uint32_t x, std::uint32_t by) {
+  return (x + by - 1) / by;
+}
+
+/// Rows about as high as the square root of light samples: most edges are short, are in one row or two, and are tested
+/// against all tiles to the right of them.
+std::uint32_t rows_for(std::uint32_t tiles) {
+  const double samples = static_cast<double>(tiles) * LightTiles::kWide;
+  const auto tiles_of_a_row = static_cast<std::uint32_t>(std::lround(std::sqrt(samples) / LightTiles::kWide));
+  return divided_up(tiles, std::max(1U, tiles_of_a_row));
+}
+
+void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std::uint32_t> samples) {
+  LightTiles::Row row{places[samples.front()].y, places[samples.back()].y,
+                      static_cast<std::uint32_t>(tiles.tile_count()),
+                      divided_up(static_cast<std::uint32_t>(samples.size()), LightTiles::kWide)};
+  tiles.rows.push_back(row);
+  std::ranges::sort(samples, {}, [&](std::uint32_t j) { return std::pair(places[j].x, j); });
+  for (std::uint32_t tile = 0; tile < row.count; ++tile) {
+    const auto its = samples.subspan(
+        tile * LightTiles::kWide, std::min<std::size_t>(LightTiles::kWide, samples.size() - tile * LightTiles::kWide));
+    tiles.tile_low.push_back(places[its.front()].x);
+    tiles.tile_high.push_back(places[its.back()].x);
+    tiles.used.push_back(static_cast<std::uint16_t>((1U << its.size()) - 1));
+    for (std::size_t lane = 0; lane < LightTiles::kWide; ++lane) {
+      const bool is_sample = lane < its.size();
+      if (is_sample) tiles.slot_of[its[lane]] = static_cast<std::uint32_t>(tiles.sample_of.size());
+      tiles.sample_of.push_back(is_sample ? its[lane] : LightTiles::kNone);
+      tiles.x.push_back(is_sample ? places[its[lane]].x : std::numeric_limits<float>::quiet_NaN());
+      tiles.y.push_back(is_sample ? places[its[lane]].y : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+}
+
+}  // namespace
+
+LightTiles make_light_tiles(std::span<const glm::vec2> places) {
+  LightTiles tiles;
+  tiles.slot_of.resize(places.size());
+  std::vector<std::uint32_t> by_y(places.size());
+  std::iota(by_y.begin(), by_y.end(), 0U);
+  std::ranges::sort(by_y, {}, [&](std::uint32_t j) { return std::pair(places[j].y, j); });
+  const std::uint32_t count = divided_up(static_cast<std::uint32_t>(places.size()), LightTiles::kWide),
+                      rows = rows_for(count);
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    const std::size_t begin = std::size_t{count} * row / rows * LightTiles::kWide,
+                      end = std::min(std::size_t{count} * (row + 1) / rows * LightTiles::kWide, places.size());
+    add_row(tiles, places, std::span(by_y).subspan(begin, end - begin));
+  }
+  std::int32_t row = 0;
+  for (float step = 0; step <= LightTiles::kStepsPerCell * (tiles.rows.back().high + 0.5F) + 1; ++step) {
+    // One step early: whoever looks it up has rounded.
+    const float height = (step - 1) / LightTiles::kStepsPerCell - 0.5F;
+    while (static_cast<std::size_t>(row) + 1 < tiles.rows.size() &&
+           tiles.rows[static_cast<std::size_t>(row)].high < height)
+      ++row;
+    tiles.row_from.push_back(row);
+  }
+  return tiles;
+}
+
+}  // namespace penumbra::native

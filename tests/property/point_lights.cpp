@@ -1,0 +1,151 @@
+// edge-scatter on vector units under lights whose samples form no rows: every pair equals the exact decision, without
+// tolerance.
+
+#include "tests/agreement/hostile_lamps.hpp"
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/mask_methods.hpp"
+#include "tests/agreement/point_lights.hpp"
+#include "tests/agreement/support.hpp"
+#include "tests/property/lattice_truth.hpp"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cstdio>
+#include <optional>
+#include <tuple>
+
+namespace penumbra {
+namespace {
+
+using tests::PairCounts;
+using tests::PointLight;
+
+constexpr std::uint32_t kMostSamples = 70;
+
+class PointSoups : public tests::DeviceTest, public testing::WithParamInterface<std::tuple<int, PointLight>> {
+ protected:
+  static PairCounts look(std::uint32_t first, std::uint32_t count) {
+    const auto& [range, kind] = GetParam();
+    const auto method = tests::kNativeEdgeScatter.make(device(), {});
+    PairCounts counts;
+    for (std::uint32_t i = first; i < first + count && !HasFailure(); ++i) {
+      const std::uint32_t seed = i + 100'000 * static_cast<std::uint32_t>(range);
+      tests::LatticeSoup soup(seed, range);
+      visibility::SampleRequest request;
+      scenes::Scene scene = tests::lattice_scene(soup, request);
+      tests::reshape(scene.lights[0], kind, request, soup.random(), kMostSamples);
+      const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+      const visibility::Light light = visibility::make_light(scene, 0, floats.origin, request);
+      const visibility::ViewSamples samples = tests::all_samples(scene, floats, soup.random());
+      const tests::Masks masks = tests::run(*method, floats, light, samples);
+      EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts))
+          << "soup " << i << " of range " << range << " under " << kind;
+    }
+    return counts;
+  }
+};
+
+TEST_P(PointSoups, EveryPairIsTheExactDecision) {
+  const PairCounts counts = look(0, 25);
+  tests::expect_all_kinds(counts);
+}
+/// 60,000 under each kind of light.
+TEST_P(PointSoups, EveryPairFull) {
+  constexpr std::uint32_t kSoups = 20'000, kAtOnce = 1000;
+  PairCounts counts;
+  for (std::uint32_t done = 0; done < kSoups && !HasFailure(); done += kAtOnce) {
+    counts += look(1000 + done, kAtOnce);
+    fmt::print("{} of range {}: {} soups, {} pairs, {} of them by a zero\n", name_of(std::get<1>(GetParam())),
+               std::get<0>(GetParam()), done + kAtOnce, counts.pairs, counts.zero);
+    std::fflush(stdout);
+  }
+  tests::expect_all_kinds(counts);
+}
+INSTANTIATE_TEST_SUITE_P(Under, PointSoups,
+                         testing::Combine(testing::Values(1, 2, 4), testing::ValuesIn(tests::kPointLights)),
+                         [](const auto& it) {
+                           return fmt::format("{}_{}", name_of(std::get<1>(it.param)), std::get<0>(it.param));
+                         });
+
+/// Panels in, near and through the light's plane; mixed magnitudes; needles.
+class PointLamps : public tests::DeviceTest,
+                   public testing::WithParamInterface<std::tuple<tests::Hostility, PointLight>> {
+ protected:
+  static void look(std::uint32_t first, std::uint32_t count) {
+    const auto& [hostility, kind] = GetParam();
+    const auto method = tests::kNativeEdgeScatter.make(device(), {});
+    PairCounts counts;
+    std::uint32_t refused = 0;
+    for (std::uint32_t seed = first; seed < first + count && !HasFailure(); ++seed) {
+      tests::HostileLamp lamp(hostility, seed);
+      scenes::Scene scene = lamp.scene();
+      visibility::SampleRequest request;
+      tests::reshape(scene.lights[0], kind, request, lamp.random(), 40);
+      try {
+        const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+        const visibility::Light light = visibility::make_light(scene, 0, floats.origin, request);
+        const visibility::ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 5, 5);
+        const tests::Masks masks = tests::run(*method, floats, light, samples);
+        EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts))
+            << name_of(hostility) << " seed " << seed << " under " << kind;
+      } catch (const InputError&) {  // float32 cannot span light and scene together
+        ++refused;
+      }
+    }
+    EXPECT_GT(counts.visible, counts.pairs / 20);
+    EXPECT_GT(counts.blocked, counts.pairs / 20);
+    EXPECT_LE(refused, count / 4);
+  }
+};
+TEST_P(PointLamps, EveryPairIsTheExactDecision) {
+  look(0, 40);
+}
+TEST_P(PointLamps, ThousandsFull) {
+  for (std::uint32_t first = 1000; first < 11'000 && !HasFailure(); first += 1000) look(first, 1000);
+}
+INSTANTIATE_TEST_SUITE_P(Under, PointLamps,
+                         testing::Combine(testing::ValuesIn(tests::kHostilities),
+                                          testing::ValuesIn(tests::kPointLights)),
+                         [](const auto& it) {
+                           return fmt::format("{}_{}", name_of(std::get<1>(it.param)), name_of(std::get<0>(it.param)));
+                         });
+
+class PointCounts : public tests::DeviceTest, public testing::WithParamInterface<PointLight> {};
+
+/// Tiles that are not full, rows of tiles of unequal length, masks that end within a word; any number of threads and
+/// any tiles of the picture.
+TEST_P(PointCounts, AnyNumberOfLightSamples) {
+  std::mt19937 random(7);
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  std::vector<tests::Corners> soup;
+  std::uniform_real_distribution<double> real(-1, 1);
+  const auto point = [&] { return glm::dvec3(real(random), 1 + 0.9 * real(random), real(random)); };
+  for (int i = 0; i < 40; ++i) soup.push_back({point(), point(), point()});
+  tests::add_object(scene, "soup", soup);
+  scene.lights.push_back(tests::rectangle_light({0.2, 3, 0.1}, {1, 0.2, 0}, {0, -0.1, 0.8}));
+  scene.cameras.push_back(tests::camera({0, 2, 6}, {0, 0.5, 0}));
+  const auto method = tests::kNativeEdgeScatter.make(device(), {});
+  for (const std::uint32_t count : {1U, 2U, 15U, 16U, 17U, 31U, 33U, 100U, 255U, 257U, 1000U, 4095U, 4096U}) {
+    scenes::Scene its = scene;
+    visibility::SampleRequest request;
+    tests::reshape(its.lights[0], GetParam(), request, random, 1);
+    request.count = std::max(request.count, count);
+    const tests::Stage stage(its, 40, 30, request);
+    const tests::Masks masks = tests::run(*method, stage);
+    PairCounts counts;
+    const std::size_t step = 1 + stage.light.sample_count() / 32;
+    EXPECT_TRUE(equals_truth(stage.floats, stage.light, stage.samples, masks, &counts, step)) << count;
+    EXPECT_TRUE(count < 8 || counts.blocked > 0) << count;
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const tests::Masks again = tests::run(*method, stage, 7);
+    EXPECT_EQ(masks.words, again.words) << count;
+    EXPECT_EQ(masks.visibility, again.visibility) << count;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Under, PointCounts, testing::ValuesIn(tests::kPointLights),
+                         [](const auto& it) { return name_of(it.param); });
+
+}  // namespace
+}  // namespace penumbra

@@ -1,0 +1,407 @@
+// Edge scatter on a processor for light samples that form no rows: an edge is tested against the tiles that it passes,
+// light samples side by side, and changes all tiles to the right of it by one number. docs/edge-scatter.md, "Light
+// samples anywhere".
+
+#include "engines/vectors/horizon.hpp"
+#include "volumes/scatter/vectors/precise.hpp"
+#include "volumes/scatter/vectors/scatter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/points.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include "engines/vectors/vectors-inl.hpp"
+#include "volumes/scatter/vectors/projection-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using namespace native::HWY_NAMESPACE;
+
+using Tile = hn::CappedTag<float, LightTiles::kWide>;
+
+/// By how much the depth changes from the light's corner, less `corner`, to each light sample.
+struct PointChanges {
+  float* slots;
+  float* tiles;  // this one, and those after it in its row
+  float* rows;   // all samples of this row and those above
+  float corner = 0;
+};
+
+/// A few edges as they appear, side by side, each from its lower end to its upper one.
+enum UpwardField : std::size_t {
+  kLowX,
+  kLowY,
+  kHighX,
+  kHighY,
+  kWayX,
+  kWayY,
+  kJump,       // of the depth to the right of it
+  kNear,       // a light sample that is no farther on either side (in areas: side_of) may be on the other one
+  kSlope,      // of x
+  kBeside,     // along a row: no farther from it are such light samples
+  kLeftmost,   // nor are they left of here,
+  kRightmost,  // right of here,
+  kBottom,     // below
+  kTop,        // or above
+  kUpwardFields
+};
+struct UpwardEdges {
+  HWY_ALIGN std::array<std::array<float, hn::MaxLanes(D())>, kUpwardFields> fields;
+  HWY_ALIGN std::array<std::int32_t, hn::MaxLanes(D())> tile_row;  // of tiles: none below it reaches up to kBottom
+  std::size_t first = 0;                                           // in the CrossingTable
+};
+/// One of them.
+struct UpwardEdge {
+  const UpwardEdges& edges;
+  std::size_t lane;
+
+  [[nodiscard]] float operator[](UpwardField field) const { return edges.fields[field][lane]; }
+  [[nodiscard]] std::size_t crossing() const { return edges.first + lane; }
+  /// > 0: (x, y) is right of the line through it; twice the area between the three.
+  [[nodiscard]] float side_of(float x, float y) const {
+    return (x - (*this)[kLowX]) * (*this)[kWayY] - (y - (*this)[kLowY]) * (*this)[kWayX];
+  }
+};
+
+class PointScatter {
+ public:
+  PointScatter(const ScatterInput& in, Scratch& scratch, PointChanges& changes, OpenJudge& judge)
+      : in_(in), tiles_(*in.grid.tiles), s_(scratch), changes_(changes), judge_(judge) {}
+
+  /// Whether the depth may change anywhere on the light, or something is open.
+  bool operator()(const ClusterSample& at) {
+    at_ = &at;
+    const auto special = [&](const SpecialEdges& edges) { precisely(edges); };
+    Projection{in_, at, s_.lists, s_.crossing}(special);
+    for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) add(i);
+    return s_.crossing.count > 0 || s_.open.any();
+  }
+
+ private:
+  /// Edges of the group that are not for vectors: placed by themselves, they join the others.
+  void precisely(const SpecialEdges& edges) {
+    HWY_ALIGN float k[hn::MaxLanes(D())];
+    std::uint8_t open[8] = {};
+    hn::Store(edges.multiplicity.k, D(), k);
+    hn::StoreMaskBits(D(), edges.multiplicity.open, open);
+    for_each_lane(edges.which, [&](std::size_t lane) {
+      const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
+      const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
+      const std::optional<float> sure =
+          is_open ? exact_multiplicity(in_.edges, edge, *at_, judge_) : std::optional(k[lane]);
+      if (!sure) s_.open.pixel = true;
+      if (!sure) return;
+      const auto placed = place_edge({in_, *at_, edge, *sure, edges.settled, std::nullopt}, s_.open);
+      if (!placed) return;
+      CrossingTable& out = s_.crossing;
+      out[kX0][out.count] = placed->a().x;
+      out[kY0][out.count] = placed->a().y;
+      out[kX1][out.count] = placed->b().x;
+      out[kY1][out.count] = placed->b().y;
+      out[kK][out.count] = *sure;
+      out[kError][out.count] = std::max(placed->error_near, placed->error_far);
+      out[kEdge][out.count] = std::bit_cast<float>(edges.settled ? edge : edge | kUnsettled);
+      ++out.count;
+    });
+  }
+
+  /// Returns those that the light's corner or left side may have to do with. (bound side of a point)
+  M turn_upward(std::size_t first, UpwardEdges& out) const {
+    const D d;
+    const CrossingTable& table = s_.crossing;
+    const auto column = [&](std::size_t field) { return hn::Load(d, table[field] + first); };
+    const auto store = [&](UpwardField field, V v) { hn::Store(v, d, out.fields[field].data()); };
+    const V x0 = column(kX0), y0 = column(kY0), x1 = column(kX1), y1 = column(kY1);
+    const M used = first_lanes(table.count - first), up = hn::Lt(y0, y1);
+    const V k = in_.grid.side < 0 ? hn::Neg(column(kK)) : column(kK);  // seen from behind, all turn the other way
+    const V low_x = hn::IfThenElse(up, x0, x1), low_y = hn::IfThenElse(up, y0, y1);
+    const V high_x = hn::IfThenElse(up, x1, x0), high_y = hn::IfThenElse(up, y1, y0);
+    const V way_x = hn::Sub(high_x, low_x), way_y = hn::Sub(high_y, low_y), wide = hn::Abs(way_x);
+    const V around = hn::Mul(set(2.41F), column(kError)), rounding = set(16 * kRound);
+    out.first = first;
+    store(kLowX, low_x);
+    store(kLowY, low_y);
+    store(kHighX, high_x);
+    store(kHighY, high_y);
+    store(kWayX, way_x);
+    store(kWayY, way_y);
+    store(kJump, hn::IfThenElse(up, hn::Neg(k), k));
+    store(kNear, hn::MulAdd(around, hn::Add(wide, way_y), hn::Mul(rounding, hn::Mul(wide, way_y))));
+    const M leans = hn::Gt(way_y, hn::Mul(set(1e-6F), wide));
+    const V slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
+    const V beside =
+        hn::MulAdd(around, hn::Add(set(1), hn::Abs(slope)), hn::Mul(rounding, hn::Add(hn::Abs(low_x), wide)));
+    store(kSlope, slope);
+    store(kBeside, hn::IfThenElse(leans, beside, set(3e38F)));
+    store(kLeftmost, hn::Sub(hn::Min(low_x, high_x), around));
+    store(kRightmost, hn::Add(hn::Max(low_x, high_x), around));
+    const V bottom = hn::Sub(low_y, around);
+    store(kBottom, bottom);
+    store(kTop, hn::Add(high_y, around));
+    const V steps = set(static_cast<float>(tiles_.row_from.size() - 1));
+    const V step = hn::Min(hn::Max(hn::Mul(hn::Add(bottom, set(0.5F)), set(LightTiles::kStepsPerCell)), set(0)), steps);
+    const auto number = hn::ConvertTo(I(), hn::IfThenElseZero(used, step));
+    hn::Store(hn::GatherIndex(I(), tiles_.row_from.data(), number), I(), out.tile_row.data());
+    const M left = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Lt(high_x, set(-0.5F)));
+    return hn::And(used, hn::Or(left, hn::Le(bottom, set(-0.5F))));
+  }
+
+  void add(std::size_t first) {
+    UpwardEdges edges;
+    const M beside = turn_upward(first, edges);
+    if (!hn::AllFalse(D(), beside)) for_each_lane(beside, [&](std::size_t i) { change_beside({edges, i}); });
+    const std::size_t count = std::min(hn::Lanes(D()), s_.crossing.count - first);
+    for (std::size_t i = 0; i < count; ++i) cross({edges, i});
+  }
+
+  /// A light sample at (x, y) has the edge between itself and the light's left side where the edge has y and is left of
+  /// it. The left side itself crosses the edge once for each of its ends that is left of it, as if the edge went on
+  /// from there to the left.
+  void change_beside(const UpwardEdge& e) {
+    own_.reset();
+    if (e[kBottom] <= -0.5F) change_corner(e);
+    if (e[kHighX] < -0.5F) change_above(e[kHighY], e[kJump]);
+    if (e[kLowX] < -0.5F) change_above(e[kLowY], -e[kJump]);
+  }
+
+  /// The light's corner is where changes begin.
+  void change_corner(const UpwardEdge& e) {
+    constexpr float kCorner = -0.5F;
+    const float side = e.side_of(kCorner, kCorner);
+    const bool around = e[kLeftmost] <= kCorner && kCorner <= e[kRightmost] && kCorner <= e[kTop];
+    if (around && !(std::abs(side) > e[kNear])) s_.open.corner = s_.open.corner || !(std::abs(side) > own(e).near);
+    if (e[kLowY] <= kCorner && kCorner < e[kHighY] && side > 0) changes_.corner += e[kJump];
+    if (e[kHighY] <= kCorner && e[kHighX] < kCorner) changes_.corner += e[kJump];
+    if (e[kLowY] <= kCorner && e[kLowX] < kCorner) changes_.corner -= e[kJump];
+  }
+
+  /// All light samples at y and higher.
+  void change_above(float y, float by) {
+    const Tile d;
+    const auto above = static_cast<std::size_t>(
+        std::lower_bound(tiles_.rows.begin(), tiles_.rows.end(), y,
+                         [](const LightTiles::Row& row, float height) { return row.low < height; }) -
+        tiles_.rows.begin());
+    changes_.rows[above] += by;
+    if (above == 0 || tiles_.rows[above - 1].high < y) return;
+    const LightTiles::Row& row = tiles_.rows[above - 1];
+    const std::size_t end = std::size_t{row.first + row.count} * LightTiles::kWide;
+    for (std::size_t i = std::size_t{row.first} * LightTiles::kWide; i < end; i += hn::Lanes(d)) {
+      const auto higher = hn::Ge(hn::LoadU(d, &tiles_.y[i]), hn::Set(d, y));
+      float* slots = changes_.slots + i;
+      hn::StoreU(hn::Add(hn::LoadU(d, slots), hn::IfThenElseZero(higher, hn::Set(d, by))), d, slots);
+    }
+  }
+
+  /// Row by row: tiles left of it do not change, those right of it change as a whole if it has all heights of the row.
+  void cross(const UpwardEdge& e) {
+    own_.reset();
+    const float low_x = e[kLowX], low_y = e[kLowY], high_y = e[kHighY], bottom = e[kBottom], top = e[kTop],
+                slope = e[kSlope], beside = e[kBeside], leftmost = e[kLeftmost], rightmost = e[kRightmost];
+    const auto constant = [&](UpwardField field) { return hn::Set(Tile(), e[field]); };
+    const TestedEdge tested{constant(kLowX), constant(kLowY), constant(kHighY), constant(kWayX),
+                            constant(kWayY), constant(kJump), constant(kNear)};
+    const auto end = tiles_.rows.end();
+    for (auto row = tiles_.rows.begin() + e.edges.tile_row[e.lane]; row != end && row->low <= top; ++row) {
+      if (row->high < bottom) continue;
+      std::uint32_t first = row->first, beyond = row->first + row->count;
+      if (row->count > 1) {
+        const float from = low_x + (std::max(row->low, bottom) - low_y) * slope,
+                    to = low_x + (std::min(row->high, top) - low_y) * slope;
+        const float left = std::max(leftmost, std::min(from, to) - beside),
+                    right = std::min(rightmost, std::max(from, to) + beside);
+        while (first < beyond && tiles_.tile_high[first] < left) ++first;
+        if (low_y <= row->low && row->high < high_y) {
+          const std::uint32_t all = beyond;
+          while (beyond > first && tiles_.tile_low[beyond - 1] > right) --beyond;
+          if (beyond < all) changes_.tiles[beyond] += e[kJump];
+        }
+      }
+      for (std::uint32_t tile = first; tile < beyond; ++tile) test(tile, tested, e);
+    }
+  }
+
+  /// What tiles are tested against: in registers.
+  struct TestedEdge {
+    hn::Vec<Tile> low_x, low_y, high_y, way_x, way_y, jump, near;
+  };
+
+  void test(std::uint32_t tile, const TestedEdge& t, const UpwardEdge& e) {
+    const Tile d;
+    for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
+      const std::size_t slot = std::size_t{tile} * LightTiles::kWide + lane;
+      const auto x = hn::LoadU(d, &tiles_.x[slot]), y = hn::LoadU(d, &tiles_.y[slot]);
+      const auto side = hn::MulSub(hn::Sub(x, t.low_x), t.way_y, hn::Mul(hn::Sub(y, t.low_y), t.way_x));
+      const auto has_y = hn::And(hn::Ge(y, t.low_y), hn::Lt(y, t.high_y));
+      const auto right = hn::And(has_y, hn::Gt(side, hn::Zero(d)));
+      float* slots = changes_.slots + slot;
+      hn::StoreU(hn::Add(hn::LoadU(d, slots), hn::IfThenElseZero(right, t.jump)), d, slots);
+      const auto near = hn::Le(hn::Abs(side), t.near);
+      if (hn::AllFalse(d, near)) continue;
+      HWY_ALIGN float sides[LightTiles::kWide];
+      std::uint8_t which[8] = {};
+      hn::Store(side, d, sides);
+      hn::StoreMaskBits(d, near, which);
+      for (std::uint32_t left = which[0] | std::uint32_t{which[1]} << 8U; left != 0; left &= left - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        look_again(e, slot + i, sides[i]);
+      }
+    }
+  }
+
+  /// An edge with the errors of its own ends.
+  struct OwnEdge {
+    ProjectedEdge placed;
+    float near;  // as kNear
+  };
+  const OwnEdge& own(const UpwardEdge& e) {
+    if (own_) return *own_;
+    const CrossingTable& table = s_.crossing;
+    const std::size_t i = e.crossing();
+    PreciseInput precise = precise_of(e);
+    precise.projected = {glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
+    const float error = table[kError][i], wide = std::abs(e[kWayX]);
+    const ProjectedEdge placed =
+        place_edge(precise, s_.open).value_or(ProjectedEdge{.error_near = error, .error_far = error});
+    return own_.emplace(OwnEdge{
+        placed, 1.2F * (placed.error_near + placed.error_far) * (wide + e[kWayY]) + 16 * kRound * wide * e[kWayY]});
+  }
+  [[nodiscard]] PreciseInput precise_of(const UpwardEdge& e) const {
+    const auto number = std::bit_cast<std::uint32_t>(s_.crossing[kEdge][e.crossing()]);
+    return {in_, *at_, number & ~kUnsettled, s_.crossing[kK][e.crossing()], (number & kUnsettled) == 0, std::nullopt};
+  }
+
+  /// A light sample that the edge's line passes within the group's error.
+  void look_again(const UpwardEdge& e, std::size_t slot, float side) {
+    const float x = tiles_.x[slot], y = tiles_.y[slot];
+    if (y < e[kBottom] || y > e[kTop] || x < e[kLeftmost] || x > e[kRightmost]) return;
+    const auto& [s, near] = own(e);
+    if (std::abs(side) > near) return;
+    const std::uint32_t sample = tiles_.sample_of[slot];
+    // Where an end may be on either side of it, so may be what goes on from there.
+    const bool at_end = std::abs(s.near.y - y) < 2 * s.error_near || std::abs(s.far.y - y) < 2 * s.error_far;
+    const bool has_y = e[kLowY] <= y && y < e[kHighY];
+    const int exact = at_end || s.may_be_cut || !has_y ? 0 : side_of_sample(precise_of(e), sample);
+    if (exact == 0 && (at_end || s.may_be_cut || has_y)) s_.open.samples.push_back(sample);
+    const bool is_right = (exact < 0) == (s_.crossing[kY0][e.crossing()] < s_.crossing[kY1][e.crossing()]);
+    if (exact != 0 && is_right != (side > 0)) changes_.slots[slot] += is_right ? e[kJump] : -e[kJump];
+  }
+
+  const ScatterInput& in_;
+  const LightTiles& tiles_;
+  Scratch& s_;
+  PointChanges& changes_;
+  OpenJudge& judge_;
+  const ClusterSample* at_ = nullptr;
+  std::optional<OwnEdge> own_;  // of the edge that is being added
+};
+
+/// Calls `visit(tile, change)` with how the depth changes from the light's corner to a tile, less what slots have.
+template <typename Visit>
+void for_each_tile(const LightTiles& tiles, const PointChanges& changes, Visit visit) {
+  float at_row = -changes.corner;
+  for (std::size_t i = 0; i < tiles.rows.size(); ++i) {
+    at_row += changes.rows[i];
+    float change = at_row;
+    for (std::uint32_t tile = tiles.rows[i].first; tile < tiles.rows[i].first + tiles.rows[i].count; ++tile) {
+      change += changes.tiles[tile];
+      visit(tile, change);
+    }
+  }
+}
+
+/// A light sample is visible where the depth is 0.
+void sum_up(const LightTiles& tiles, const PointChanges& changes, std::int32_t depth_at_corner, SampleMask& mask) {
+  const Tile d;
+  std::uint32_t visible = 0;
+  for_each_tile(tiles, changes, [&](std::uint32_t tile, float change) {
+    const auto none = hn::Set(d, -(static_cast<float>(depth_at_corner) + change));
+    std::uint32_t bits = 0;
+    for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, hn::Eq(hn::LoadU(d, changes.slots + tile * LightTiles::kWide + lane), none), bytes);
+      bits |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << lane;
+    }
+    mask.bits[tile] = static_cast<std::uint16_t>(bits & tiles.used[tile]);
+    visible += static_cast<std::uint32_t>(std::popcount(mask.bits[tile]));
+  });
+  mask.visible = visible;
+}
+
+/// D at the light's corner as the edges have it, from D at a light sample that is not open: exact predicates count
+/// there. It may be less than 0, since an edge may pass the corner on the wrong side.
+std::int32_t depth_by_a_sample(const LightTiles& tiles, const PointChanges& changes, Open& open,
+                               const ClusterSample& at, OpenJudge& judge) {
+  std::optional<std::int32_t> depth;
+  for_each_tile(tiles, changes, [&](std::uint32_t tile, float change) {
+    for (std::size_t slot = std::size_t{tile} * LightTiles::kWide; slot < (tile + std::size_t{1}) * LightTiles::kWide;
+         ++slot) {
+      const std::uint32_t sample = tiles.sample_of[slot];
+      if (depth || sample == LightTiles::kNone) return;
+      if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;
+      depth =
+          static_cast<std::int32_t>(judge.depth(at, sample)) - static_cast<std::int32_t>(change + changes.slots[slot]);
+    }
+  });
+  if (!depth) open.pixel = true;
+  return depth.value_or(0);
+}
+
+/// One view sample, its group's edges sorted out.
+void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge,
+                    SampleMask& mask) {
+  const LightTiles& tiles = *in.grid.tiles;
+  const std::size_t some = scratch.lists.settled.count + scratch.lists.unsettled.count;
+  std::int32_t depth = 0;
+  if (scratch.lists.triangles.count > 0) {
+    depth = static_cast<std::int32_t>(
+        count_to_corner({in.grid, in.tree, scratch.lists.triangles, at, some == 0, in.light_plane}, scratch.open));
+  }
+  scratch.depths.assign(tiles.tile_count() * LightTiles::kWide, 0);
+  scratch.tile_changes.assign(tiles.tile_count(), 0);
+  scratch.row_changes.assign(tiles.rows.size() + 1, 0);
+  PointChanges changes{scratch.depths.data(), scratch.tile_changes.data(), scratch.row_changes.data()};
+  const bool changes_any = some > 0 && PointScatter(in, scratch, changes, judge)(at);
+  if (scratch.open.corner) depth = depth_by_a_sample(tiles, changes, scratch.open, at, judge);
+  if (changes_any) {
+    sum_up(tiles, changes, depth, mask);
+  } else {
+    mask.visible = depth == 0 ? static_cast<std::uint32_t>(in.grid.points.size()) : 0;
+    if (at.straddles || scratch.open.any()) fill(in.grid, depth == 0, mask);
+  }
+  if (at.straddles) cut_at_horizon(in.grid, at, scratch.open, mask);
+}
+
+void scatter_points_here(const ScatterInput& in, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+  for_each_sample(in, scratch.lists, [&](std::size_t i) {
+    const ClusterSample& at = in.samples[i];
+    reset_open(in.grid, in.touch, at, scratch.open);
+    scatter_sample(in, scratch, at, judge, masks[i]);
+    if (scratch.open.any()) judge.decide(at, scratch.open, masks[i]);
+  });
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::volumes {
+
+HWY_EXPORT(scatter_points_here);
+
+void scatter_points(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks) {
+  HWY_DYNAMIC_DISPATCH(scatter_points_here)(input, scratch, judge, masks);
+}
+
+}  // namespace penumbra::volumes
+#endif
