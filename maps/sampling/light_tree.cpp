@@ -112,7 +112,7 @@ std::vector<double> LightTree::weights(PointWeights kind, const Light& light) co
     const double area = (upper.x - lower.x) * (upper.y - lower.y), given = light(lower, upper);
     for (const glm::uvec2& corner : corners(leaf)) {
       Around& point = around[index_.at(key(corner))];
-      point.depth = std::max(point.depth, leaf.depth);
+      point.depth = leaf.depth;  // of what came before none is deeper
       point.area += area;
       point.light += given;
     }

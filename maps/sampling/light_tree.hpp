@@ -49,7 +49,7 @@ class LightTree {
   /// the new cells.
   void split(std::span<const std::uint8_t> differs, std::size_t most);
 
-  /// The cells that were not split.
+  /// The cells that were not split, level by level: in the order of depth.
   [[nodiscard]] const std::vector<Cell>& leaves() const { return leaves_; }
   /// How much light a rectangle of the unit square (lower, upper) gives.
   using Light = std::function<double(const glm::dvec2&, const glm::dvec2&)>;

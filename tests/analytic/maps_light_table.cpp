@@ -5,13 +5,18 @@
 #include "reference/exact_method.hpp"
 #include "tests/analytic/backprojection_scenes.hpp"
 
-#include <random>
+#include <array>
 
 namespace penumbra::tests {
 namespace {
 
 class MapsLightTable : public MapsTest {
  protected:
+  /// Both methods, of 256² texels, each of which is asked.
+  static std::array<Masks, 2> both(const Stage& stage) {
+    return {run(maps::make_backproject, stage, {{"size", "256"}}),
+            run(maps::make_backproject_peel, stage, {{"size", "256"}, {"samples", "0"}})};
+  }
   static visibility::Light light_of(const scenes::Scene& scene) {
     return visibility::make_light(scene, 0, glm::dvec3(0), light_samples(1));
   }
@@ -80,13 +85,18 @@ TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
   }
 }
 
-TEST_F(MapsLightTable, WeighsATexturesTexels) {
-  scenes::Scene scene = bare_floor(1);
+/// Of its texels' sum, 24, the columns have 5, 7 and 12, the rows from below 18 and 6.
+scenes::Texture three_by_two() {
   scenes::Texture texture;
   texture.width = 3;
   texture.height = 2;
   texture.texels = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}, {5, 5, 5}, {9, 9, 9}};  // the upper row first
-  scene.lights.front().texture = texture;
+  return texture;
+}
+
+TEST_F(MapsLightTable, WeighsATexturesTexels) {
+  scenes::Scene scene = bare_floor(1);
+  scene.lights.front().texture = three_by_two();
   const visibility::Light light = light_of(scene);
   const maps::LightTableData data = maps::light_table(light, maps::light_basis(light));
   EXPECT_NEAR(share(data, {1, 1}), 1, 1e-6);
@@ -108,8 +118,7 @@ TEST_F(MapsLightTable, ADiskBehindAHalfPlane) {
   const double texel = (0.8 + 2 * kRadius * (1 / 3.0 - 1 / 5.0)) / 254;
   const double bound = texel * 7.5 * 2 / (std::numbers::pi * kRadius);
   double most = 0;
-  for (const Factory& factory : {Factory(maps::make_backproject), Factory(maps::make_backproject_peel)}) {
-    const Masks found = run(factory, stage, {{"size", "256"}});
+  for (const Masks& found : both(stage)) {
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       const double x = static_cast<double>(stage.samples.p[i].x) + stage.floats.origin.x;
       // The light point at s is hidden where the ray from x is beyond the edge at height 2 of 5.
@@ -120,6 +129,34 @@ TEST_F(MapsLightTable, ADiskBehindAHalfPlane) {
   }
   fmt::print("disk behind a half-plane: off by at most {:.4f}, bound {:.4f}\n", most, bound);
   EXPECT_LT(most, bound);
+}
+
+// The same edge before a square of half-size 1 whose table has 3 × 2 cells, so that nearly all V come from inside of
+// them; across the columns, and across the rows. Of a unit of length no column has more than 12/24 / (2/3) of the
+// light, no row more than 18/24.
+TEST_F(MapsLightTable, ATextureBehindAHalfPlane) {
+  constexpr double kEdge = 0.3, kMost = 0.75;
+  const double texel = (0.8 + 2 * (1 / 3.0 - 1 / 5.0)) / 254, bound = texel * 7.5 * kMost;
+  for (const bool across_rows : {false, true}) {
+    scenes::Scene scene = bare_floor(1);
+    scene.lights.front().texture = three_by_two();
+    add_quad(scene, across_rows ? glm::dvec3(0, 2, kEdge + 3) : glm::dvec3(kEdge + 3, 2, 0),
+             {across_rows ? 4 : 3, 0, 0}, {0, 0, across_rows ? -3 : -4})
+        .receives_shadow = false;
+    const Stage stage = on_floor(scene, 16, light_samples(1));
+    const Masks exact = tests::run(*reference::make_exact({}), stage);
+    for (const Masks& found : both(stage)) {
+      double most = 0;
+      std::size_t partly = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        most = std::max(most, static_cast<double>(std::abs(found.visibility[i] - exact.visibility[i])));
+        partly += exact.visibility[i] > 0.01F && exact.visibility[i] < 0.99F ? 1 : 0;
+      }
+      fmt::print("texture behind a half-plane: off by at most {:.4f}, bound {:.4f}\n", most, bound);
+      EXPECT_LT(most, bound);
+      EXPECT_GT(partly, stage.samples.size() / 5);
+    }
+  }
 }
 
 // Upright receivers below the light see the part of it that is in front of them; nothing casts.

@@ -91,6 +91,7 @@ TEST(LightTree, ACellAddsOneToFivePointsAndNeighboursShareThem) {
     double area = 0;
     for (const LightTree::Cell& leaf : tree.leaves()) area += std::ldexp(1.0, -2 * static_cast<int>(leaf.depth));
     EXPECT_DOUBLE_EQ(area, 1);
+    EXPECT_TRUE(std::ranges::is_sorted(tree.leaves(), {}, &LightTree::Cell::depth));
     EXPECT_NEAR(sum(tree.weights(PointWeights::area, even)), 1, 1e-12);
   }
   EXPECT_TRUE(seen.contains(5));

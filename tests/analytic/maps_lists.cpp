@@ -294,6 +294,41 @@ TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
   EXPECT_EQ(uncovered, 0U);
 }
 
+// Where a board is tilted, images of one map's texels begin at all fractions of the centre's: the middle of a gap of a
+// fiftieth would be met many times.
+TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
+  constexpr std::uint32_t kSize = 40, kSamples = 36;
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_quad(scene, {0, 2, 0}, {0.8, 0.08, 0}, {0, 0, 0.8});
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+  const Stage stage(scene, 4, 4, light_samples(kSamples));
+  Made made(device(), stage, kSize);
+  maps::LayeredDepth product(device(), 0.01);
+  product.make(*made.source);
+  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
+  const auto entries = entries_of(product, kTexels);
+  const double texel_width = 6.0 / (kSize - 2) * 3 / 5;
+  std::size_t inside = 0;
+  for (std::size_t texel = 0; texel < kTexels; ++texel) {
+    const glm::dvec3 way =
+        maps::face_of(made.centre.views.front(), made.basis, 0)
+            .direction(static_cast<std::uint32_t>(texel % kSize), static_cast<std::uint32_t>(texel / kSize), kSize);
+    // The board is at height 2 + x / 10, that is at depth 3 - x / 10.
+    const glm::dvec3 at = 3 / (1 + 0.1 * way.x) * way;
+    if (std::max(std::abs(at.x), std::abs(at.z)) > 0.8 - 2 * texel_width) continue;
+    std::uint32_t board = 0;
+    for (std::size_t e = 0; e < product.layers(); ++e) {
+      const auto& entry = entries[texel * product.layers() + e];
+      if (entry.weight > 0 && entry.t < 4) board += entry.weight;
+    }
+    EXPECT_EQ(board, kSamples) << texel;
+    ++inside;
+  }
+  EXPECT_GT(inside, 50U);
+}
+
 TEST_F(LayeredAttenuation, VCountsSamplesAndTendsToAccumulate) {
   const Stage stage(parallel_square(), 48, 48, light_samples(64));
   const Masks truth = run(maps::make_accumulate, stage, {{"size", "1024"}});
