@@ -329,6 +329,32 @@ TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
   EXPECT_GT(inside, 50U);
 }
 
+// On a slope whose neighbouring texels' depths differ by more than the tolerance, but by less than twice that, their
+// images from beside the centre overlap where it falls away from the sample, and both may be near one layer. Samples
+// weigh 1, 4, 16 and 64: of one that counts twice, an odd bit is set.
+TEST_F(LayeredAttenuation, OnASteepSurfaceAMapCountsOnce) {
+  constexpr std::uint32_t kSize = 40;
+  std::size_t all = 0;
+  for (const double aside : {0.0, 0.01, 0.02, 0.03, 0.04, 0.05}) {  // a texel is 0.1 wide there
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+    add_quad(scene, {aside - 0.5, 2, 0}, {0.4, 0.36, 0}, {0, 0, 1});
+    add_quad(scene, {aside + 0.5, 2, 0}, {0.4, -0.36, 0}, {0, 0, 1});
+    scene.lights.push_back(ceiling_light(5, 1));
+    scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+    Stage stage(scene, 4, 4, {4, 1, 4, visibility::SamplePattern::rows, 0});
+    for (int i = 0; i < 4; ++i) stage.light.weights.push_back(std::ldexp(1.0, 2 * i - 24));
+    Made made(device(), stage, kSize);
+    maps::LayeredDepth product(device(), 0.025);
+    product.make(*made.source);
+    for (const auto& entry : entries_of(product, std::size_t{kSize} * kSize)) {
+      EXPECT_EQ(entry.weight & ~0x55U, 0U) << entry.weight << " at depth " << entry.t;
+      all += entry.weight == 0x55U && entry.t < 4 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(all, 100U);
+}
+
 TEST_F(LayeredAttenuation, VCountsSamplesAndTendsToAccumulate) {
   const Stage stage(parallel_square(), 48, 48, light_samples(64));
   const Masks truth = run(maps::make_accumulate, stage, {{"size", "1024"}});
