@@ -312,6 +312,7 @@ def draw_layers(data):
 
 FIGURES = {
     "course-fusion": (measure_fusion, draw_fusion),
+    "course-layers": (measure_layers, draw_layers),
     "course-pcf": (measure_pcf, draw_pcf),
     "course-variance": (measure_variance, draw_variance),
     "course-pcss": (measure_pcss, draw_pcss),
