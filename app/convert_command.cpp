@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
+#include "app/options.hpp"
 #include "app/output_files.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
@@ -25,6 +26,7 @@ class ConvertCommand : public Command {
         ->required()
         ->type_name("FILE");
     cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
+    add_lamp_options(cli_, lamps_);
   }
 
   int run(const GlobalOptions&) override {
@@ -32,6 +34,7 @@ class ConvertCommand : public Command {
     if (std::ranges::find(kExtensions, out_.extension()) == kExtensions.end()) {
       throw UsageError("-o {}: expected a name that ends in .json, .glb or .obj", out_.string());
     }
+    const scenes::ReadOptions reading = read_options(lamps_, allow_outside_);
     OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});
@@ -39,7 +42,7 @@ class ConvertCommand : public Command {
     scenes::Scene scene;
     {
       const MayExitAtOnce at_once;
-      scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
+      scene = scenes::read_scene(scene_, reading);
     }
     for (const std::filesystem::path& texture : scenes::texture_files(scene, out_)) outputs.add("-o", texture);
     scene.sources.push_back(scene_);
@@ -53,6 +56,7 @@ class ConvertCommand : public Command {
  private:
   std::filesystem::path scene_, out_;
   bool allow_outside_ = false;
+  LampSizes lamps_;
 };
 
 }  // namespace

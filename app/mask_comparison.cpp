@@ -39,8 +39,9 @@ compare::PairVerdicts MaskComparison::decide(Progress& progress) const {
   progress.begin("deciding pairs exactly", kept_.size());
   for (const DifferingPair& pair : kept_) {
     const MayExitAtOnce at_once;
-    const visibility::PairTruth truth = visibility::decide_pair(session_.floats, session_.samples, pair.pixel,
-                                                                session_.lights[question_.light], pair.light_sample);
+    const visibility::PairTruth truth =
+        visibility::decide_pair(session_.floats_for(question_.light), session_.samples, pair.pixel,
+                                session_.lights[question_.light], pair.light_sample);
     const bool visible = truth.outcome == visibility::PairOutcome::visible;
     ++verdicts.decided;
     ++(visible == pair.visible_for_method ? verdicts.method_right : verdicts.reference_right);

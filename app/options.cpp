@@ -3,6 +3,7 @@
 #include "app/methods.hpp"
 #include "app/parse.hpp"
 #include "base/error.hpp"
+#include "scenes/formats/checks.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -83,6 +84,32 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command.add_flag("--allow-outside", options.allow_outside, "let a scene name files outside its own folder");
+  add_lamp_options(command, options.lamps);
+}
+
+void add_lamp_options(CLI::App& command, LampSizes& lamps) {
+  command
+      .add_option("--lamp-radius", lamps.radius,
+                  "glTF: radius of point and spot lamps whose file gives none (default: 0.1)")
+      ->type_name("R");
+  command
+      .add_option("--sun-angle", lamps.sun_angle,
+                  "glTF: apparent diameter in degrees of sun lamps whose file gives none (default: 0.53)")
+      ->type_name("DEGREES");
+}
+
+scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside) {
+  if (lamps.radius && !(*lamps.radius > 0 && *lamps.radius <= scenes::kLargestCoordinate)) {
+    throw UsageError("--lamp-radius {}: expected a length above 0", *lamps.radius);
+  }
+  if (lamps.sun_angle && !(*lamps.sun_angle >= 0 && *lamps.sun_angle < 180)) {
+    throw UsageError("--sun-angle {}: expected degrees from 0 to less than 180", *lamps.sun_angle);
+  }
+  scenes::ReadOptions read;
+  read.allow_outside = allow_outside;
+  read.lamp_radius = lamps.radius;
+  read.sun_angle = lamps.sun_angle;
+  return read;
 }
 
 visibility::SampleRequest parse_light_samples(const RunOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scenes/formats/reader.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/method.hpp"
 
@@ -21,6 +22,11 @@ struct FrameRange {
   std::int64_t first = 0, last = 0;
 };
 
+/// Of glTF lamps whose file gives none.
+struct LampSizes {
+  std::optional<double> radius, sun_angle;
+};
+
 /// What `render` and `compare` have in common, as the user gave it.
 struct RunOptions {
   std::filesystem::path scene;
@@ -32,11 +38,16 @@ struct RunOptions {
   std::string light, camera, device;  ///< empty: the first, the first, the best
   std::vector<std::string> method_options;
   bool allow_outside = false;
+  LampSizes lamps;
 };
 
+/// Adds --lamp-radius and --sun-angle.
+void add_lamp_options(CLI::App& command, LampSizes& lamps);
 /// Adds the options of RunOptions that mean the same in `render` and in `compare`.
 void add_run_options(CLI::App& command, RunOptions& options);
 
+/// How a scene's file is to be read. Throws UsageError for sizes of lamps that are none.
+scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside);
 /// "256" or "16x16"; 1 … 4096 samples. All parsers here throw UsageError that says what would be right.
 visibility::SampleRequest parse_light_samples(const RunOptions& options);
 /// "1920x1080" → width, height.

@@ -34,7 +34,7 @@ void require_mesh_memory(const visibility::MethodDescription& method, const visi
 
 /// One run's times, summed over the lights.
 struct OneRun {
-  double light = 0, evaluate = 0;
+  double mesh = 0, light = 0, evaluate = 0;
 };
 
 /// Runs a method on all lights of a session; knows where the results of the last run go.
@@ -50,6 +50,12 @@ class Host {
       Stopwatch watch;
       {
         const MayExitAtOnce at_once;
+        if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
+          watch.restart();
+          method_.prepare_mesh(floats);
+          mesh_ = &floats;
+          times.mesh += watch.seconds();
+        }
         watch.restart();
         method_.prepare_light(plan_.lights[light]);
         times.light += watch.seconds();
@@ -95,6 +101,7 @@ class Host {
     method_.read_visibility(values);
     for (std::size_t i = 0; i < count; ++i) {
       if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
+      if (classes[i] == PixelClass::unlit) values[i] = 0.0f;
     }
     masks_.clear();
     if (method_.description().output == Output::mask) read_masks(light, classes);
@@ -113,8 +120,9 @@ class Host {
     const std::uint32_t rest = light.sample_count() % 32;
     const std::uint32_t last_word = rest == 0 ? 0xffffffffu : (1u << rest) - 1;
     for (std::size_t i = 0; i < classes.size(); ++i) {
-      if (!lies_in_light_by_rule(classes[i])) continue;
       const std::span<std::uint32_t> mask = std::span(masks_).subspan(i * words, words);
+      if (classes[i] == PixelClass::unlit) std::ranges::fill(mask, 0u);
+      if (!lies_in_light_by_rule(classes[i])) continue;
       std::ranges::fill(mask, 0xffffffffu);
       mask.back() = last_word;
     }
@@ -125,6 +133,7 @@ class Host {
   const RunPlan& plan_;
   const TileSink& sink_;
   Progress& progress_;
+  const visibility::SceneFloats* mesh_ = nullptr;  // that the method has
   std::vector<std::uint32_t> masks_;
   std::vector<glm::dvec3> form_factors_;
 };
@@ -147,9 +156,6 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   {
     const MayExitAtOnce at_once;
     require_mesh_memory(method.description(), session.floats);
-    const Stopwatch mesh;
-    method.prepare_mesh(session.floats);
-    result.times.mesh = mesh.seconds();
   }
 
   Host host(method, session, plan, sink, progress);
@@ -159,6 +165,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
     method.take_pass_times();  // those of earlier runs
     const bool last = run + 1 == plan.runs + discarded;
     const OneRun times = host.run(last, result);
+    if (run == 0) result.times.mesh = times.mesh;  // later runs prepare meshes anew only where lights' casters differ
     if (run < discarded) {
       first = times;
       continue;

@@ -53,7 +53,8 @@ struct MethodRun {
 
 /// Runs a method on a session: mesh once, then light and tiles, and reads the last run's result. In one place for every
 /// method stand the host's rules: background, pixels that carry a light's body, and receivers with receivesShadow =
-/// false are visible from every light sample.
+/// false are visible from every light sample, and those that the light does not light (a mesh's `lights`) from none.
+/// Where a light has casters of its own, the method gets the scene in which nothing else casts.
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress);
 

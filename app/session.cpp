@@ -38,6 +38,20 @@ void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64
                  "choose a smaller --size");
 }
 
+/// Lights with the same casters share a scene.
+void link_casters(Session& session) {
+  std::vector<const std::vector<std::uint8_t>*> known;
+  for (const visibility::Light& light : session.lights) {
+    std::optional<std::size_t>& own = session.linked_of.emplace_back();
+    if (light.unshaded_by.empty()) continue;
+    const auto same = std::ranges::find_if(known, [&](const auto* other) { return *other == light.unshaded_by; });
+    own = static_cast<std::size_t>(same - known.begin());
+    if (same != known.end()) continue;
+    known.push_back(&light.unshaded_by);
+    session.linked.push_back(cast_for(session.floats, light));
+  }
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -54,12 +68,13 @@ Session open_session(const RunOptions& options, DeviceSource& devices, std::uint
   progress.begin("reading " + options.scene.filename().string(), 1);
   // What is wrong with the command line is said before anything long begins.
   const visibility::SampleRequest request = parse_light_samples(options);
+  const scenes::ReadOptions reading = read_options(options.lamps, options.allow_outside);
   const auto size = options.size.empty() ? std::pair<std::uint32_t, std::uint32_t>{} : parse_size(options.size);
 
   Stopwatch load;
   {
     const MayExitAtOnce at_once;
-    session.scene = scenes::read_scene(options.scene, {.allow_outside = options.allow_outside});
+    session.scene = scenes::read_scene(options.scene, reading);
   }
   session.warnings = session.scene.warnings;
   session.width = options.size.empty() ? session.scene.width : size.first;
@@ -79,6 +94,7 @@ Session open_session(const RunOptions& options, DeviceSource& devices, std::uint
                                                     session.floats.origin, request,
                                                     i == 0 ? &session.warnings : nullptr));
   }
+  link_casters(session);
   double load_seconds = load.seconds();
 
   const render::Device& device = devices.device();  // its start-up is nobody's time

@@ -9,6 +9,7 @@
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct Session {
   scenes::Scene scene;
   std::uint32_t width = 0, height = 0;
   visibility::SceneFloats floats;
-  std::size_t camera_index = 0;  ///< the chosen one of scene.cameras
+  std::vector<visibility::SceneFloats> linked;  ///< the scene as some lights have it, whose casters are not all
+  std::size_t camera_index = 0;                 ///< the chosen one of scene.cameras
   visibility::PinholeCamera camera;
   visibility::ViewSamples samples;
   std::vector<visibility::Light> lights;  ///< the chosen one first, then the others in the scene's order
@@ -29,7 +31,13 @@ struct Session {
   double open_seconds = 0;  ///< wall-clock of all that made this session
   std::vector<std::string> warnings;
 
+  std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, its own among these; nothing: `floats`
+
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width} * height; }
+  /// The scene as it casts shadows of this one of `lights`.
+  [[nodiscard]] const visibility::SceneFloats& floats_for(std::size_t light) const {
+    return light < linked_of.size() && linked_of[light] ? linked[*linked_of[light]] : floats;
+  }
 };
 
 /// Reads the scene and finds its view samples on the device; once if `runs` is 0, else `runs` times after a

@@ -84,6 +84,8 @@ Ground make_ground(const Subject& subject, const render::Device& device) {
   ground.scene = read_subject(subject);
   ground.pattern = subject.pattern;
   ground.floats = visibility::make_scene_floats(ground.scene);
+  if (const visibility::Light light = light_of(ground, 1); !light.unshaded_by.empty())
+    ground.floats = cast_for(ground.floats, light);
   const auto camera =
       visibility::make_camera(ground.scene.cameras.front(), ground.floats.origin, subject.size, subject.size);
   ground.samples = render::VisibilityBuffer(device, ground.floats).render(camera);

@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "compare/visible_light.hpp"
+#include "visibility/receivers.hpp"
 
 #include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
@@ -42,13 +43,15 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
     if (in.samples.triangle[i] < 0) continue;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     if (in.scene.emits[triangle] >= 0) continue;
+    if (!is_lit_by(in.scene, light, static_cast<std::uint32_t>(triangle))) continue;
     const visibility::UnshadowedLight view(light, in.samples.p[i], in.samples.n[i]);
     if (!view.shines()) continue;
     const LitPoint at{view, in.samples.p[i]};
     const bool shadowed = in.scene.receives_shadow[triangle] != 0;
     const glm::dvec3 form_factor =
         shadowed ? form_factor_of(at, visible, seen, i, light.words_per_mask()) : visible.unshadowed(at);
-    beauty[i - begin] += in.colors[in.scene.object[triangle]] * light.radiance * form_factor;
+    beauty[i - begin] +=
+        in.colors[in.scene.object[triangle]] * light.radiance * spot_share(light, in.samples.p[i]) * form_factor;
   }
 }
 

@@ -151,18 +151,18 @@ std::string report_data_html(const ReportInput& in) {
     if (!has_packed_numbers(in.methods[i])) continue;
     entries.push_back(entry_json(in.methods[i], {in.metrics.methods[i].entry, "samples", false}, blobs));
   }
-  const Json data{
-      {"width", in.metrics.reference.width},
-      {"height", in.metrics.reference.height},
-      {"exposure", in.exposure},
-      {"errorLimit", in.error_limit},
-      {"background", kBackgroundColor},
-      {"tooBright", colors(error_colors(true))},
-      {"tooDark", colors(error_colors(false))},
-      {"classNames",
-       {"background", "a light’s body", "receives no shadow", "judged", "at the horizon", "behind the light"}},
-      {"lights", lights},
-      {"entries", entries}};
+  const Json data{{"width", in.metrics.reference.width},
+                  {"height", in.metrics.reference.height},
+                  {"exposure", in.exposure},
+                  {"errorLimit", in.error_limit},
+                  {"background", kBackgroundColor},
+                  {"tooBright", colors(error_colors(true))},
+                  {"tooDark", colors(error_colors(false))},
+                  {"classNames",
+                   {"background", "a light’s body", "receives no shadow", "judged", "at the horizon",
+                    "behind the light", "not lit by this light"}},
+                  {"lights", lights},
+                  {"entries", entries}};
   // A name may hold "</script": the only thing that could end the element.
   std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
   for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);

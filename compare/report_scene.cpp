@@ -33,7 +33,10 @@ struct ShapeText {
     return fmt::format("a polygon of {} corners", p.vertices.size());
   }
   std::string operator()(const scenes::Sphere& s) const {
-    return fmt::format("a sphere of radius {:.4g} at {}", s.radius, text_of(s.center));
+    const std::string cone = s.cone ? fmt::format(" that shines {:.4g}° to {:.4g}° around {}", s.cone->inner,
+                                                  s.cone->outer, text_of(s.cone->direction))
+                                    : "";
+    return fmt::format("a sphere of radius {:.4g} at {}{}", s.radius, text_of(s.center), cone);
   }
 };
 

@@ -23,6 +23,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -51,12 +52,26 @@ bool parse(std::string_view text, std::uint64_t& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+/// `flag` is --name=NUMBER.
+bool parse_number(std::string_view flag, std::string_view name, std::optional<double>& value) {
+  if (!flag.starts_with(name)) return false;
+  flag.remove_prefix(name.size());
+  double number = 0;
+  const auto [end, error] = std::from_chars(flag.data(), flag.data() + flag.size(), number);
+  value = number;
+  return error == std::errc() && end == flag.data() + flag.size();
+}
+
 bool parse(int argc, char** argv, Arguments& arguments) {
   if (argc < 6) return false;
   arguments.kind = argv[1];
   arguments.file = argv[5];
   for (int i = 6; i < argc; ++i) {
     const std::string_view flag = argv[i];
+    if (parse_number(flag, "--lamp-radius=", arguments.options.lamp_radius) ||
+        parse_number(flag, "--sun-angle=", arguments.options.sun_angle)) {
+      continue;
+    }
     if (flag != "--allow-outside" && flag != "--without-light") return false;
     arguments.options.allow_outside |= flag == "--allow-outside";
     arguments.options.needs_light &= flag != "--without-light";

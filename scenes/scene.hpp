@@ -4,8 +4,10 @@
 
 #include <glm/vec3.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -20,6 +22,7 @@ struct Object {
   bool casts_shadow = true;
   bool receives_shadow = true;
   std::optional<std::uint32_t> emits;  ///< the light (index into Scene::lights) that this mesh is the body of
+  std::optional<std::vector<std::uint32_t>> lit_by = {};  ///< by these lights alone (ascending); nothing: by all
 };
 
 struct Rectangle {
@@ -32,9 +35,16 @@ struct Disk {
 struct Polygon {
   std::vector<glm::dvec3> vertices;  ///< flat, convex, counter-clockwise seen from the side it emits to
 };
+/// Of a spot lamp, half angles in degrees, 0 ≤ inner < outer ≤ 90: what is lit is full within `inner` of the direction,
+/// dark beyond `outer`, and falls between as KHR_lights_punctual says (visibility::spot_share).
+struct Cone {
+  glm::dvec3 direction;  ///< unit length
+  double inner = 0, outer = 45;
+};
 struct Sphere {
   glm::dvec3 center;
   double radius = 0;
+  std::optional<Cone> cone = {};  ///< none: it shines all around
 };
 /// The points center + s half_u + t half_v with s² + t² ≤ 1; emits to the side that half_u × half_v points to.
 struct Ellipse {
@@ -45,6 +55,11 @@ struct Sun {
   glm::dvec3 direction;  ///< the way its light travels (unit length)
   double angle = 0;      ///< its full apparent diameter in degrees, 0 ≤ angle < 180; 0: a point
 };
+/// The irradiance, over the radiance, that a sun gives a surface that faces it: π sin²(angle / 2).
+inline double irradiance_of_radiance(const Sun& sun) {
+  const double sine = std::sin(sun.angle / 360 * std::numbers::pi);
+  return std::numbers::pi * sine * sine;
+}
 using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse, Sun>;
 
 /// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
@@ -62,7 +77,8 @@ struct AreaLight {
   LightShape shape;
   glm::dvec3 radiance{10.0};  ///< of a sun of angle 0, which has none: irradiance of what faces it
   bool two_sided = false;
-  std::optional<Texture> texture = {};  ///< of a rectangle only
+  std::optional<Texture> texture = {};          ///< of a rectangle only
+  std::vector<std::uint32_t> unshaded_by = {};  ///< objects (ascending) that cast no shadow of this light
 };
 
 struct Camera {

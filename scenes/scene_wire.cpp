@@ -36,7 +36,10 @@ struct PutShape {
   void operator()(const Rectangle& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
   void operator()(const Disk& shape) const { to.put(shape.center), to.put(shape.normal), to.put(shape.radius); }
   void operator()(const Polygon& shape) const { to.put_array(std::span<const glm::dvec3>(shape.vertices)); }
-  void operator()(const Sphere& shape) const { to.put(shape.center), to.put(shape.radius); }
+  void operator()(const Sphere& shape) const {
+    to.put(shape.center), to.put(shape.radius), put_bool(to, shape.cone.has_value());
+    if (shape.cone) to.put(shape.cone->direction), to.put(shape.cone->inner), to.put(shape.cone->outer);
+  }
   void operator()(const Ellipse& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
   void operator()(const Sun& shape) const { to.put(shape.direction), to.put(shape.angle); }
 };
@@ -65,6 +68,10 @@ LightShape get_shape(WireReader& from) {
     case 3: {
       Sphere shape;
       shape.center = get_vector(from), shape.radius = get_number(from);
+      if (from.get_bool()) {
+        Cone& cone = shape.cone.emplace();
+        cone.direction = get_vector(from), cone.inner = get_number(from), cone.outer = get_number(from);
+      }
       return shape;
     }
     case 4: {

@@ -7,6 +7,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/explain.cpp
   cli/inspect.cpp
   cli/interrupt.cpp
+  cli/lights.cpp
   cli/options.cpp
   cli/options_together.cpp
   cli/options_together_support.cpp

@@ -134,6 +134,10 @@ struct Builder {
       light.center.x = std::numeric_limits<float>::infinity();  // refused by make_light
     }
     for (const glm::dvec2& sample : unit) light.coordinates.push_back(concentric_disk(sample));
+    if (!shape.cone) return;
+    const double inner = std::cos(glm::radians(shape.cone->inner)), outer = std::cos(glm::radians(shape.cone->outer));
+    const double scale = 1 / std::max(0.001, inner - outer);
+    light.spot = Light::Spot{glm::normalize(shape.cone->direction), scale, -outer * scale};
   }
 
   void operator()(const scenes::Sun& shape) const {
@@ -235,6 +239,18 @@ void add_texture(Light& light, const scenes::Texture& source) {
   }
 }
 
+void add_links(Light& light, const scenes::Scene& scene, std::uint32_t light_index) {
+  const std::vector<std::uint32_t>& passed = scene.lights[light_index].unshaded_by;
+  if (!passed.empty()) light.unshaded_by.assign(scene.objects.size(), 0);
+  for (const std::uint32_t object : passed) light.unshaded_by.at(object) = 1;
+  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+    const auto& lit_by = scene.objects[object].lit_by;
+    if (!lit_by || std::ranges::find(*lit_by, light_index) != lit_by->end()) continue;
+    light.unlit.resize(scene.objects.size());
+    light.unlit[object] = 1;
+  }
+}
+
 }  // namespace
 
 const char* name_of(LightKind kind) {
@@ -296,6 +312,7 @@ Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const gl
                      light.name, origin.x, origin.y, origin.z);
   }
   if (source.texture) add_texture(light, *source.texture);
+  add_links(light, scene, light_index);
   return light;
 }
 
@@ -337,6 +354,16 @@ LightFrame light_frame_from(const Light& light, const glm::vec3& p) {
 
 glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
   return light.sun ? glm::dvec3(l) : glm::dvec3(l) - glm::dvec3(p);
+}
+
+double spot_share(const Light& light, const glm::vec3& p) {
+  if (!light.spot) return 1;
+  const glm::dvec3 way = glm::dvec3(p) - glm::dvec3(light.center);
+  const double length = glm::length(way);
+  if (length == 0) return 0;
+  const double share =
+      glm::clamp(glm::dot(way, light.spot->direction) / length * light.spot->scale + light.spot->offset, 0.0, 1.0);
+  return share * share;
 }
 
 PointBounds point_bounds(const Light& light) {

@@ -59,6 +59,13 @@ struct Light {
   };
   std::optional<Directions> sun = {};
 
+  /// Of a spot lamp: what spot_share makes of the cosine between this direction and the way to p.
+  struct Spot {
+    glm::dvec3 direction{0, -1, 0};
+    double scale = 1, offset = 0;
+  };
+  std::optional<Spot> spot = {};
+
   SamplePattern pattern = SamplePattern::rows;
   std::uint32_t rows = 0, columns = 0;  ///< rows and grid: sample j = row · columns + column; else rows = 0
   std::vector<double> row_shift;        ///< rows pattern: each row's shift in cells, in (−0.5, 0.5); else empty
@@ -72,6 +79,12 @@ struct Light {
                                          ///< up to exactly 1 (sample_weights). Else empty: each is 1 / N
   std::vector<glm::vec3> sample_colors;  ///< with a texture, of each light sample: its texel's colour. Else empty
 
+  /// For each object of the scene, 1: it casts no shadow of this light. Empty: none such. Methods need not look: the
+  /// host gives them a scene in which these cast none (cast_for).
+  std::vector<std::uint8_t> unshaded_by = {};
+  /// For each object, 1: this light does not light it, V = 0. Empty: none such. The host's business, too.
+  std::vector<std::uint8_t> unlit = {};
+
   [[nodiscard]] std::uint32_t sample_count() const { return static_cast<std::uint32_t>(coordinates.size()); }
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count() + 31) / 32; }
 };
@@ -79,6 +92,11 @@ struct Light {
 /// The way from p to one of its light points; of a sun, whose points are directions, that itself. Not rounded where
 /// double holds the difference.
 glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
+
+/// How bright a spot lamp's cone is at p, in [0, 1], by the formula that KHR_lights_punctual recommends: c the cosine
+/// of the angle at the lamp's centre between its direction and p, clamp((c − cos outer) / max(0.001, cos inner − cos
+/// outer))². 1 of what has no cone. It multiplies radiance; V knows nothing of it.
+double spot_share(const Light& light, const glm::vec3& p);
 
 /// Bounds all light points of all view samples.
 struct PointBounds {

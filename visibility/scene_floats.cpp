@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "visibility/light_samples.hpp"
 #include "visibility/plane_ids.hpp"
 
 #include <glm/common.hpp>
@@ -137,6 +138,15 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
     floats.emits[i] = object.emits ? static_cast<std::int32_t>(*object.emits) : -1;
   }
   return floats;
+}
+
+SceneFloats cast_for(const SceneFloats& scene, const Light& light) {
+  SceneFloats linked = scene;
+  if (light.unshaded_by.empty()) return linked;
+  for (std::size_t i = 0; i < linked.triangles.size(); ++i) {
+    if (light.unshaded_by[linked.object[i]] != 0) linked.casts_shadow[i] = 0;
+  }
+  return linked;
 }
 
 }  // namespace penumbra::visibility

@@ -41,4 +41,8 @@ struct SceneFloats {
 /// is so small that float32 loses digits.
 SceneFloats make_scene_floats(const scenes::Scene& scene);
 
+struct Light;
+/// The scene in which nothing casts but what casts shadows of this light (Light::unshaded_by).
+SceneFloats cast_for(const SceneFloats& scene, const Light& light);
+
 }  // namespace penumbra::visibility

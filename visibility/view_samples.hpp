@@ -67,6 +67,7 @@ enum class PixelClass : std::uint8_t {
   judged,      ///< the whole light is above the tangent plane and p is in front of the light
   horizon,     ///< some of the light is not strictly above the tangent plane
   behind,      ///< p is not strictly on an emitting side of the light
+  unlit,       ///< the carrier's object is not among those that the light lights: V = 0
 };
 
 /// Exact (the predicates of pair_truth on the stored floats; the light by its outline). One entry a pixel.

@@ -110,8 +110,9 @@ class WedgesCommand : public Command {
     const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
+    if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
     if (light.sun) {
       throw InputError("light \"{}\" is a sun; wedges are of lights in the scene: take another (--light)", light.name);
     }

@@ -22,7 +22,7 @@ using visibility::PixelClass;
 using volumes::LayerSum;
 
 const char* name_of(PixelClass kind) {
-  static constexpr std::array kNames = {"background", "emitter", "unshadowed", "judged", "horizon", "behind"};
+  static constexpr std::array kNames = {"background", "emitter", "unshadowed", "judged", "horizon", "behind", "unlit"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -124,7 +124,7 @@ Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y) {
   if (result.kind == PixelClass::background) return result;
   result.sample = {samples.p[pixel], static_cast<std::uint32_t>(samples.triangle[pixel]), samples.facing[pixel]};
   result.object = input.scene.objects[input.floats.object[result.sample.carrier]].name;
-  result.given = result.kind == PixelClass::behind ? 0 : 1;
+  result.given = result.kind == PixelClass::behind || result.kind == PixelClass::unlit ? 0 : 1;
   if (result.kind != PixelClass::judged && result.kind != PixelClass::horizon) return result;
   const volumes::SoftVisibility soft(input.floats, input.light, input.casters);
   result.center = soft.at(result.sample, volumes::Viewer::center);
@@ -181,6 +181,9 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
     case PixelClass::behind:
       fmt::print("{} at {} is behind the light; V = 0\n", explanation.object,
                  text_of(glm::dvec3(explanation.sample.p)));
+      return;
+    case PixelClass::unlit:
+      fmt::print("{} is not lit by this light; V = 0\n", explanation.object);
       return;
     case PixelClass::judged:
     case PixelClass::horizon:

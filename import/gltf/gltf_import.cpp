@@ -5,6 +5,7 @@
 #include "import/gltf/gltf_accessor.hpp"
 #include "import/gltf/gltf_load.hpp"
 #include "import/gltf/gltf_nodes.hpp"
+#include "import/gltf/punctual_lights.hpp"
 
 #include <tiny_gltf.h>
 
@@ -65,7 +66,8 @@ enum class Purpose { lit_scene, any_scene, mesh };
 /// Builds the scene from a parsed model, node by node.
 class GltfImport {
  public:
-  GltfImport(const tinygltf::Model& model, std::string name, Purpose purpose) : model_(model), purpose_(purpose) {
+  GltfImport(const tinygltf::Model& model, std::string name, Purpose purpose, const ReadOptions& options)
+      : model_(model), purpose_(purpose), lamps_(model, options) {
     scene_.name = std::move(name);
   }
 
@@ -76,7 +78,7 @@ class GltfImport {
       if (node.mesh >= 0) add_mesh(node, placed, name);
       if (purpose_ == Purpose::mesh) continue;
       if (node.camera >= 0) add_camera(node, placed, name);
-      if (node.extensions.contains("KHR_lights_punctual")) ++punctual_lights_;
+      if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, placed, name);
     }
     if (scene_.soup.triangles.empty()) {
       throw InputError(
@@ -86,11 +88,10 @@ class GltfImport {
     }
     if (scene_.lights.empty() && purpose_ == Purpose::lit_scene) {
       throw InputError(
-          "there is no area light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
-          "material with emission (Emission Strength above 0); point, spot, sun and area lamps do not become area "
-          "lights "
-          "in glTF ({} lamps found){}",
-          punctual_lights_, refused_lights_.empty() ? "" : "; emissive but no light: " + refused_lights_);
+          "there is no light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
+          "material with emission (Emission Strength above 0), or add a point, spot or sun lamp and export with "
+          "Punctual Lights (area lamps are lost in glTF){}",
+          refused_lights_.empty() ? "" : "; emissive but no light: " + refused_lights_);
     }
     if (scene_.cameras.empty() && purpose_ != Purpose::mesh) add_camera_that_sees_all();
     add_warnings();
@@ -254,7 +255,7 @@ class GltfImport {
       return std::nullopt;
     }
     AreaLight light;
-    light.name = look.name;
+    light.name = unique_name(light_names_, look.name);
     if (const auto* rectangle = std::get_if<Rectangle>(&shape))
       light.shape = *rectangle;
     else
@@ -263,6 +264,13 @@ class GltfImport {
     light.two_sided = material.doubleSided;
     scene_.lights.push_back(std::move(light));
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
+  }
+
+  void add_lamp(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    AreaLight light = lamps_.light_of(node, placed);
+    if (light.radiance == glm::dvec3(0)) return;  // off
+    light.name = unique_name(light_names_, name);
+    scene_.lights.push_back(std::move(light));
   }
 
   void add_camera(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
@@ -313,8 +321,7 @@ class GltfImport {
     const auto count = [&](std::uint64_t number, const char* what) {
       if (number > 0) scene_.warnings.push_back(fmt::format("{} {}", number, what));
     };
-    count(punctual_lights_,
-          "point, spot or sun lamps ignored (KHR_lights_punctual): only emissive flat meshes are lights");
+    if (purpose_ != Purpose::mesh) lamps_.add_warnings(scene_.warnings);
     count(other_cameras_, "orthographic cameras ignored");
     count(points_and_lines_, "primitives of points or lines skipped");
     count(without_positions_, "primitives without POSITION skipped");
@@ -339,18 +346,18 @@ class GltfImport {
   const tinygltf::Model& model_;
   Purpose purpose_;
   Scene scene_;
-  std::set<std::string> object_names_, camera_names_;
+  PunctualLights lamps_;
+  std::set<std::string> object_names_, camera_names_, light_names_;
   std::string refused_lights_;
-  std::uint64_t punctual_lights_ = 0, other_cameras_ = 0, points_and_lines_ = 0, without_positions_ = 0,
-                without_triangles_ = 0, leftover_indices_ = 0, skinned_ = 0, morphed_ = 0, textured_ = 0,
-                emissive_textures_ = 0, emissive_ = 0;
+  std::uint64_t other_cameras_ = 0, points_and_lines_ = 0, without_positions_ = 0, without_triangles_ = 0,
+                leftover_indices_ = 0, skinned_ = 0, morphed_ = 0, textured_ = 0, emissive_textures_ = 0, emissive_ = 0;
 };
 
-Scene import_for(Purpose purpose, const mesh::InputFile& input, bool allow_outside) {
+Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOptions& options) {
   tinygltf::Model model;
-  load_gltf_model(input, allow_outside, model);
+  load_gltf_model(input, options.allow_outside, model);
   try {
-    return GltfImport(model, input.name.filename().string(), purpose).run();
+    return GltfImport(model, input.name.filename().string(), purpose, options).run();
   } catch (const InputError& error) {
     throw InputError("{}: {}", input.name.string(), error.what());  // places alone do not say in which file
   }
@@ -359,11 +366,11 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, bool allow_outsi
 }  // namespace
 
 Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options) {
-  return import_for(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options.allow_outside);
+  return import_for(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options);
 }
 
 mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside) {
-  Scene scene = import_for(Purpose::mesh, input, allow_outside);
+  Scene scene = import_for(Purpose::mesh, input, {.allow_outside = allow_outside});
   mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings), {}};
   // One object, whose faces are numbered through.
   std::uint32_t number = 0;

@@ -5,12 +5,10 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <type_traits>
 
@@ -79,6 +77,15 @@ void check_shape(const Disk& disk, const std::string& where) {
 void check_shape(const Sphere& sphere, const std::string& where) {
   check_position(sphere.center, where, "center");
   check_radius(sphere.radius, where);
+  if (!sphere.cone) return;
+  const auto& [direction, inner, outer] = *sphere.cone;
+  check_position(direction, where, "the cone's direction");
+  if (glm::length(direction) == 0)
+    throw InputError("{}: the cone's direction is zero; expected the way it shines", where);
+  if (!(inner >= 0 && inner < outer && outer <= 90)) {
+    throw InputError("{}: the cone reaches from {} to {} degrees; expected 0 <= inner < outer <= 90", where, inner,
+                     outer);
+  }
 }
 
 void check_shape(const Sun& sun, const std::string& where) {
@@ -150,11 +157,6 @@ glm::dvec3 polygon_normal(const Polygon& polygon) {
   }
   const double length = glm::length(sum);
   return length > 0 ? sum / length : sum;
-}
-
-double irradiance_of_radiance(const Sun& sun) {
-  const double sine = std::sin(glm::radians(sun.angle) / 2);
-  return std::numbers::pi * sine * sine;
 }
 
 void check_light(const AreaLight& light, const std::string& where) {

@@ -11,9 +11,6 @@ namespace penumbra::scenes {
 inline constexpr double kLargestCoordinate = 1e12;
 
 /// Finite, with an area, and a polygon flat and convex: InputError otherwise, naming the vertex and how far it is off.
-/// The irradiance, over the radiance, that a sun gives a surface that faces it: π sin²(angle / 2).
-double irradiance_of_radiance(const Sun& sun);
-
 void check_light(const AreaLight& light, const std::string& where);
 
 /// A view direction, an up direction that is not along it, and a field of view between 0 and 180 degrees.

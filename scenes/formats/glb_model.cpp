@@ -40,6 +40,10 @@ int GlbModel::add_node(tinygltf::Node node) {
   return push(model_.nodes, std::move(node));
 }
 
+int GlbModel::add_lamp(tinygltf::Light lamp) {
+  return push(model_.lights, std::move(lamp));
+}
+
 void GlbModel::add_root(int node) {
   model_.scenes[0].nodes.push_back(node);
 }

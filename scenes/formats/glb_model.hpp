@@ -25,6 +25,8 @@ class GlbModel {
   /// The mesh, and a node of its name that shows it.
   int add_mesh_node(tinygltf::Mesh mesh);
   int add_node(tinygltf::Node node);
+  /// A lamp of KHR_lights_punctual.
+  int add_lamp(tinygltf::Light lamp);
   void add_root(int node);
   void uses_extension(const std::string& name) { model_.extensionsUsed.push_back(name); }
 

@@ -74,6 +74,46 @@ class GlbBuilder {
     glb_.add_root(glb_.add_node(std::move(node)));
   }
 
+  /// A sun, or a sphere with or without a cone; its size goes into the extras.
+  void add_lamp(const AreaLight& light) {
+    tinygltf::Light lamp;
+    lamp.name = light.name;
+    glm::dvec3 way(0, 0, -1), at(0), intensity = light.radiance;
+    tinygltf::Value::Object extras;
+    if (const auto* sun = std::get_if<Sun>(&light.shape)) {
+      lamp.type = "directional";
+      way = sun->direction;
+      if (sun->angle > 0) intensity *= irradiance_of_radiance(*sun);
+      extras["angle"] = tinygltf::Value(sun->angle);
+    } else {
+      const auto& sphere = std::get<Sphere>(light.shape);
+      lamp.type = sphere.cone ? "spot" : "point";
+      at = sphere.center;
+      intensity *= std::numbers::pi * sphere.radius * sphere.radius;
+      extras["radius"] = tinygltf::Value(sphere.radius);
+      if (sphere.cone) {
+        way = sphere.cone->direction;
+        lamp.spot.innerConeAngle = sphere.cone->inner * std::numbers::pi / 180;
+        lamp.spot.outerConeAngle = sphere.cone->outer * std::numbers::pi / 180;
+      }
+    }
+    // The colour is at most 1; the intensity carries the rest.
+    lamp.intensity = std::max({intensity.x, intensity.y, intensity.z});
+    if (lamp.intensity > 0) intensity /= lamp.intensity;
+    lamp.color = {intensity.x, intensity.y, intensity.z};
+    lamp.extras = tinygltf::Value(extras);
+    // A lamp shines along its −Z.
+    const glm::dvec3 back = -glm::normalize(way),
+                     aside = std::abs(back.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 right = glm::normalize(glm::cross(aside, back)), up = glm::cross(back, right);
+    tinygltf::Node node;
+    node.name = light.name;
+    node.matrix = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, at.x, at.y, at.z, 1};
+    node.extensions["KHR_lights_punctual"] =
+        tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(glb_.add_lamp(std::move(lamp)))}});
+    glb_.add_root(glb_.add_node(std::move(node)));
+  }
+
   std::string finish() {
     if (uses_emissive_strength_) glb_.uses_extension(kEmissiveStrength);
     return glb_.encoded();
@@ -100,7 +140,7 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   glb.add_mesh(object.name, positions, indices, glb.add_material(object.name, object.color, light));
 }
 
-/// The light's outline, counter-clockwise seen from where it emits to; empty for a sphere.
+/// The light's outline, counter-clockwise seen from where it emits to; empty for a sphere or sun.
 std::vector<glm::dvec3> outline(const AreaLight& light) {
   if (const auto* r = std::get_if<Rectangle>(&light.shape)) {
     return {r->center - r->half_u - r->half_v, r->center + r->half_u - r->half_v, r->center + r->half_u + r->half_v,
@@ -126,11 +166,7 @@ std::vector<glm::dvec3> outline(const AreaLight& light) {
 
 void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
   const std::vector<glm::dvec3> points = outline(light);
-  if (points.empty()) {
-    notes.push_back(fmt::format("light \"{}\": glTF has no {} lights; left out", light.name,
-                                std::holds_alternative<Sphere>(light.shape) ? "sphere" : "sun"));
-    return;
-  }
+  if (points.empty()) return glb.add_lamp(light);
   if (std::holds_alternative<Disk>(light.shape) || std::holds_alternative<Ellipse>(light.shape)) {
     notes.push_back(
         fmt::format("light \"{}\": glTF has no round lights; written with {} sides", light.name, kDiskSides));
@@ -162,8 +198,14 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
     glb.add_camera(camera, static_cast<double>(scene.width) / scene.height);
   }
   for (const Object& object : scene.objects) {
-    if (object.casts_shadow && object.receives_shadow) continue;
-    notes.push_back(fmt::format("mesh \"{}\": glTF has no shadow flags; left out", object.name));
+    if (!object.casts_shadow || !object.receives_shadow)
+      notes.push_back(fmt::format("mesh \"{}\": glTF has no shadow flags; left out", object.name));
+    if (object.lit_by)
+      notes.push_back(fmt::format("mesh \"{}\": glTF cannot say which lights light it; left out", object.name));
+  }
+  for (const AreaLight& light : scene.lights) {
+    if (light.unshaded_by.empty()) continue;
+    notes.push_back(fmt::format("light \"{}\": glTF cannot say what casts its shadows; left out", light.name));
   }
   file.write(glb.finish());
 }

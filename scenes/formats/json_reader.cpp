@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace penumbra::scenes {
@@ -125,7 +126,13 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
     read_sun_light(value, place, light, scene);
   } else {
     const json& shape = value["sphere"];
-    light.shape = Sphere{read_vector(shape["center"]), shape["radius"].get<double>()};
+    Sphere sphere{read_vector(shape["center"]), shape["radius"].get<double>(), {}};
+    if (shape.contains("cone")) {
+      const json& cone = shape["cone"];
+      sphere.cone =
+          Cone{unit(read_vector(cone["direction"])), cone["inner"].get<double>(), cone["outer"].get<double>()};
+    }
+    light.shape = sphere;
     check("sphere");
   }
   if (value.contains("irradiance") && !value.contains("sun")) {
@@ -163,7 +170,52 @@ Object read_object(const json& value, const Place& place, const std::vector<Area
     if (light == lights.end()) throw InputError("{}: no light is named \"{}\"", (place / "emits").str(), name);
     object.emits = static_cast<std::uint32_t>(light - lights.begin());
   }
+  if (value.contains("lights")) {
+    std::set<std::uint32_t> lit_by;
+    const json& names = value["lights"];
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string name = names[i].get<std::string>();
+      const auto light = std::find_if(lights.begin(), lights.end(), [&](const AreaLight& l) { return l.name == name; });
+      if (light == lights.end()) throw InputError("{}: no light is named \"{}\"", (place / "lights" / i).str(), name);
+      lit_by.insert(static_cast<std::uint32_t>(light - lights.begin()));
+    }
+    object.lit_by.emplace(lit_by.begin(), lit_by.end());
+  }
   return object;
+}
+
+/// The numbers of all meshes with one of these names.
+std::set<std::uint32_t> named_objects(const json& names, const Place& place, const std::vector<Object>& objects) {
+  std::set<std::uint32_t> found;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string name = names[i].get<std::string>();
+    bool any = false;
+    for (std::uint32_t object = 0; object < objects.size(); ++object) {
+      if (objects[object].name != name) continue;
+      found.insert(object);
+      any = true;
+    }
+    if (!any) throw InputError("{}: no mesh is named \"{}\"", (place / i).str(), name);
+  }
+  return found;
+}
+
+/// A light's casters: those included, or all, without those excluded.
+void read_casters(const json& document, const Place& root, Scene& scene) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const json& value = document["lights"][i];
+    if (!value.contains("casters")) continue;
+    const Place place = root / "lights" / i / "casters";
+    const json& casters = value["casters"];
+    std::set<std::uint32_t> included, excluded;
+    const bool some = casters.contains("include");
+    if (some) included = named_objects(casters["include"], place / "include", scene.objects);
+    if (casters.contains("exclude")) excluded = named_objects(casters["exclude"], place / "exclude", scene.objects);
+    for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
+      if (excluded.contains(object) || (some && !included.contains(object)))
+        scene.lights[i].unshaded_by.push_back(object);
+    }
+  }
 }
 
 /// Adds the mesh to the scene as the object of that number.
@@ -216,6 +268,7 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
     scene.objects.push_back(read_object(value, place, scene.lights, fmt::format("mesh{}", index)));
     append(scene.soup, read_mesh(value, place, options, scene), static_cast<std::uint32_t>(index), place);
   }
+  read_casters(document, root, scene);
   return scene;
 }
 

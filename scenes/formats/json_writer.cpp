@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <set>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace penumbra::scenes {
@@ -41,7 +43,13 @@ void write_shape(const Polygon& polygon, TextStream& text) {
 
 void write_shape(const Sphere& sphere, TextStream& text) {
   text.print(R"("sphere": {{"center": )").array(sphere.center);
-  text.print(R"(, "radius": )").number(sphere.radius).print("}}");
+  text.print(R"(, "radius": )").number(sphere.radius);
+  if (sphere.cone) {
+    text.print(R"(, "cone": {{"direction": )").array(sphere.cone->direction);
+    text.print(R"(, "inner": )").number(sphere.cone->inner);
+    text.print(R"(, "outer": )").number(sphere.cone->outer).print("}}");
+  }
+  text.print("}}");
 }
 
 void write_shape(const Ellipse& ellipse, TextStream& text) {
@@ -55,13 +63,28 @@ void write_shape(const Sun& sun, TextStream& text) {
   text.print(R"(, "angle": )").number(sun.angle).print("}}");
 }
 
-void write_light(const AreaLight& light, const std::string& texture_file, TextStream& text) {
+/// "key": ["name", …], each name once.
+void write_names(const char* key, const std::set<std::string>& names, TextStream& text) {
+  text.print(R"("{}": [)", key);
+  bool first = true;
+  for (const std::string& name : names) text.print("{}{}", std::exchange(first, false) ? "" : ", ", quoted(name));
+  text.print("]");
+}
+
+void write_light(const Scene& scene, const AreaLight& light, const std::string& texture_file, TextStream& text) {
   text.print(R"({{"name": {}, )", quoted(light.name));
   std::visit([&](const auto& shape) { write_shape(shape, text); }, light.shape);
   const auto* sun = std::get_if<Sun>(&light.shape);
   text.print(R"(, "{}": )", sun != nullptr && sun->angle == 0 ? "irradiance" : "radiance").array(light.radiance);
   text.print(R"(, "twoSided": {})", light.two_sided);
   if (light.texture) text.print(R"(, "texture": {})", quoted(texture_file));
+  if (!light.unshaded_by.empty()) {
+    std::set<std::string> names;
+    for (const std::uint32_t object : light.unshaded_by) names.insert(scene.objects[object].name);
+    text.print(R"(, "casters": {{)");
+    write_names("exclude", names, text);
+    text.print("}}");
+  }
   text.print("}}");
 }
 
@@ -70,6 +93,12 @@ void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) 
   text.print(R"({{"name": {}, "color": )", quoted(object.name)).array(object.color);
   if (!object.casts_shadow) text.print(R"(, "castsShadow": false)");
   if (!object.receives_shadow) text.print(R"(, "receivesShadow": false)");
+  if (object.lit_by) {
+    std::set<std::string> names;
+    for (const std::uint32_t light : *object.lit_by) names.insert(scene.lights[light].name);
+    text.print(", ");
+    write_names("lights", names, text);
+  }
   if (object.emits) text.print(R"(, "emits": {})", quoted(scene.lights[*object.emits].name));
   text.print(R"(, "triangles": [)");
   for (std::size_t i = 0; i < range.count; ++i) {
@@ -106,7 +135,7 @@ void write_json(const Scene& scene, AtomicFile& file, Notes& notes) {
   text.print("\n  ],\n  \"lights\": [");
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     text.print("{}\n    ", i > 0 ? "," : "");
-    write_light(scene.lights[i], texture_file(file.path(), i).filename().string(), text);
+    write_light(scene, scene.lights[i], texture_file(file.path(), i).filename().string(), text);
   }
   text.print("\n  ]\n}}\n");
   text.flush();

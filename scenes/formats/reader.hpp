@@ -3,12 +3,19 @@
 #include "scenes/scene.hpp"
 
 #include <filesystem>
+#include <optional>
 
 namespace penumbra::scenes {
 
+/// The size of lamps that a glTF file gives none and the user neither: a light bulb's and the sun's, in the scene's
+/// unit and degrees.
+inline constexpr double kLampRadius = 0.1, kSunAngle = 0.53;
+
 struct ReadOptions {
-  bool allow_outside = false;  ///< may the scene name files outside its folder?
-  bool needs_light = true;     ///< glTF: is a scene without an area light an error?
+  bool allow_outside = false;              ///< may the scene name files outside its folder?
+  bool needs_light = true;                 ///< glTF: is a scene without a light an error?
+  std::optional<double> lamp_radius = {};  ///< glTF: of point and spot lamps whose file says none; above 0
+  std::optional<double> sun_angle = {};    ///< glTF: of sun lamps whose file says none, degrees; 0 ≤ angle < 180
 };
 
 /// Reads .json (penumbra-scene/1), .gltf or .glb by the file's extension. What comes back is complete: at least one

@@ -71,6 +71,8 @@ std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool
   const json disk = light("rim", "disk", R"({"center": [2, 5, 0], "normal": [0, -1, 0], "radius": 0.4})");
   const json polygon = light("poly", "polygon", "[[0, 5, 0], [1, 5, 0], [0, 5, 1]]");
   const json bulb = light("bulb", "sphere", R"({"center": [0, 4, 2], "radius": 0.2})");
+  const json oval = light("oval", "ellipse", R"({"center": [1, 5, 0], "halfU": [0.4, 0, 0], "halfV": [0, 0.1, 0.2]})");
+  const json sun = light("sun", "sun", R"({"direction": [0.3, -1, -0.2], "angle": 4})");
   struct Made {
     std::string name;
     json scene;
@@ -84,7 +86,8 @@ std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool
     json nothing = scene_of(1, {key, fill});
     nothing["camera"]["target"] = {4, 9, 12};
     made.insert(made.end(), {{"huge", scene_of(std::ldexp(1.0, 36), {key, fill})},
-                             {"disk", scene_of(1, {disk, polygon})},
+                             {"disk", scene_of(1, {disk, polygon, oval})},
+                             {"sunny", scene_of(1, {sun, key})},
                              {"window", scene_of(1, {textured, key})},
                              {"nothing", nothing}});
   }
@@ -93,7 +96,7 @@ std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool
     LitScene one{name, (folder / (name + ".json")).string(), {}};
     std::ofstream(one.file) << scene.dump();
     for (const json& l : scene["lights"]) {
-      for (const char* kind : {"rectangle", "disk", "polygon", "sphere"}) {
+      for (const char* kind : {"rectangle", "disk", "ellipse", "polygon", "sphere", "sun"}) {
         if (l.contains(kind)) one.lights.emplace_back(kind);
       }
       one.texture |= l.contains("texture");

@@ -181,6 +181,43 @@ TEST(Beauty, ASunShinesOverItsSolidAngle) {
   for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r, 0.5 * 10 / kPi / 2, 1e-6);
 }
 
+/// The extension's reference formula: inside the inner angle 1, outside the outer 0, between them the square of a ramp
+/// in the cosine.
+TEST(Beauty, ASpotLampFallsOffBetweenItsCones) {
+  constexpr double kHeight = 40;
+  const auto at = [&](double degrees) { return glm::vec3(kHeight * std::tan(degrees * kPi / 180), 0, 0); };
+  Floor floor({at(0), at(9.9), at(20), at(29.9), at(30.1), at(60)});
+  scenes::Scene scene;
+  scene.lights.emplace_back();
+  const std::vector<std::uint32_t> seen(6, 15);
+  const auto shade = [&](std::optional<scenes::Cone> cone) {
+    scene.lights[0].shape = scenes::Sphere{{0, kHeight, 0}, 1, cone};
+    floor.lights = {visibility::make_light(scene, 0, glm::dvec3(0), {4, 2, 2, visibility::SamplePattern::grid, 0})};
+    return floor.shade({{seen, {}}});
+  };
+  const auto bare = shade({}), spot = shade(scenes::Cone{{0, -1, 0}, 10, 30});
+  EXPECT_EQ(spot[0], bare[0]);
+  EXPECT_EQ(spot[1], bare[1]);
+  const auto cosine = [](double degrees) { return std::cos(degrees * kPi / 180); };
+  EXPECT_NEAR(spot[2].r / bare[2].r, std::pow((cosine(20) - cosine(30)) / (cosine(10) - cosine(30)), 2), 1e-6);
+  EXPECT_GT(spot[3].r, 0);
+  EXPECT_LT(spot[3].r, 0.001 * bare[3].r);
+  EXPECT_EQ(spot[4].r, 0);
+  EXPECT_EQ(spot[5].r, 0);
+}
+
+TEST(Beauty, WhatALightDoesNotLightIsBlack) {
+  Floor floor({{0, 0, 0}, {0, 0, 0}});
+  floor.scene.object[1] = 1;
+  floor.colors.push_back(floor.colors[0]);
+  floor.lights = {rectangle(2, 1, 1, 1, 1)};
+  floor.lights[0].unlit = {0, 1};
+  const std::vector<std::uint32_t> seen{1, 1};
+  const auto colors = floor.shade({{seen, {}}});
+  EXPECT_GT(colors[0].r, 0);
+  EXPECT_EQ(colors[1], glm::vec3(0));
+}
+
 TEST(Beauty, FormFactorsAreTakenAsTheyAre) {
   Floor floor({{0, 0, 0}, {1, 0, 0}});
   floor.lights = {rectangle(2, 1, 1, 2, 2)};

@@ -174,6 +174,15 @@ const BadScene kMeaning[] = {
      "parallel"},
     {"EllipseWithoutAnAxis", light(R"("ellipse": {"center": [0,5,0], "halfU": [1,0,0]})"),
      "/lights/0/ellipse: missing key \"halfV\""},
+    {"LitByNobody", mesh(R"("shape": {"type": "box"}, "lights": ["key", "moon"])"),
+     "/meshes/0/lights/1: no light is named \"moon\""},
+    {"CasterUnknown", light(R"("sphere": {"center": [0,5,0], "radius": 1}, "casters": {"exclude": ["glass"]})"),
+     "/lights/0/casters/exclude/0: no mesh is named \"glass\""},
+    {"CastersMistyped", light(R"("sphere": {"center": [0,5,0], "radius": 1}, "casters": {"except": ["glass"]})"),
+     "/lights/0/casters: unknown key \"except\""},
+    {"ConeInsideOut",
+     light(R"("sphere": {"center": [0,5,0], "radius": 1, "cone": {"direction": [0,-1,0], "inner": 30, "outer": 20}})"),
+     "/lights/0/sphere: the cone reaches from 30 to 20 degrees"},
     {"SunOfHalfTheSky", light(R"("sun": {"direction": [0,-1,0], "angle": 180})"),
      "/lights/0/sun/angle: expected a number from 0 up and below 180, found the number 180"},
     {"SunOfNegativeAngle", light(R"("sun": {"direction": [0,-1,0], "angle": -1})"), "/lights/0/sun/angle: expected"},
@@ -299,6 +308,24 @@ TEST(JsonScene, ASunsIrradianceIsThatOfWhatFacesIt) {
   EXPECT_EQ(read_so.lights[0].radiance, glm::dvec3(1, 2, 4));
   ASSERT_EQ(read_so.warnings.size(), 1u);
   EXPECT_NE(read_so.warnings[0].find("/lights/0/radiance: a sun of angle 0"), std::string::npos);
+}
+
+TEST(JsonScene, LinksLightsAndMeshes) {
+  const auto scene = read_text(R"({"format": "penumbra-scene/1", "camera": {"eye": [0,2,6], "target": [0,0,0]},
+    "meshes": [{"name": "floor", "shape": {"type": "box"}}, {"name": "glass", "shape": {"type": "box"}, "lights": ["b", "a", "b"]},
+               {"name": "glass", "shape": {"type": "box"}, "lights": []}],
+    "lights": [{"name": "a", "sphere": {"center": [0,5,0], "radius": 1}, "casters": {"exclude": ["glass"]}},
+               {"name": "b", "sphere": {"center": [0,5,0], "radius": 1}, "casters": {"include": ["glass", "floor"], "exclude": ["floor"]}},
+               {"name": "c", "sphere": {"center": [0,5,0], "radius": 1}, "casters": {"include": []}},
+               {"name": "d", "sphere": {"center": [0,5,0], "radius": 1}}]})");
+  using Numbers = std::vector<std::uint32_t>;
+  EXPECT_FALSE(scene.objects[0].lit_by);
+  EXPECT_EQ(scene.objects[1].lit_by, (Numbers{0, 1}));
+  EXPECT_EQ(scene.objects[2].lit_by, Numbers{}) << "by none";
+  EXPECT_EQ(scene.lights[0].unshaded_by, (Numbers{1, 2})) << "all meshes of that name";
+  EXPECT_EQ(scene.lights[1].unshaded_by, Numbers{0});
+  EXPECT_EQ(scene.lights[2].unshaded_by, (Numbers{0, 1, 2}));
+  EXPECT_TRUE(scene.lights[3].unshaded_by.empty());
 }
 
 TEST(JsonScene, RotatesAboutXThenYThenZThenTranslates) {

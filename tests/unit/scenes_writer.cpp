@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -50,6 +51,11 @@ void expect_same_shape(const scenes::AreaLight& a, const scenes::AreaLight& b) {
   } else {
     const auto &s = std::get<scenes::Sphere>(a.shape), &t = std::get<scenes::Sphere>(b.shape);
     EXPECT_TRUE(same_bits(s.center, t.center) && same_bits(s.radius, t.radius));
+    ASSERT_EQ(s.cone.has_value(), t.cone.has_value());
+    if (s.cone) {
+      EXPECT_TRUE(same_bits(s.cone->direction, t.cone->direction) && same_bits(s.cone->inner, t.cone->inner) &&
+                  same_bits(s.cone->outer, t.cone->outer));
+    }
   }
 }
 
@@ -73,11 +79,13 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.objects[i].casts_shadow, b.objects[i].casts_shadow);
     EXPECT_EQ(a.objects[i].receives_shadow, b.objects[i].receives_shadow);
     EXPECT_EQ(a.objects[i].emits, b.objects[i].emits);
+    EXPECT_EQ(a.objects[i].lit_by, b.objects[i].lit_by);
   }
   ASSERT_EQ(a.lights.size(), b.lights.size());
   for (std::size_t i = 0; i < a.lights.size(); ++i) {
     EXPECT_EQ(a.lights[i].name, b.lights[i].name);
     EXPECT_EQ(a.lights[i].two_sided, b.lights[i].two_sided);
+    EXPECT_EQ(a.lights[i].unshaded_by, b.lights[i].unshaded_by);
     EXPECT_TRUE(same_bits(a.lights[i].radiance, b.lights[i].radiance));
     expect_same_shape(a.lights[i], b.lights[i]);
   }
@@ -95,7 +103,7 @@ constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [
   "meshes": [
     {"name": "a \"quoted\" näme", "shape": {"type": "blob", "subdivisions": 2}, "transform": {"rotate": [13, 29, 71], "scale": [1.1, 0.9, -0.7], "translate": [1e-9, 0.3, -1e5]}, "color": [0.1, 0.2, 0.3]},
     {"shape": {"type": "hair", "strands": 20}, "castsShadow": false},
-    {"quad": {"center": [0, -0.0, 0], "halfU": [4, 0, 0], "halfV": [0, 0, -4]}, "receivesShadow": false},
+    {"quad": {"center": [0, -0.0, 0], "halfU": [4, 0, 0], "halfV": [0, 0, -4]}, "receivesShadow": false, "lights": ["key", "sun"]},
     {"name": "lamp", "triangles": [[0,5,0, 1,5,0, 0,5,1]], "emits": "poly"}],
   "lights": [
     {"name": "key", "rectangle": {"center": [0, 5, 0], "halfU": [0.1, 0, 0], "halfV": [0, 0, 0.3]}, "radiance": [1.5, 0, 1e-7], "twoSided": true},
@@ -104,7 +112,8 @@ constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [
     {"name": "oval", "ellipse": {"center": [0, 5, 0.1], "halfU": [0.6, 0, 0], "halfV": [0, 0.1, 0.3]}},
     {"name": "sun", "sun": {"direction": [-0.35, -0.87, -0.35], "angle": 0.53}, "irradiance": [3, 2.9, 2.5]},
     {"name": "point", "sun": {"direction": [0.1, -0.87, -0.35], "angle": 0}, "irradiance": [0.1, 0.2, 0.3]},
-    {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}}] })";
+    {"name": "spot", "sphere": {"center": [0, 4, -2], "radius": 0.1, "cone": {"direction": [0.1, -1, 0.2], "inner": 10, "outer": 25}}},
+    {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}, "casters": {"include": ["lamp", "a \"quoted\" näme"]}}] })";
 
 TEST(JsonWriter, RoundTripIsBitExact) {
   const TemporaryFolder folder;
@@ -155,7 +164,7 @@ TEST(ObjWriter, TrianglesInOrderUnderTheirObjects) {
   const Scene scene = read_text(kEverything);
   const auto notes = write_scene(scene, folder / "scene.obj");
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 7 and 2"), std::string::npos);
+  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 8 and 2"), std::string::npos);
   std::istringstream lines(read_file(folder / "scene.obj"));
   std::vector<glm::dvec3> positions;
   std::vector<std::string> objects;
@@ -225,19 +234,54 @@ TEST(GlbWriter, ReadsBackInSinglePrecision) {
 TEST(GlbWriter, SaysWhatGltfCannotHold) {
   const TemporaryFolder folder;
   const auto notes = write_scene(read_text(kEverything), folder / "scene.glb");
-  ASSERT_EQ(notes.size(), 7u);
+  ASSERT_EQ(notes.size(), 6u);
   EXPECT_NE(notes[0].find("light \"rim\": glTF has no round lights; written with 64 sides"), std::string::npos);
   EXPECT_NE(notes[1].find("light \"oval\": glTF has no round lights; written with 64 sides"), std::string::npos);
-  EXPECT_NE(notes[2].find("light \"sun\": glTF has no sun lights; left out"), std::string::npos);
-  EXPECT_NE(notes[4].find("light \"bulb\": glTF has no sphere lights; left out"), std::string::npos);
-  EXPECT_NE(notes[5].find("glTF has no shadow flags"), std::string::npos);
+  EXPECT_NE(notes[2].find("glTF has no shadow flags"), std::string::npos);
+  EXPECT_NE(notes[3].find("glTF has no shadow flags"), std::string::npos);
+  EXPECT_NE(notes[4].find("glTF cannot say which lights light it"), std::string::npos);
+  EXPECT_NE(notes[5].find("light \"bulb\": glTF cannot say what casts its shadows"), std::string::npos);
   const Scene again = read_scene(folder / "scene.glb");
-  EXPECT_EQ(again.lights.size(), 4u);
+  EXPECT_EQ(again.lights.size(), 8u);
   for (const auto& light : again.lights) {
     if (light.name == "rim") {
       EXPECT_EQ(std::get<scenes::Polygon>(light.shape).vertices.size(), 64u);
     }
   }
+}
+
+/// Suns, spheres and spots are lamps of KHR_lights_punctual, with their sizes as extras.
+TEST(GlbWriter, LampsReadBack) {
+  const TemporaryFolder folder;
+  const Scene scene = read_text(kEverything);
+  write_scene(scene, folder / "scene.glb");
+  const Scene again = read_scene(folder / "scene.glb");
+  int lamps = 0;
+  for (const auto& light : scene.lights) {
+    if (!std::holds_alternative<scenes::Sun>(light.shape) && !std::holds_alternative<scenes::Sphere>(light.shape))
+      continue;
+    const auto same = std::ranges::find(again.lights, light.name, &scenes::AreaLight::name);
+    ASSERT_NE(same, again.lights.end()) << light.name;
+    if (const auto* sun = std::get_if<scenes::Sun>(&light.shape)) {
+      const auto& read = std::get<scenes::Sun>(same->shape);
+      EXPECT_EQ(read.angle, sun->angle);
+      EXPECT_LT(glm::distance(read.direction, sun->direction), 1e-15);
+    } else {
+      const auto* sphere = &std::get<scenes::Sphere>(light.shape);
+      const auto& read = std::get<scenes::Sphere>(same->shape);
+      EXPECT_EQ(read.center, sphere->center);
+      EXPECT_EQ(read.radius, sphere->radius);
+      ASSERT_EQ(read.cone.has_value(), sphere->cone.has_value());
+      if (read.cone) {
+        EXPECT_LT(glm::distance(read.cone->direction, sphere->cone->direction), 1e-15);
+        EXPECT_NEAR(read.cone->inner, sphere->cone->inner, 1e-12);
+        EXPECT_NEAR(read.cone->outer, sphere->cone->outer, 1e-12);
+      }
+    }
+    ++lamps;
+    EXPECT_LT(glm::distance(same->radiance, light.radiance), 1e-12 * glm::length(light.radiance)) << light.name;
+  }
+  EXPECT_EQ(lamps, 4);
 }
 
 TEST(Writer, RefusesOtherFormatsAndLeavesNothingBehind) {

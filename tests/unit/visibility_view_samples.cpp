@@ -103,6 +103,22 @@ TEST(Classify, EveryKindOfPixel) {
   EXPECT_EQ(class_at({0, 9, 0.5}, {50, 0, 50}), PixelClass::background);
 }
 
+TEST(Classify, LinkedLightsAndMeshes) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1})).lit_by = {1};
+  tests::add_object(scene, "board", tests::quad({0, 1, 0}, {0.1, 0, 0}, {0, 0, -0.1}));
+  scene.lights = {tests::ceiling_light(5, 1), tests::ceiling_light(5, 1)};
+  scene.lights[1].unshaded_by = {1};
+  const SceneFloats floats = make_scene_floats(scene);
+  const PinholeCamera pinhole = make_camera(tests::camera({0.5, 3, 1}, {0.5, 0, 0.1}), floats.origin, 1, 1);
+  const ViewSamples samples = brute_force_view_samples(floats, pinhole);
+  const Light first = make_light(scene, 0, floats.origin, {}), second = make_light(scene, 1, floats.origin, {});
+  EXPECT_EQ(classify_pixels(floats, samples, first)[0], PixelClass::unlit);
+  EXPECT_EQ(classify_pixels(floats, samples, second)[0], PixelClass::judged);
+  EXPECT_EQ(cast_for(floats, first).casts_shadow, (std::vector<std::uint8_t>{1, 1, 1, 1}));
+  EXPECT_EQ(cast_for(floats, second).casts_shadow, (std::vector<std::uint8_t>{1, 1, 0, 0}));
+}
+
 TEST(Classify, AllOfASunsConeIsAboveOrNot) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}));
