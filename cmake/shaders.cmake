@@ -29,3 +29,27 @@ function(penumbra_shaders target)
   target_sources(${target} PRIVATE ${headers})
   target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
 endfunction()
+
+# penumbra_opengl_shaders(target file.vert …)
+# The same sources for OpenGL, as text: includes are put in, PENUMBRA_OPENGL is defined, and glslang checks the result as
+# GLSL 4.50. Embedded as "<folder>/<name>.<stage>.glsl.hpp" with `inline constexpr std::string_view k<Name><Stage>Text`.
+function(penumbra_opengl_shaders target)
+  set(headers)
+  foreach(source ${ARGN})
+    file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+    set(header ${PROJECT_BINARY_DIR}/shaders/${path}.glsl.hpp)
+    get_filename_component(folder ${header} DIRECTORY)
+    file(MAKE_DIRECTORY ${folder})
+    add_custom_command(
+      OUTPUT ${header}
+      COMMAND ${CMAKE_COMMAND} -DGLSLANG=${GLSLANG} -DROOT=${PROJECT_SOURCE_DIR} -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR}/${source}
+              -DHEADER=${header} -DNAME=${source} -P ${PROJECT_SOURCE_DIR}/cmake/embed_glsl.cmake
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source} ${PROJECT_SOURCE_DIR}/cmake/embed_glsl.cmake
+      DEPFILE ${header}.d
+      COMMENT "OpenGL shader ${path}"
+      VERBATIM)
+    list(APPEND headers ${header})
+  endforeach()
+  target_sources(${target} PRIVATE ${headers})
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+endfunction()

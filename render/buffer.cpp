@@ -127,7 +127,7 @@ const std::string& Buffer::name() const {
   return state_->name;
 }
 
-void Buffer::upload(std::span<const std::byte> data, std::uint64_t offset) try {
+void Buffer::upload(std::span<const std::byte> data, std::uint64_t offset) const try {
   State& s = *state_;
   PENUMBRA_ASSERT(offset + data.size() <= s.bytes, "{}: {} + {} of {}", s.name, offset, data.size(), s.bytes);
   if (data.empty()) return;

@@ -31,10 +31,11 @@ class Buffer {
   [[nodiscard]] const std::string& name() const;
 
   /// Copies and waits. `offset` in bytes.
-  void upload(std::span<const std::byte> data, std::uint64_t offset = 0);
+  /// (The object stays as it is; its memory is the device's, and passes write it, too.)
+  void upload(std::span<const std::byte> data, std::uint64_t offset = 0) const;
   void download(std::span<std::byte> data, std::uint64_t offset = 0) const;
   template <typename T>
-  void write(std::span<const T> values, std::uint64_t offset = 0) {
+  void write(std::span<const T> values, std::uint64_t offset = 0) const {
     upload(std::as_bytes(values), offset);
   }
   template <typename T>

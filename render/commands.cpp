@@ -4,6 +4,10 @@
 #include "base/error.hpp"
 #include "render/vulkan.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 namespace penumbra::render {
 namespace {
 
@@ -99,10 +103,19 @@ void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes) {
   full_barrier(state_->commands);
 }
 
+void Commands::host_pass(const std::string& name, const std::function<void()>& work) {
+  std::vector<visibility::PassTime> times = submit();
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  times.push_back({name, elapsed.count()});
+  state_->earlier = std::move(times);
+}
+
 std::vector<visibility::PassTime> Commands::submit() try {
   State& s = *state_;
   if (s.recording) s.run();
-  std::vector<visibility::PassTime> times;
+  std::vector<visibility::PassTime> times = std::exchange(s.earlier, {});
   const auto timed = std::min<std::size_t>(s.pass_names.size(), kMaxPasses);
   if (*s.queries && timed > 0) {
     const auto count = static_cast<std::uint32_t>(2 * timed);
@@ -114,7 +127,7 @@ std::vector<visibility::PassTime> Commands::submit() try {
       times.push_back({s.pass_names[i], static_cast<double>(elapsed) * s.device->limits.timestamp_period * 1e-6});
     }
   }
-  if (s.host_timed) times = std::exchange(s.host_times, {});
+  std::ranges::move(std::exchange(s.host_times, {}), std::back_inserter(times));
   s.pass_names.clear();
   s.pools.clear();
   return times;

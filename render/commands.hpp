@@ -5,6 +5,7 @@
 #include "visibility/pass_times.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ class Commands {
   void fill(const Buffer& buffer, std::uint32_t value);  ///< every word of the buffer
   void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes);
   void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes);
+
+  /// A pass of the host's own, which happens now: what was recorded before has run and is seen by it, and it is done
+  /// before whatever is recorded after it. submit() returns its time, too.
+  void host_pass(const std::string& name, const std::function<void()>& work);
 
   /// Submits, waits, and returns the time of each pass in order (empty where the queue has no timestamps; on
   /// processors each pass is run and timed by itself).

@@ -248,6 +248,11 @@ void Device::forget_peak() const {
   state_->peak = state_->allocated;
 }
 
+const opengl::Context& Device::opengl() const {
+  if (!state_->opengl) state_->opengl = std::make_unique<opengl::Context>(state_->info.kind == "cpu");
+  return *state_->opengl;
+}
+
 std::vector<std::string> Device::take_validation_messages() const {
   const std::lock_guard lock(state_->log->mutex);
   return std::exchange(state_->log->messages, {});

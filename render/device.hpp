@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/error.hpp"
+#include "render/opengl/context.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -49,7 +50,8 @@ struct Limits {
   std::uint32_t max_workgroup_count = 0;  ///< in x
   std::uint32_t max_image_size = 0;
   std::uint32_t max_texel_buffer_elements = 0;
-  double timestamp_period = 0;  ///< nanoseconds a tick; 0: no timestamps
+  std::uint32_t subpixel_bits = 0;  ///< the rasteriser snaps corners to 2^-bits of a pixel
+  double timestamp_period = 0;      ///< nanoseconds a tick; 0: no timestamps
 };
 
 /// A Vulkan device with one queue for graphics, compute and transfer. Move-only; must outlive everything made from it.
@@ -69,6 +71,9 @@ class Device {
   [[nodiscard]] std::uint64_t peak_bytes() const;
   /// From here on the peak is counted anew, from what is alive now.
   void forget_peak() const;
+  /// The second rasteriser beside this device (opengl::Context), made when first asked for: on the processor if this
+  /// device is one. Throws ResourceError if there is none.
+  [[nodiscard]] const opengl::Context& opengl() const;
   /// What the validation layer said since the last call (errors and warnings); always empty without validation.
   std::vector<std::string> take_validation_messages() const;
 

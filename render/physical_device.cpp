@@ -170,6 +170,7 @@ Limits read_limits(const vk::raii::PhysicalDevice& physical, std::uint32_t times
   out.max_workgroup_count = limits.maxComputeWorkGroupCount[0];
   out.max_image_size = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
   out.max_texel_buffer_elements = limits.maxTexelBufferElements;
+  out.subpixel_bits = limits.subPixelPrecisionBits;
   out.timestamp_period = timestamp_bits == 0 ? 0.0 : static_cast<double>(limits.timestampPeriod);
   return out;
 }

@@ -6,7 +6,7 @@ namespace penumbra::render::gpu {
 using uint = std::uint32_t;
 #define DOUBLE3(name) double name[3]
 #else
-#define DOUBLE3(name) f64vec3 name
+#define DOUBLE3(name) dvec3 name
 #endif
 
 struct VisibilityBufferPush {

@@ -2,24 +2,36 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
+#include "render/both.glsl"
 #include "render/visibility_buffer.shared.h"
 
 // Proposes pixels for one triangle (an instance): its box on the screen, a pixel larger on every side, as a strip of four
 // vertices. Conservative without conservative rasterisation; the fragment shader decides.
 
-layout(scalar, binding = 0) readonly buffer Corners { vec3 corners[]; };  // three a triangle, sorted
-layout(scalar, push_constant) uniform Push { VisibilityBufferPush camera; };
+#ifdef PENUMBRA_OPENGL
+// The struct as C++ lays it out: OpenGL would give a dvec3 the room of four.
+STORAGE(1) readonly buffer Push {
+  double numbers[13];
+  uint counts[4];
+};
+VisibilityBufferPush camera = VisibilityBufferPush(
+    dvec3(numbers[0], numbers[1], numbers[2]), dvec3(numbers[3], numbers[4], numbers[5]),
+    dvec3(numbers[6], numbers[7], numbers[8]), dvec3(numbers[9], numbers[10], numbers[11]), numbers[12], counts[0],
+    counts[1], counts[2], counts[3]);
+#else
+PUSH_CONSTANTS Push { VisibilityBufferPush camera; };
+#endif
 
 layout(location = 0) flat out uint triangle;
 
 void main() {
-  triangle = gl_InstanceIndex;
+  triangle = INSTANCE;
   const dvec2 size = dvec2(camera.width, camera.height);
   const double tan_x = camera.tan_half_fov * size.x / size.y;
   dvec2 lower = size, upper = dvec2(0.0);
   bool any_in_front = false, any_behind = false;
-  for (int i = 0; i < 3; ++i) {
-    const dvec3 d = dvec3(corners[3 * triangle + i]) - camera.eye;
+  for (uint i = 0; i < 3; ++i) {
+    const dvec3 d = dvec3(corner_at(3 * triangle + i)) - camera.eye;
     const double z = dot(d, camera.forward);
     const double reach = abs(d.x) + abs(d.y) + abs(d.z);
     any_in_front = any_in_front || z > 0.0;
@@ -43,7 +55,7 @@ void main() {
     gl_Position = vec4(2.0, 2.0, 0.0, 1.0);  // all four vertices in one place, off the screen
     return;
   }
-  const dvec2 corner = dvec2((gl_VertexIndex & 1) == 0 ? lower.x : upper.x, (gl_VertexIndex & 2) == 0 ? lower.y : upper.y);
+  const dvec2 corner = dvec2((VERTEX & 1u) == 0u ? lower.x : upper.x, (VERTEX & 2u) == 0u ? lower.y : upper.y);
   const dvec2 band = dvec2(size.x, double(camera.row_count));
   gl_Position = vec4(vec2((corner - dvec2(0.0, double(camera.first_row))) / band * 2.0 - 1.0), 0.5, 1.0);
 }

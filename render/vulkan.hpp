@@ -45,6 +45,7 @@ struct Device::State {
   std::uint64_t allocated = 0, peak = 0;
   bool debug_names = false;
   bool abandoned = false;  // see abandon()
+  std::unique_ptr<opengl::Context> opengl;
 
   void account(std::int64_t bytes) {
     allocated = static_cast<std::uint64_t>(static_cast<std::int64_t>(allocated) + bytes);
@@ -97,6 +98,7 @@ struct Commands::State {
   bool recording = false;
   bool host_timed = false;
   std::vector<visibility::PassTime> host_times;
+  std::vector<visibility::PassTime> earlier;  // of what host_pass had to run; submit's first
   std::chrono::steady_clock::time_point opened;
 
   void begin_if_needed();

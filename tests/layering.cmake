@@ -15,7 +15,8 @@ set(may_scenes/formats scenes mesh/shapes mesh base)
 set(may_import scenes/formats scenes mesh base)
 set(may_visibility scenes mesh/diagnosis mesh base)
 set(may_areas visibility scenes mesh base)
-set(may_render visibility scenes mesh base)
+set(may_render/opengl base)
+set(may_render render/opengl visibility scenes mesh base)
 set(may_engines/vectors visibility scenes mesh base)
 set(may_engines/device render visibility scenes mesh base)
 set(may_engines engines/device engines/vectors render visibility scenes mesh base)
@@ -26,21 +27,23 @@ set(may_volumes/soft volumes/raster volumes/edges volumes/wedges render visibili
 set(may_volumes/counters volumes/raster volumes/edges volumes/wedges engines/device render visibility scenes mesh base)
 set(may_volumes/scatter areas volumes/edges engines engines/device engines/vectors render visibility scenes mesh base)
 set(may_vsm engines engines/device engines/vectors render visibility scenes mesh base)
-set(may_maps/host render visibility scenes mesh base)
-set(may_maps/products maps/host render visibility scenes mesh base)
+set(may_maps/host render/opengl render visibility scenes mesh base)
+set(may_maps/products maps/host render/opengl render visibility scenes mesh base)
 set(may_maps/filters maps/products maps/host render visibility scenes mesh base)
 set(may_maps/sampling maps/products maps/host render visibility scenes mesh base)
 set(may_maps/backprojection maps/products maps/host render visibility scenes mesh base)
+set(may_selftest maps/products maps/host vsm volumes/scatter volumes/counters volumes/raster volumes/edges volumes/wedges render/opengl render
+    visibility scenes mesh/shapes mesh base)
 set(may_reference areas visibility scenes mesh base)
 set(may_compare visibility scenes mesh base)
-set(may_app compare reference areas maps/filters maps/sampling maps/backprojection vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render visibility
+set(may_app selftest compare reference areas maps/filters maps/sampling maps/backprojection vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render/opengl render visibility
     scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
 set(may_app/inspect ${may_app} app)
 set(may_app/wedges ${may_app} app)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
-set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility areas render engines/device engines/vectors engines
+set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility areas render/opengl render engines/device engines/vectors engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products
-    maps/filters maps/sampling maps/backprojection reference compare app app/inspect app/wedges bench)
+    maps/filters maps/sampling maps/backprojection selftest reference compare app app/inspect app/wedges bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
@@ -48,6 +51,8 @@ list(APPEND rooms tests)
 # but those that say "Internal to this room" or "Inside <room>/ only".
 set(kept_vulkan render)
 set(kept_spirv_cross render)
+set(kept_EGL render/opengl)
+set(kept_GL render/opengl)
 set(kept_CGAL mesh visibility)
 set(kept_OpenMesh mesh)
 set(kept_embree3 visibility reference bench)
@@ -61,7 +66,7 @@ set(kept_png base)
 set(kept_CLI app)
 set(kept_gmpxx volumes areas)
 set(kept_hwy engines/vectors volumes/scatter vsm)
-set(libraries vulkan spirv_cross CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR png CLI gmpxx hwy)
+set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR png CLI gmpxx hwy)
 
 # room_of(folder result): the innermost room that the folder is, or lies in; empty if none.
 function(room_of folder result)

@@ -20,9 +20,10 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps_peel.cpp
   analytic/maps_products.cpp
   analytic/maps_pyramids.cpp
+  analytic/maps_rasterisers.cpp
   analytic/maps_resolution_table.cpp
   analytic/maps_slices.cpp
   analytic/maps_soft_shadow_map.cpp
-  LIBRARIES penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
+  LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

@@ -2,4 +2,6 @@
 penumbra_test(render
   SOURCES unit/render_buffer.cpp unit/render_device.cpp unit/render_visibility_buffer.cpp
   # The shared fixture names view-sample mapping, hence the link.
-  LIBRARIES penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb)
+  LIBRARIES penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb)
+# The second rasteriser where a build has none.
+penumbra_test(opengl_absent SOURCES unit/opengl_absent.cpp LIBRARIES penumbra_opengl_absent)

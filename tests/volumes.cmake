@@ -36,5 +36,5 @@ penumbra_test(volumes
   property/vector_bounds.cpp
   property/wedge_builder.cpp
   unit/light_tiles.cpp
-  LIBRARIES penumbra_volumes penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb)
+  LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb)
 target_compile_definitions(volumes_test PRIVATE PENUMBRA_TEST_LAMPS="${CMAKE_CURRENT_SOURCE_DIR}/lamps")

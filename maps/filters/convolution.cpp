@@ -37,10 +37,13 @@ visibility::MethodDescription convolution_description() {
 std::unique_ptr<visibility::Method> make_convolution(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
-  return make_map_method(
-      device,
-      slice_recipe(device, describe(), {.rule = SliceRule::one_plane, .count = 1, .filter = parsed[kSliceFilter]}),
-      options);
+  return make_map_method(device,
+                         slice_recipe(device, describe(),
+                                      {.rule = SliceRule::one_plane,
+                                       .count = 1,
+                                       .filter = parsed[kSliceFilter],
+                                       .rasteriser = parsed[kRasteriser]}),
+                         options);
 }
 
 }  // namespace penumbra::maps

@@ -41,11 +41,13 @@ visibility::MethodDescription occlusion_textures_description() {
 std::unique_ptr<visibility::Method> make_occlusion_textures(const render::Device& device,
                                                             const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
-  return make_map_method(
-      device,
-      slice_recipe(device, describe(),
-                   {.rule = SliceRule::equal, .count = parsed[kSlices], .filter = parsed[kSliceFilter]}),
-      options);
+  return make_map_method(device,
+                         slice_recipe(device, describe(),
+                                      {.rule = SliceRule::equal,
+                                       .count = parsed[kSlices],
+                                       .filter = parsed[kSliceFilter],
+                                       .rasteriser = parsed[kRasteriser]}),
+                         options);
 }
 
 }  // namespace penumbra::maps

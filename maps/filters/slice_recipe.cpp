@@ -28,7 +28,7 @@ MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescripti
   }
   auto nearest = std::make_unique<NearestCaster>(device);
   auto frame = std::make_unique<MapFrame>(device);
-  auto slices = std::make_unique<Slices>(device, choices.rule, choices.count);
+  auto slices = std::make_unique<Slices>(device, choices.rule, choices.count, choices.rasteriser);
   auto prefilter = std::make_unique<Prefilter>(
       device, PrefilterOptions{.kind = choices.filter, .functions = std::move(bits), .of_bits = true},
       Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get(), .bits = slices.get()});

@@ -17,6 +17,7 @@ struct SliceChoices {
   SliceRule rule = SliceRule::equal;
   std::uint32_t count = 1;
   PrefilterKind filter = PrefilterKind::table;
+  Rasteriser rasteriser = Rasteriser::vulkan;
 };
 
 /// Light-space slices, each filtered by the light seen through its plane, and their product (occlusion_textures.comp).

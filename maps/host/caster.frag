@@ -2,10 +2,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/host/map_view.shared.h"
+#include "render/both.glsl"
 
 // Depth is linear in the distance along the face's axis: as a float it has the same relative precision (2^-24)
 // everywhere, however small the near distance is. The usual depth 1 - near / w would lose w / near of it.
 
-layout(scalar, push_constant) uniform Push { CasterPush face; };
+PUSH_CONSTANTS Push { CasterPush face; };
 
 void main() { gl_FragDepth = 1.0 / (gl_FragCoord.w * face.far); }

@@ -33,15 +33,43 @@ render::RasterPassOptions behind_options() {
   return options;
 }
 
+/// What a texel holds where nothing is.
+float nothing(MapLayer layer) {
+  return layer == MapLayer::farthest ? 0.0F : 1.0F;
+}
+
+const char* pass_name(MapLayer layer) {
+  switch (layer) {
+    case MapLayer::nearest:
+      return "render maps (OpenGL)";
+    case MapLayer::behind:
+      return "peel maps (OpenGL)";
+    case MapLayer::farthest:
+      return "render farthest (OpenGL)";
+  }
+  return "render maps (OpenGL)";
+}
+
 }  // namespace
 
-CasterMaps::CasterMaps(const render::Device& device, std::uint32_t size)
-    : device_(&device),
-      size_(size),
-      pass_(device, pass_options("render maps", render::DepthCompare::less)),
-      behind_(device, behind_options()),
-      farthest_(device, pass_options("render farthest", render::DepthCompare::greater)),
-      target_(device, "shadow map", size, size) {}
+CasterMaps::Passes::Passes(const render::Device& device, std::uint32_t size)
+    : nearest(device, pass_options("render maps", render::DepthCompare::less)),
+      behind(device, behind_options()),
+      farthest(device, pass_options("render farthest", render::DepthCompare::greater)),
+      target(device, "shadow map", size, size) {}
+
+const render::RasterPass& CasterMaps::Passes::of(MapLayer layer) const {
+  return layer == MapLayer::nearest ? nearest : layer == MapLayer::behind ? behind : farthest;
+}
+
+CasterMaps::CasterMaps(const render::Device& device, std::uint32_t size, Rasteriser rasteriser)
+    : device_(&device), size_(size) {
+  if (rasteriser == Rasteriser::opengl) {
+    opengl_ = std::make_unique<OpenGlMaps>(device.opengl(), size);
+  } else {
+    passes_.emplace(device, size);
+  }
+}
 
 void CasterMaps::upload(const visibility::SceneFloats& scene) {
   std::vector<std::uint32_t> casters;
@@ -54,8 +82,11 @@ void CasterMaps::upload(const visibility::SceneFloats& scene) {
   std::transform(casters.begin(), casters.end(), emits_.begin(), [&](std::uint32_t i) { return scene.emits[i]; });
 
   constexpr std::size_t kCornerBytes = 3 * sizeof(glm::vec3);
-  const std::size_t most = device_->limits().max_storage_buffer_range / kCornerBytes;
+  const std::uint64_t room =
+      opengl_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
+  const std::size_t most = room / kCornerBytes;
   batches_.clear();
+  if (opengl_) opengl_->forget();
   for (std::size_t first = 0; first < casters.size(); first += most) {
     const std::size_t count = std::min(most, casters.size() - first);
     std::vector<glm::vec3> corners;
@@ -63,8 +94,14 @@ void CasterMaps::upload(const visibility::SceneFloats& scene) {
     for (const std::uint32_t caster : std::span(casters).subspan(first, count)) {
       for (const glm::vec3& corner : scene.corners(caster)) corners.push_back(corner);
     }
-    batches_.push_back({render::make_buffer<glm::vec3>(*device_, "map casters", corners),
-                        static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
+    Batch& batch = batches_.emplace_back();
+    batch.first = static_cast<std::uint32_t>(first);
+    batch.count = static_cast<std::uint32_t>(count);
+    if (opengl_) {
+      opengl_->add(corners);
+    } else {
+      batch.corners = render::make_buffer<glm::vec3>(*device_, "map casters", corners);
+    }
   }
 }
 
@@ -78,57 +115,92 @@ std::vector<CasterMaps::Range> CasterMaps::ranges(const Batch& batch, std::int32
   return ranges;
 }
 
-template <typename PushOf>
-void CasterMaps::record_faces(render::Commands& commands, const render::RasterPass& pass, const gpu::LightView& view,
-                              const LightBasis& basis, std::int32_t light_index, const render::Buffer& maps,
-                              std::uint64_t first_face, float nothing, const PushOf& push_of) const {
+void CasterMaps::record_faces(render::Commands& commands, MapLayer layer, const gpu::LightView& view,
+                              const LightBasis& basis, std::int32_t light_index, const Destination& to) const {
   const std::uint32_t faces = view.side[0].face_count + view.side[1].face_count;
-  const std::uint64_t face_bytes = std::uint64_t{size_} * size_ * sizeof(float);
-  for (std::uint32_t face = 0; face < faces; ++face) {
-    gpu::CasterPush push = face_push(view, basis, face);
-    bool clear = true;
-    for (const Batch& batch : batches_) {
-      for (const Range& range : ranges(batch, light_index)) {
-        push.first_vertex = 3 * range.first;
-        const auto words = push_of(push, face);
-        std::vector<render::BufferReference> buffers{batch.corners};
-        if constexpr (sizeof(words) != sizeof(push)) buffers.emplace_back(maps);
-        pass.record(commands, std::as_bytes(std::span(&words, 1)), buffers,
-                    {.width = size_, .height = size_, .vertices = 3 * range.count, .depth = &target_, .clear = clear});
-        clear = false;
-      }
+  if (!opengl_) {
+    for (std::uint32_t face = 0; face < faces; ++face) {
+      record_on_device(commands, layer, face_push(view, basis, face), light_index, face, to);
     }
-    if (clear) {  // nothing casts shadow: the map is empty
-      commands.fill(maps, std::bit_cast<std::uint32_t>(nothing), (first_face + face) * face_bytes, face_bytes);
-    } else {
-      target_.copy_to(commands, maps, (first_face + face) * face_bytes);
+    return;
+  }
+  if (faces == 0) return;
+  commands.host_pass(pass_name(layer), [&] {
+    for (std::uint32_t face = 0; face < faces; ++face) {
+      draw_by_opengl(layer, face_push(view, basis, face), light_index, face, to);
+    }
+  });
+}
+
+void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, const gpu::CasterPush& push,
+                                  std::int32_t light_index, std::uint32_t face, const Destination& to) const {
+  const std::uint64_t face_texels = std::uint64_t{size_} * size_, face_bytes = face_texels * sizeof(float);
+  gpu::PeelPush words{push, static_cast<std::uint32_t>((to.previous_face + face) * face_texels), size_};
+  const auto push_bytes = std::as_bytes(std::span(&words, 1))
+                              .first(layer == MapLayer::behind ? sizeof(gpu::PeelPush) : sizeof(gpu::CasterPush));
+  bool clear = true;
+  for (const Batch& batch : batches_) {
+    for (const Range& range : ranges(batch, light_index)) {
+      words.face.first_vertex = 3 * range.first;
+      std::vector<render::BufferReference> buffers{*batch.corners};
+      if (layer == MapLayer::behind) buffers.emplace_back(to.maps);
+      passes_->of(layer).record(
+          commands, push_bytes, buffers,
+          {.width = size_, .height = size_, .vertices = 3 * range.count, .depth = &passes_->target, .clear = clear});
+      clear = false;
     }
   }
+  if (clear) {  // nothing casts shadow: the map is empty
+    commands.fill(to.maps, std::bit_cast<std::uint32_t>(nothing(layer)), (to.first_face + face) * face_bytes,
+                  face_bytes);
+  } else {
+    passes_->target.copy_to(commands, to.maps, (to.first_face + face) * face_bytes);
+  }
+}
+
+void CasterMaps::draw_by_opengl(MapLayer layer, const gpu::CasterPush& push, std::int32_t light_index,
+                                std::uint32_t face, const Destination& to) const {
+  const std::uint64_t face_texels = std::uint64_t{size_} * size_, face_bytes = face_texels * sizeof(float);
+  std::vector<float> texels(face_texels, nothing(layer));
+  if (layer == MapLayer::behind) {
+    to.maps.read<float>(texels, (to.previous_face + face) * face_bytes);
+    opengl_->set_previous(texels);
+  }
+  bool clear = true;
+  for (std::size_t i = 0; i < batches_.size(); ++i) {
+    for (const Range& range : ranges(batches_[i], light_index)) {
+      opengl_->draw(layer, push, {i, range.first, range.count, clear});
+      clear = false;
+    }
+  }
+  if (clear) {
+    std::ranges::fill(texels, nothing(layer));
+  } else {
+    opengl_->read(texels);
+  }
+  to.maps.write<float>(texels, (to.first_face + face) * face_bytes);
 }
 
 void CasterMaps::record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                         std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
-  record_faces(commands, pass_, view, basis, light_index, maps, first_face, 1.0F,
-               [](const gpu::CasterPush& push, std::uint32_t) { return push; });
+  record_faces(commands, MapLayer::nearest, view, basis, light_index, {maps, first_face, 0});
 }
 
 void CasterMaps::record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                                std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
                                std::uint64_t previous_face) const {
-  const auto push_of = [&](const gpu::CasterPush& push, std::uint32_t face) {
-    return gpu::PeelPush{push, static_cast<std::uint32_t>((previous_face + face) * size_ * size_), size_};
-  };
-  record_faces(commands, behind_, view, basis, light_index, maps, first_face, 1.0F, push_of);
+  record_faces(commands, MapLayer::behind, view, basis, light_index, {maps, first_face, previous_face});
 }
 
 void CasterMaps::record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                                  std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const {
-  record_faces(commands, farthest_, view, basis, light_index, maps, first_face, 0.0F,
-               [](const gpu::CasterPush& push, std::uint32_t) { return push; });
+  record_faces(commands, MapLayer::farthest, view, basis, light_index, {maps, first_face, 0});
 }
 
 std::uint64_t CasterMaps::memory_bytes() const {
-  const auto add = [](std::uint64_t sum, const Batch& batch) { return sum + batch.corners.bytes(); };
+  const auto add = [](std::uint64_t sum, const Batch& batch) {
+    return sum + std::uint64_t{batch.count} * 3 * sizeof(glm::vec3);
+  };
   return std::accumulate(batches_.begin(), batches_.end(), std::uint64_t{size_} * size_ * sizeof(float), add);
 }
 

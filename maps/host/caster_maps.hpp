@@ -2,6 +2,7 @@
 
 #include "maps/host/light_basis.hpp"
 #include "maps/host/map_view.shared.h"
+#include "maps/host/opengl_maps.hpp"
 #include "render/buffer.hpp"
 #include "render/commands.hpp"
 #include "render/device.hpp"
@@ -9,16 +10,19 @@
 #include "visibility/scene_floats.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace penumbra::maps {
 
-/// Renders depth maps of everything that casts shadow, all but the body of the light itself.
+/// Renders depth maps of everything that casts shadow, all but the body of the light itself: on the device, or by
+/// OpenGL beside it, which fills the same buffers.
 class CasterMaps {
  public:
-  /// `size`: texels on a side. Throws ResourceError for more than the device's images can have.
-  CasterMaps(const render::Device& device, std::uint32_t size);
+  /// `size`: texels on a side. Throws ResourceError for more than the rasteriser's images can have, and where there is
+  /// no OpenGL.
+  CasterMaps(const render::Device& device, std::uint32_t size, Rasteriser rasteriser = Rasteriser::vulkan);
 
   void upload(const visibility::SceneFloats& scene);
 
@@ -40,26 +44,40 @@ class CasterMaps {
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
-  /// Triangles that fit into one storage buffer.
+  /// Triangles that fit into one storage buffer of the rasteriser.
   struct Batch {
-    render::Buffer corners;
+    std::optional<render::Buffer> corners;  ///< Vulkan's; OpenGlMaps has its own
     std::uint32_t first, count;
   };
   struct Range {
     std::uint32_t first, count;
   };
+  /// What Vulkan draws with.
+  struct Passes {
+    Passes(const render::Device& device, std::uint32_t size);
+    [[nodiscard]] const render::RasterPass& of(MapLayer layer) const;
+    render::RasterPass nearest, behind, farthest;
+    render::DepthTarget target;
+  };
+  /// Where faces go.
+  struct Destination {
+    const render::Buffer& maps;
+    std::uint64_t first_face, previous_face;
+  };
   /// The casters of a batch without the body of that light.
   [[nodiscard]] std::vector<Range> ranges(const Batch& batch, std::int32_t light_index) const;
-  /// All faces of a light point, drawn by `pass` with what `push_of(face's push, face)` makes of the push constants.
-  template <typename PushOf>
-  void record_faces(render::Commands& commands, const render::RasterPass& pass, const gpu::LightView& view,
-                    const LightBasis& basis, std::int32_t light_index, const render::Buffer& maps,
-                    std::uint64_t first_face, float nothing, const PushOf& push_of) const;
+  /// All faces of a light point.
+  void record_faces(render::Commands& commands, MapLayer layer, const gpu::LightView& view, const LightBasis& basis,
+                    std::int32_t light_index, const Destination& to) const;
+  void record_on_device(render::Commands& commands, MapLayer layer, const gpu::CasterPush& push,
+                        std::int32_t light_index, std::uint32_t face, const Destination& to) const;
+  void draw_by_opengl(MapLayer layer, const gpu::CasterPush& push, std::int32_t light_index, std::uint32_t face,
+                      const Destination& to) const;
 
   const render::Device* device_;
   std::uint32_t size_;
-  render::RasterPass pass_, behind_, farthest_;
-  render::DepthTarget target_;
+  std::optional<Passes> passes_;        // either these
+  std::unique_ptr<OpenGlMaps> opengl_;  // or this
   std::vector<Batch> batches_;
   std::vector<std::int32_t> emits_;  // of each caster as uploaded, ascending: a light's body is one range
 };

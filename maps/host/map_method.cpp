@@ -32,7 +32,7 @@ class MapMethod final : public visibility::Method {
       : device_(&device),
         recipe_(std::move(recipe)),
         options_(options),
-        casters_(device, options.size),
+        casters_(device, options.size, options.rasteriser),
         look_up_(device, {.name = recipe_.look_up_name,
                           .spirv = recipe_.look_up,
                           .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) + 4 * recipe_.push_words),

@@ -55,6 +55,7 @@ struct CasterPush {
   vec3 row_y;
   uint first_vertex;
   vec3 row_w;
+  uint filler;  // whole 16 bytes, so that what follows lies at the same place in both layouts (render/both.glsl)
 };
 
 // peel.frag: a face of a deeper layer. caster.vert reads the first part.

@@ -8,16 +8,17 @@ namespace penumbra::maps {
 
 std::vector<visibility::OptionDescription> map_option_descriptions(const visibility::IntegerOption& size,
                                                                    const visibility::RealOption& bias) {
-  return {size.description(), bias.description()};
+  return {size.description(), bias.description(), kRasteriser.description()};
 }
 
 std::vector<visibility::OptionDescription> single_map_option_descriptions(DepthUse otherwise) {
-  return {kMapSize.description(), kBias.description(), depth_option(otherwise).description()};
+  return {kMapSize.description(), kBias.description(), depth_option(otherwise).description(),
+          kRasteriser.description()};
 }
 
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,
                        const visibility::ParsedOptions& options) {
-  MapOptions chosen{options[kMapSize], options[kBias]};
+  MapOptions chosen{.size = options[kMapSize], .bias = options[kBias], .rasteriser = options[kRasteriser]};
   if (std::ranges::any_of(method.options, [](const auto& option) { return option.name == kDepth.name(); })) {
     chosen.depth = options[kDepth];
   }

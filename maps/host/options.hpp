@@ -1,6 +1,7 @@
 #pragma once
 
 #include "maps/host/map_view.shared.h"
+#include "maps/host/opengl_maps.hpp"
 #include "render/device.hpp"
 #include "visibility/method.hpp"
 
@@ -17,6 +18,11 @@ inline constexpr visibility::IntegerOption kMapSize = map_size(1024);
 inline constexpr visibility::RealOption kBias{
     "bias", 0, 1024, 0.5,
     "how far, in texels, a surface may rise above the receiver's plane without shading it; grows with the slope"};
+
+inline constexpr visibility::ChoiceOption kRasteriser{"rasteriser",
+                                                      {{"vulkan", Rasteriser::vulkan}, {"opengl", Rasteriser::opengl}},
+                                                      Rasteriser::vulkan,
+                                                      "who draws the maps: the device itself, or OpenGL beside it"};
 
 /// What of a texel's surfaces a receiver must be behind to be in its shadow: taps.glsl, begins_behind.
 enum class DepthUse : std::uint8_t {
@@ -39,11 +45,13 @@ constexpr visibility::ChoiceOption<DepthUse, 4> depth_option(DepthUse otherwise)
 }
 inline constexpr auto kDepth = depth_option(DepthUse::first);
 
-/// What all methods here have: texels on a side of a map, and the bias in texels; and `depth`, if the method has it.
+/// What all methods here have: texels on a side of a map, the bias in texels, and who draws the maps; and `depth`, if
+/// the method has it.
 struct MapOptions {
   std::uint32_t size = kMapSize.otherwise;
   double bias = kBias.otherwise;
   DepthUse depth = DepthUse::first;
+  Rasteriser rasteriser = Rasteriser::vulkan;
 };
 
 /// How `methods` describes them.

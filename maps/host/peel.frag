@@ -2,13 +2,13 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/host/map_view.shared.h"
+#include "render/both.glsl"
 
 // A deeper layer: what is not behind the layer before leaves no depth (Everitt 2001, depth peeling). Depth as in
 // caster.frag; what is within 2^-20 of the layer before is the same surface.
 
-layout(scalar, binding = 0) readonly buffer Corners { vec3 corners[]; };  // the vertex shader's; one set for both
-layout(scalar, binding = 1) readonly buffer Maps { float maps[]; };
-layout(scalar, push_constant) uniform Push { PeelPush push; };
+STORAGE(1) readonly buffer Maps { float maps[]; };
+PUSH_CONSTANTS Peel { PeelPush push; };  // not Push: blocks of one name are one in both stages
 
 void main() {
   const float depth = 1.0 / (gl_FragCoord.w * push.face.far);

@@ -1,7 +1,9 @@
 #include "maps/products/slices.hpp"
 
+#include "maps/host/caster.vert.glsl.hpp"
 #include "maps/host/caster.vert.spv.hpp"
 #include "maps/host/map_fit.hpp"
+#include "maps/products/slices.frag.glsl.hpp"
 #include "maps/products/slices.frag.spv.hpp"
 #include "visibility/receivers.hpp"
 
@@ -106,25 +108,37 @@ gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t 
   return planes;
 }
 
-Slices::Slices(const render::Device& device, SliceRule rule, std::uint32_t count)
-    : device_(&device),
-      rule_(rule),
-      count_(count),
-      pass_(device, {.name = "slices",
-                     .vertex = shaders::kCasterVert,
-                     .fragment = shaders::kSlicesFrag,
-                     .push_bytes = sizeof(gpu::SlicesPush),
-                     .constants = {}}),
-      planes_(device, "slice planes", sizeof(gpu::SlicePlanes)) {}
+Slices::Slices(const render::Device& device, SliceRule rule, std::uint32_t count, Rasteriser rasteriser)
+    : device_(&device), rule_(rule), count_(count), planes_(device, "slice planes", sizeof(gpu::SlicePlanes)) {
+  if (rasteriser == Rasteriser::opengl) {
+    opengl_pass_.emplace(device.opengl(), render::opengl::RasterPassOptions{.name = "slices",
+                                                                            .vertex = shaders::kCasterVertText,
+                                                                            .fragment = shaders::kSlicesFragText});
+  } else {
+    pass_.emplace(device, render::RasterPassOptions{.name = "slices",
+                                                    .vertex = shaders::kCasterVert,
+                                                    .fragment = shaders::kSlicesFrag,
+                                                    .push_bytes = sizeof(gpu::SlicesPush),
+                                                    .constants = {}});
+  }
+}
 
 void Slices::upload(const MapSet& maps) {
   const std::uint32_t ground = rule_ == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
-  const std::size_t most = device_->limits().max_storage_buffer_range / (3 * sizeof(glm::vec3)) * 3;
+  const std::uint64_t room =
+      opengl_pass_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
+  const std::size_t most = room / (3 * sizeof(glm::vec3)) * 3;
   std::vector<glm::vec3> corners;
   const auto flush = [&] {
     if (corners.empty()) return;
-    casters_.push_back({render::make_buffer<glm::vec3>(*device_, "slice casters", corners),
-                        static_cast<std::uint32_t>(corners.size())});
+    Casters& batch = casters_.emplace_back();
+    batch.vertices = static_cast<std::uint32_t>(corners.size());
+    if (opengl_pass_) {
+      batch.opengl_corners.emplace(device_->opengl(), "slice casters", corners.size() * sizeof(glm::vec3));
+      batch.opengl_corners->write<glm::vec3>(corners);
+    } else {
+      batch.corners = render::make_buffer<glm::vec3>(*device_, "slice casters", corners);
+    }
     corners.clear();
   };
   casters_.clear();
@@ -136,33 +150,61 @@ void Slices::upload(const MapSet& maps) {
   flush();
 }
 
+std::vector<gpu::SlicesPush> Slices::faces_of(const MapSet& maps) const {
+  gpu::LightView view{};
+  maps.views.read<gpu::LightView>(std::span(&view, 1));
+  std::vector<gpu::SlicesPush> faces;
+  for (std::uint32_t face = 0; face < maps.faces; ++face) {
+    const std::uint32_t side = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
+    faces.push_back({.face = face_push(view, maps.basis, face),
+                     .size = maps.size,
+                     .first = face * maps.size * maps.size,
+                     .side = side,
+                     .sideways = face != view.side[side].first_face ? 1U : 0U});
+  }
+  return faces;
+}
+
 void Slices::record(render::Commands& commands, const MapSet& maps) {
   const std::uint64_t texels = std::uint64_t{maps.size} * maps.size;
   render::grow(*device_, bits_, "slices", std::max(maps.faces, 1U) * texels * sizeof(std::uint32_t));
-  commands.fill(*bits_, 0);
   const gpu::SlicePlanes planes = slice_planes(maps, rule_, count_);
   planes_.write<gpu::SlicePlanes>(std::span(&planes, 1));
   upload(maps);
-  gpu::LightView view{};
-  maps.views.read<gpu::LightView>(std::span(&view, 1));
-  for (std::uint32_t face = 0; face < maps.faces; ++face) {
-    const std::uint32_t side = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
-    const gpu::SlicesPush push{.face = face_push(view, maps.basis, face),
-                               .size = maps.size,
-                               .first = static_cast<std::uint32_t>(face * texels),
-                               .side = side,
-                               .sideways = face != view.side[side].first_face ? 1U : 0U};
+  if (opengl_pass_) {
+    commands.host_pass("slices (OpenGL)", [&] { draw_by_opengl(maps, planes); });
+    return;
+  }
+  commands.fill(*bits_, 0);
+  for (const gpu::SlicesPush& push : faces_of(maps)) {
     for (const Casters& casters : casters_) {
-      pass_.record(commands, push, {casters.corners, planes_, *bits_},
-                   {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+      pass_->record(commands, push, {*casters.corners, planes_, *bits_},
+                    {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
     }
   }
+}
+
+void Slices::draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const {
+  const render::opengl::Context& context = device_->opengl();
+  const render::opengl::Buffer heights(context, "slice planes", sizeof planes);
+  heights.write<gpu::SlicePlanes>(std::span(&planes, 1));
+  std::vector<std::uint32_t> words(bits_->bytes() / sizeof(std::uint32_t), 0);
+  const render::opengl::Buffer bits(context, "slices", bits_->bytes());
+  bits.write<std::uint32_t>(words);
+  for (const gpu::SlicesPush& push : faces_of(maps)) {
+    for (const Casters& casters : casters_) {
+      opengl_pass_->draw(push, {*casters.opengl_corners, heights, bits},
+                         {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+    }
+  }
+  bits.read<std::uint32_t>(words);
+  bits_->write<std::uint32_t>(words);
 }
 
 std::uint64_t Slices::memory_bytes() const {
   const std::uint64_t casters =
       std::accumulate(casters_.begin(), casters_.end(), std::uint64_t{0},
-                      [](std::uint64_t sum, const Casters& batch) { return sum + batch.corners.bytes(); });
+                      [](std::uint64_t sum, const Casters& batch) { return sum + batch.vertices * sizeof(glm::vec3); });
   return casters + planes_.bytes() + (bits_ ? bits_->bytes() : 0);
 }
 

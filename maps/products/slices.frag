@@ -2,14 +2,14 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/slices.shared.h"
+#include "render/both.glsl"
 
 // Marks the slice that a surface is in at a texel's centre (Eisemann and Décoret 2006). Any number of surfaces: bits are
 // added in any order.
 
-layout(scalar, binding = 0) readonly buffer Corners { vec3 corners[]; };  // caster.vert's: bindings are shared
-layout(scalar, binding = 1) readonly buffer Planes { SlicePlanes planes; };
-layout(scalar, binding = 2) buffer Bits { uint bits[]; };
-layout(scalar, push_constant) uniform Push { SlicesPush push; };
+STORAGE(1) readonly buffer Planes { SlicePlanes planes; };
+STORAGE(2) buffer Bits { uint bits[]; };
+PUSH_CONSTANTS SlicePush { SlicesPush push; };
 
 void main() {
   const uvec2 at = uvec2(gl_FragCoord.xy);

@@ -2,10 +2,12 @@
 
 #include "maps/host/map_method.hpp"
 #include "maps/products/slices.shared.h"
+#include "render/opengl/raster_pass.hpp"
 #include "render/raster_pass.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace penumbra::maps {
@@ -32,7 +34,7 @@ gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t 
 /// whose bit k says that a surface in slice k lies in its direction. Surfaces that one hides from the other count both.
 class Slices final : public MapProduct {
  public:
-  Slices(const render::Device& device, SliceRule rule, std::uint32_t count);
+  Slices(const render::Device& device, SliceRule rule, std::uint32_t count, Rasteriser rasteriser = Rasteriser::vulkan);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *bits_; }  ///< the words
   /// A look-up reads the planes alone.
@@ -41,15 +43,20 @@ class Slices final : public MapProduct {
 
  private:
   struct Casters {
-    render::Buffer corners;
+    std::optional<render::Buffer> corners;
+    std::optional<render::opengl::Buffer> opengl_corners;
     std::uint32_t vertices;
   };
   void upload(const MapSet& maps);
+  /// All faces, as push constants of slices.frag, whose texels begin at `first` of the words.
+  [[nodiscard]] std::vector<gpu::SlicesPush> faces_of(const MapSet& maps) const;
+  void draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const;
 
   const render::Device* device_;
   SliceRule rule_;
   std::uint32_t count_;
-  render::RasterPass pass_;
+  std::optional<render::RasterPass> pass_;                 // either this
+  std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
   render::Buffer planes_;
   std::vector<Casters> casters_;
   std::unique_ptr<render::Buffer> bits_;

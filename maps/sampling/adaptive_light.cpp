@@ -116,7 +116,7 @@ class AdaptiveLight final : public visibility::Method {
         description_(describe()),
         map_(map),
         settings_(settings),
-        casters_(device, map.size),
+        casters_(device, map.size, map.rasteriser),
         compare_(device, {.name = "compare maps",
                           .spirv = shaders::kAdaptiveCompareComp,
                           .push_bytes = sizeof(gpu::LookupPush) + sizeof(gpu::AdaptiveComparePush),

@@ -1,74 +1,11 @@
 #pragma once
 
-// The maps of a stage's light from its centre, as methods render them, and read back.
+// The maps of a stage's light from its centre, as the self-test makes them; and view samples by hand.
 
-#include "maps/host/caster_maps.hpp"
-#include "maps/host/light_basis.hpp"
-#include "maps/host/map_fit.hpp"
-#include "maps/host/map_method.hpp"
+#include "selftest/centre_maps.hpp"
 #include "tests/analytic/maps_fixture.hpp"
 
-#include <vector>
-
 namespace penumbra::tests {
-
-struct CentreMaps {
-  /// What else is rendered: peeled layers, the farthest after them; and whether all that stands before the light fits.
-  struct More {
-    std::uint32_t layers = 1;
-    bool farthest = false, whole_light = false;
-  };
-  CentreMaps(const render::Device& device, const Stage& stage, std::uint32_t texels, const glm::dvec2& beside,
-             const More& more)
-      : size(texels),
-        basis(maps::light_basis(stage.light)),
-        centre(basis.center),
-        fitted(maps::fit_views(
-            stage.floats, stage.light, basis, std::span(&centre, 1),
-            {.size = texels, .beside = beside, .reach = more.whole_light ? reach_of(stage, basis) : glm::dvec2(0)})),
-        views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
-        depths(device, "depths", texel_count() * (more.layers + (more.farthest ? 1 : 0)) * sizeof(float)) {
-    maps::CasterMaps casters(device, size);
-    casters.upload(stage.floats);
-    render::Commands commands(device);
-    const maps::gpu::LightView& view = fitted.views.front();
-    casters.record(commands, view, basis, stage.light.index, depths, 0);
-    for (std::uint64_t layer = 1; layer < more.layers; ++layer) {
-      casters.record_behind(commands, view, basis, stage.light.index, depths, layer * fitted.faces,
-                            (layer - 1) * fitted.faces);
-    }
-    if (more.farthest) {
-      casters.record_farthest(commands, view, basis, stage.light.index, depths,
-                              std::uint64_t{more.layers} * fitted.faces);
-    }
-    commands.submit();
-  }
-  CentreMaps(const render::Device& device, const Stage& stage, std::uint32_t texels, const glm::dvec2& beside = {0, 0})
-      : CentreMaps(device, stage, texels, beside, More()) {}
-  /// Of one layer.
-  [[nodiscard]] std::size_t texel_count() const { return std::size_t{size} * size * std::max(fitted.faces, 1U); }
-  [[nodiscard]] std::vector<float> read() const {
-    std::vector<float> texels(depths.bytes() / sizeof(float));
-    depths.read<float>(texels);
-    return texels;
-  }
-  /// For products: what a method would give them.
-  [[nodiscard]] maps::MapSet set(const Stage& stage) const {
-    return {views, depths, fitted.faces, size, stage.light, basis, stage.floats};
-  }
-
-  std::uint32_t size;
-  maps::LightBasis basis;
-  glm::vec3 centre;
-  maps::FittedViews fitted;
-  render::Buffer views, depths;
-
- private:
-  static glm::dvec2 reach_of(const Stage& stage, const maps::LightBasis& basis) {
-    const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
-    return glm::max(-bounds.lower, bounds.upper);
-  }
-};
 
 /// View samples by hand, on the plane through `middle` spanned by `u` and `v`: n × n, at middle + s u + t v with s and
 /// t in the middle of equal steps from −1 to 1, carried by triangle 0. `up` is their normal.

@@ -1,49 +1,17 @@
-// Layers of a map: what depth peeling finds, against every crossing of a texel's ray with the casters' triangles, and
-// what the option `depth` makes of the first two.
+// Layers of a map: what depth peeling finds, against every triangle at every texel in double, and what the option
+// `depth` makes of the first two.
 
 #include "maps/filters/pcf.hpp"
+#include "selftest/rasteriser_checks.hpp"
 #include "tests/analytic/centre_maps.hpp"
 #include "tests/analytic/maps_parallel_square.hpp"
+#include "tests/unit/passed.hpp"
 
-#include <random>
+#include <algorithm>
+#include <span>
 
 namespace penumbra::tests {
 namespace {
-
-constexpr std::uint32_t kSize = 48, kLayers = 4;
-
-/// Distances along the window's axis at which the ray in the direction (a, b, 1) from the light's centre meets casters,
-/// ascending; empty `certain` if that is different for a ray a fiftieth of a texel beside it: corners are snapped to
-/// 1/256 texel.
-struct Crossings {
-  std::vector<double> depths;
-  bool certain = true;
-};
-
-Crossings crossings(const Stage& stage, const CentreMaps& maps, const glm::dvec2& at, const glm::dvec2& texel) {
-  const auto along = [&](const glm::dvec2& tangent) {
-    std::vector<double> depths;
-    const glm::dvec3 ray(tangent, 1);
-    for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
-      if (stage.floats.casts_shadow[i] == 0) continue;
-      const auto corners = stage.floats.corners(i);
-      const glm::dvec3 a = maps.basis.local(corners[0]), b = maps.basis.local(corners[1]),
-                       c = maps.basis.local(corners[2]);
-      const double u = glm::dot(ray, glm::cross(b, c)), v = glm::dot(ray, glm::cross(c, a)),
-                   w = glm::dot(ray, glm::cross(a, b));
-      if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
-      depths.push_back((u * a.z + v * b.z + w * c.z) / (u + v + w));
-    }
-    std::ranges::sort(depths);
-    return depths;
-  };
-  Crossings found{along(at)};
-  for (const double x : {-0.02, 0.02}) {
-    for (const double y : {-0.02, 0.02})
-      found.certain &= along(at + glm::dvec2(x, y) * texel).size() == found.depths.size();
-  }
-  return found;
-}
 
 /// Boards at several heights, some of them twice, and a sphere, over a floor that casts, too.
 scenes::Scene stacked() {
@@ -62,47 +30,15 @@ class MapsLayers : public MapsTest {};
 
 TEST_F(MapsLayers, EachHoldsTheNextSurfaceAndTheFarthestTheLast) {
   const Stage stage(stacked(), 4, 4, light_samples(1));
+  constexpr std::uint32_t kSize = 48, kLayers = 4;
   const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = kLayers, .farthest = true});
   ASSERT_EQ(maps.fitted.faces, 1U);
+  expect_passed(selftest::check_maps(device(), stage, kSize, maps::Rasteriser::vulkan));
   const std::vector<float> texels = maps.read();
-  const maps::gpu::SideView& window = maps.fitted.views.front().side[0];
-  const double far = maps.fitted.views.front().far;
-  const glm::dvec2 texel = (glm::dvec2(window.upper) - glm::dvec2(window.lower)) / static_cast<double>(kSize);
-  std::array<std::size_t, kLayers + 1> seen{};
-  std::size_t uncertain = 0;
-  for (std::uint32_t y = 0; y < kSize; ++y) {
-    for (std::uint32_t x = 0; x < kSize; ++x) {
-      Crossings found = crossings(stage, maps, glm::dvec2(window.lower) + (glm::dvec2(x, y) + 0.5) * texel, texel);
-      if (!found.certain) {
-        ++uncertain;
-        continue;
-      }
-      // Twice the same surface is one layer; others are much farther apart here.
-      const auto same = [](double a, double b) { return std::abs(a - b) < 1e-5; };
-      found.depths.erase(std::unique(found.depths.begin(), found.depths.end(), same), found.depths.end());
-      const std::size_t at = std::size_t{y} * kSize + x;
-      for (std::uint32_t layer = 0; layer < kLayers; ++layer) {
-        const double depth = texels[std::size_t{layer} * kSize * kSize + at];
-        if (layer < found.depths.size()) {
-          ++seen[layer];
-          // The rasteriser moves corners by up to 1/512 texel, which on the steepest face here (slope 60 within half a
-          // texel of a silhouette) is no more than that times its slope: far below what parts the layers.
-          EXPECT_NEAR(depth * far, found.depths[layer], 0.01) << x << ", " << y << " layer " << layer;
-        } else {
-          EXPECT_EQ(depth, 1) << x << ", " << y << " layer " << layer;
-        }
-      }
-      const double last = texels[std::size_t{kLayers} * kSize * kSize + at];
-      if (found.depths.empty()) {
-        EXPECT_EQ(last, 0);
-      } else {
-        ++seen[kLayers];
-        EXPECT_NEAR(last * far, found.depths.back(), 0.01) << x << ", " << y;
-      }
-    }
+  for (std::uint32_t layer = 0; layer <= kLayers; ++layer) {
+    const auto held = std::span(texels).subspan(std::size_t{layer} * kSize * kSize, std::size_t{kSize} * kSize);
+    EXPECT_GT(std::ranges::count_if(held, [](float depth) { return depth > 0 && depth < 1; }), 20) << layer;
   }
-  for (const std::size_t count : seen) EXPECT_GT(count, 20U);
-  EXPECT_LT(uncertain, std::size_t{kSize} * kSize / 5);
 }
 
 // An open sheet over a floor that casts nothing: there is no second surface under it.

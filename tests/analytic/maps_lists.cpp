@@ -8,6 +8,8 @@
 #include "maps/products/penumbra_events.hpp"
 #include "maps/sampling/deep_penumbra.hpp"
 #include "maps/sampling/layered_attenuation.hpp"
+#include "selftest/list_checks.hpp"
+#include "tests/unit/passed.hpp"
 
 #include <fmt/format.h>
 
@@ -40,46 +42,11 @@ scenes::Scene crowded(bool wall, bool two_sided) {
 
 class MapLists : public MapsTest {
  protected:
-  /// What a product is made from, and the maps it is made of, read back.
-  struct Made {
-    Made(const render::Device& device, const Stage& s, std::uint32_t size)
-        : stage(s), basis(maps::light_basis(s.light)), casters(device, size) {
-      const glm::vec3 at(basis.center);
-      centre = maps::fit_views(s.floats, s.light, basis, std::span(&at, 1), {.size = size});
-      casters.upload(s.floats);
-      source.emplace(maps::MapSource{s.floats, s.light, basis, casters, centre.views.front(), centre.faces, size, 0.5,
-                                     times, counters});
-    }
-    const Stage& stage;
-    maps::LightBasis basis;
-    maps::CasterMaps casters;
-    maps::FittedViews centre;
-    visibility::PassTimes times;
-    std::map<std::string, std::uint64_t> counters;
-    std::optional<maps::MapSource> source;
-  };
-  /// V of a texel at depth t, from a product's words.
-  static float at(const std::vector<std::uint32_t>& words, std::size_t texels, std::size_t texel, float t) {
-    float v = 1;
-    for (std::uint32_t k = words[texel]; k < words[texel + 1]; ++k) {
-      const std::size_t step = texels + 1 + 2 * std::size_t{k};
-      if (std::bit_cast<float>(words[step]) < t) v = std::bit_cast<float>(words[step + 1]);
-    }
-    return v;
-  }
+  using Made = selftest::ListSource;
   static std::vector<std::uint32_t> words_of(const render::Buffer& buffer) {
     std::vector<std::uint32_t> words(buffer.bytes() / sizeof(std::uint32_t));
     buffer.read<std::uint32_t>(words);
     return words;
-  }
-  static std::vector<float> depths_of(const maps::SampleMaps& samples, std::uint32_t size) {
-    std::vector<float> depths;
-    for (const maps::SampleMaps::Part& part : samples.parts()) {
-      std::vector<float> more(std::size_t{part.count} * samples.faces() * size * size);
-      part.maps->read<float>(more);
-      depths.insert(depths.end(), more.begin(), more.end());
-    }
-    return depths;
   }
 };
 
@@ -91,60 +58,11 @@ TEST_F(DeepPenumbra, StepsAreTheirTwinAlongEveryRay) {
   constexpr std::uint32_t kSize = 12;
   for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
     const Stage stage(crowded(wall, two_sided), 4, 4, light_samples(9));
-    Made made(device(), stage, kSize);
+    const Made made(device(), stage, kSize);
     ASSERT_EQ(made.centre.faces, (wall ? 5U : 1U) + (two_sided ? 5U : 0U));
-    maps::PenumbraEvents product(device(), 0);
-    product.make(*made.source);
-    maps::SampleMaps samples(device());
-    samples.make(*made.source);
-    const std::vector<float> depths = depths_of(samples, kSize);
-    std::vector<maps::gpu::LightView> views(9);
-    samples.views().read<maps::gpu::LightView>(views);
-    const std::vector<std::uint32_t> words = words_of(product.buffer());
-    const std::size_t texels = std::size_t{made.centre.faces} * kSize * kSize;
-    std::size_t asked = 0, between = 0;
-    for (std::size_t texel = 0; texel < texels; ++texel) {
-      const auto face = static_cast<std::uint32_t>(texel / (kSize * kSize));
-      const auto x = static_cast<std::uint32_t>(texel % kSize), y = static_cast<std::uint32_t>(texel / kSize % kSize);
-      const maps::gpu::LightView& centre = made.centre.views.front();
-      const glm::dvec3 direction = maps::face_of(centre, made.basis, face).direction(x, y, kSize);
-      for (int i = 1; i < 40; ++i) {
-        const double t = 7.0 * i / 40 + 0.0137;
-        const glm::dvec3 place = glm::dvec3(centre.point) + t * direction;
-        std::uint32_t hidden = 0;
-        bool certain = true;
-        for (std::uint32_t j = 0; j < 9; ++j) {
-          const std::size_t s = glm::dot(direction, made.basis.n) > 0 ? 0 : 1;
-          const maps::gpu::SideView& side = views[j].side[s];
-          for (std::uint32_t f = 0; f < side.face_count; ++f) {
-            const maps::Face axes = maps::face_of(views[j], made.basis, side.first_face + f);
-            const glm::dvec3 d = place - glm::dvec3(views[j].point);
-            const double w = glm::dot(d, axes.w);
-            if (!(w > 0)) continue;
-            const glm::dvec2 cell = (glm::dvec2(glm::dot(d, axes.a), glm::dot(d, axes.b)) / w - axes.lower) /
-                                    (axes.upper - axes.lower) * static_cast<double>(kSize);
-            const double off = std::min(std::abs(cell.x - std::round(cell.x)), std::abs(cell.y - std::round(cell.y)));
-            if (off < 1e-3) certain = false;  // on a texel's border: rounding chooses
-            if (cell.x < 0 || cell.y < 0 || cell.x >= kSize || cell.y >= kSize) continue;
-            const std::size_t index =
-                ((std::size_t{j} * samples.faces() + side.first_face + f) * kSize + static_cast<std::size_t>(cell.y)) *
-                    kSize +
-                static_cast<std::size_t>(cell.x);
-            const double depth = static_cast<double>(depths[index]) * static_cast<double>(views[j].far);
-            if (std::abs(w - depth) < 1e-4 * w) certain = false;
-            hidden += w > depth ? 1 : 0;
-          }
-        }
-        // Past the far end of all that there is nobody asks.
-        if (!certain || t > static_cast<double>(centre.far)) continue;
-        ++asked;
-        between += hidden > 0 && hidden < 9 ? 1 : 0;
-        ASSERT_FLOAT_EQ(at(words, texels, texel, static_cast<float>(t)), 1 - static_cast<float>(hidden) / 9)
-            << "texel " << texel << " t " << t << " wall " << wall;
-      }
-    }
-    EXPECT_GT(asked, 1000U);
-    EXPECT_GT(between, asked / 50);
+    const selftest::Check check = selftest::check_penumbra_events(device(), stage, kSize);
+    expect_passed(check);
+    EXPECT_GT(check.compared, 1000U);
   }
 }
 
@@ -166,7 +84,8 @@ TEST_F(DeepPenumbra, CompressedStepsStayWithinTheBoundEverywhere) {
       for (std::uint32_t k = all[texel]; k < all[texel + 1]; ++k) {
         // Between two events V is constant: ask just behind each.
         const float t = std::nextafter(std::bit_cast<float>(all[kTexels + 1 + 2 * std::size_t{k}]), 1e30F);
-        const float exact = at(all, kTexels, texel, t), found = at(words, kTexels, texel, t);
+        const float exact = selftest::stepped(all, kTexels, texel, t),
+                    found = selftest::stepped(words, kTexels, texel, t);
         worst = std::max(worst, static_cast<double>(std::abs(exact - found)));
         EXPECT_TRUE(exact != 1 || found == 1) << "what is lit stays so";
         EXPECT_TRUE(exact != 0 || found == 0) << "what is dark stays so";
@@ -233,7 +152,7 @@ TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
     product.make(*made.source);
     maps::SampleMaps samples(device());
     samples.make(*made.source);
-    const std::vector<float> depths = depths_of(samples, kSize);
+    const std::vector<float> depths = selftest::depths_of(samples, kSize);
     const auto entries = entries_of(product, depths.size());
     const float far = made.centre.views.front().far;
     std::size_t own = 0, all = 0;

@@ -3,8 +3,10 @@
 #include "maps/products/map_frame.hpp"
 #include "maps/products/nearest_caster.hpp"
 #include "maps/products/prefilter.hpp"
-#include "maps/products/summed_areas.hpp"
+#include "selftest/map_checks.hpp"
+#include "selftest/prefilter_checks.hpp"
 #include "tests/analytic/centre_maps.hpp"
+#include "tests/unit/passed.hpp"
 
 #include <array>
 #include <numbers>
@@ -15,38 +17,12 @@ namespace {
 
 class Prefilters : public MapsTest {};
 
-/// SummedAreas' twin: Crow's sums of one image, modulo 2³².
-std::vector<std::uint32_t> sums_of(const std::vector<std::uint32_t>& image, std::uint32_t size) {
-  std::vector<std::uint32_t> sums(image.size());
-  for (std::uint32_t y = 0; y < size; ++y) {
-    std::uint32_t row = 0;
-    for (std::uint32_t x = 0; x < size; ++x) {
-      row += image[std::size_t{y} * size + x];
-      sums[std::size_t{y} * size + x] = row + (y > 0 ? sums[std::size_t{y - 1} * size + x] : 0);
-    }
-  }
-  return sums;
-}
-
 TEST_F(Prefilters, SummedAreasAreExactModulo32BitsAtAnySize) {
   std::mt19937 random(1);
-  const maps::SummedAreas pass(device());
   for (const std::uint32_t size : {8U, 9U, 100U, 257U}) {
-    constexpr std::uint32_t kImages = 3;
-    const std::size_t texels = std::size_t{size} * size;
-    std::vector<std::uint32_t> words(kImages * texels);
+    std::vector<std::uint32_t> words(std::size_t{3} * size * size);
     for (std::uint32_t& word : words) word = static_cast<std::uint32_t>(random());  // most sums wrap around
-    const render::Buffer buffer = render::make_buffer<std::uint32_t>(device(), "images", words);
-    render::Commands commands(device());
-    pass.record(commands, buffer, kImages, size);
-    commands.submit();
-    std::vector<std::uint32_t> found(words.size());
-    buffer.read<std::uint32_t>(found);
-    for (std::size_t k = 0; k < kImages; ++k) {
-      const auto first = static_cast<std::ptrdiff_t>(k * texels), last = static_cast<std::ptrdiff_t>((k + 1) * texels);
-      const std::vector<std::uint32_t> image(words.begin() + first, words.begin() + last);
-      EXPECT_EQ(std::vector(found.begin() + first, found.begin() + last), sums_of(image, size)) << size;
-    }
+    expect_passed(selftest::check_summed_areas(device(), words, size));
   }
 }
 
@@ -69,7 +45,7 @@ TEST(SummedAreaTables, OfFloatsLoseWhatIntegersKeep) {
       float_sums[at] = row + (y > 0 ? float_sums[at - kSide] : 0);
     }
   }
-  const std::vector<std::uint32_t> sums = sums_of(digits, kSide);
+  const std::vector<std::uint32_t> sums = selftest::summed_areas(digits, kSide);
   double worst_float = 0;
   for (std::uint32_t k = 0; k < 2000; ++k) {
     const std::uint32_t x = 1 + static_cast<std::uint32_t>(random() % (kSide - kBox - 1)),
@@ -104,109 +80,12 @@ scenes::Scene scene_of(bool hemicube) {
   return scene;
 }
 
-struct Prefiltered {
-  Prefiltered(const render::Device& device, const Stage& stage, std::uint32_t size, maps::PrefilterOptions options)
-      : maps(device, stage, size),
-        nearest(device),
-        frame(device),
-        product(device, options, {.nearest = &nearest, .frame = &frame}),
-        layout(*maps::prefilter_layout(options, size, maps.fitted.faces, device.limits().max_storage_buffer_range)) {
-    render::Commands commands(device);
-    nearest.record(commands, maps.set(stage));
-    frame.record(commands, maps.set(stage));
-    product.record(commands, maps.set(stage));
-    commands.submit();
-    nearest.buffer().read<float>(lowest);
-    frame.buffer().read<maps::gpu::MapFrame>(std::span(&found_frame, 1));
-  }
-  /// The words of block `k`.
-  [[nodiscard]] std::vector<std::uint32_t> block(std::uint32_t k) const {
-    std::vector<std::uint32_t> words(layout.table.block);
-    const render::Buffer& buffer = product.buffers()[1 + k / layout.table.per_buffer];
-    buffer.read<std::uint32_t>(words, std::uint64_t{k % layout.table.per_buffer} * layout.table.block * 4);
-    return words;
-  }
-  /// The height of a texel in [0, 1].
-  [[nodiscard]] double height(const std::vector<float>& depths, std::size_t texel) const {
-    const maps::gpu::LightView& view = maps.fitted.views.front();
-    if (depths[texel] == 1) return 1;
-    const std::size_t row = texel / maps.size, face = row / maps.size;
-    const bool sideways = face != view.side[0].first_face;
-    const double along = sideways ? (static_cast<double>(row % maps.size) + 0.5) / maps.size : 1;
-    const double low = lowest[0] * (1 - 1.0 / 1024), high = found_frame.deepest[0] * (1 + 1.0 / 1024);
-    return std::clamp((depths[texel] * along * view.far - low) / (high - low), 0.0, 1.0);
-  }
-
-  CentreMaps maps;
-  maps::NearestCaster nearest;
-  maps::MapFrame frame;
-  maps::Prefilter product;
-  maps::PrefilterLayout layout;
-  std::array<float, 2> lowest{};
-  maps::gpu::MapFrame found_frame{};
-};
-
-/// Each kind of function once, with its value and how far float32 may be off it.
-struct Case {
-  maps::PrefilterFunction function;
-  std::function<double(double)> value;
-};
-std::vector<Case> cases() {
-  using namespace maps::gpu;
-  const auto layer = [](double t) { return std::clamp(4 * t - 1, 0.0, 1.0); };
-  const float c = 3 * std::numbers::pi_v<float>;
-  return {
-      {{.kind = kLayer}, [](double t) { return t; }},
-      {{.kind = kLayer, .power = kSquared}, [](double t) { return (t - 0.5) * (t - 0.5); }},
-      {{.kind = kLayer, .a = 4, .b = 1}, layer},
-      {{.kind = kLayer, .power = kSquared, .a = 4, .b = 1}, [=](double t) { return std::pow(layer(t) - 0.5, 2); }},
-      {{.kind = kRising, .a = 20, .digits = 60}, [](double t) { return std::exp(20 * (t - 1)); }},
-      {{.kind = kRising, .power = kSquared, .a = 20, .digits = 90}, [](double t) { return std::exp(40 * (t - 1)); }},
-      {{.kind = kFalling, .a = 20, .digits = 60}, [](double t) { return std::exp(-20 * t); }},
-      {{.kind = kFalling, .power = kSquared, .a = 20, .digits = 90}, [](double t) { return std::exp(-40 * t); }},
-      {{.kind = kSine, .a = c}, [=](double t) { return 0.5 + 0.5 * std::sin(c * t); }},
-      {{.kind = kCosine, .a = c}, [=](double t) { return 0.5 + 0.5 * std::cos(c * t); }},
-      {{.kind = kSine, .power = kTimesHeight, .a = c}, [=](double t) { return 0.5 + 0.5 * t * std::sin(c * t); }},
-      {{.kind = kCosine, .power = kTimesHeight, .a = c}, [=](double t) { return 0.5 + 0.5 * t * std::cos(c * t); }}};
-}
-/// Heights are right to a few units of float32's last place, exponents multiply that by up to 40; exp and sin of a
-/// device are right to 2⁻²⁰ of their argument's range.
-constexpr double kFloatError = 128 * 0x1p-23;
-
 TEST_F(Prefilters, TablesAreSumsOfTheValuesDigits) {
   for (const bool hemicube : {false, true}) {
     const Stage stage(scene_of(hemicube), 4, 4, light_samples(1));
+    ASSERT_EQ(CentreMaps(device(), stage, 8).fitted.faces, hemicube ? 5U : 1U);
     for (const std::uint32_t size : {32U, 51U}) {
-      maps::PrefilterOptions options{.kind = maps::PrefilterKind::table, .functions = {}};
-      for (const Case& one : cases()) options.functions.push_back(one.function);
-      const Prefiltered found(device(), stage, size, options);
-      ASSERT_EQ(found.maps.fitted.faces, hemicube ? 5U : 1U);
-      const std::vector<float> depths = found.maps.read();
-      const std::size_t texels = std::size_t{size} * size;
-      for (std::size_t f = 0; f < options.functions.size(); ++f) {
-        const maps::gpu::PrefilterValue& value = found.layout.values[f];
-        ASSERT_LE(std::uint64_t{texels} << value.bits, std::uint64_t{1} << 32);
-        ASSERT_GE(value.bits * value.limbs, options.functions[f].digits);
-        std::vector<double> sums(depths.size(), 0.0);
-        for (std::uint32_t limb = 0; limb < value.limbs; ++limb) {
-          const std::vector<std::uint32_t> table = found.block(value.first_block + limb);
-          std::vector<std::uint32_t> digits(table.size());
-          for (std::size_t i = 0; i < table.size(); ++i) {
-            const std::size_t x = i % size, y = i / size % size;
-            digits[i] = table[i] - (x > 0 ? table[i - 1] : 0) - (y > 0 ? table[i - size] : 0) +
-                        (x > 0 && y > 0 ? table[i - size - 1] : 0);
-            ASSERT_LT(digits[i], 1U << value.bits) << "a digit of its own, not a carry";
-            sums[i] += std::ldexp(digits[i], -static_cast<int>(value.bits * (limb + 1)));
-          }
-        }
-        for (std::size_t i = 0; i < depths.size(); ++i) {
-          const double truth = cases()[f].value(found.height(depths, i));
-          const bool exponential = value.kind == maps::gpu::kRising || value.kind == maps::gpu::kFalling;
-          const double last = std::ldexp(1.0, -static_cast<int>(value.bits * value.limbs));
-          EXPECT_NEAR(sums[i], truth, kFloatError * (exponential ? truth : 1) + last)
-              << "function " << f << " texel " << i;
-        }
-      }
+      expect_passed(selftest::check_prefilter_tables(device(), stage, size));
     }
   }
 }
@@ -217,42 +96,7 @@ TEST_F(Prefilters, LevelsAreMeansOfTheLevelBefore) {
     const Stage stage(scene_of(hemicube), 4, 4, light_samples(1));
     for (const maps::PrefilterKind kind : {maps::PrefilterKind::pyramid, maps::PrefilterKind::windows}) {
       for (const std::uint32_t size : {8U, 32U, 51U}) {
-        maps::PrefilterOptions options{.kind = kind, .functions = {}};
-        for (const Case& one : cases()) options.functions.push_back(one.function);
-        const Prefiltered found(device(), stage, size, options);
-        const std::uint32_t faces = found.maps.fitted.faces, levels = found.layout.table.levels;
-        const bool pyramid = kind == maps::PrefilterKind::pyramid;
-        EXPECT_EQ(levels, size == 8 ? 4U : size == 32 ? 6U : pyramid ? 7U : 6U);
-        const std::vector<float> depths = found.maps.read();
-        for (std::size_t f = 0; f < options.functions.size(); ++f) {
-          const std::vector<std::uint32_t> words = found.block(found.layout.values[f].first_block);
-          std::vector<float> before(depths.size());
-          for (std::size_t i = 0; i < depths.size(); ++i) {
-            before[i] = std::bit_cast<float>(words[i]);
-            EXPECT_NEAR(before[i], cases()[f].value(found.height(depths, i)), kFloatError);
-          }
-          std::size_t at = before.size();
-          std::uint32_t side = size;
-          for (std::uint32_t level = 1; level < levels; ++level) {
-            const std::uint32_t next = pyramid ? (side + 1) / 2 : size, step = pyramid ? 1 : 1U << (level - 1);
-            std::vector<float> now(std::size_t{faces} * next * next);
-            for (std::size_t i = 0; i < now.size(); ++i, ++at) {
-              const auto x = static_cast<std::uint32_t>(i % next), y = static_cast<std::uint32_t>(i / next % next);
-              const std::size_t face = i / (std::size_t{next} * next);
-              const std::uint32_t x0 = pyramid ? 2 * x : x, y0 = pyramid ? 2 * y : y;
-              const std::uint32_t x1 = std::min(x0 + step, side - 1), y1 = std::min(y0 + step, side - 1);
-              const auto of = [&](std::uint32_t a, std::uint32_t b) { return before[(face * side + b) * side + a]; };
-              now[i] = 0.25F * ((of(x0, y0) + of(x1, y0)) + (of(x0, y1) + of(x1, y1)));
-              ASSERT_EQ(std::bit_cast<float>(words[at]), now[i]) << "level " << level << " of " << size;
-            }
-            before = std::move(now);
-            side = next;
-          }
-          EXPECT_EQ(at, words.size());
-          if (pyramid) {
-            EXPECT_EQ(side, 1U);
-          }
-        }
+        expect_passed(selftest::check_prefilter_levels(device(), stage, size, kind));
       }
     }
   }

@@ -3,7 +3,9 @@
 
 #include "base/error.hpp"
 #include "maps/products/depth_pyramid.hpp"
+#include "selftest/map_checks.hpp"
 #include "tests/analytic/maps_fixture.hpp"
+#include "tests/unit/passed.hpp"
 
 #include <algorithm>
 #include <random>
@@ -20,64 +22,13 @@ constexpr std::array kKinds{PyramidKind::hsm, PyramidKind::ysm, PyramidKind::mss
 
 class MapsPyramids : public MapsTest {};
 
-/// The nodes of a pyramid, each from its texels alone.
-std::vector<glm::vec2> pyramid_twin(const PyramidHeader& header, std::uint32_t faces,
-                                    const std::vector<float>& depths) {
-  const std::uint32_t size = header.cells - 1;
-  std::vector<glm::vec2> nodes;
-  for (std::uint32_t level = 0; level <= header.top; ++level) {
-    const std::uint32_t spacing = 1U << std::min(level, header.whole);
-    for (std::uint32_t face = 0; face < faces; ++face) {
-      for (std::uint32_t y = 0; y < header.cells; y += spacing) {
-        for (std::uint32_t x = 0; x < header.cells; x += spacing) {
-          glm::vec2 range(1, 0);
-          // Cell x lies between the texels x − 1 and x; texels −1 and `size` are beyond the map.
-          const std::uint32_t width = 1U << level;
-          for (std::uint32_t j = y; j <= std::min(y + width, header.cells); ++j) {
-            for (std::uint32_t i = x; i <= std::min(x + width, header.cells); ++i) {
-              const bool inside = i > 0 && j > 0 && i <= size && j <= size;
-              const float depth = inside ? depths[(std::size_t{face} * size + j - 1) * size + i - 1] : 1.0F;
-              range = {std::min(range.x, depth), std::max(range.y, depth)};
-            }
-          }
-          nodes.push_back(range);
-        }
-      }
-    }
-  }
-  return nodes;
-}
-
 TEST_F(MapsPyramids, EachNodeHasTheRangeOfItsTexels) {
   std::mt19937 random(15);
-  const visibility::Light light{};
-  const visibility::SceneFloats scene{};
-  const maps::LightBasis basis{};
-  const render::Buffer views(device(), "views", sizeof(maps::gpu::LightView));
   for (const PyramidKind kind : kKinds) {
-    maps::DepthPyramid product(device(), kind);
     for (const auto& [size, faces] : {std::pair(8U, 1U), std::pair(33U, 5U), std::pair(13U, 2U), std::pair(64U, 1U)}) {
       std::vector<float> depths(std::size_t{size} * size * faces);
       for (float& depth : depths) depth = random() % 8 == 0 ? 1.0F : static_cast<float>(random() % 1000) / 1000;
-      const render::Buffer maps = render::make_buffer<float>(device(), "depths", depths);
-      render::Commands commands(device());
-      product.record(commands, {views, maps, faces, size, light, basis, scene});
-      commands.submit();
-      const PyramidHeader expected = maps::pyramid_header(kind, size, faces, kPlenty);
-      PyramidHeader header{};
-      product.buffer().read<PyramidHeader>(std::span(&header, 1));
-      EXPECT_EQ(header.whole, expected.whole);
-      EXPECT_EQ(header.top, expected.top);
-      const std::vector<glm::vec2> twin = pyramid_twin(header, faces, depths);
-      ASSERT_EQ(maps::pyramid_bytes(header, faces), twin.size() * sizeof(glm::vec2));
-      std::vector<glm::vec2> nodes(twin.size());
-      product.buffer().read<glm::vec2>(nodes, sizeof header);
-      for (std::uint32_t level = 0, first = 0; level <= header.top; ++level) {
-        EXPECT_EQ(header.first[level], first);
-        const std::uint32_t side = (size >> std::min(level, header.whole)) + 1;  // cells: size + 1
-        first += faces * side * side;
-      }
-      EXPECT_EQ(nodes, twin) << "size " << size << ", " << faces << " faces";
+      expect_passed(selftest::check_depth_pyramid(device(), kind, depths, size, faces));
     }
   }
 }

@@ -4,6 +4,11 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
 namespace penumbra::tests {
 namespace {
 
@@ -57,6 +62,73 @@ TEST_F(Tables, DevicesSayWhatTheyCan) {
     EXPECT_FALSE(device.at("name").get<std::string>().empty());
     // Either it can be used, or it is said why not.
     EXPECT_EQ(device.at("usable").get<bool>(), device.at("refusals").empty()) << device;
+  }
+  const json contexts = json::parse(run({"devices", "--json"}).out).at("opengl");
+  ASSERT_FALSE(contexts.empty()) << "where there is none, one says why";
+  for (const json& context : contexts) {
+    EXPECT_FALSE(context.at("name").get<std::string>().empty());
+    EXPECT_EQ(context.at("usable").get<bool>(), context.at("refusals").empty()) << context;
+    EXPECT_EQ(context.at("usable").get<bool>(), context.at("subpixelBits").get<int>() > 0) << context;
+  }
+}
+
+TEST_F(Tables, TheSelfTestPassesHere) {
+  const Outcome outcome = run({"devices", "--self-test", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  const json report = json::parse(outcome.out);
+  EXPECT_TRUE(report.at("passed").get<bool>());
+  EXPECT_GE(report.at("checks").size(), 15u);
+  for (const json& check : report.at("checks")) {
+    EXPECT_EQ(check.at("verdict"), "passed") << check;
+    EXPECT_GT(check.at("compared").get<std::uint64_t>(), 0u) << check;
+    EXPECT_EQ(check.at("wrong"), 0u) << check;
+    EXPECT_LE(check.at("largest").get<double>(), check.at("allowed").get<double>()) << check;
+    EXPECT_FALSE(check.at("rule").get<std::string>().empty()) << check;
+  }
+  const Outcome table = run({"devices", "--self-test"});
+  EXPECT_EQ(table.code, 0);
+  for (const char* word : {"compared", "differing", "largest", "allowed", "verdict", "OpenGL", "passed"}) {
+    EXPECT_THAT(table.out, HasSubstr(word));
+  }
+}
+
+TEST_F(Tables, WithoutAnEglDriverEverythingButOpenGlIsThere) {
+  const std::map<std::string, std::string> nowhere{{"__EGL_VENDOR_LIBRARY_FILENAMES", path("no.json")}};
+  const Outcome list = run({"devices", "--json"}, nowhere);
+  EXPECT_EQ(list.code, 0);
+  const json contexts = json::parse(list.out).at("opengl");
+  ASSERT_EQ(contexts.size(), 1u);
+  EXPECT_FALSE(contexts[0].at("usable").get<bool>());
+  EXPECT_THAT(contexts[0].at("refusals")[0].get<std::string>(), HasSubstr("libegl-mesa0"));
+  EXPECT_THAT(run({"devices"}, nowhere).out, HasSubstr("EGL finds no driver"));
+
+  const std::string scene = tiny_scene();
+  const auto draw = [&](const std::string& rasteriser) {
+    return run({"render", scene, "-o", path(rasteriser + ".exr"), "--method", "shadow-map", "--method-option",
+                "size=16", "--method-option", "rasteriser=" + rasteriser},
+               nowhere);
+  };
+  EXPECT_EQ(draw("vulkan").code, 0);
+  const Outcome refused = draw("opengl");
+  EXPECT_EQ(refused.code, 4);
+  EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("no OpenGL"), HasSubstr("libgl1-mesa-dri")));
+  EXPECT_THAT(files(), testing::Not(testing::Contains("opengl.exr")));
+
+  const Outcome tested = run({"devices", "--self-test"}, nowhere);
+  EXPECT_EQ(tested.code, 0) << tested.out;
+  EXPECT_THAT(tested.out, testing::AllOf(HasSubstr("not run"), HasSubstr("OpenGL was left out"), HasSubstr("passed")));
+}
+
+TEST_F(Tables, ADriverWithAnOlderOpenGlIsRefusedWithItsReason) {
+  const auto contexts = [&](std::map<std::string, std::string> environment) {
+    return json::parse(run({"devices", "--json"}, std::move(environment)).out).at("opengl");
+  };
+  const json now = contexts({}), older = contexts({{"MESA_GL_VERSION_OVERRIDE", "3.3"}});
+  ASSERT_EQ(now.size(), older.size());
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i].at("driver").get<std::string>().find("Mesa") == std::string::npos) continue;  // the variable is Mesa's
+    EXPECT_FALSE(older[i].at("usable").get<bool>());
+    EXPECT_THAT(older[i].at("refusals")[0].get<std::string>(), HasSubstr("OpenGL 4.5"));
   }
 }
 

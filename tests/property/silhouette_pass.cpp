@@ -5,6 +5,8 @@
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "mesh/shapes/shapes.hpp"
+#include "selftest/edge_checks.hpp"
+#include "tests/unit/passed.hpp"
 #include "volumes/edges/silhouette_pass.hpp"
 
 #include <algorithm>
@@ -17,23 +19,7 @@
 namespace penumbra::volumes {
 namespace {
 
-struct Mesh {
-  explicit Mesh(const mesh::TriangleSoup& soup, double scale = 1) : triangles(soup.triangles) {
-    for (const glm::dvec3& p : soup.positions) positions.emplace_back(p * scale);
-    wide = mesh::widened(positions);
-    graph = mesh::build_edge_graph(view());
-  }
-  [[nodiscard]] mesh::MeshView view() const { return {wide, triangles}; }
-
-  std::vector<glm::vec3> positions;
-  std::vector<glm::dvec3> wide;
-  std::vector<mesh::Triangle> triangles;
-  mesh::EdgeGraph graph;
-};
-
-struct Tally {
-  std::size_t points = 0, silhouettes = 0, ties = 0, open = 0;
-};
+using Mesh = selftest::EdgeMesh;
 
 class SilhouettePassTest : public tests::DeviceTest {
  protected:
@@ -70,29 +56,12 @@ class SilhouettePassTest : public tests::DeviceTest {
 
   void expect_edges(const std::string& name, const Mesh& mesh, const glm::vec3& l,
                     const std::vector<std::uint32_t>& counted) {
-    std::vector<mesh::Side> sides = mesh::facings(mesh.view(), mesh.graph, l);
-    pass_.evaluate(l, counted);
-    const std::vector<std::uint32_t> found = pass_.read_sides();
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      const std::uint32_t side = bits_of(sides[i]);
-      ASSERT_EQ(found[i], side | (side & counted[i]) << gpu::kCountedShift) << name << ", triangle " << i;
-      tally_.ties += sides[i] == mesh::Side::on ? 1 : 0;
-      if ((side & counted[i]) == 0) sides[i] = mesh::Side::on;
-    }
-    std::vector<mesh::SilhouetteEdge> expected;
-    for (std::uint32_t edge = 0; edge < mesh.graph.edges.size(); ++edge) {
-      const int k = mesh::signed_multiplicity(mesh.graph, edge, sides);
-      if (k != 0) expected.push_back({edge, k});
-    }
-    ASSERT_EQ(pass_.read_edges(), expected) << name << " from " << tests::text_of(l);
-    ASSERT_EQ(pass_.count(), expected.size());
-    ++tally_.points;
-    tally_.silhouettes += expected.size();
-    tally_.open += pass_.open_facings();
+    SCOPED_TRACE(name);
+    tests::expect_passed(selftest::check_silhouettes(pass_, mesh, l, counted, tally_));
   }
 
   SilhouettePass pass_;
-  Tally tally_;
+  selftest::SilhouetteTally tally_;
 };
 
 std::vector<glm::vec3> around(std::uint32_t seed, std::size_t count, float reach) {

@@ -1,0 +1,198 @@
+#include "selftest/self_test.hpp"
+
+#include "base/error.hpp"
+#include "mesh/shapes/shapes.hpp"
+#include "selftest/edge_checks.hpp"
+#include "selftest/list_checks.hpp"
+#include "selftest/map_checks.hpp"
+#include "selftest/mask_checks.hpp"
+#include "selftest/prefilter_checks.hpp"
+#include "selftest/rasteriser_checks.hpp"
+#include "volumes/counters/depth_complexity.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
+#include "vsm/view_sample.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <random>
+#include <string>
+#include <utility>
+
+namespace penumbra::selftest {
+namespace {
+
+using maps::Rasteriser;
+
+/// Runs one check several times; a refusal of the machine is the check's own, and the others go on.
+Check repeated(const std::string& pass, const std::function<void(Check&)>& work) {
+  Check all;
+  all.pass = pass;
+  try {
+    work(all);
+  } catch (const ResourceError& error) {
+    all.refused = error.what();
+  }
+  return all;
+}
+
+void join(Check& all, const Check& one) {
+  all.pass = one.pass;
+  all.against = one.against;
+  all.rule = one.rule;
+  all.add(one);
+}
+
+/// What every rasteriser meets: a floor, a sphere of small triangles, a tilted board, the same board again the other
+/// way round, needles; a wall up to the light where maps become hemicubes; and a second half above a two-sided light.
+scenes::Scene crowd(bool wall, bool two_sided) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_object(scene, "sphere", sphere({0.31, 1.07, 0.23}, 0.61, 8));
+  add_quad(scene, {-0.7, 1.5, 0.1}, {0.43, 0.21, 0}, {0, 0, 0.77});
+  add_quad(scene, {-0.7, 1.5, 0.1}, {-0.43, -0.21, 0}, {0, 0, 0.77});
+  add_object(scene, "needles",
+             {{glm::dvec3(-1.5, 0.4, -1.2), {1.4, 0.6, 1.1}, {1.4, 0.6, 1.1003}},
+              {glm::dvec3(1.1, 0.9, -1.3), {1.1004, 0.9, -1.3}, {-0.9, 0.7, 1.4}}});
+  if (wall) add_quad(scene, {2, 2, 0}, {0, 2, 0}, {0, 0, 2});
+  if (two_sided) {
+    add_quad(scene, {0, 6, 0}, {2, 0, 0}, {0, 0, 2});
+    add_quad(scene, {0.2, 5, 0}, {0.5, 0.1, 0}, {0, 0, 0.5});
+  }
+  scene.lights.push_back(ceiling_light(3, 0.5));
+  scene.lights.back().two_sided = two_sided;
+  scene.cameras.push_back(camera({0.7, 3, 6}, {0, 0.7, 0}));
+  return scene;
+}
+
+class SelfTest {
+ public:
+  explicit SelfTest(const render::Device& device) : device_(device) {
+    for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
+      stages_.emplace_back(crowd(wall, two_sided), kPixels, kPixels, light_samples(36));
+    }
+  }
+
+  std::vector<Check> run() {
+    std::vector<Check> checks;
+    for (const Rasteriser rasteriser : {Rasteriser::vulkan, Rasteriser::opengl}) {
+      const char* name = rasteriser == Rasteriser::vulkan ? "Vulkan" : "OpenGL";
+      checks.push_back(each_stage(fmt::format("view samples ({})", name), [&](const Stage& stage) {
+        return check_view_samples(device_, stage.floats, stage.pinhole, rasteriser);
+      }));
+      checks.push_back(each_stage(fmt::format("depth maps ({})", name),
+                                  [&](const Stage& stage) { return check_maps(device_, stage, kTexels, rasteriser); }));
+      checks.push_back(each_stage(fmt::format("slices ({})", name), [&](const Stage& stage) {
+        return check_slices(device_, stage, kTexels, 5, rasteriser);
+      }));
+    }
+    checks.push_back(each_stage("depth maps, Vulkan's",
+                                [&](const Stage& stage) { return check_rasterisers_agree(device_, stage, kTexels); }));
+    checks.push_back(each_stage("nearest caster",
+                                [&](const Stage& stage) { return check_nearest_caster(device_, stage, kTexels); }));
+    checks.push_back(repeated("summed areas", [&](Check& all) { sums(all); }));
+    checks.push_back(repeated("depth pyramids", [&](Check& all) { pyramids(all); }));
+    checks.push_back(each_stage("prefiltered tables",
+                                [&](const Stage& stage) { return check_prefilter_tables(device_, stage, kTexels); }));
+    for (const maps::PrefilterKind kind : {maps::PrefilterKind::pyramid, maps::PrefilterKind::windows}) {
+      checks.push_back(each_stage("prefiltered levels", [&](const Stage& stage) {
+        return check_prefilter_levels(device_, stage, kTexels, kind);
+      }));
+    }
+    checks.push_back(repeated("penumbra events", [&](Check& all) {  // of a window: stages_ begins with one
+      join(all, check_penumbra_events(device_, stages_.front(), 12));
+    }));
+    checks.push_back(repeated("silhouettes", [&](Check& all) { silhouettes(all); }));
+    checks.push_back(repeated("penumbra wedges", [&](Check& all) { wedges(all); }));
+    checks.push_back(masks("view-sample", vsm::make_view_sample, {{"engine", "vulkan"}}));
+    checks.push_back(masks("edge-scatter", volumes::make_edge_scatter, {{"engine", "vulkan"}}));
+    checks.push_back(masks("depth-complexity", volumes::make_depth_complexity, {}));
+    return checks;
+  }
+
+ private:
+  static constexpr std::uint32_t kPixels = 48, kTexels = 48;
+
+  template <typename Run>
+  Check each_stage(const std::string& pass, const Run& run) const {
+    return repeated(pass, [&](Check& all) {
+      for (const Stage& stage : stages_) join(all, run(stage));
+    });
+  }
+
+  void sums(Check& all) const {
+    std::mt19937 random(1);
+    for (const std::uint32_t size : {8U, 9U, 100U, 257U}) {
+      std::vector<std::uint32_t> words(std::size_t{3} * size * size);
+      for (std::uint32_t& word : words) word = static_cast<std::uint32_t>(random());  // most sums wrap around
+      join(all, check_summed_areas(device_, words, size));
+    }
+  }
+
+  void pyramids(Check& all) const {
+    std::mt19937 random(15);
+    for (const maps::PyramidKind kind : {maps::PyramidKind::hsm, maps::PyramidKind::ysm, maps::PyramidKind::mssm}) {
+      for (const auto& [size, faces] : {std::pair(8U, 1U), std::pair(33U, 5U), std::pair(13U, 2U)}) {
+        std::vector<float> depths(std::size_t{size} * size * faces);
+        for (float& depth : depths) depth = random() % 8 == 0 ? 1.0F : static_cast<float>(random() % 1000) / 1000;
+        join(all, check_depth_pyramid(device_, kind, depths, size, faces));
+      }
+    }
+  }
+
+  static mesh::TriangleSoup knot() {
+    mesh::KnotShape shape;
+    shape.center = {0, 1, 0};
+    shape.segments = 60;
+    shape.sides = 12;
+    return mesh::make_knot(shape);
+  }
+
+  void silhouettes(Check& all) const {
+    const EdgeMesh mesh(knot());
+    volumes::SilhouettePass pass(device_);
+    pass.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph});
+    const std::vector<std::uint32_t> counted(mesh.triangles.size(), volumes::gpu::kBothBits);
+    SilhouetteTally tally;
+    // From above, from a corner of its own (ties), and from where floats decide nothing.
+    for (const glm::vec3& l : {glm::vec3(0.3F, 4, 0.2F), mesh.positions[17], glm::vec3(0, 1e30F, 0)}) {
+      join(all, check_silhouettes(pass, mesh, l, counted, tally));
+    }
+  }
+
+  void wedges(Check& all) const {
+    scenes::Scene scene;
+    const mesh::TriangleSoup soup = knot();
+    std::vector<Corners> triangles;
+    for (const mesh::Triangle& t : soup.triangles) {
+      triangles.push_back({soup.positions[t[0]], soup.positions[t[1]], soup.positions[t[2]]});
+    }
+    add_object(scene, "knot", triangles);
+    scene.lights.push_back(ceiling_light(5, 0.7));
+    scene.lights.push_back({"disk", scenes::Disk{{1.5, 4, 1}, {-0.3, -1, 0}, 0.6}, glm::dvec3(1), false});
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    std::vector<visibility::Light> lights;
+    for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {
+      lights.push_back(visibility::make_light(scene, i, floats.origin, {}));
+    }
+    WedgeTally tally;
+    join(all, check_wedges(device_, floats, lights, volumes::Layers::one_a_solid, true, tally));
+  }
+
+  template <typename Make>
+  Check masks(const std::string& name, const Make& make, const visibility::MethodOptions& options) const {
+    return each_stage("masks of " + name,
+                      [&](const Stage& stage) { return check_masks(*make(device_, options), stage, name); });
+  }
+
+  const render::Device& device_;
+  std::vector<Stage> stages_;
+};
+
+}  // namespace
+
+std::vector<Check> run_self_test(const render::Device& device) {
+  return SelfTest(device).run();
+}
+
+}  // namespace penumbra::selftest
