@@ -219,6 +219,11 @@ void expect_sane_stats(const json& stats) {
     EXPECT_NEAR(seconds.at("shadow").get<double>(),
                 seconds.at("light").get<double>() + seconds.at("evaluate").get<double>(), 1e-12);
   }
+  for (const json& light : stats.at("lights")) {
+    const bool area = light.at("quantity") == "area";
+    EXPECT_EQ(light.at("lightSamples") == 0, area) << light;
+    EXPECT_EQ(light.at("samplePattern").is_null(), area) << light;
+  }
   EXPECT_GT(stats.at("size").at(0).get<int>() * stats.at("size").at(1).get<int>(), 0);
   EXPECT_FALSE(stats.at("device").get<std::string>().empty());
   for (const json& pass : stats.at("passes")) EXPECT_TRUE(not_negative(pass.at("milliseconds"))) << pass;
