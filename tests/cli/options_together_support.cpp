@@ -151,8 +151,8 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   if (method == "edge-scatter") {
     const bool exact = is("rows", "exact"), on_device = is("engine", "vulkan");
     const bool in_rows = row["pattern"].empty() || row["pattern"] == "rows" || row["pattern"] == "grid";
-    return (exact && (on_device || scene.texture)) || (on_device && !in_rows) ||
-           ((exact || on_device) && !std::ranges::all_of(scene.lights, is_rectangle));
+    return (exact && on_device) || (on_device && !in_rows) ||
+           (on_device && !std::ranges::all_of(scene.lights, is_rectangle));
   }
   if (method == "depth-complexity") {
     const bool forest = is("variant", "forest");

@@ -19,6 +19,7 @@ using testing::HasSubstr;
 
 constexpr const char* kFill =
     R"({"name": "fill", "rectangle": {"center": [3, 3, 3], "halfU": [0.2, 0, 0], "halfV": [0, 0, 0.2]}})";
+constexpr const char* kSun = R"({"name": "noon", "sun": {"direction": [-0.3, -1, -0.2], "angle": 2}})";
 constexpr const char* kBulb = R"({"name": "bulb", "sphere": {"center": [0, 4, 0], "radius": 0.3}})";
 
 class Render : public ProgramTest, public testing::WithParamInterface<const char*> {
@@ -258,7 +259,7 @@ TEST_F(ExactByDefault, OfAMethodThatWasNamedToo) {
 
 /// Lights that one method cannot do do not change how the others are done, and what they give is the same together.
 TEST_F(ExactByDefault, LightByLight) {
-  write("scene.json", scene_text_with("/lights/1", kBulb));
+  write("scene.json", scene_text_with("/lights/1", kSun));
   json both = json::parse(read("scene.json"));
   both["lights"].push_back(json::parse(kFill));
   write("scene.json", both.dump());
@@ -269,17 +270,17 @@ TEST_F(ExactByDefault, LightByLight) {
     EXPECT_EQ(lights[i]["method"], "edge-scatter");
     EXPECT_EQ(lights[i]["quantity"], "area");
   }
-  EXPECT_EQ(lights[1]["name"], "bulb");
+  EXPECT_EQ(lights[1]["name"], "noon");
   EXPECT_EQ(lights[1]["method"], "raytrace");
   EXPECT_EQ(lights[1]["lightSamples"], 256);
-  EXPECT_THAT(rendered.err, testing::AllOf(HasSubstr("\"bulb\""), HasSubstr("256 light samples")));
-  EXPECT_THAT(rendered.stats["warnings"].dump(), HasSubstr("bulb"));
+  EXPECT_THAT(rendered.err, testing::AllOf(HasSubstr("\"noon\""), HasSubstr("256 light samples")));
+  EXPECT_THAT(rendered.stats["warnings"].dump(), HasSubstr("noon"));
   const auto& v = rendered.image.floats;
-  EXPECT_EQ(v.at("V.bulb"), render({"--method", "raytrace"}).image.floats.at("V.bulb"));
-  const Rendered bulb_first = render({"--light", "bulb"});
-  EXPECT_EQ(bulb_first.stats["method"], "raytrace");
-  for (const char* channel : {"V.key", "V.bulb", "V.fill"})
-    EXPECT_EQ(v.at(channel), bulb_first.image.floats.at(channel)) << channel;
+  EXPECT_EQ(v.at("V.noon"), render({"--method", "raytrace"}).image.floats.at("V.noon"));
+  const Rendered sun_first = render({"--light", "noon"});
+  EXPECT_EQ(sun_first.stats["method"], "raytrace");
+  for (const char* channel : {"V.key", "V.noon", "V.fill"})
+    EXPECT_EQ(v.at(channel), sun_first.image.floats.at(channel)) << channel;
 }
 
 TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
