@@ -133,8 +133,9 @@ class Comparison {
     for (const Light& light : session_.lights) check_light(reference_.description, light);
     if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
     for (const MethodEntry& chosen : with_method_options()) {
-      // With its options: they may change what it gives and which lights it can do.
-      Entry entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
+      std::optional<Entry> described = describe_entry(chosen);
+      if (!described) continue;
+      Entry& entry = *described;
       if (chosen.from_group && !can_do(entry.description, session_.lights)) {
         warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
         continue;
@@ -148,6 +149,18 @@ class Comparison {
           "none of the chosen methods can do the lights of {}; name one that can with --methods (see "
           "`penumbra methods`)",
           session_.scene.name);
+    }
+  }
+
+  /// With its options: they may change what it gives and which lights it can do. Nothing: a group's exact areas, which
+  /// --method-option excludes.
+  std::optional<Entry> describe_entry(const MethodEntry& chosen) {
+    try {
+      return Entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
+    } catch (const UsageError& error) {
+      if (!chosen.exact_area) throw;
+      warn(fmt::format("{} is left out: {}", chosen.label, error.what()));
+      return std::nullopt;
     }
   }
 
@@ -199,7 +212,7 @@ class Comparison {
     }
     Finished done = run_one(reference_, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
     report_.exposure = compare::auto_exposure(done.beauty);
-    report_.metrics.reference = make_stats(session_, reference_lights_, label_of(reference_), done.run);
+    report_.metrics.reference = stats_of(reference_, reference_lights_, done.run);
     report_.metrics.judged_pixels = truths_.front().judged.size();
     report_.metrics.horizon_pixels = truths_.front().horizon.size();
     report_.reference = pictures_of(reference_, done);
@@ -236,7 +249,7 @@ class Comparison {
         progress_);
     progress_.clear();
     compare::SampleCost cost;
-    cost.stats = make_stats(session_, session_.lights, label_of(rays), done.run);
+    cost.stats = stats_of(rays, session_.lights, done.run);
     cost.stats.seconds = {};  // one run that nothing warmed up
     cost.all_lights_error = error_of_all_lights(done.run, truths_);
     cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
@@ -268,7 +281,7 @@ class Comparison {
     spdlog::error("{}: {}", entry.label, failure.message);
     compare::MethodResult result;
     result.entry = entry.label;
-    result.stats = make_stats(session_, session_.lights, label_of(entry), {});
+    result.stats = stats_of(entry, session_.lights, {});
     result.stats.seconds = {};
     result.failure = {static_cast<int>(failure.code), failure.message};
     report_.metrics.methods.push_back(std::move(result));
@@ -303,7 +316,7 @@ class Comparison {
 
     compare::MethodResult result;
     result.entry = entry.label;
-    result.stats = make_stats(session_, session_.lights, label_of(entry), done.run);
+    result.stats = stats_of(entry, session_.lights, done.run);
     judge.fill(result, done.run, pairs_of_reference, progress_);
     result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
     compare::ReportEntry pictures = pictures_of(entry, done);
@@ -340,13 +353,19 @@ class Comparison {
     done.masks = masks.finish();
     devices_.check_validation();
     progress_.clear();
-    write_picture(file_of(entry.label, ".exr"), session_, lights, label_of(entry), done.run, done.beauty);
+    const MethodLabel label = label_of(entry);
+    write_picture(file_of(entry.label, ".exr"), session_, {lights, {&label, 1}}, done.run, done.beauty);
     if (bits) bits->commit();
     return done;
   }
 
   [[nodiscard]] bool wants_bits(const Entry& entry) const {
     return options_.bits && entry.description.output == Output::mask;
+  }
+
+  [[nodiscard]] compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) const {
+    const MethodLabel label = label_of(entry);
+    return make_stats(session_, {lights, {&label, 1}}, run);
   }
 
   [[nodiscard]] MethodLabel label_of(const Entry& entry) const {

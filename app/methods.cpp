@@ -215,22 +215,16 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   });
 }
 
-const MethodDescription& default_method(const std::vector<Light>& lights) {
-  std::vector<std::string> others;
-  const MethodDescription* rays = nullptr;
+const MethodDescription& default_method(const Light& light) {
+  const MethodDescription* other = nullptr;
   for (const MethodDescription* method : all_methods()) {
-    if (!can_do(*method, lights)) continue;
+    if (!can_do(*method, {light})) continue;
     if (method->family == Family::geometry) return *method;
-    if (method->family == Family::reference && rays == nullptr) rays = method;
-    others.push_back(method->name);
+    if (method->family == Family::reference && method->output == visibility::Output::mask) other = method;
   }
-  if (rays != nullptr) return *rays;
-  std::vector<std::string> kinds;
-  for (const Light& light : lights)
-    kinds.emplace_back(fmt::format("{} ({})", light.name, visibility::name_of(light.kind)));
-  throw InputError(
-      "no geometry-based method can do all of the scene's lights yet: {}; choose a method with --method: {}",
-      fmt::join(kinds, ", "), others.empty() ? "none in this build" : fmt::format("{}", fmt::join(others, ", ")));
+  if (other != nullptr) return *other;
+  throw InputError("light \"{}\" is a {}, which no method of this build can do; choose another with --light",
+                   light.name, visibility::name_of(light.kind));
 }
 
 }  // namespace penumbra::app

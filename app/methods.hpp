@@ -34,8 +34,8 @@ std::unique_ptr<visibility::Method> make_method(std::string_view name, const vis
 
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 
-/// The best geometry-based method that can do all these lights; if there is none, the reference's rays. Throws
-/// InputError, naming what else can, if those cannot either.
-const visibility::MethodDescription& default_method(const std::vector<visibility::Light>& lights);
+/// The best method for the light's samples: the first geometry-based one that can do it, or, of a kind that none can
+/// do, rays. Throws InputError if there is none either.
+const visibility::MethodDescription& default_method(const visibility::Light& light);
 
 }  // namespace penumbra::app

@@ -35,6 +35,16 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
   }
 }
 
+/// null: it never gives it.
+nlohmann::ordered_json exact_area_json(const MethodDescription& method) {
+  if (!method.exact_area) return nullptr;
+  const MethodDescription with = describe_method(method.name, method.exact_area->options);
+  auto lights = nlohmann::ordered_json::array(), options = nlohmann::ordered_json::object();
+  for (const LightKind kind : method.exact_area->lights) lights.push_back(visibility::name_of(kind));
+  for (const auto& [key, value] : method.exact_area->options) options[key] = value;
+  return {{"lights", lights}, {"textures", with.textures}, {"options", options}};
+}
+
 void print_json(const std::vector<const MethodDescription*>& methods) {
   auto rows = nlohmann::ordered_json::array();
   for (const MethodDescription* method : methods) {
@@ -58,6 +68,7 @@ void print_json(const std::vector<const MethodDescription*>& methods) {
                     {"textures", method->textures},
                     {"anyPattern", method->any_pattern},
                     {"onRequest", method->on_request},
+                    {"exactArea", exact_area_json(*method)},
                     {"options", options}});
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"methods", rows}}.dump(2));

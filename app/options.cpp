@@ -61,12 +61,12 @@ std::string file_name_of(std::string_view label) {
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("SCENE", options.scene, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
-  command.add_option("--light-samples", options.light_samples, "light samples: N or LxB, 1 to 4096 points")
-      ->type_name("N|LxB")
-      ->capture_default_str();
-  command.add_option("--sample-pattern", options.sample_pattern, "rows, grid, sobol or jittered")
-      ->type_name("NAME")
-      ->capture_default_str();
+  command
+      .add_option("--light-samples", options.light_samples,
+                  "light samples: N or LxB, 1 to 4096 points (default: 256, or none where `render` gives exact areas)")
+      ->type_name("N|LxB");
+  command.add_option("--sample-pattern", options.sample_pattern, "rows, grid, sobol or jittered (default: rows)")
+      ->type_name("NAME");
   command.add_option("--sample-seed", options.sample_seed, "seed of sobol and jittered")
       ->type_name("N")
       ->capture_default_str();
@@ -114,9 +114,10 @@ scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside) {
 
 visibility::SampleRequest parse_light_samples(const RunOptions& options) {
   visibility::SampleRequest request;
-  request.pattern = parse_pattern(options.sample_pattern);
+  if (!options.sample_pattern.empty()) request.pattern = parse_pattern(options.sample_pattern);
   request.seed = options.sample_seed;
   const std::string& text = options.light_samples;
+  if (text.empty()) return request;
   if (const auto product = parse_product(text)) {
     request.rows = product->first;
     request.columns = product->second;
@@ -185,6 +186,21 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     }
     entries.push_back(std::move(entry));
   };
+  // Unless it gives nothing else, or the group's options exclude it.
+  const auto add_exact_area = [&](const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
+    visibility::MethodOptions options = given;
+    options.insert(method.exact_area->options.begin(), method.exact_area->options.end());
+    if (options == given) return;
+    std::string label = method.name;
+    for (const auto& [key, value] : method.exact_area->options) label += fmt::format(":{}={}", key, value);
+    try {
+      if (!describe_method(method.name, options).gives_area()) return;
+    } catch (const UsageError&) {
+      return;
+    }
+    add(label, method.name, std::move(options), true);
+    entries.back().exact_area = true;
+  };
   for (const std::string_view part : split(text, ',')) {
     const auto fields = split(part, ':');
     visibility::MethodOptions options;
@@ -194,6 +210,7 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
       for (const visibility::MethodDescription* description : *group) {
         visibility::parse_options(*description, options);
         add(description->name, description->name, options, true);
+        if (description->exact_area) add_exact_area(*description, options);
       }
     } else {
       const auto& description = describe_method(fields[0]);  // throws for a name that is not there

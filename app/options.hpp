@@ -31,8 +31,7 @@ struct LampSizes {
 struct RunOptions {
   std::filesystem::path scene;
   std::filesystem::path out;
-  std::string light_samples = "256";
-  std::string sample_pattern = "rows";
+  std::string light_samples, sample_pattern;  ///< empty: nobody asked for any; then 256 and rows
   std::uint32_t sample_seed = 0;
   std::string size;                   ///< empty: the scene's
   std::string light, camera, device;  ///< empty: the first, the first, the best
@@ -65,8 +64,10 @@ struct MethodEntry {
   std::string name;
   visibility::MethodOptions options;
   bool from_group = false;  ///< not asked for by name: left out, with a warning, where it cannot do the scene's lights
+  bool exact_area = false;  ///< a group's member once more, for its exact areas
 };
-/// "a,b:key=value:key=value,c"; `geometry`, `image` and `all` stand for the methods of these families in the table.
+/// "a,b:key=value:key=value,c"; `geometry`, `image` and `all` stand for the methods of these families in the table,
+/// each that gives exact areas by an option also with that.
 std::vector<MethodEntry> parse_methods(std::string_view text);
 
 }  // namespace penumbra::app

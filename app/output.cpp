@@ -7,9 +7,12 @@
 #include "compare/machine.hpp"
 
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace penumbra::app {
@@ -31,6 +34,36 @@ const char* beauty_text(visibility::Output output) {
       return "radiance and cosines integrated over the visible part of the light";
   }
   return "?";
+}
+
+std::uint32_t samples_of(const LabelledLights& all, std::size_t light) {
+  return all.label(light).description.gives_area() ? 0 : all.lights[light].sample_count();
+}
+
+/// Nothing: V is an area.
+std::optional<std::string> pattern_of(const LabelledLights& all, std::size_t light) {
+  if (all.label(light).description.gives_area()) return std::nullopt;
+  return visibility::name_of(all.lights[light].pattern);
+}
+
+compare::LightStats light_stats(const LabelledLights& all, std::size_t light) {
+  const MethodLabel& label = all.label(light);
+  return {.name = all.lights[light].name,
+          .method = label.description.name,
+          .options = label.options,
+          .area = label.description.gives_area(),
+          .light_samples = samples_of(all, light),
+          .sample_pattern = pattern_of(all, light).value_or("")};
+}
+
+/// `lights` of stats.json, without the seconds: the same command gives the same bytes.
+std::string lights_text(const LabelledLights& all) {
+  auto rows = nlohmann::ordered_json::array();
+  for (std::size_t light = 0; light < all.lights.size(); ++light) {
+    rows.push_back(compare::to_json(light_stats(all, light)));
+    rows.back().erase("seconds");
+  }
+  return rows.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 /// Rows [tile.first_row, + row_count) as view samples of their own.
@@ -105,11 +138,14 @@ void BitsOutput::commit() {
 }
 
 std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device) {
-  return runs_on_device(description.name) ? vulkan_device : compare::this_machine().processor;
+  const bool vulkan = runs_on_device(description.name) && !description.gives_area();
+  return vulkan ? vulkan_device : compare::this_machine().processor;
 }
 
-void write_picture(const std::filesystem::path& path, const Session& session, std::span<const visibility::Light> lights,
-                   const MethodLabel& label, const MethodRun& run, std::span<const glm::vec3> beauty) {
+void write_picture(const std::filesystem::path& path, const Session& session, const LabelledLights& all,
+                   const MethodRun& run, std::span<const glm::vec3> beauty) {
+  const std::span<const visibility::Light> lights = all.lights;
+  const MethodLabel& label = all.label(0);
   const visibility::ViewSamples& samples = session.samples;
   const std::size_t count = session.pixel_count();
   std::vector<float> alpha(count);
@@ -141,8 +177,9 @@ void write_picture(const std::filesystem::path& path, const Session& session, st
                       {"penumbra.options", options_text(label.options)},
                       {"penumbra.output", visibility::name_of(label.description.output)},
                       {"penumbra.beauty", beauty_text(label.description.output)},
-                      {"penumbra.lightSamples", fmt::format("{}", lights.front().sample_count())},
-                      {"penumbra.samplePattern", visibility::name_of(lights.front().pattern)},
+                      {"penumbra.lightSamples", fmt::format("{}", samples_of(all, 0))},
+                      {"penumbra.samplePattern", pattern_of(all, 0).value_or("null")},
+                      {"penumbra.lights", lights_text(all)},
                       {"penumbra.scene", session.scene.name},
                       {"penumbra.version", PENUMBRA_VERSION},
                       {"penumbra.device", label.device}};
@@ -150,8 +187,8 @@ void write_picture(const std::filesystem::path& path, const Session& session, st
   write_exr(path, image);
 }
 
-compare::Stats make_stats(const Session& session, std::span<const visibility::Light> lights, const MethodLabel& label,
-                          const MethodRun& run) {
+compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run) {
+  const MethodLabel& label = lights.label(0);
   compare::Stats stats;
   stats.scene = session.scene.name;
   stats.width = session.width;
@@ -160,8 +197,14 @@ compare::Stats make_stats(const Session& session, std::span<const visibility::Li
   stats.triangles = session.floats.triangles.size();
   stats.method = label.description.name;
   stats.options = label.options;
-  stats.light_samples = lights.front().sample_count();
-  stats.sample_pattern = visibility::name_of(lights.front().pattern);
+  stats.light_samples = samples_of(lights, 0);
+  stats.sample_pattern = pattern_of(lights, 0).value_or("");
+  for (std::size_t light = 0; light < lights.lights.size(); ++light) {
+    stats.lights.push_back(light_stats(lights, light));
+    if (light >= run.times.lights.size()) continue;  // it failed
+    stats.lights.back().light = run.times.lights[light].light;
+    stats.lights.back().evaluate = run.times.lights[light].evaluate;
+  }
   stats.seconds.load = session.load_seconds;
   stats.seconds.mesh = run.times.mesh;
   stats.seconds.view = session.view_seconds;
@@ -177,9 +220,18 @@ compare::Stats make_stats(const Session& session, std::span<const visibility::Li
 }
 
 std::string summary(const compare::Stats& stats) {
-  return fmt::format("{}: {}x{}, {} triangles, {} light samples ({}); shadow {:.3f} s on {}", stats.method, stats.width,
-                     stats.height, stats.triangles, stats.light_samples, stats.sample_pattern,
-                     stats.seconds.shadow().value_or(0), stats.device);
+  std::vector<std::string> methods, questions;
+  const auto add = [](std::vector<std::string>& words, std::string word) {
+    if (std::ranges::find(words, word) == words.end()) words.push_back(std::move(word));
+  };
+  for (const compare::LightStats& light : stats.lights) {
+    add(methods, light.method);
+    add(questions,
+        light.area ? "exact areas" : fmt::format("{} light samples ({})", light.light_samples, light.sample_pattern));
+  }
+  return fmt::format("{}: {}x{}, {} triangles, {}; shadow {:.3f} s on {}", fmt::join(methods, " + "), stats.width,
+                     stats.height, stats.triangles, fmt::join(questions, " + "), stats.seconds.shadow().value_or(0),
+                     stats.device);
 }
 
 }  // namespace penumbra::app

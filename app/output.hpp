@@ -65,12 +65,19 @@ struct MethodLabel {
 /// device is the processor), or the processor's name.
 std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device);
 
-/// OUT.exr with all channels and attributes.
-void write_picture(const std::filesystem::path& path, const Session& session, std::span<const visibility::Light> lights,
-                   const MethodLabel& label, const MethodRun& run, std::span<const glm::vec3> beauty);
+/// Lights with what each was done with: one label a light, or one for all of them.
+struct LabelledLights {
+  std::span<const visibility::Light> lights;
+  std::span<const MethodLabel> labels;
 
-compare::Stats make_stats(const Session& session, std::span<const visibility::Light> lights, const MethodLabel& label,
-                          const MethodRun& run);
+  [[nodiscard]] const MethodLabel& label(std::size_t light) const { return labels[labels.size() == 1 ? 0 : light]; }
+};
+
+/// OUT.exr with all channels and attributes.
+void write_picture(const std::filesystem::path& path, const Session& session, const LabelledLights& lights,
+                   const MethodRun& run, std::span<const glm::vec3> beauty);
+
+compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run);
 
 /// One line a method for people: its name, the picture's size, triangles, light samples, seconds of `shadow`, device.
 std::string summary(const compare::Stats& stats);

@@ -1,4 +1,5 @@
 #include "app/commands.hpp"
+#include "app/light_methods.hpp"
 #include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/output.hpp"
@@ -26,8 +27,8 @@ class RenderCommand : public Command {
         ->required()
         ->type_name("OUT.exr");
     cli_.add_option("--method", method_,
-                    "shadow method, see `penumbra methods` (default: the best geometry-based one "
-                    "that can do the scene's lights; where none can, raytrace)")
+                    "shadow method, see `penumbra methods` (default: for each light the best one that gives its exact "
+                    "area; where light samples are asked for, or none does, the best geometry-based one, or raytrace)")
         ->type_name("NAME");
     cli_.add_option("--stats", stats_, "times, counters and warnings as JSON; times of one run, the first")
         ->type_name("FILE.json");
@@ -61,46 +62,61 @@ class RenderCommand : public Command {
 
     Progress progress(!global.quiet);
     DeviceSource devices(options_.device);
-    const Session session = open_session(options_, devices, 0, progress);
+    Session session = open_session(options_, devices, 0, progress);
     outputs.refuse_inputs(session.scene.sources);
     report_warnings(session, progress);
-    const auto description =
-        describe_method(method_.empty() ? default_method(session.lights).name : method_, method_options);
-    for (const visibility::Light& light : session.lights) check_light(description, light);
-    const MethodLabel label{description, method_options, device_of(description, devices.name())};
+    const bool samples = !options_.light_samples.empty() || !options_.sample_pattern.empty() || !bits_.empty();
+    const auto chosen = choose_light_methods(session.lights, {method_, method_options, samples});
+    const std::vector<MethodLabel> labels = labels_of(chosen, devices, session.warnings);
     std::optional<BitsOutput> bits;
     if (!bits_.empty()) {
-      check_bits(description, session.lights.front());
+      check_bits(chosen.front().description, session.lights.front());
       bits.emplace(bits_, session, session.lights.front());
     }
-    const auto method = make_method(description.name, method_options, devices);
 
     BeautyAccumulator beauty(session, session.lights);
-    const RunPlan plan{.lights = session.lights};
-    const MethodRun result = run_method(
-        *method, session, plan,
-        [&](const TileResult& tile) {
-          beauty.add(tile);
-          if (bits && tile.light == 0) bits->add(tile);
-        },
-        progress);
+    MethodRun result;
+    for (const std::vector<std::size_t>& lights : same_methods(chosen)) {
+      const LightMethod& with = chosen[lights.front()];
+      const auto method = make_method(with.description.name, with.options, devices);
+      add_run(result, run_method(
+                          *method, session, {.lights = session.lights, .only = lights},
+                          [&](const TileResult& tile) {
+                            beauty.add(tile);
+                            if (bits && tile.light == 0) bits->add(tile);
+                          },
+                          progress));
+    }
     devices.check_validation();  // before anything appears: a picture that cannot be trusted is none
 
     progress.clear();
     for (const std::filesystem::path& path : pictures) {
-      write_picture(path, session, session.lights, label, result, beauty.pixels());
+      write_picture(path, session, {session.lights, labels}, result, beauty.pixels());
     }
     if (bits) bits->commit();
     if (!png_.empty()) {
       write_png(png_, to_srgb(session.width, session.height, beauty.pixels(), compare::auto_exposure(beauty.pixels())));
     }
-    const compare::Stats stats = make_stats(session, session.lights, label, result);
+    const compare::Stats stats = make_stats(session, {session.lights, labels}, result);
     if (!stats_.empty()) write_file_atomically(stats_, compare::json_text(compare::to_json(stats)));
     spdlog::info("{}", summary(stats));
     return 0;
   }
 
  private:
+  /// Says, and notes, where light samples are looked at though nobody asked for them.
+  static std::vector<MethodLabel> labels_of(const std::vector<LightMethod>& chosen, DeviceSource& devices,
+                                            std::vector<std::string>& warnings) {
+    std::vector<MethodLabel> labels;
+    for (const LightMethod& one : chosen) {
+      labels.push_back({one.description, one.options, device_of(one.description, devices.name())});
+      if (one.note.empty()) continue;
+      spdlog::info("{}", one.note);
+      warnings.push_back(one.note);
+    }
+    return labels;
+  }
+
   /// Scenes stand still so far: every frame shows the same, and is written all the same.
   [[nodiscard]] std::vector<std::filesystem::path> picture_paths() const {
     if (frames_.empty()) return {options_.out};

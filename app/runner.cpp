@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -32,10 +33,24 @@ void require_mesh_memory(const visibility::MethodDescription& method, const visi
                  "make the meshes smaller, or choose another --method");
 }
 
-/// One run's times, summed over the lights.
+/// One run's times, of each light, and of meshes.
 struct OneRun {
-  double mesh = 0, light = 0, evaluate = 0;
+  std::vector<LightTimes> lights;
+  double mesh = 0;
 };
+
+double sum_of(const OneRun& run, double LightTimes::*time) {
+  return std::transform_reduce(run.lights.begin(), run.lights.end(), 0.0, std::plus(),
+                               [&](const LightTimes& light) { return light.*time; });
+}
+
+/// The lights that a plan does, as indices.
+std::vector<std::size_t> chosen_lights(const RunPlan& plan) {
+  if (!plan.only.empty()) return plan.only;
+  std::vector<std::size_t> all(plan.lights.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
 
 /// Runs a method on all lights of a session; knows where the results of the last run go.
 class Host {
@@ -45,8 +60,8 @@ class Host {
       : method_(method), session_(session), plan_(plan), sink_(sink), progress_(progress) {}
 
   OneRun run(bool last, MethodRun& result) {
-    OneRun times;
-    for (std::size_t light = 0; light < plan_.lights.size(); ++light) {
+    OneRun times{std::vector<LightTimes>(plan_.lights.size()), 0};
+    for (const std::size_t light : chosen_lights(plan_)) {
       Stopwatch watch;
       {
         const MayExitAtOnce at_once;
@@ -58,14 +73,14 @@ class Host {
         }
         watch.restart();
         method_.prepare_light(plan_.lights[light]);
-        times.light += watch.seconds();
+        times.lights[light].light = watch.seconds();
         method_.prepare_view(session_.samples);
       }
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
       rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
-        times.evaluate += evaluate(tile);
+        times.lights[light].evaluate += evaluate(tile);
         if (last) read(light, tile, result);
         progress_.advance(tile.row_count);
       }
@@ -140,44 +155,73 @@ class Host {
 
 }  // namespace
 
+void add_run(MethodRun& to, MethodRun&& other) {
+  if (to.visibility.empty()) {
+    to = std::move(other);
+    return;
+  }
+  to.times.mesh += other.times.mesh;
+  to.times.light += other.times.light;
+  to.times.evaluate += other.times.evaluate;
+  to.times.total += other.times.total;
+  for (std::size_t light = 0; light < to.visibility.size(); ++light) {
+    if (other.visibility[light].empty()) continue;
+    to.visibility[light] = std::move(other.visibility[light]);
+    to.times.lights[light] = other.times.lights[light];
+  }
+  to.passes.insert(to.passes.end(), other.passes.begin(), other.passes.end());
+  for (const auto& [name, count] : other.counters) to.counters[name] += count;
+  to.memory_bytes += other.memory_bytes;
+}
+
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress) {
   // Lights that the method cannot do are refused before any work.
-  for (const Light& light : plan.lights) visibility::check_light(method.description(), light);
+  const std::vector<std::size_t> chosen = chosen_lights(plan);
+  for (const std::size_t light : chosen) visibility::check_light(method.description(), plan.lights[light]);
 
   if (plan.pixels) method.want_pixels(*plan.pixels);
 
   const Stopwatch total;
   MethodRun result;
-  result.visibility.assign(plan.lights.size(), std::vector<float>(session.pixel_count()));
+  result.visibility.resize(plan.lights.size());
+  for (const std::size_t light : chosen) result.visibility[light].resize(session.pixel_count());
   const std::uint32_t discarded = plan.discard_first ? 1 : 0;
-  progress.begin(method.description().name,
-                 std::uint64_t{session.height} * plan.lights.size() * (plan.runs + discarded));
+  progress.begin(method.description().name, std::uint64_t{session.height} * chosen.size() * (plan.runs + discarded));
   {
     const MayExitAtOnce at_once;
     require_mesh_memory(method.description(), session.floats);
   }
 
   Host host(method, session, plan, sink, progress);
-  std::vector<double> light_seconds, evaluate_seconds;
+  std::vector<OneRun> runs;
   std::optional<OneRun> first;
   for (std::uint32_t run = 0; run < plan.runs + discarded; ++run) {
     method.take_pass_times();  // those of earlier runs
     const bool last = run + 1 == plan.runs + discarded;
-    const OneRun times = host.run(last, result);
+    OneRun times = host.run(last, result);
     if (run == 0) result.times.mesh = times.mesh;  // later runs prepare meshes anew only where lights' casters differ
     if (run < discarded) {
-      first = times;
-      continue;
+      first = std::move(times);
+    } else {
+      runs.push_back(std::move(times));
     }
-    light_seconds.push_back(times.light);
-    evaluate_seconds.push_back(times.evaluate);
   }
-  result.times.light = median(std::move(light_seconds));
-  result.times.evaluate = median(std::move(evaluate_seconds));
+  const auto median_of = [&](const auto& time) {
+    std::vector<double> seconds;
+    for (const OneRun& run : runs) seconds.push_back(time(run));
+    return median(std::move(seconds));
+  };
+  result.times.light = median_of([](const OneRun& run) { return sum_of(run, &LightTimes::light); });
+  result.times.evaluate = median_of([](const OneRun& run) { return sum_of(run, &LightTimes::evaluate); });
+  for (std::size_t light = 0; light < plan.lights.size(); ++light) {
+    result.times.lights.push_back({median_of([&](const OneRun& run) { return run.lights[light].light; }),
+                                   median_of([&](const OneRun& run) { return run.lights[light].evaluate; })});
+  }
   if (first) {
     // A first run that chance made faster than the median warmed nothing up.
-    const double longer = first->light + first->evaluate - result.times.light - result.times.evaluate;
+    const double longer = sum_of(*first, &LightTimes::light) + sum_of(*first, &LightTimes::evaluate) -
+                          result.times.light - result.times.evaluate;
     result.times.warmup = std::max(longer, 0.0);
   }
   result.passes = method.take_pass_times();

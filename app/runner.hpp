@@ -33,23 +33,33 @@ struct RunPlan {
   std::uint32_t runs = 1;                     ///< timed runs
   bool discard_first = false;                 ///< one more before them, which warms up and does not count
   std::optional<std::vector<std::uint32_t>> pixels =
-      {};  ///< all that will be looked at (ascending); nothing: every pixel
+      {};                              ///< all that will be looked at (ascending); nothing: every pixel
+  std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them
+};
+
+/// Of one light, medians where there were several runs.
+struct LightTimes {
+  double light = 0, evaluate = 0;
 };
 
 /// Times of one method over all lights, in seconds: medians where there were several runs.
 struct RunTimes {
   double mesh = 0, light = 0, evaluate = 0;
-  std::optional<double> warmup;  ///< the discarded run's light + evaluate less the medians, >= 0; empty: no such run
-  double total = 0;              ///< wall-clock of all that was done for this method, reading back and sinks included
+  std::vector<LightTimes> lights;  ///< of each of the plan's; 0 for those that were not done
+  std::optional<double> warmup;    ///< the discarded run's light + evaluate less the medians, >= 0; empty: no such run
+  double total = 0;                ///< wall-clock of all that was done for this method, reading back and sinks included
 };
 
 struct MethodRun {
   RunTimes times;
-  std::vector<std::vector<float>> visibility;  ///< for each light, V of each pixel; NaN: not evaluated
+  std::vector<std::vector<float>> visibility;  ///< for each light that was done, V of each pixel; NaN: not evaluated
   std::vector<visibility::PassTime> passes;    ///< of the last run
   std::map<std::string, std::uint64_t> counters;
   std::uint64_t memory_bytes = 0;
 };
+
+/// Adds what another method made of other lights of the same plan.
+void add_run(MethodRun& to, MethodRun&& other);
 
 /// Runs a method on a session: mesh once, then light and tiles, and reads the last run's result. In one place for every
 /// method stand the host's rules: background, pixels that carry a light's body, and receivers with receivesShadow =

@@ -15,7 +15,8 @@
 #include "mesh/predicates.hpp"
 #include "areas/area_sweep.hpp"
 #include "areas/back_projection.hpp"
-#include "areas/form_factor_sum.hpp"
+#include "areas/disk_measure.hpp"
+#include "areas/form_factor_measure.hpp"
 #include "areas/light_region.hpp"
 #include "areas/light_shaft.hpp"
 #include "areas/texture_measure.hpp"
@@ -26,6 +27,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -127,7 +129,8 @@ struct ExactAreaData {
   const Light* light = nullptr;
   IntegerFrame frame;  ///< not of a sphere
   Region region;
-  mpq_class area;
+  bool round = false;  ///< the light is what of the region is in the unit disk
+  mpq_class area;      ///< of the region
   GridBox box;
   std::vector<SweepEdge<double>> edges;  ///< of the region
   std::optional<TextureColumns> texture;
@@ -283,11 +286,17 @@ double share_left(const Question& question, std::vector<SweepEdge<Number>> edges
     const auto left = measure_uncovered<Number>(TextureMeasure<Number>(*data.texture), edges, question.form_factor);
     return std::clamp(mpq_class(mpq_class(left) / data.texture->integral()).get_d(), 0.0, 1.0);
   }
+  FormFactorSum* form_factor = question.form_factor;
   if (work.edges == 0) {
-    if (question.form_factor != nullptr) question.form_factor->add_whole();
-    return mpq_class(area_of(question.region) / data.area).get_d();
+    if (form_factor != nullptr) form_factor->add_whole();
+    if (!data.round) return mpq_class(area_of(question.region) / data.area).get_d();
+    form_factor = nullptr;
   }
-  const auto left = measure_uncovered<Number>(PlainMeasure<Number>(), edges, question.form_factor);
+  if (data.round) {
+    const auto left = measure_uncovered<Number>(DiskMeasure<Number>(), edges, form_factor);
+    return std::clamp(mpq_class(left).get_d() / std::numbers::pi, 0.0, 1.0);
+  }
+  const auto left = measure_uncovered<Number>(PlainMeasure<Number>(), edges, form_factor);
   return std::clamp(mpq_class(mpq_class(left) / data.area).get_d(), 0.0, 1.0);
 }
 
@@ -313,6 +322,7 @@ void ExactArea::set_light(const Light& light) {
   data_->light = &light;
   if (light.kind != LightKind::sphere) data_->frame = integer_frame(light, {});
   data_->region = light_region(light);
+  data_->round = visibility::is_round(light.kind);
   data_->area = area_of(data_->region);
   data_->box = box_around(data_->region);
   data_->edges = region_edges<double>(data_->region);
@@ -334,7 +344,7 @@ ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) 
   FormFactorSum form_factor(seen, data_->blocks);
   ExactView view;
   view.visibility = visible_share(receiver, arithmetic, view.work, &form_factor);
-  if (view.visibility == 1 && view.work.edges != 0) {  // what is near the light hides none of it
+  if (static_cast<float>(view.visibility) == 1 && view.work.edges != 0) {  // what is near the light hides none of it
     FormFactorSum whole(seen, data_->blocks);
     whole.add_whole();
     view.form_factor = whole.sum();

@@ -9,7 +9,7 @@
 namespace penumbra::areas {
 namespace {
 
-/// A convex polygon: a trapezoid cut by lines, each of which adds a corner at most.
+/// A convex polygon: one of four corners cut by up to four lines, each of which adds a corner at most.
 struct Corners {
   std::array<glm::dvec2, 8> at{};
   std::size_t count = 0;
@@ -20,14 +20,24 @@ struct Corners {
   [[nodiscard]] std::span<const glm::dvec2> span() const { return std::span(at).first(count); }
 };
 
-/// What of it has sign · (t − border) ≥ 0.
-Corners clip(const Corners& polygon, double border, double sign) {
+Corners corners_of(std::span<const glm::dvec2> polygon) {
+  Corners corners;
+  for (const glm::dvec2& corner : polygon) corners.push(corner);
+  return corners;
+}
+
+enum Axis : int { kS, kT };
+/// What of it has sign · (s − border) ≥ 0, or t.
+Corners clip(const Corners& polygon, Axis axis, double border, double sign) {
   Corners inside;
   for (std::size_t i = 0; i < polygon.count; ++i) {
     const glm::dvec2 &a = polygon.at[i], &b = polygon.at[i + 1 < polygon.count ? i + 1 : 0];
-    const double at_a = sign * (a.y - border), at_b = sign * (b.y - border);
+    const double at_a = sign * (a[axis] - border), at_b = sign * (b[axis] - border);
     if (at_a >= 0) inside.push(a);
-    if ((at_a >= 0) != (at_b >= 0)) inside.push({a.x + at_a / (at_a - at_b) * (b.x - a.x), border});
+    if ((at_a >= 0) == (at_b >= 0)) continue;
+    glm::dvec2 cut = a + at_a / (at_a - at_b) * (b - a);
+    cut[axis] = border;
+    inside.push(cut);
   }
   return inside;
 }
@@ -105,8 +115,26 @@ void FormFactorSum::add(const Trapezoid& shape) {
   if (texture_ == nullptr) {
     sum_ += seen_.part(corners);
   } else {
-    add_blocks(corners);
+    add_blocks(texture_->column_at((corners[0].x + corners[1].x) / 2), corners);
   }
+}
+
+/// Cut in strips at the borders between columns, from the left.
+void FormFactorSum::add_polygon(std::span<const glm::dvec2> corners) {
+  if (texture_ == nullptr) {
+    sum_ += seen_.part(corners);
+    return;
+  }
+  const auto [least, most] =
+      std::ranges::minmax(corners, [](const glm::dvec2& a, const glm::dvec2& b) { return a.x < b.x; });
+  Corners rest = corners_of(corners);
+  const std::uint32_t last = texture_->column_at(most.x);
+  for (std::uint32_t column = texture_->column_at(least.x); column < last; ++column) {
+    const double border = texture_->left(column + 1);
+    add_blocks(column, clip(rest, kS, border, -1).span());
+    rest = clip(rest, kS, border, 1);
+  }
+  add_blocks(last, rest.span());
 }
 
 void FormFactorSum::add_whole() {
@@ -118,17 +146,17 @@ void FormFactorSum::add_whole() {
 }
 
 /// Cut in bands at the borders between rows, from the top, where row 0 is.
-void FormFactorSum::add_blocks(const std::array<glm::dvec2, 4>& corners) {
-  const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
-  const std::uint32_t column = texture_->column_at((corners[0].x + corners[1].x) / 2);
-  const std::uint32_t first = texture_->row_at(high), last = texture_->row_at(low);
-  Corners rest;
-  for (const glm::dvec2& corner : corners) rest.push(corner);
+void FormFactorSum::add_blocks(std::uint32_t column, std::span<const glm::dvec2> corners) {
+  if (corners.empty()) return;
+  const auto [lowest, highest] =
+      std::ranges::minmax(corners, [](const glm::dvec2& a, const glm::dvec2& b) { return a.y < b.y; });
+  const std::uint32_t first = texture_->row_at(highest.y), last = texture_->row_at(lowest.y);
+  Corners rest = corners_of(corners);
   for (std::uint32_t row = first; row <= last; ++row) {
     const double border = texture_->top(row + 1);
-    const Corners band = row == last ? rest : clip(rest, border, 1);
+    const Corners band = row == last ? rest : clip(rest, kT, border, 1);
     sum_ += seen_.part(band.span()) * texture_->color(column, row);
-    if (row != last) rest = clip(rest, border, -1);
+    if (row != last) rest = clip(rest, kT, border, -1);
   }
 }
 

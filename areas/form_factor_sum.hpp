@@ -1,22 +1,21 @@
 #pragma once
 
-#include "areas/area_sweep.hpp"
 #include "visibility/light_texture.hpp"
 #include "visibility/unshadowed_light.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <gmpxx.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
-// Inside areas/ only: form factors of what the sweep finds uncovered.
+// Form factors of what a sweep finds uncovered: the one here, and the one in volumes/scatter/.
 
 namespace penumbra::areas {
 
@@ -71,6 +70,8 @@ class FormFactorSum {
   /// After the last slab.
   void finish();
 
+  /// A convex polygon of the light's plane, counter-clockwise, with up to four corners.
+  void add_polygon(std::span<const glm::dvec2> corners);
   /// All of the light that is above the horizon; with a texture block by block.
   void add_whole();
   /// Complete after finish().
@@ -83,7 +84,7 @@ class FormFactorSum {
   };
 
   void add(const Trapezoid& shape);
-  void add_blocks(const std::array<glm::dvec2, 4>& corners);
+  void add_blocks(std::uint32_t column, std::span<const glm::dvec2> corners);
   void add_ended();
   [[nodiscard]] bool between_columns(double s) const;
 
@@ -92,33 +93,6 @@ class FormFactorSum {
   double from_ = 0, to_ = 0;          // the slab
   std::vector<Part> before_, parts_;  // of the last slab what has not been continued; of this one
   glm::dvec3 sum_{0};
-};
-
-/// A measure of the sweep (area_sweep.hpp) that measures what Measure does, and on the way hands each trapezoid on.
-template <typename Number, typename Measure>
-class FormFactorMeasure {
- public:
-  static constexpr bool kNeedsEnds = true;
-
-  FormFactorMeasure(Measure measure, FormFactorSum& sum) : measure_(std::move(measure)), sum_(&sum) {}
-
-  void add_breaks(std::vector<Number>& breaks) const { measure_.add_breaks(breaks); }
-  void enter_strip(const Number& middle) { measure_.enter_strip(middle); }
-  void enter_slab(const Number& from, const Number& to) { sum_->enter_slab(to_double(from), to_double(to)); }
-  [[nodiscard]] Number between(const ActiveEdge<Number>& low, const ActiveEdge<Number>& high) const {
-    sum_->add_between(side(low), side(high));
-    return measure_.between(low, high);
-  }
-
- private:
-  static double to_double(double value) { return value; }
-  static double to_double(const mpq_class& value) { return value.get_d(); }
-  static FormFactorSum::Side side(const ActiveEdge<Number>& edge) {
-    return {edge.edge, to_double(edge.from), to_double(edge.to)};
-  }
-
-  Measure measure_;
-  FormFactorSum* sum_;
 };
 
 }  // namespace penumbra::areas

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace penumbra::areas {
 namespace {
@@ -34,31 +33,18 @@ Region projected_outline(const visibility::Light& light) {
   return region;
 }
 
-/// A regular polygon of m sides and circumradius r has the area ½ m r² sin(2π/m).
-Region disk_polygon() {
-  constexpr double kStep = 2 * std::numbers::pi / kDiskSides;
-  const double radius = std::sqrt(kStep / std::sin(kStep));
-  Region region;
-  for (std::uint32_t i = 0; i < kDiskSides; ++i) {
-    const double angle = kStep * (i + 0.5);
-    region.push_back({mpq_class(radius * std::cos(angle)), mpq_class(radius * std::sin(angle))});
-  }
-  return region;
-}
-
 }  // namespace
 
 Region light_region(const visibility::Light& light) {
   switch (light.kind) {
     case visibility::LightKind::rectangle:
-      return {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    case visibility::LightKind::polygon:
-      return projected_outline(light);
     case visibility::LightKind::disk:
     case visibility::LightKind::ellipse:
     case visibility::LightKind::sphere:
     case visibility::LightKind::sun:
-      return disk_polygon();
+      return {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    case visibility::LightKind::polygon:
+      return projected_outline(light);
   }
   PENUMBRA_ASSERT(false, "light kind {}", static_cast<int>(light.kind));
 }

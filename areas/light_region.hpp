@@ -23,14 +23,9 @@ struct PlanePoint {
 /// outline).
 using Region = std::vector<PlanePoint>;
 
-/// Sides of the polygon that stands for a disk. It has the disk's area, so as much of it lies outside the disk as the
-/// other way round: with φ = π/m, along a side at angle θ from its middle it is θ²/2 − φ²/6 outside, in all m ·
-/// 2φ³/(9√3). That, over π, is the most that V can be off: 1.27/m² = 7.6e-8.
-constexpr std::uint32_t kDiskSides = 4096;
-
 /// The light in its frame's coordinates, exact for what is stored. rectangle: [−1, 1]², the parallelogram that centre
 /// ± u ± v span (its corners are within rounding of the stored outline). polygon: the stored outline, projected at
-/// right angles onto the frame's plane. disk, sphere: the regular polygon of kDiskSides with the unit disk's area.
+/// right angles onto the frame's plane. Round lights (is_round): the square around the unit disk.
 Region light_region(const visibility::Light& light);
 
 mpq_class area_of(const Region& region);

@@ -110,7 +110,8 @@ std::string glance_html(const ReportInput& in) {
 }
 
 std::string question_html(const ReportInput& in) {
-  const std::uint32_t samples = in.metrics.methods.empty() ? 0 : in.metrics.methods.front().stats.light_samples;
+  std::uint32_t samples = 0;  // stays 0 if all give areas
+  for (const MethodResult& method : in.metrics.methods) samples = std::max(samples, method.stats.light_samples);
   std::string html = R"(<section id="question"><h2>What is asked</h2><div class="two"><div>
 <p>A lamp with a size casts soft shadows: a point behind an object sees none of the lamp, a point beside it sees all,
 and between the two lies a band that sees a part. So the question, asked at every point that the picture shows, is:
@@ -119,10 +120,13 @@ of it). Get <var>V</var> right, and the shadow is right.</p>
 )";
   html += fmt::format(
       "<p>Each pixel of the picture became one point of the scene, and every method below was asked about the very "
-      "same points. Those that look for points of the light (not every method does) looked for the very same {}. The "
-      "methods differ in how they find out what stands between, and so in speed and in the mistakes they make. "
-      "<strong>{}</strong> served as the reference; {}.</p>\n",
-      count_text(samples), escape_html(in.metrics.reference.method),
+      "same points. {}The methods differ in how they find out what stands between, and so in speed and in the mistakes "
+      "they make. <strong>{}</strong> served as the reference; {}.</p>\n",
+      samples == 0 ? ""
+                   : fmt::format("Those that look for points of the light (not every method does) looked for the "
+                                 "very same {}. ",
+                                 count_text(samples)),
+      escape_html(in.metrics.reference.method),
       in.lights.size() == 1
           ? "the light in question is “" + escape_html(in.lights.front().name) + "”"
           : fmt::format("each of the scene’s {} lights is judged by itself, and all together", in.lights.size()));
@@ -185,7 +189,12 @@ std::string machine_html(const ReportInput& in) {
   facts.push_back({"Device", first.device});
   if (!machine.operating_system.empty()) facts.push_back({"System", machine.operating_system});
   facts.push_back({"Program", "penumbra " + in.version});
-  facts.push_back({"Light samples", fmt::format("{}, pattern {}", first.light_samples, first.sample_pattern)});
+  const auto sampled = std::ranges::find_if(in.metrics.methods,
+                                            [](const MethodResult& method) { return method.stats.light_samples != 0; });
+  if (sampled != in.metrics.methods.end()) {
+    facts.push_back(
+        {"Light samples", fmt::format("{}, pattern {}", sampled->stats.light_samples, sampled->stats.sample_pattern)});
+  }
   facts.push_back(
       {"Reference", fmt::format("{}, {}", in.metrics.reference.method, samples_of_reference(in, " (the same)"))});
   if (in.sampled_pixels != 0)

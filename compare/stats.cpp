@@ -23,6 +23,17 @@ Json to_json(const std::optional<VisibilityError>& error) {
           {"max", error->max},   {"over05", error->over05}, {"bias", error->bias}};
 }
 
+Json options_json(const visibility::MethodOptions& options) {
+  Json json = Json::object();  // an empty map would become null
+  for (const auto& [key, value] : options) json[key] = value;
+  return json;
+}
+
+/// A pattern's name; null: there are no light samples.
+Json pattern_json(const std::string& pattern) {
+  return pattern.empty() ? Json() : Json(pattern);
+}
+
 /// The keys of pairs and of who was right; null where there are none.
 void add_pairs(Json& json, const std::optional<PairCounts>& pairs, const std::optional<PairVerdicts>& verdicts) {
   json["pairs"] = pairs ? Json(pairs->penumbra) : Json();
@@ -35,20 +46,23 @@ void add_pairs(Json& json, const std::optional<PairCounts>& pairs, const std::op
   json["pairsReferenceRight"] = verdicts ? Json(verdicts->reference_right) : Json();
 }
 
-Json to_json(const std::vector<LightResult>& lights) {
+/// Each light as it was asked, if that is known, and what became of it.
+Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightResult>& lights) {
   Json json = Json::array();
   for (const LightResult& light : lights) {
+    const std::size_t index = json.size();
     Json same;  // null
     if (const auto& rays = light.same_samples) {
       same = {{"error", to_json(rays->error)}};
       add_pairs(same, rays->pairs, rays->verdicts);
     }
-    json.push_back({{"name", light.name},
-                    {"judgedPixels", light.judged_pixels},
-                    {"horizonPixels", light.horizon_pixels},
-                    {"error", to_json(light.error)},
-                    {"horizonError", to_json(light.horizon_error)},
-                    {"sameSamples", same}});
+    Json row = index < asked.size() ? compare::to_json(asked[index]) : Json{{"name", light.name}};
+    row["judgedPixels"] = light.judged_pixels;
+    row["horizonPixels"] = light.horizon_pixels;
+    row["error"] = to_json(light.error);
+    row["horizonError"] = to_json(light.horizon_error);
+    row["sameSamples"] = same;
+    json.push_back(std::move(row));
   }
   return json;
 }
@@ -59,7 +73,7 @@ Json to_json(const MethodResult& result) {
   json["error"] = to_json(result.error);
   json["horizonError"] = to_json(result.horizon_error);
   json["errorAllLights"] = to_json(result.all_lights_error);
-  json["lights"] = to_json(result.lights);
+  if (!result.lights.empty()) json["lights"] = lights_json(result.stats.lights, result.lights);
   const auto& beauty = result.beauty_error;
   json["beautyError"] =
       beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
@@ -76,28 +90,41 @@ std::optional<double> Seconds::shadow() const {
   return *light + *evaluate;
 }
 
+Json to_json(const LightStats& light) {
+  std::optional<double> shadow;
+  if (light.light && light.evaluate) shadow = *light.light + *light.evaluate;
+  return {{"name", light.name},
+          {"method", light.method},
+          {"options", options_json(light.options)},
+          {"lightSamples", light.light_samples},
+          {"samplePattern", pattern_json(light.sample_pattern)},
+          {"quantity", light.area ? "area" : "count"},
+          {"seconds",
+           {{"light", or_null(light.light)}, {"evaluate", or_null(light.evaluate)}, {"shadow", or_null(shadow)}}}};
+}
+
 Json to_json(const Stats& stats) {
   Json passes = Json::array();
   for (const visibility::PassTime& pass : stats.passes) {
     passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}});
   }
-  // Json::object() for the maps: an empty one would become null otherwise.
-  Json options = Json::object(), counters = Json::object();
-  for (const auto& [key, value] : stats.options) options[key] = value;
+  Json counters = Json::object(), lights = Json::array();
   for (const auto& [name, count] : stats.counters) counters[name] = count;
+  for (const LightStats& light : stats.lights) lights.push_back(to_json(light));
   return {{"scene", stats.scene},
           {"size", Json::array({stats.width, stats.height})},
           {"device", stats.device},
           {"triangles", stats.triangles},
           {"method", stats.method},
-          {"options", options},
+          {"options", options_json(stats.options)},
           {"lightSamples", stats.light_samples},
-          {"samplePattern", stats.sample_pattern},
+          {"samplePattern", pattern_json(stats.sample_pattern)},
           {"seconds", to_json(stats.seconds)},
           {"passes", passes},
           {"peakMemoryBytes", stats.peak_memory_bytes},
           {"counters", counters},
-          {"warnings", stats.warnings}};
+          {"warnings", stats.warnings},
+          {"lights", lights}};
 }
 
 Json to_json(const Metrics& metrics) {
@@ -107,7 +134,7 @@ Json to_json(const Metrics& metrics) {
   if (const auto& rays = metrics.same_samples) {
     same_samples = compare::to_json(rays->stats);
     same_samples["errorAllLights"] = to_json(rays->all_lights_error);
-    same_samples["lights"] = to_json(rays->lights);
+    same_samples["lights"] = lights_json(rays->stats.lights, rays->lights);
   }
   return {{"reference", to_json(metrics.reference)},
           {"judgedPixels", metrics.judged_pixels},

@@ -26,6 +26,17 @@ struct Seconds {
   [[nodiscard]] std::optional<double> shadow() const;
 };
 
+/// What one light was asked, and what that cost.
+struct LightStats {
+  std::string name;
+  std::string method;
+  visibility::MethodOptions options = {};
+  bool area = false;                                ///< V is the visible area itself: there are no light samples
+  std::uint32_t light_samples = 0;                  ///< 0 of areas
+  std::string sample_pattern = {};                  ///< empty of areas
+  std::optional<double> light = {}, evaluate = {};  ///< seconds
+};
+
 /// stats.json: what one run of one method was asked and what it cost.
 struct Stats {
   std::string scene;
@@ -34,8 +45,9 @@ struct Stats {
   std::uint64_t triangles = 0;
   std::string method;
   visibility::MethodOptions options;
-  std::uint32_t light_samples = 0;
-  std::string sample_pattern;
+  std::uint32_t light_samples = 0;  ///< 0: V is an area
+  std::string sample_pattern;       ///< empty: likewise
+  std::vector<LightStats> lights;   ///< what stands above is of the first
   Seconds seconds;
   std::vector<visibility::PassTime> passes;
   std::uint64_t peak_memory_bytes = 0;
@@ -95,6 +107,7 @@ struct Metrics {
   std::vector<MethodResult> methods;
 };
 
+nlohmann::ordered_json to_json(const LightStats& light);
 nlohmann::ordered_json to_json(const Stats& stats);
 nlohmann::ordered_json to_json(const Metrics& metrics);
 

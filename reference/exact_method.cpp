@@ -84,12 +84,11 @@ Exact::Exact(const visibility::MethodOptions& options) {
       "tracing, 2005) and a sweep";
   description_.output = visibility::Output::radiance;
   description_.exact_for =
-      "rectangle (textured or not) and polygon lights and any triangle soup, up to float32 of V, and for "
-      "the beauty under constant radiance and textures of up to 64 x 64 texels; disk, ellipse and sphere lights within "
-      "7.6e-8 "
-      "(a polygon of 4096 sides)";
+      "any light, textured or not, and any triangle soup, up to float32 of V, and for the beauty under constant "
+      "radiance and textures of up to 64 x 64 texels";
   description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon,
                          LightKind::sphere};
+  description_.exact_area = visibility::ExactArea{description_.lights};
   description_.verdict_on = verdict_on;
   description_.options = {kSweep.description()};
   arithmetic_ = visibility::parse_options(description_, options)[kSweep];

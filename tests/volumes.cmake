@@ -19,7 +19,7 @@ penumbra_test(volumes
   SOURCES
   agreement/depth_complexity_scenes.cpp
   agreement/edge_crop.cpp
-  agreement/exact_rows.cpp
+  agreement/exact_rows.cpp agreement/exact_rows_shapes.cpp
   agreement/packed_counters_scenes.cpp
   agreement/soft_volume_blend.cpp
   agreement/soft_volume_exact.cpp

@@ -124,6 +124,37 @@ double form_factor_term(const FormFactorEdge& edge, const glm::dvec3& n) {
   return glm::dot(n, product) * angle_over_sine(squared, glm::dot(edge.a, edge.b)) / (2 * pi);
 }
 
+double form_factor_arc(const FormFactorArc& arc, const glm::dvec3& n) {
+  // Positive nodes and their weights.
+  constexpr std::array<std::array<double, 2>, 5> kNodes{{{0.1488743389816312, 0.2955242247147529},
+                                                         {0.4333953941292472, 0.2692667193099964},
+                                                         {0.6794095682990244, 0.2190863625159820},
+                                                         {0.8650633666889845, 0.1494513491505806},
+                                                         {0.9739065285171717, 0.0666713443086881}}};
+  constexpr double kLongest = 1, kShortest = 0x1p-40;  // half a piece
+  const double along_n = glm::dot(n, glm::cross(arc.u, arc.v)), sine = -glm::dot(n, glm::cross(arc.center, arc.u)),
+               cosine = glm::dot(n, glm::cross(arc.center, arc.v)), size = glm::length(arc.u) + glm::length(arc.v);
+  const auto at = [&](double angle) { return arc.center + std::cos(angle) * arc.u + std::sin(angle) * arc.v; };
+  const auto integrand = [&](double angle) {
+    const glm::dvec3 r = at(angle);
+    return (along_n + cosine * std::cos(angle) + sine * std::sin(angle)) / glm::dot(r, r);
+  };
+  const double direction = arc.arc < 0 ? -1 : 1, end = std::abs(arc.arc);
+  double sum = 0, begin = 0;
+  while (begin < end) {
+    double half = std::min(kLongest, (end - begin) / 2);
+    const auto middle = [&] { return arc.from + direction * (begin + half); };
+    while (half > kShortest && 3.3 * half > std::log1p(0.414 * glm::length(at(middle())) / size)) half /= 2;
+    double piece = 0;
+    for (const auto& [node, weight] : kNodes)
+      piece += weight * (integrand(middle() - half * node) + integrand(middle() + half * node));
+    sum += half * piece;
+    const double next = begin + 2 * half;
+    begin = end - next <= 0x1p-50 * end ? end : next;
+  }
+  return direction * sum / (2 * pi);
+}
+
 void FormFactorLoop::add(const FormFactorEdge& edge, double height_a, double height_b) {
   if (height_a < 0 && height_b < 0) return;
   if (height_a >= 0 && height_b >= 0) {

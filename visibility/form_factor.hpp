@@ -57,6 +57,19 @@ class FormFactorLoop {
   std::optional<glm::dvec3> down_, up_;  // a cut that waits for its partner; never both
 };
 
+/// A curved edge: from angle `from` on by `arc` (radians) along center + cos φ u + sin φ v, an ellipse's rim. All of it
+/// must be above the element's plane.
+///
+/// By quadrature: n · (r × r′) / |r|² is analytic in φ but where |r|² = 0, which is farther off than δ = ln(1 + (√2 −
+/// 1) |r| / (|u| + |v|)): |r(φ + ε) − r(φ)| ≤ (|u| + |v|) (e^|ε| − 1), and r · r = 0 takes a change of (√2 − 1) |r|.
+/// Ten points (Gauss, Legendre) on a piece of half-length h ≤ δ / 3.3 leave (3.3 + √(3.3² − 1))⁻²⁰ = 5e-17 of the
+/// integrand's size there; pieces are halved until that holds.
+struct FormFactorArc {
+  glm::dvec3 center{0}, u{0}, v{0};  ///< relative to the element
+  double from = 0, arc = 0;
+};
+double form_factor_arc(const FormFactorArc& arc, const glm::dvec3& n);
+
 /// Of a closed polygon, planar, convex or not.
 double form_factor(std::span<const glm::dvec3> corners, const glm::dvec3& n);
 

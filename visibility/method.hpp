@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,13 @@ enum class Output {
 const char* name_of(Family family);
 const char* name_of(Output output);
 
+/// Of which lights a method gives the visible area itself, to the last digit of a float, and the options that this
+/// takes.
+struct ExactArea {
+  std::vector<LightKind> lights;
+  MethodOptions options = {};
+};
+
 /// What `penumbra methods` and `penumbra inspect` print of a method.
 struct MethodDescription {
   std::string name;
@@ -36,8 +44,12 @@ struct MethodDescription {
   bool any_pattern = true;        ///< otherwise only light samples in rows (patterns rows and grid)
   bool on_request = false;        ///< takes so long that a comparison has it only by name, or with its whole family
   std::vector<OptionDescription> options;
+  std::optional<ExactArea> exact_area = {};  ///< none: it never gives it
   /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
+
+  /// Is V, with these options, the visible area itself? Then light samples play no part in it, nor in the beauty.
+  [[nodiscard]] bool gives_area() const { return output == Output::radiance; }
 };
 
 /// A band of whole pixel rows.

@@ -1,5 +1,7 @@
 #include "visibility/unshadowed_light.hpp"
 
+#include "base/assert.hpp"
+#include "visibility/disk_part.hpp"
 #include "visibility/form_factor.hpp"
 #include "visibility/pair_truth.hpp"
 
@@ -63,17 +65,21 @@ double UnshadowedLight::whole() const {
     case LightKind::polygon:
       break;
   }
+  // In the frame's plane, as V and parts have it: three corners that are close together may tilt it a good deal.
+  const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(along_, way) * along_; };
   FormFactorLoop loop(n_);
   for (std::size_t i = 0; i < light_.outline.size(); ++i) {
     const glm::dvec3 from(light_.outline[i]), to(light_.outline[(i + 1) % light_.outline.size()]);
-    const glm::dvec3 a = from - p_, b = to - p_;
-    loop.add({a, b, to - from}, glm::dot(n_, a), glm::dot(n_, b));
+    const glm::dvec3 a = center_ + in_plane(from - glm::dvec3(light_.center)),
+                     b = center_ + in_plane(to - glm::dvec3(light_.center));
+    loop.add({a, b, in_plane(to - from)}, glm::dot(n_, a), glm::dot(n_, b));
   }
   return std::abs(loop.sum());  // an outline may run either way around
 }
 
 double UnshadowedLight::part(std::span<const glm::dvec2> corners) const {
   if (!shines() || corners.empty()) return 0;
+  if (is_round(light_.kind)) return part_of_disk(corners);
   const auto point = [&](const glm::dvec2& st) { return center_ + st.x * u_ + st.y * v_; };
   const auto height = [&](const glm::dvec2& st) { return height_ + st.x * height_u_ + st.y * height_v_; };
   FormFactorLoop loop(n_);
@@ -90,6 +96,28 @@ double UnshadowedLight::part(std::span<const glm::dvec2> corners) const {
     height_a = height_b;
   }
   return -side_ * loop.sum();  // counter-clockwise in (s, t) is what is seen from the front
+}
+
+double UnshadowedLight::part_of_disk(std::span<const glm::dvec2> corners) const {
+  // The horizon cuts the polygon first: so all that is left of the rim is above it.
+  std::array<glm::dvec2, DiskPart::kMostCorners> above;
+  std::size_t count = 0;
+  const auto height = [&](const glm::dvec2& st) { return height_ + st.x * height_u_ + st.y * height_v_; };
+  PENUMBRA_ASSERT(corners.size() + 2 <= above.size(), "{} corners", corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec2 &a = corners[i], &b = corners[i + 1 < corners.size() ? i + 1 : 0];
+    const double height_a = height(a), height_b = height(b);
+    if (height_a >= 0) above[count++] = a;
+    if ((height_a >= 0) != (height_b >= 0)) above[count++] = a + height_a / (height_a - height_b) * (b - a);
+  }
+  const auto direction = [&](const glm::dvec2& st) { return st.x * u_ + st.y * v_; };
+  double sum = 0;
+  for (const auto& [from, to, arc] : DiskPart(std::span(above).first(count)).pieces()) {
+    sum +=
+        form_factor_term(FormFactorEdge{center_ + direction(from), center_ + direction(to), direction(to - from)}, n_);
+    if (arc != 0) sum += form_factor_arc({center_, u_, v_, std::atan2(to.y, to.x), arc}, n_);
+  }
+  return -side_ * sum;
 }
 
 double UnshadowedLight::box(const glm::dvec2& low, const glm::dvec2& high) const {

@@ -24,16 +24,20 @@ class UnshadowedLight {
   [[nodiscard]] bool shines() const { return side_ != 0; }
   /// Is every corner that bounds the light (Light::outline; a sphere: its disk) above the element's plane?
   [[nodiscard]] bool above_horizon() const;
-  /// Of all the light: rectangle c ± u ± v, polygon by its outline, disk and what p sees of a sphere as a circle,
-  /// ellipse as its frame's, sun as a disk at distance 1. Of a sun of one direction, of irradiance: n · d.
+  /// Of all the light: rectangle c ± u ± v, polygon by its outline in the frame's plane, disk and what p sees of a
+  /// sphere as a circle, ellipse as its frame's, sun as a disk at distance 1. Of a sun of one direction, of irradiance:
+  /// n · d.
   [[nodiscard]] double whole() const;
-  /// Of a polygon in the frame's coordinates (s, t), counter-clockwise.
+  /// Of a polygon in the frame's coordinates (s, t), counter-clockwise; of a disk's or a sphere's frame what of it is
+  /// in the unit disk: the polygon is convex then and has up to 10 corners.
   [[nodiscard]] double part(std::span<const glm::dvec2> corners) const;
   /// Of the part from `low` to `high`.
   [[nodiscard]] double box(const glm::dvec2& low, const glm::dvec2& high) const;
   [[nodiscard]] const glm::dvec3& normal() const { return n_; }
 
  private:
+  [[nodiscard]] double part_of_disk(std::span<const glm::dvec2> corners) const;
+
   const Light& light_;
   glm::dvec3 p_, n_;
   glm::dvec3 along_{0};                 ///< unit, perpendicular to the light, away from the side that p is on

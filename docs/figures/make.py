@@ -15,6 +15,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent / "papers"))
 
+import disks  # noqa: E402
 import family  # noqa: E402
 import filters  # noqa: E402
 import maps  # noqa: E402
@@ -31,7 +32,7 @@ IMAGES = ROOT / "docs" / "images"
 
 def stale_figures(check):
     stale = []
-    for module in (scatter, pairs, volumes, maps, filters, texels, family, rooms):
+    for module in (scatter, pairs, disks, volumes, maps, filters, texels, family, rooms):
         for name, draw in module.FIGURES.items():
             path, text = IMAGES / f"{name}.svg", draw()
             if not check:

@@ -79,9 +79,15 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.along = glm::vec3(axes[1]);
   grid.axis = glm::vec3(axes[2]);
   grid.axes = axes_of(input.plane[1] - input.plane[0], input.plane[2] - input.plane[0], input.side, grid.half_cells);
+  if (const auto& window = input.window) {
+    grid.corner = window->corner;  // off by what (bound foot) says, and reach has the skew in it
+    grid.corner_off = 0x1p-49 * static_cast<double>(input.reach);
+    grid.axes = axes_of(0.5 * window->u, 0.5 * window->v, input.side, grid.half_cells);
+  }
   grid.axis_size = glm::abs(grid.axis);
   grid.per_length = std::max(glm::length(grid.across), glm::length(grid.along)) * 1.00001F;
   grid.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
+  if (input.window) grid.skew += static_cast<float>(input.window->skew);
   grid.deviation = input.light.deviation;
   grid.reach = input.reach;
   grid.cut_reach = input.cut_reach;

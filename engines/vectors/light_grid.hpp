@@ -46,6 +46,12 @@ struct LightGridInput {
   std::uint32_t light_index;
   float side, reach, cut_reach, scale;
   std::span<const glm::vec3> points;  ///< light samples
+  /// In place of `plane`: a corner and whole sides in that plane, scaled, off it by rounding that `skew` bounds.
+  struct Window {
+    glm::dvec3 corner{0}, u{0}, v{0};
+    double skew = 1;
+  };
+  std::optional<Window> window = {};
 };
 LightGrid make_light_grid(const LightGridInput& input);
 

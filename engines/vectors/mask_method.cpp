@@ -68,26 +68,37 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   counters_.clear();
-  device_light_ = visibility::make_device_light(light, scale_);
+  const GridShape shape = grid_shape();
+  device_light_ = shape.frame;
   visibility::check_size(light, device_light_, description_.name);
   const bool cut = prepare_casters();
   const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale_); };
-  const float reach = visibility::reach_of(*scene_, device_light_, scale_);
+  const float reach = shape.reach * visibility::reach_of(*scene_, device_light_, scale_);
   grids_.clear();
   for (const float side : {1.0F, -1.0F}) {
     if (side < 0 && !light.two_sided) continue;
     grids_.push_back(make_light_grid({device_light_,
                                       {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
-                                      light.kind == visibility::LightKind::rectangle,
-                                      device_light_.rows ? light.rows : 0,
-                                      device_light_.rows ? light.columns : 0,
+                                      shape.is_rectangle,
+                                      shape.rows,
+                                      shape.columns,
                                       static_cast<std::uint32_t>(light.index),
                                       side,
                                       reach,
                                       cut ? 4 * reach : 0,
                                       scale_,
-                                      light.points}));
+                                      light.points,
+                                      shape.window}));
   }
+}
+
+MaskMethod::GridShape MaskMethod::grid_shape() const {
+  GridShape shape{visibility::make_device_light(*light_, scale_), light_->kind == visibility::LightKind::rectangle};
+  if (shape.frame.rows) {
+    shape.rows = light_->rows;
+    shape.columns = light_->columns;
+  }
+  return shape;
 }
 
 std::uint32_t MaskMethod::max_tile_rows() const {

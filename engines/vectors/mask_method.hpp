@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,6 +57,16 @@ class MaskMethod : public visibility::Method {
   virtual bool decide_open(const GridSample&) { return false; }
   /// Returns whether triangles are cut at the light's plane, which makes error bounds larger.
   virtual bool prepare_casters() = 0;
+  /// The grid of cells that the light is looked at in.
+  struct GridShape {
+    visibility::DeviceLight frame;
+    bool is_rectangle = true;             ///< LightGridInput
+    std::uint32_t rows = 0, columns = 0;  ///< likewise
+    std::optional<LightGridInput::Window> window = {};
+    float reach = 1;  ///< times that of scene and frame
+  };
+  /// A cell a light sample where these are in rows; else tiles of them.
+  [[nodiscard]] virtual GridShape grid_shape() const;
   /// Runs do_cluster again for the tile last evaluated, for a result that was not asked for the first time. Counters
   /// stay.
   void repeat();
@@ -70,6 +81,10 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] const WideTriangleTree& triangles() const { return triangles_; }
   [[nodiscard]] const visibility::ViewSamples& samples() const { return *samples_; }
   [[nodiscard]] float scale() const { return scale_; }
+  /// Of the light's front.
+  [[nodiscard]] const LightGrid& grid() const { return grids_.front(); }
+  /// How many light samples each pixel of the tile sees.
+  [[nodiscard]] std::span<const std::uint32_t> visible_samples() const { return visible_; }
   /// Of the tile.
   [[nodiscard]] std::size_t first_pixel() const { return std::size_t{tile_.first_row} * samples_->width; }
   [[nodiscard]] std::size_t tile_pixel(const GridSample& at) const { return at.pixel - first_pixel(); }

@@ -1,15 +1,24 @@
 // The exact area against CGAL's Boolean set operations: projected triangles joined one by one in an exact kernel, cut
-// from the light. Nothing is shared with the sweep but the question.
+// from the light; what is left of the square around a disk, intersected with the circle in numbers a + b √c. Nothing is
+// shared with the sweep but the question.
 
 #include "tests/unit/exact_area_soups.hpp"
 
 #include <gtest/gtest.h>
 
+// g++ 12 sees an uninitialised number in CGAL's own filtered predicates of circles.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <CGAL/Boolean_set_operations_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/General_polygon_set_2.h>
+#include <CGAL/Gps_circle_segment_traits_2.h>
 #include <CGAL/Polygon_set_2.h>
 
+#include <cmath>
 #include <list>
+#include <numbers>
 
 namespace penumbra::areas {
 namespace {
@@ -51,6 +60,69 @@ Polygon2 simple_polygon(const std::vector<Point2>& points) {
   return polygon;
 }
 
+// ---- the unit disk -------------------------------------------------------------------------------------------------
+
+using CircleTraits = CGAL::Gps_circle_segment_traits_2<Kernel>;
+using CircleSet = CGAL::General_polygon_set_2<CircleTraits>;
+using CirclePolygon = CircleTraits::Polygon_2;
+using CirclePart = CircleTraits::Polygon_with_holes_2;
+
+void add_curve(CirclePolygon& polygon, const CircleTraits::Curve_2& curve) {
+  const CircleTraits traits;
+  std::list<CGAL::Object> pieces;
+  traits.make_x_monotone_2_object()(curve, std::back_inserter(pieces));
+  for (const CGAL::Object& piece : pieces) {
+    CircleTraits::X_monotone_curve_2 one;
+    if (CGAL::assign(one, piece)) polygon.push_back(one);
+  }
+}
+
+CirclePolygon of_segments(const Polygon2& straight) {
+  CirclePolygon polygon;
+  for (auto edge = straight.edges_begin(); edge != straight.edges_end(); ++edge)
+    add_curve(polygon, CircleTraits::Curve_2(edge->source(), edge->target()));
+  return polygon;
+}
+
+/// ½ ∮ x dy − y dx: chords and arcs of the unit circle, whose ends alone are rounded.
+double area_of(const CirclePolygon& polygon) {
+  double twice = 0;
+  for (auto curve = polygon.curves_begin(); curve != polygon.curves_end(); ++curve) {
+    const double ax = CGAL::to_double(curve->source().x()), ay = CGAL::to_double(curve->source().y()),
+                 bx = CGAL::to_double(curve->target().x()), by = CGAL::to_double(curve->target().y());
+    if (curve->is_linear()) {
+      twice += ax * by - ay * bx;
+      continue;
+    }
+    double angle = std::atan2(by, bx) - std::atan2(ay, ax);  // of an arc that is monotone in x: at most π
+    const bool left = curve->orientation() == CGAL::COUNTERCLOCKWISE;
+    if (left && angle < 0) angle += 2 * std::numbers::pi;
+    if (!left && angle > 0) angle -= 2 * std::numbers::pi;
+    twice += angle;
+  }
+  return twice / 2;
+}
+
+double area_in_disk(const std::list<CGAL::Polygon_with_holes_2<Kernel>>& parts) {
+  CirclePolygon disk;
+  add_curve(disk, CircleTraits::Curve_2(Kernel::Circle_2(Point2(0, 0), Number(1), CGAL::COUNTERCLOCKWISE)));
+  CircleSet visible;
+  for (const auto& part : parts) {
+    CirclePart with_holes(of_segments(part.outer_boundary()));
+    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole) with_holes.add_hole(of_segments(*hole));
+    visible.join(with_holes);
+  }
+  visible.intersection(disk);
+  std::list<CirclePart> left;
+  visible.polygons_with_holes(std::back_inserter(left));
+  double area = 0;
+  for (const CirclePart& part : left) {
+    area += area_of(part.outer_boundary());
+    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole) area += area_of(*hole);  // negative
+  }
+  return area;
+}
+
 double area_left(const tests::AreaStage& stage, const glm::vec3& at) {
   const Point3 p = point_of(at), c = point_of(stage.light.center);
   const Vector3 u = point_of(stage.light.center_u) - c, v = point_of(stage.light.center_v) - c;
@@ -87,6 +159,7 @@ double area_left(const tests::AreaStage& stage, const glm::vec3& at) {
   light.difference(hidden);
   std::list<CGAL::Polygon_with_holes_2<Kernel>> parts;
   light.polygons_with_holes(std::back_inserter(parts));
+  if (visibility::is_round(stage.light.kind)) return area_in_disk(parts) / std::numbers::pi;
   Number area = 0;
   for (const auto& part : parts) {
     area += part.outer_boundary().area();
@@ -101,7 +174,7 @@ TEST_P(ExactAreaBooleans, Agree) {
   SCOPED_TRACE(testing::Message() << "seed " << GetParam());
   std::mt19937 random(GetParam());
   int part = 0;
-  for (const tests::Lamp lamp : {tests::Lamp::flat, tests::Lamp::tilted}) {
+  for (const tests::Lamp lamp : {tests::Lamp::flat, tests::Lamp::tilted, tests::Lamp::disk, tests::Lamp::ellipse}) {
     const tests::AreaStage stage(tests::soup_scene(tests::lattice_soup(random, 12), lamp));
     for (int i = 0; i < 8; ++i) {
       const glm::vec3 p = tests::soup_receiver(random);

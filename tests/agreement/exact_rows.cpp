@@ -1,101 +1,24 @@
 // edge-scatter with rows=exact against the exact areas: no light samples on either side.
 
 #include "base/error.hpp"
-#include "reference/exact_method.hpp"
+#include "tests/agreement/exact_rows.hpp"
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/panel.hpp"
 #include "tests/agreement/soft_stage.hpp"
-#include "volumes/scatter/edge_scatter.hpp"
 
-#include <glm/geometric.hpp>
-
-#include <numbers>
 #include <numeric>
 
 namespace penumbra::volumes {
 namespace {
 
+using tests::ExactRows;
 using tests::SoftStage;
 using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// Both round V to float once, by at most 2⁻²⁵ for numbers up to 1. Before that rows=exact is right to 2⁻²⁶
-/// (volumes::kProven), and the exact areas to 10⁻¹².
-constexpr double kTolerance = 2 * 0x1p-25 + 0x1p-26 + 1e-12;
-
-class ExactRows : public tests::DeviceTest {
- protected:
-  static std::unique_ptr<visibility::Method> make() { return make_edge_scatter(device(), {{"rows", "exact"}}); }
-
-  struct Answer {
-    std::vector<float> shares;
-    std::vector<double> form_factors;
-  };
-  static Answer run(visibility::Method& method, const SceneFloats& floats, const Light& light,
-                    const ViewSamples& samples) {
-    method.prepare_mesh(floats);
-    method.prepare_light(light);
-    method.prepare_view(samples);
-    Answer result{std::vector<float>(samples.size()), {}};
-    const std::uint32_t rows = method.max_tile_rows();
-    for (std::uint32_t first = 0; first < samples.height; first += rows) {
-      const visibility::Tile tile{first, std::min(rows, samples.height - first)};
-      method.evaluate(tile);
-      const std::size_t pixels = std::size_t{tile.row_count} * samples.width;
-      method.read_visibility(std::span(result.shares).subspan(std::size_t{first} * samples.width, pixels));
-      std::vector<glm::dvec3> form_factors(pixels);
-      method.read_form_factors(form_factors);
-      for (const glm::dvec3& one : form_factors) result.form_factors.push_back(one.x);
-    }
-    return result;
-  }
-
-  struct Found {
-    std::size_t pixels = 0, partly = 0, unproven = 0, wrong = 0, wrong_form_factors = 0;
-    double largest = 0, largest_form_factor = 0;
-  };
-  /// The form factor of as much of the light as V may be off by, seen from no nearer than the light is, and the
-  /// rounding of some hundred doubles.
-  static double form_factor_tolerance(const Light& light, const glm::vec3& p) {
-    const glm::dvec3 center(light.center), d = glm::dvec3(p) - center;
-    const glm::dvec3 u = glm::dvec3(light.center_u) - center, v = glm::dvec3(light.center_v) - center;
-    const double s = std::clamp(glm::dot(d, u) / glm::dot(u, u), -1.0, 1.0),
-                 t = std::clamp(glm::dot(d, v) / glm::dot(v, v), -1.0, 1.0);
-    const glm::dvec3 nearest = d - s * u - t * v;
-    return kTolerance * light.area / (std::numbers::pi * glm::dot(nearest, nearest)) + 1e-13;
-  }
-  /// Adds to `found` what differs from the exact areas.
-  static void compare(const SceneFloats& floats, const Light& light, const ViewSamples& samples, double tolerance,
-                      Found& found) {
-    const auto rows = make();
-    const auto exact = reference::make_exact({});
-    const auto [shares, form_factors] = run(*rows, floats, light, samples);
-    const auto [truth, true_form_factors] = run(*exact, floats, light, samples);
-    const auto counters = rows->counters();
-    const auto unproven = counters.find("unprovenPixels");
-    found.unproven += unproven == counters.end() ? 0 : unproven->second;
-    std::size_t wrong = 0;
-    const std::vector<visibility::PixelClass> classes = visibility::classify_pixels(floats, samples, light);
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      if (classes[i] <= visibility::PixelClass::unshadowed) continue;  // not asked
-      const double error = std::abs(static_cast<double>(shares[i]) - static_cast<double>(truth[i]));
-      ++found.pixels;
-      found.partly += truth[i] > 0 && truth[i] < 1 ? 1 : 0;
-      const double form_factor_error = std::abs(form_factors[i] - true_form_factors[i]);
-      found.largest_form_factor = std::max(found.largest_form_factor, form_factor_error);
-      found.wrong_form_factors += form_factor_error > form_factor_tolerance(light, samples.p[i]) ? 1 : 0;
-      found.largest = std::max(found.largest, error);
-      if (error <= tolerance) continue;
-      if (wrong++ == 0) {
-        ADD_FAILURE() << fmt::format("pixel {}: rows {} exact {}; p {} on {}", i, shares[i], truth[i],
-                                     tests::text_of(samples.p[i]), samples.triangle[i]);
-      }
-    }
-    found.wrong += wrong;
-  }
-};
+constexpr double kTolerance = tests::kExactRowsTolerance;
 
 class ExactRowsOnScenes : public ExactRows, public testing::WithParamInterface<const char*> {};
 
@@ -280,7 +203,9 @@ TEST_F(ExactRows, SaysWhatItCannotDo) {
   EXPECT_THROW(make_edge_scatter(device(), {{"rows", "exact"}, {"engine", "vulkan"}}), UsageError);
   EXPECT_THROW(make_edge_scatter(device(), {{"rows", "fine"}}), UsageError);
   EXPECT_THROW(make_edge_scatter(device(), {{"engine", "abacus"}}), UsageError);
-  const SoftStage stage(tests::shipped_scene("textured-light"), device(), 8, 8);
+  scenes::Scene scene = tests::shipped_scene("fusion");
+  scene.lights[0].shape = scenes::Sphere{{0, 4, 0}, 0.5};
+  const SoftStage stage(scene, device(), 8, 8);
   const auto method = make();
   method->prepare_mesh(stage.floats);
   EXPECT_THROW(method->prepare_light(stage.light), InputError);

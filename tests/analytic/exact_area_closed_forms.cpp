@@ -173,17 +173,71 @@ TEST(ExactAreaClosedForm, PolygonLights) {
   EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), 3.0 / 5, kRounding);
 }
 
+/// What a board between p = 0 and a disk of radius 1 at twice its height leaves of it.
+double disk_behind(const Box2& box) {
+  scenes::Scene scene = area_scene(board(box, 2));
+  scene.lights.emplace_back().shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 1};
+  return AreaStage(scene).visibility({0, 0, 0});
+}
+
+/// The part of a disk beyond a line at the distance c from its centre.
+double segment_share(double c) {
+  return (std::acos(c) - c * std::sqrt(1 - c * c)) / std::numbers::pi;
+}
+
 TEST(ExactAreaClosedForm, DiskAndSphereLightsLoseACircularSegment) {
-  // From p = 0 a board over x ≥ c at half height hides x ≥ 2 c of a disk of radius 1: acos(2c) − 2c √(1 − 4c²) of π.
-  // Of a sphere p sees the disk at its tangents; this one is of radius 1 at the height 4, as the disk is.
-  constexpr double kDiskError = 8e-8;  // light_region.hpp: 7.6e-8, and the frame's float32 is exact here
-  for (const double c : {-0.5, -0.375, 0.0, 0.125, 0.25, 0.484375}) {
-    scenes::Scene scene = area_scene(tests::quad({8 + c, 2, 0}, {8, 0, 0}, {0, 0, 16}));
+  // From p = 0 a board over x ≥ c at half height hides x ≥ 2 c of a disk of radius 1. Through the centre, along a
+  // tangent (all or nothing) and a lattice step beside it. Of a sphere p sees the disk at its tangents; this one is
+  // of radius 1 at the height 4, as the disk is: d − r²/d = 4, r √(1 − r²/d²) = 1.
+  for (const double c : {-0.5, -0.484375, -0.375, 0.0, 0.125, 0.25, 0.484375, 0.5}) {
+    const double visible = 1 - segment_share(2 * c);
+    EXPECT_NEAR(disk_behind({c, 16 + c, -16, 16}), visible, kRounding) << c;
+    EXPECT_NEAR(disk_behind({-16, 16, c, 16 + c}), visible, kRounding) << c;
+    scenes::Scene scene = area_scene(board({c, 16 + c, -16, 16}, 2));
+    scene.lights.emplace_back().shape = scenes::Sphere{{0, 4.25, 0}, std::sqrt(1.0625)};
+    EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), visible, kRounding) << c;
+  }
+  EXPECT_EQ(disk_behind({0.5, 16, -16, 16}), 1.0) << "it touches the rim";
+}
+
+TEST(ExactAreaClosedForm, BoardsInsideAndAcrossADisk) {
+  using std::numbers::pi;
+  // Inside it, corners on the rim where they can be (¾ and √7/4 cannot: a step inside), across the rim, and around it.
+  EXPECT_NEAR(disk_behind({-0.25, 0.25, -0.25, 0.25}), 1 - 1 / pi, kRounding);
+  EXPECT_NEAR(disk_behind({-0.25, 0.125, -0.375, 0.0625}), 1 - 0.75 * 0.875 / pi, kRounding);
+  for (const double a : {0.75, 0.875, 0.984375})  // a square of half side a: four segments are left
+    EXPECT_NEAR(disk_behind({-a / 2, a / 2, -a / 2, a / 2}), 4 * segment_share(a), kRounding) << a;
+  EXPECT_EQ(disk_behind({-0.5, 0.5, -0.5, 0.5}), 0.0) << "four tangents";
+  EXPECT_NEAR(disk_behind({0, 16, 0, 16}), 0.75, kRounding) << "a corner at the centre";
+  EXPECT_NEAR(disk_behind({0, 0.5, -16, 16}), 0.5, kRounding) << "from the centre to a tangent";
+  EXPECT_NEAR(disk_behind({0.25, 0.375, -16, 16}), 1 - segment_share(0.5) + segment_share(0.75), kRounding);
+  // Corners on the rim, 3 : 4 : 5 as near as floats hold them: outside by 2.4e-8, with an area of its square.
+  EXPECT_NEAR(disk_behind({-0.3F, 0.3F, -0.4F, 0.4F}), 1 - 4.0 * 0.6F * 0.8F / pi, kRounding);
+}
+
+TEST(ExactAreaClosedForm, TrianglesInADisk) {
+  // Inscribed as far as the lattice goes; and many that meet at the centre, each a wedge.
+  const auto behind = [](const std::vector<tests::Corners>& triangles) {
+    scenes::Scene scene = area_scene(triangles);
     scene.lights.emplace_back().shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 1};
-    const double visible = 1 - (std::acos(2 * c) - 2 * c * std::sqrt(1 - 4 * c * c)) / std::numbers::pi;
-    EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), visible, kDiskError) << c;
-    scene.lights[0].shape = scenes::Sphere{{0, 4.25, 0}, std::sqrt(1.0625)};  // d − r²/d = 4, r √(1 − r²/d²) = 1
-    EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), visible, kDiskError) << c;
+    return AreaStage(scene).visibility({0, 0, 0});
+  };
+  EXPECT_NEAR(behind({tests::Corners{glm::dvec3(-0.5, 2, 0), {0.5, 2, 0}, {0, 2, 0.5}}}), 1 - 1 / std::numbers::pi,
+              kRounding)
+      << "three corners on the rim";
+  const tests::Corners eighth{glm::dvec3(0, 2, 0), {8, 2, 0}, {8, 2, 8}},
+      next{glm::dvec3(0, 2, 0), {8, 2, 8}, {0, 2, 8}};
+  EXPECT_NEAR(behind({eighth}), 7.0 / 8, kRounding);
+  EXPECT_NEAR(behind({eighth, next}), 0.75, kRounding);
+}
+
+/// A disk's share beyond the horizon of a tilted receiver is a segment, too.
+TEST(ExactAreaClosedForm, TheHorizonCutsADisk) {
+  scenes::Scene scene = area_scene({});
+  scene.lights.emplace_back().shape = scenes::Disk{{0, 0, 4}, {0, 0, -1}, 1};
+  for (const double height : {-0.75, -0.5, 0.0, 0.25, 0.5}) {  // the floor is y = 0, the light stands upright
+    std::get<scenes::Disk>(scene.lights[0].shape).center.y = height;
+    EXPECT_NEAR(AreaStage(scene).visibility({0.25, 0, 0}), 1 - segment_share(height), kRounding) << height;
   }
 }
 

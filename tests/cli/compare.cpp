@@ -275,16 +275,27 @@ TEST_F(Compare, DefaultIsEveryGeometryAndImageMethodThatIsNotOnRequest) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   std::vector<std::string> names, expected;
   const json result = metrics();
-  for (const json& method : result.at("methods")) names.push_back(method.at("method"));
+  for (const json& method : result.at("methods")) names.push_back(method.at("entry"));
   const json all = json::parse(run({"methods", "--json"}).out);
   for (const std::string family : {"geometry", "image"}) {
     for (const json& method : all.at("methods")) {
-      if (method.at("family") == family && method.at("onRequest") == false) expected.push_back(method.at("name"));
+      if (method.at("family") != family || method.at("onRequest") == true) continue;
+      expected.push_back(method.at("name"));
+      if (method.at("name") == "edge-scatter") expected.emplace_back("edge-scatter:rows=exact");  // as exactArea says
     }
   }
   EXPECT_EQ(names, expected);
   EXPECT_THAT(names, testing::IsSupersetOf({"edge-scatter", "view-sample", "pcss", "accumulate", "shadow-map"}));
   EXPECT_THAT(names, testing::Not(testing::Contains("bitmask"))) << "it takes minutes at the main job's size";
+  EXPECT_EQ(result["methods"][0]["lights"][0]["lightSamples"], 16);
+  EXPECT_EQ(result["methods"][1]["lights"][0]["quantity"], "area");
+  EXPECT_EQ(result["methods"][1]["lightSamples"], 0);
+  // What excludes the areas leaves out them alone.
+  const Outcome vulkan = compare({"--methods", "geometry", "--method-option", "engine=vulkan", "--light-samples", "4",
+                                  "--reference-samples", "4"});
+  EXPECT_EQ(vulkan.code, 0) << vulkan.err;
+  EXPECT_THAT(vulkan.err, HasSubstr("edge-scatter:rows=exact is left out"));
+  EXPECT_EQ(metrics().at("methods").at(0).at("entry"), "edge-scatter");
 }
 
 TEST_F(Compare, OptionsReachTheMethodsThatHaveThem) {

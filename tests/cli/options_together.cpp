@@ -126,9 +126,7 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
       if (row["edge-scatter.rows"] == "exact") return false;
       if (has_scene && scene.lights.front() == "sphere") return false;
     }
-    if (row.has("method") && method == nullptr)
-      return !has_scene || scene.lights.front() != "sphere";  // some method can
-    if (method == nullptr) return true;
+    if (method == nullptr) return true;  // some method can
     return table_.can_do(*method, scene, row["pattern"]) &&
            !options_exclude(row["method"], options_of(row, *method), scene, row);
   }

@@ -151,8 +151,8 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   if (method == "edge-scatter") {
     const bool exact = is("rows", "exact"), on_device = is("engine", "vulkan");
     const bool in_rows = row["pattern"].empty() || row["pattern"] == "rows" || row["pattern"] == "grid";
-    return (exact && (on_device || scene.texture)) || (on_device && !in_rows) ||
-           ((exact || on_device) && !std::ranges::all_of(scene.lights, is_rectangle));
+    return (exact && on_device) || (on_device && !in_rows) ||
+           (on_device && !std::ranges::all_of(scene.lights, is_rectangle));
   }
   if (method == "depth-complexity") {
     const bool forest = is("variant", "forest");
@@ -218,6 +218,11 @@ void expect_sane_stats(const json& stats) {
   if (!seconds.at("shadow").is_null()) {
     EXPECT_NEAR(seconds.at("shadow").get<double>(),
                 seconds.at("light").get<double>() + seconds.at("evaluate").get<double>(), 1e-12);
+  }
+  for (const json& light : stats.at("lights")) {
+    const bool area = light.at("quantity") == "area";
+    EXPECT_EQ(light.at("lightSamples") == 0, area) << light;
+    EXPECT_EQ(light.at("samplePattern").is_null(), area) << light;
   }
   EXPECT_GT(stats.at("size").at(0).get<int>() * stats.at("size").at(1).get<int>(), 0);
   EXPECT_FALSE(stats.at("device").get<std::string>().empty());

@@ -98,10 +98,10 @@ TEST(RowSweep, StepsAtTheLeftSide) {
   std::vector<RowEdge> edges{{0, 2, 8, 2.5, 1}, {0, 4, 8, 5.5, -1}};
   std::vector<RowStep> steps{{4, -1}, {2, 1}};
   RowSweep sweep;
-  const auto [visible, impossible, disorder] = sweep({kSide, kSide, edges, steps, 0, nullptr});
-  EXPECT_NEAR(visible, kSide * kSide - 0.5 * (2 + 3) * 8, 1e-13);
-  EXPECT_NEAR(impossible, 0, 1e-13);
-  EXPECT_EQ(disorder, 0);
+  const RowSweep::Area area = sweep({kSide, kSide, edges, steps, 0, nullptr});
+  EXPECT_NEAR(area.visible, kSide * kSide - 0.5 * (2 + 3) * 8, 1e-13);
+  EXPECT_NEAR(area.impossible, 0, 1e-13);
+  EXPECT_EQ(area.disorder, 0);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(StatsJson, HasTheNamesOfTheInterface) {
   const auto json = to_json(some_stats());
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"scene", "size", "device", "triangles", "method", "options",
                                                      "lightSamples", "samplePattern", "seconds", "passes",
-                                                     "peakMemoryBytes", "counters", "warnings"}));
+                                                     "peakMemoryBytes", "counters", "warnings", "lights"}));
   EXPECT_EQ(json["size"], nlohmann::ordered_json::array({640, 480}));
   EXPECT_EQ(json["options"]["search"], "16");
   EXPECT_EQ(keys_of(json["seconds"]),
@@ -55,7 +55,33 @@ TEST(StatsJson, EmptyIsEmptyNotNull) {
   EXPECT_EQ(json["counters"].dump(), "{}");
   EXPECT_EQ(json["passes"].dump(), "[]");
   EXPECT_EQ(json["warnings"].dump(), "[]");
+  EXPECT_EQ(json["lights"].dump(), "[]");
   EXPECT_TRUE(json["seconds"]["shadow"].is_null());
+}
+
+TEST(StatsJson, SaysOfEachLightWhetherItWasMeasuredOrCounted) {
+  Stats stats = some_stats();
+  stats.lights = {{.name = "key", .method = "edge-scatter", .options = {{"rows", "exact"}}, .area = true, .light = 0.5},
+                  {.name = "rim",
+                   .method = "raytrace",
+                   .light_samples = 64,
+                   .sample_pattern = "sobol",
+                   .light = 0.25,
+                   .evaluate = 0.5}};
+  const auto lights = to_json(stats)["lights"];
+  ASSERT_EQ(lights.size(), 2U);
+  EXPECT_EQ(keys_of(lights[0]), (std::vector<std::string>{"name", "method", "options", "lightSamples", "samplePattern",
+                                                          "quantity", "seconds"}));
+  EXPECT_EQ(lights[0]["quantity"], "area");
+  EXPECT_EQ(lights[0]["lightSamples"], 0);
+  EXPECT_TRUE(lights[0]["samplePattern"].is_null());
+  EXPECT_EQ(lights[0]["options"]["rows"], "exact");
+  EXPECT_TRUE(lights[0]["seconds"]["shadow"].is_null());
+  EXPECT_EQ(lights[1]["quantity"], "count");
+  EXPECT_EQ(lights[1]["lightSamples"], 64);
+  EXPECT_EQ(lights[1]["samplePattern"], "sobol");
+  EXPECT_EQ(lights[1]["options"].dump(), "{}");
+  EXPECT_EQ(lights[1]["seconds"]["shadow"], 0.75);
 }
 
 TEST(MetricsJson, HasTheNamesOfTheInterface) {
@@ -127,6 +153,14 @@ TEST(MetricsJson, JudgesEachLight) {
                                                                     "horizonError", "sameSamples"}));
   EXPECT_EQ(method["lights"][0]["horizonError"]["rmse"], 0.75);
   EXPECT_TRUE(method["lights"][0]["sameSamples"].is_null());
+  metrics.methods[0].stats.lights = {{.name = "key", .method = "exact", .area = true},
+                                     {.name = "rim", .method = "pcss"}};
+  const auto asked = to_json(metrics)["methods"][0]["lights"];
+  EXPECT_EQ(keys_of(asked[1]), (std::vector<std::string>{"name", "method", "options", "lightSamples", "samplePattern",
+                                                         "quantity", "seconds", "judgedPixels", "horizonPixels",
+                                                         "error", "horizonError", "sameSamples"}));
+  EXPECT_EQ(asked[0]["quantity"], "area");
+  EXPECT_EQ(asked[1]["judgedPixels"], 20);
   const auto& same = method["lights"][1]["sameSamples"];
   EXPECT_EQ(keys_of(same), (std::vector<std::string>{"error", "pairs", "pairsAll", "pairsDiffering", "pairsDecided",
                                                      "pairsDecidedShare", "pairsZeroPredicate", "pairsMethodRight",

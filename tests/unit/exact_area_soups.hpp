@@ -26,7 +26,7 @@ inline std::vector<Corners> lattice_soup(std::mt19937& random, int count, double
   return soup;
 }
 
-enum class Lamp { flat, tilted, polygon, disk, sphere };
+enum class Lamp { flat, tilted, polygon, disk, ellipse, sphere };
 
 inline scenes::Scene soup_scene(const std::vector<Corners>& soup, Lamp lamp) {
   scenes::Scene scene = area_scene(soup, -1);
@@ -35,6 +35,7 @@ inline scenes::Scene soup_scene(const std::vector<Corners>& soup, Lamp lamp) {
   if (lamp == Lamp::polygon)
     scene.lights[0].shape = scenes::Polygon{{{-1, 3, -1}, {1, 3, -0.5}, {1.25, 3, 0.5}, {0, 3, 1}}};
   if (lamp == Lamp::disk) scene.lights[0].shape = scenes::Disk{{0, 3, 0}, {0.125, -1, 0.25}, 0.75};
+  if (lamp == Lamp::ellipse) scene.lights[0].shape = scenes::Ellipse{{0, 3, 0.25}, {1, 0.25, 0}, {0.25, 0, 0.5}};
   if (lamp == Lamp::sphere) scene.lights[0].shape = scenes::Sphere{{0.25, 2.5, 0}, 0.75};
   return scene;
 }

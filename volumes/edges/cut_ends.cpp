@@ -33,10 +33,11 @@ mpq_class dot(const Rationals& a, const Rationals& b) {
 /// x = centre + s u + t v + h n: s is (x − centre) · (v × n) / n · n, t is (x − centre) · (n × u) / n · n.
 struct CutEnds::Plane {
   glm::dvec3 center;
+  LightWindow window;
   Rationals n, to_s, to_t;
   mpq_class squared;
 
-  explicit Plane(const LightSide& side) : center(side.plane[0]) {
+  explicit Plane(const LightSide& side) : center(side.plane[0]), window(side.window) {
     const Rationals u = difference(side.plane[1], center), v = difference(side.plane[2], center);
     n = cross(u, v);
     to_s = cross(v, n);
@@ -48,12 +49,16 @@ struct CutEnds::Plane {
     const Rationals from = difference(a, center), to = difference(b, center);
     mpq_class ha = abs(dot(n, from)), hb = abs(dot(n, to));
     if (ha == 0 && hb == 0) ha = hb = 1;  // a and b are one point of the plane
-    // The mean of both, weighted with the other's height; in shares from −1 … 1 to 0 … 1.
-    const auto share = [&](const Rationals& along) {
-      const mpq_class at = (dot(along, from) * hb + dot(along, to) * ha) / ((ha + hb) * squared);
-      return mpq_class((at + 1) / 2).get_d();
+    // The mean of both, weighted with the other's height.
+    const auto mean = [&](const Rationals& along) {
+      return mpq_class((dot(along, from) * hb + dot(along, to) * ha) / ((ha + hb) * squared));
     };
-    return {share(to_s), share(to_t)};
+    const mpq_class t = mean(to_t), s = mean(to_s) + mpq_class(window.shear) * t;
+    const auto share = [&](const mpq_class& at, int axis) {
+      const mpq_class low(window.low[axis]), high(window.high[axis]);
+      return mpq_class((at - low) / (high - low)).get_d();
+    };
+    return {share(s, 0), share(t, 1)};
   }
 };
 
@@ -63,9 +68,17 @@ CutEnds::CutEnds(CutEnds&&) noexcept = default;
 CutEnds& CutEnds::operator=(CutEnds&&) noexcept = default;
 
 glm::vec3 CutEnds::rounded(const CutEnd& end) const {
-  const glm::dvec2 st = 2.0 * *end.place - 1.0;
+  const glm::dvec2 st = side_.window.frame_place(*end.place);
   return glm::vec3(side_.plane[0] + st.x * (side_.plane[1] - side_.plane[0]) +
                    st.y * (side_.plane[2] - side_.plane[0]));
+}
+
+glm::dvec2 CutEnds::in_window(const glm::dvec3& x) const {
+  const LightWindow& window = side_.window;
+  const glm::dvec3 u = side_.plane[1] - side_.plane[0], v = side_.plane[2] - side_.plane[0], n = glm::cross(u, v);
+  const glm::dvec2 at =
+      glm::dvec2(glm::dot(glm::cross(v - window.shear * u, n), x), glm::dot(glm::cross(n, u), x)) / glm::dot(n, n);
+  return (2.0 * at - (window.high + window.low)) / window.size();
 }
 
 std::optional<glm::dvec3> CutEnds::far_crossing(const glm::dvec3& a, const glm::dvec3& b) const {
@@ -77,10 +90,11 @@ std::optional<glm::dvec3> CutEnds::far_crossing(const glm::dvec3& a, const glm::
   if (!(between > 16 * error)) return std::nullopt;
   const glm::dvec3 x = from + (ha / (ha - hb)) * (to - from);
   const double moved = 4 * error / between * glm::length(to - from);
-  const glm::dvec2 st = glm::dvec2(glm::dot(glm::cross(v, n), x), glm::dot(glm::cross(n, u), x)) / glm::dot(n, n);
-  const double per_length = std::max(glm::length(u), glm::length(v)) / glm::length(n);
-  // Beside the light by an eighth of its half, of which the uncertainty is no more than a quarter.
-  const bool beside = std::max(std::abs(st.x), std::abs(st.y)) > 1.125;
+  const glm::dvec2 at = in_window(x), size = side_.window.size();
+  const double per_length =
+      2 * std::max(glm::length(v - side_.window.shear * u) / size.x, glm::length(u) / size.y) / glm::length(n);
+  // Beside the window by an eighth of its half, of which the uncertainty is no more than a quarter.
+  const bool beside = std::max(std::abs(at.x), std::abs(at.y)) > 1.125;
   return beside && moved * per_length < 1.0 / 32 ? std::optional(side_.plane[0] + x) : std::nullopt;
 }
 
@@ -102,15 +116,10 @@ std::uint32_t CutEnds::in_plane(const Crossing& from, const Crossing& to) {
   const auto far = [&](const Crossing& at) {
     return at.a == at.b ? std::optional<glm::dvec3>() : far_crossing(stored(at.a), stored(at.b));
   };
-  // Both certainly on one outer side of the light? Then the edge is, too.
-  const glm::dvec3 u = side_.plane[1] - side_.plane[0], v = side_.plane[2] - side_.plane[0], n = glm::cross(u, v);
+  // Both certainly on one outer side of the window? Then the edge is, too.
   const std::optional<glm::dvec3> one = far(from), other = far(to);
   if (one && other) {
-    const auto st = [&](const glm::dvec3& x) {
-      const glm::dvec3 d = x - side_.plane[0];
-      return glm::dvec2(glm::dot(glm::cross(v, n), d), glm::dot(glm::cross(n, u), d)) / glm::dot(n, n);
-    };
-    const glm::dvec2 a = st(*one), b = st(*other);
+    const glm::dvec2 a = in_window(*one - side_.plane[0]), b = in_window(*other - side_.plane[0]);
     for (int axis = 0; axis < 2; ++axis) {
       if (std::min(a[axis], b[axis]) > 1.0625 || std::max(a[axis], b[axis]) < -1.0625) return 0;
     }

@@ -15,7 +15,7 @@
 namespace penumbra::volumes {
 
 /// An end of an edge: a point (scaled); or, where an edge passes through the plane on the light or near it, the place
-/// on the light, in shares of its sides from its lower left corner: rounded once from the exact one, however little the
+/// on the light, in shares of its window (LightSide::window): rounded once from the exact one, however little the
 /// edge leaves the plane.
 struct CutEnd {
   glm::dvec3 point{0};
@@ -51,6 +51,8 @@ class CutEnds {
 
   /// Near where the edge passes through the plane, if double knows that this is well beside the light.
   [[nodiscard]] std::optional<glm::dvec3> far_crossing(const glm::dvec3& a, const glm::dvec3& b) const;
+  /// Of a point of the plane relative to the frame's centre, in the window from (−1, −1) to (1, 1).
+  [[nodiscard]] glm::dvec2 in_window(const glm::dvec3& x) const;
   [[nodiscard]] glm::dvec3 stored(const glm::vec3& x) const { return side_.stored(x); }
 
   LightSide side_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "volumes/edges/edge_set.hpp"
+#include "volumes/edges/light_window.hpp"
 
 #include <array>
 #include <cstdint>
@@ -14,8 +15,9 @@ namespace penumbra::volumes {
 struct LightSide {
   std::array<glm::dvec3, 3> plane{};  ///< three points of it, as stored: (1 − 0) × (2 − 0) points to where sign is +1
   glm::dvec3 center{0}, u{0}, v{0};
-  double sign = 1;  ///< +1: where u × v points; −1: behind
-  float scale = 1;  ///< visibility::device_scale: positions are taken as devices store them
+  double sign = 1;          ///< +1: where u × v points; −1: behind
+  float scale = 1;          ///< visibility::device_scale: positions are taken as devices store them
+  LightWindow window = {};  ///< where CutEnds keeps places
 
   /// As devices store it: rounded where its scaled value is subnormal.
   [[nodiscard]] glm::vec3 stored(const glm::vec3& x) const { return x * scale / scale; }

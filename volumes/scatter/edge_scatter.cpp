@@ -168,6 +168,7 @@ visibility::MethodDescription describe() {
           .exact_for = "every pair of view sample and light sample, for any triangle soup",
           .lights = {kPlanar.begin(), kPlanar.end()},
           .options = {engines::kEngine.description(), kExactRows.description()},
+          .exact_area = visibility::ExactArea{{kPlanar.begin(), kPlanar.end()}, {{"rows", "exact"}}},
           .verdict_on = verdict_on};
 }
 
@@ -182,11 +183,10 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   // Other lights are refused by the engine itself, which knows what can do them.
   if (on_device) description.exact_for += " (rows of a rectangle light)";
   if (!options[kExactRows]) return description;
-  description.lights = {visibility::LightKind::rectangle};
   description.output = visibility::Output::radiance;
   description.exact_for =
-      "the visible share of a rectangle light, to float32, for any triangle soup; the beauty under constant radiance";
-  description.textures = false;
+      "the visible share of any planar light, textured or not, to float32, for any triangle soup; the beauty under "
+      "constant radiance and textures of up to 64 x 64 texels";
   return description;
 }
 

@@ -2,6 +2,7 @@
 
 #include "volumes/scatter/vectors/edge_scatter_native.hpp"
 
+#include "areas/form_factor_sum.hpp"
 #include "base/assert.hpp"
 #include "engines/vectors/horizon.hpp"
 #include "engines/vectors/mask_method.hpp"
@@ -11,6 +12,7 @@
 #include "volumes/scatter/vectors/rows.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 
+#include <glm/common.hpp>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <optional>
@@ -44,7 +46,7 @@ class NativeEdges : public native::MaskMethod {
 
  private:
   bool prepare_casters() override {
-    const LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
+    LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
     front_->restore();
     if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
       without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
@@ -52,6 +54,9 @@ class NativeEdges : public native::MaskMethod {
     front_ = edges.has_body ? &without_body_->edges : &whole_;
     back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
     const std::int32_t without = edges.has_body ? light().index : -1;
+    for (auto* side : {&edges.front, &edges.back}) {
+      if (*side) (*side)->window = window_;
+    }
     if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_});
     if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_});
     touch_ = exact_area_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
@@ -103,6 +108,7 @@ class NativeEdges : public native::MaskMethod {
   }
 
   bool exact_area_;
+  LightWindow window_;  // of the light that is being prepared
   visibility::LightTouch touch_;
   EdgeSides sides_;
   CutEdges whole_;
@@ -148,7 +154,11 @@ class NativeEdgeRows final : public NativeEdges {
   }
   void prepare_light(const visibility::Light& light) override {
     areas_.prepare_light(light);
+    window_ = window_of(light);
     NativeEdges::prepare_light(light);
+    region_.emplace(make_light_region(light, window_, grid(), scale()));
+    blocks_.reset();
+    if (light.texture) blocks_.emplace(*light.texture);
   }
   void evaluate(const visibility::Tile& tile) override {
     shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
@@ -158,8 +168,9 @@ class NativeEdgeRows final : public NativeEdges {
     PENUMBRA_ASSERT(false, "{} has no masks with rows=exact", description().name);
   }
   void read_visibility(std::span<float> visibility) override {
-    NativeEdges::read_visibility(visibility);
-    for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = shares_[i].value_or(visibility[i]);
+    // All or nothing, where no share was asked for.
+    for (std::size_t i = 0; i < visibility.size(); ++i)
+      visibility[i] = shares_[i].value_or(visible_samples()[i] != 0 ? 1.0F : 0.0F);
   }
   /// Evaluates the tile once more, so that a caller who needs V alone does not wait for this.
   void read_form_factors(std::span<glm::dvec3> form_factors) override {
@@ -170,19 +181,46 @@ class NativeEdgeRows final : public NativeEdges {
     for (std::size_t i = 0; i < form_factors.size(); ++i) {
       const std::size_t pixel = first_pixel() + i;
       const bool dark = visibility[i] == 0 || samples().triangle[pixel] == visibility::ViewSamples::kBackground;
-      form_factors[i] = glm::dvec3(dark ? 0 : radiance_[i] ? *radiance_[i] : visibility[i] * unshadowed(pixel));
+      form_factors[i] = dark ? glm::dvec3(0) : radiance_[i] ? *radiance_[i] : unshadowed(pixel);
     }
     radiance_.clear();
   }
 
  private:
-  [[nodiscard]] double unshadowed(std::size_t pixel) const {
-    return visibility::UnshadowedLight(light(), samples().p[pixel], samples().n[pixel]).whole();
+  /// Cells that have nothing to do with light samples.
+  [[nodiscard]] GridShape grid_shape() const override {
+    constexpr std::uint32_t kCells = 16;  // of a side
+    if (light().kind == visibility::LightKind::rectangle)
+      return {visibility::make_device_light(light(), scale()), true, kCells, kCells};
+    const double to_scale = scale();
+    const WindowAxes axes = axes_of(light(), window_);
+    const glm::dvec3 u = to_scale * 0.5 * axes.u, v = to_scale * 0.5 * axes.v, corner = to_scale * axes.corner;
+    visibility::DeviceLight frame;
+    frame.center = glm::vec3(corner + u + v);
+    frame.u = glm::vec3(u);
+    frame.v = glm::vec3(v);
+    // Three roundings to float.
+    const glm::dvec3 largest = glm::abs(corner) + 2.0 * glm::abs(u) + 2.0 * glm::abs(v);
+    frame.deviation = static_cast<float>(0x1p-22 * (largest.x + largest.y + largest.z));
+    if (light().kind != visibility::LightKind::polygon) return {frame, true, kCells, kCells};
+    return {frame,
+            true,
+            kCells,
+            kCells,
+            native::LightGridInput::Window{corner, to_scale * axes.u, to_scale * axes.v, axes.skew},
+            static_cast<float>(2 + axes.skew)};
+  }
+  /// Of what nothing hides.
+  [[nodiscard]] glm::dvec3 unshadowed(std::size_t pixel) const {
+    const visibility::UnshadowedLight seen(light(), samples().p[pixel], samples().n[pixel]);
+    areas::FormFactorSum sum(seen, blocks_);
+    sum.add_whole();
+    return sum.sum();
   }
 
   void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
                      std::span<SampleMask>) override {
-    RowSum rows(grid, scene(), scale());
+    RowSum rows(grid, *region_, scene(), scale());
     for (const GridSample& at : view_samples) {
       std::optional<double> share = 1;
       if (at.straddles) {
@@ -206,12 +244,13 @@ class NativeEdgeRows final : public NativeEdges {
     ++scratch_.local().unproven;
     const areas::ExactView exact = areas_.view(samples(), at.pixel);
     shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
-    if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor.x;
+    if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor;
   }
   void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask>) override {
     std::vector<float> shares(input.samples.size());
-    std::vector<double> radiance(radiance_.empty() ? 0 : input.samples.size());
-    integrate({input, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge, {shares, radiance});
+    std::vector<glm::dvec3> radiance(radiance_.empty() ? 0 : input.samples.size());
+    integrate({input, *region_, blocks_, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge,
+              {shares, radiance});
     for (std::size_t i = 0; i < shares.size(); ++i) shares_[tile_pixel(input.samples[i])] = shares[i];
     for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(input.samples[i])] = radiance[i];
   }
@@ -222,8 +261,10 @@ class NativeEdgeRows final : public NativeEdges {
   }
 
   AreasOnDemand areas_;
-  std::vector<std::optional<float>> shares_;     // of the tile; none: the light is behind, or below the horizon
-  std::vector<std::optional<double>> radiance_;  // likewise; empty: not wanted
+  std::optional<LightRegion> region_;                // of the light
+  std::optional<areas::TextureBlocks> blocks_;       // of its texture
+  std::vector<std::optional<float>> shares_;         // of the tile; none: the light is behind, or below the horizon
+  std::vector<std::optional<glm::dvec3>> radiance_;  // likewise; empty: not wanted
 };
 
 }  // namespace

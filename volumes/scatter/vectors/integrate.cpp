@@ -1,6 +1,7 @@
 // Edge scatter on a processor, rows=exact: from edges as they appear to the visible share of the light, without light
 // samples.
 
+#include "areas/form_factor_sum.hpp"
 #include "visibility/unshadowed_light.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
@@ -24,15 +25,15 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 /// The depth at the light's corner, from that at a place that no edge comes near: exact predicates count there.
-std::optional<std::int32_t> depth_by_other_place(const LightGrid& grid, const RowSum& rows, const GridSample& at,
-                                                 OpenJudge& judge) {
+std::optional<std::int32_t> depth_by_other_place(const ScatterInput& in, const LightWindow& window, const RowSum& rows,
+                                                 const GridSample& at, OpenJudge& judge) {
   constexpr int kTries = 64;
   for (int i = 0; i < kTries; ++i) {
     // Kronecker's sequence with the square roots of 2 and 3: on no lattice.
     const glm::dvec2 share = glm::fract(glm::dvec2(0.4142135623, 0.7320508075) * (i + 1.0));
-    const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(grid.half_cells));
+    const std::optional<std::int32_t> relative = rows.relative_depth(share * 2.0 * glm::dvec2(in.grid.half_cells));
     if (!relative) continue;
-    const std::optional<std::uint32_t> depth = judge.depth_in_plane(at, 2.0 * share - 1.0);
+    const std::optional<std::uint32_t> depth = judge.depth_in_plane(at, window.frame_place(share));
     return depth ? std::optional(static_cast<std::int32_t>(*depth) - *relative) : std::nullopt;
   }
   return std::nullopt;
@@ -41,6 +42,7 @@ std::optional<std::int32_t> depth_by_other_place(const LightGrid& grid, const Ro
 /// `parts`: what is visible, if it is asked for and neither all nor nothing.
 struct Rows {
   RowSum sum;
+  const LightWindow& window;
   std::vector<Trapezoid> parts;
   bool parts_asked = false;
 };
@@ -74,7 +76,7 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const C
     if (rows.is_open()) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {
-    const std::optional<std::int32_t> found = depth_by_other_place(in.grid, rows, at, judge);
+    const std::optional<std::int32_t> found = depth_by_other_place(in, all.window, rows, at, judge);
     if (!found) return std::nullopt;
     depth = *found;
   }
@@ -87,24 +89,27 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const C
   return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
 }
 
-double form_factor_of(const IntegralInput& in, const GridSample& at, const std::vector<Trapezoid>& parts,
-                      double share) {
-  if (share == 0) return 0;
+glm::dvec3 form_factor_of(const IntegralInput& in, const GridSample& at, const std::vector<Trapezoid>& parts,
+                          double share) {
+  if (share == 0) return glm::dvec3(0);
   const visibility::UnshadowedLight unshadowed(in.light, in.samples.p[at.pixel], in.samples.n[at.pixel]);
-  if (parts.empty() || share == 1) return share * unshadowed.whole();
-  const glm::dvec2 half(in.scatter.grid.half_cells);
-  double sum = 0;
-  for (const auto& [low, high] : parts) {
-    const auto corner = [&](double x, double y) { return glm::dvec2(x, y) / half - 1.0; };
-    sum += unshadowed.part(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
-                                      corner(high.left, high.y)});
+  areas::FormFactorSum sum(unshadowed, in.texture);
+  if (parts.empty() || static_cast<float>(share) == 1) {
+    sum.add_whole();
+    return share * sum.sum();
   }
-  return std::max(sum, 0.0);
+  const glm::dvec2 cells = 2.0 * glm::dvec2(in.scatter.grid.half_cells);
+  for (const auto& [low, high] : parts) {
+    const auto corner = [&](double x, double y) { return in.region.window.frame_place(glm::dvec2(x, y) / cells); };
+    sum.add_polygon(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
+                               corner(high.left, high.y)});
+  }
+  return glm::max(sum.sum(), glm::dvec3(0));
 }
 
 void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
   const ScatterInput& in = input.scatter;
-  Rows rows{RowSum(in.grid, input.scene, input.scale), {}, !out.radiance.empty()};
+  Rows rows{RowSum(in.grid, input.region, input.scene, input.scale), input.region.window, {}, !out.radiance.empty()};
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
     const std::optional<double> share = share_of(in, scratch, at, rows, judge);
@@ -112,7 +117,7 @@ void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& jud
       ++scratch.unproven;
       const areas::ExactView exact = input.areas.view(input.samples, at.pixel);
       out.shares[i] = static_cast<float>(exact.visibility);
-      if (!out.radiance.empty()) out.radiance[i] = exact.form_factor.x;
+      if (!out.radiance.empty()) out.radiance[i] = exact.form_factor;
       return;
     }
     out.shares[i] = static_cast<float>(*share);

@@ -16,12 +16,25 @@ RowSweep::Line RowSweep::line_of(const RowEdge& edge) {
 }
 
 /// Nothing changes before it.
-double RowSweep::next_row() const {
+double RowSweep::next_row() {
   double next = in_.height;
   if (next_edge_ < in_.edges.size()) next = std::min(next, in_.edges[next_edge_].y0);
   if (next_step_ < in_.steps.size()) next = std::min(next, in_.steps[next_step_].y);
-  for (const Line& line : lines_) next = std::min(next, line.end);
+  if (next_end_ < ends_.size()) next = std::min(next, ends_[next_end_]);
   return next;
+}
+
+/// The gap whose sides cross before all others do; 1 if none do. Found again only where the last one found is gone.
+std::size_t RowSweep::first_crossing() {
+  const auto earlier = [](const Gap& a, const Gap& b) { return a.crossing < b.crossing; };
+  const auto first = std::min_element(gaps_.begin() + 1, gaps_.end(), earlier);
+  soonest_ = first->crossing;
+  soonest_is_known_ = true;
+  return static_cast<std::size_t>(first - gaps_.begin());
+}
+
+void RowSweep::forget(const Gap& gap) {
+  if (gap.crossing <= soonest_) soonest_is_known_ = false;
 }
 
 void RowSweep::end_gap(std::size_t number, double y) {
@@ -34,25 +47,27 @@ void RowSweep::end_gap(std::size_t number, double y) {
   if (narrowest < 0) area_.disorder -= narrowest * high;
   if (gap.depth > 0) return;
   const double area = 0.5 * (first + last) * high;
-  (gap.depth == 0 ? area_.visible : area_.impossible) += area;
-  if (gap.depth == 0 && in_.parts != nullptr && area > 0) {
-    in_.parts->push_back({{since, low_left, low_right}, {y, high_left, high_right}});
+  if (gap.depth < 0) {
+    area_.impossible += area;
+    return;
   }
-}
-
-void RowSweep::end_gaps(double y) {
-  for (std::size_t gap = 1; gap < lines_.size(); ++gap) end_gap(gap, y);
+  const Trapezoid part{{since, low_left, low_right}, {y, high_left, high_right}};
+  area_.visible += in_.measure != nullptr ? in_.measure->of(part) : area;
+  ++area_.parts;
+  if (in_.parts != nullptr && area > 0) in_.parts->push_back(part);
 }
 
 void RowSweep::look_ahead(std::size_t number, double y) {
   const Line &left = lines_[number - 1], &right = lines_[number];
   double& crossing = gaps_[number].crossing;
+  forget(gaps_[number]);
   crossing = kNever;
   if (number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
   const double end = std::min(left.end, right.end);
   if (left.at(end) <= right.at(end)) return;
   const double apart = right.at(y) - left.at(y);
   crossing = apart > 0 ? std::min(y + apart / (left.slope - right.slope), end) : y;
+  soonest_ = std::min(soonest_, crossing);
 }
 
 void RowSweep::change_places(std::size_t number, double y) {
@@ -87,14 +102,47 @@ bool RowSweep::hand_over(double y) {
   return all && begin_.empty();
 }
 
-void RowSweep::insert(const RowEdge& edge) {
+/// The gaps on both sides become one.
+void RowSweep::remove(std::size_t line, double y) {
+  end_gap(line, y);
+  end_gap(line + 1, y);
+  forget(gaps_[line]);
+  lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(line));
+  gaps_.erase(gaps_.begin() + static_cast<std::ptrdiff_t>(line));
+  gaps_[line].is_new = true;
+}
+
+/// Where it is in order at its lower end, and after those that it meets there and that lean more to the left.
+void RowSweep::insert(const RowEdge& edge, double y) {
   const Line line = line_of(edge);
-  auto place = lines_.begin() + 1;
+  auto place = std::partition_point(lines_.begin() + 1, lines_.end() - 1,
+                                    [&](const Line& other) { return other.at(line.y) < line.x; });
   for (; place + 1 != lines_.end(); ++place) {
     const double x = place->at(line.y);
     if (x > line.x || (x == line.x && place->slope > line.slope)) break;
   }
+  const auto gap = static_cast<std::size_t>(place - lines_.begin());
+  if (!gaps_[gap].is_new) end_gap(gap, y);
   lines_.insert(place, line);
+  gaps_.insert(gaps_.begin() + static_cast<std::ptrdiff_t>(gap), Gap{y, kNever, 0, true});
+  gaps_[gap + 1].is_new = true;
+}
+
+/// Depths from left to right; what gaps with new sides or another depth were ends here.
+void RowSweep::renew_gaps(double y) {
+  std::int32_t depth = in_.depth;
+  for (std::size_t i = 1; i < gaps_.size(); ++i) {
+    Gap& gap = gaps_[i];
+    if (gap.is_new) {
+      gap.since = y;
+      gap.is_new = false;
+      look_ahead(i, y);
+    } else if (gap.depth != depth) {
+      end_gap(i, y);
+    }
+    gap.depth = depth;
+    depth -= lines_[i].k;
+  }
 }
 
 void RowSweep::change_lines(double y) {
@@ -104,18 +152,17 @@ void RowSweep::change_lines(double y) {
   std::int32_t change = 0;
   for (; next_step_ < in_.steps.size() && in_.steps[next_step_].y <= y; ++next_step_)
     change += in_.steps[next_step_].change;
-  if (hand_over(y) && change == 0) return;
-  end_gaps(y);
+  const bool some_end = next_end_ < ends_.size() && ends_[next_end_] <= y;
+  while (next_end_ < ends_.size() && ends_[next_end_] <= y) ++next_end_;
+  if (some_end && hand_over(y) && change == 0) return;
   in_.depth += change;
-  std::erase_if(lines_, [y](const Line& line) { return line.end <= y; });
-  for (const RowEdge& edge : begin_) insert(edge);
-  gaps_.resize(lines_.size());
-  std::int32_t depth = in_.depth;
-  for (std::size_t gap = 1; gap < lines_.size(); ++gap) {
-    gaps_[gap] = {y, kNever, depth};
-    look_ahead(gap, y);
-    depth -= lines_[gap].k;
+  if (some_end) {
+    for (std::size_t i = lines_.size() - 2; i > 0; --i) {
+      if (lines_[i].end <= y) remove(i, y);
+    }
   }
+  for (const RowEdge& edge : begin_) insert(edge, y);
+  renew_gaps(y);
 }
 
 RowSweep::Area RowSweep::operator()(const Input& input) {
@@ -124,21 +171,27 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
   next_edge_ = next_step_ = 0;
   std::sort(in_.steps.begin(), in_.steps.end(), [](const RowStep& a, const RowStep& b) { return a.y < b.y; });
   std::sort(in_.edges.begin(), in_.edges.end(), [](const RowEdge& a, const RowEdge& b) { return a.y0 < b.y0; });
+  ends_.clear();
+  for (const RowEdge& edge : in_.edges) ends_.push_back(edge.y1);
+  std::sort(ends_.begin(), ends_.end());
+  next_end_ = 0;
+  soonest_ = kNever;
+  soonest_is_known_ = true;
   lines_ = {{0, 0, 0, kNever, 0, 0}, {in_.width, 0, 0, kNever, in_.width, 0}};
   gaps_ = {{}, {0, kNever, in_.depth}};
   for (;;) {
     const double next = next_row();
-    const auto crossing = std::min_element(gaps_.begin() + 1, gaps_.end(),
-                                           [](const Gap& a, const Gap& b) { return a.crossing < b.crossing; });
-    if (crossing->crossing <= next) {
-      change_places(static_cast<std::size_t>(crossing - gaps_.begin()), crossing->crossing);
+    if (soonest_ <= next && !soonest_is_known_) static_cast<void>(first_crossing());
+    if (soonest_ <= next) {
+      const std::size_t gap = first_crossing();
+      change_places(gap, soonest_);
     } else if (next < in_.height) {
       change_lines(next);
     } else {
       break;
     }
   }
-  end_gaps(in_.height);
+  for (std::size_t gap = 1; gap < lines_.size(); ++gap) end_gap(gap, in_.height);
   return area_;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "volumes/scatter/vectors/light_measure.hpp"
+
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,17 +23,10 @@ struct RowStep {
   std::int32_t change = 0;
 };
 
-/// A part of the light between two of its rows: x of its two sides at both.
-struct Trapezoid {
-  struct Row {
-    double y = 0, left = 0, right = 0;
-  };
-  Row low, high;
-};
-
 /// A row goes up the light (J. Bentley, T. Ottmann, "Algorithms for reporting and counting geometric intersections",
 /// 1979) and keeps the edges that it meets in order. Gaps between neighbours have one depth each; a gap's trapezoid
-/// ends where one of its sides does, crosses its neighbour, or another edge comes in between.
+/// ends where one of its sides does, crosses its neighbour, or another edge comes in between; what changes elsewhere on
+/// the row costs it nothing.
 ///
 /// Rounding. Two neighbours are in the right order when they are where the first of them ends; if not, they change
 /// places where they cross, or at once. So any two change places once at most, whatever rounding says elsewhere.
@@ -43,10 +39,12 @@ class RowSweep {
     std::span<RowStep> steps;
     std::int32_t depth = 0;                   ///< at the light's corner
     std::vector<Trapezoid>* parts = nullptr;  ///< gets what is visible, if given
+    const LightMeasure* measure = nullptr;    ///< weighs what is visible; none: by its area
   };
   struct Area {
-    double visible = 0;     ///< of depth 0
+    double visible = 0;     ///< of depth 0, weighed
     double impossible = 0;  ///< of less than that
+    std::size_t parts = 0;  ///< of depth 0, that were weighed one by one
     double disorder = 0;    ///< of gaps whose left side is right of their right side: there, depths may be wrong
   };
   Area operator()(const Input& input);
@@ -62,23 +60,30 @@ class RowSweep {
   struct Gap {
     double since = 0, crossing = 0;  // where its two sides do
     std::int32_t depth = 0;
+    bool is_new = false;  // its sides have become neighbours: neither crossing nor depth is known
   };
   static Line line_of(const RowEdge& edge);
-  [[nodiscard]] double next_row() const;
+  [[nodiscard]] double next_row();
+  [[nodiscard]] std::size_t first_crossing();
   void end_gap(std::size_t gap, double y);
-  void end_gaps(double y);
   void look_ahead(std::size_t gap, double y);
   void change_places(std::size_t gap, double y);
   void change_lines(double y);
   [[nodiscard]] bool hand_over(double y);
-  void insert(const RowEdge& edge);
+  void remove(std::size_t line, double y);
+  void insert(const RowEdge& edge, double y);
+  void renew_gaps(double y);
+  void forget(const Gap& gap);
 
   Input in_;
   Area area_;
   std::vector<Line> lines_;  // in order, between the light's two sides
   std::vector<Gap> gaps_;    // [0] is none
   std::vector<RowEdge> begin_;
-  std::size_t next_edge_ = 0, next_step_ = 0;
+  std::vector<double> ends_;  // of all edges, ascending
+  std::size_t next_edge_ = 0, next_step_ = 0, next_end_ = 0;
+  double soonest_ = 0;             // no gap's sides cross before
+  bool soonest_is_known_ = false;  // one's do there
 };
 
 }  // namespace penumbra::volumes

@@ -34,8 +34,39 @@ bool passes_corner(const RowEdge& edge, double error) {
 
 }  // namespace
 
-RowSum::RowSum(const LightGrid& grid, const visibility::SceneFloats& scene, float scale)
+/// A corner of the outline is projected at right angles onto the plane, as p is. (bound foot)
+LightRegion make_light_region(const visibility::Light& light, const LightWindow& window, const LightGrid& grid,
+                              float scale) {
+  const glm::dvec2 cells(grid.columns, grid.rows);
+  LightRegion region{window, LightMeasure(light, cells)};
+  if (light.kind != visibility::LightKind::polygon) return region;
+  const double per_length = std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]));
+  double farthest = 0, twice_area = 0;
+  std::vector<glm::dvec2> corners;
+  for (const glm::vec3& corner : light.outline) {
+    const glm::dvec3 from = glm::dvec3(corner * scale) - grid.corner;
+    corners.emplace_back(glm::dot(grid.axes[0], from), glm::dot(grid.axes[1], from));
+    farthest = std::max(farthest, glm::length(from));
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec2 &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    twice_area += a.x * b.y - a.y * b.x;
+    region.outline.push_back({a.x, a.y, b.x, b.y, 0});
+  }
+  // Counter-clockwise, the light is left of each of them: to the right there is a layer more.
+  for (RowEdge& edge : region.outline) edge.k = twice_area > 0 ? -1 : 1;
+  region.measure.set_whole(std::abs(twice_area) / 2);
+  region.outline_error =
+      2 * per_length *
+      (32 * kUnit * static_cast<double>(grid.skew) * farthest + 8 * kUnit * static_cast<double>(grid.reach));
+  const glm::dvec2 size = window.size();
+  region.rounding = 1 + std::abs(window.shear) * std::max(std::abs(window.low.y), std::abs(window.high.y)) / size.x;
+  return region;
+}
+
+RowSum::RowSum(const LightGrid& grid, const LightRegion& region, const visibility::SceneFloats& scene, float scale)
     : grid_(grid),
+      region_(region),
       scene_(scene),
       scale_(scale),
       per_length_(std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]))),
@@ -233,7 +264,7 @@ void RowSum::add(RowEdge edge, double error) {
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
   const auto [x, y] = std::pair(place.x, place.y);
   // No true edge is nearer than half of this, nor is the rounding of what follows as large.
-  const double near = 4 * largest_error_ + 64 * kUnit * (grid_.columns + grid_.rows);
+  const double near = 4 * largest_error_ + 64 * kUnit * region_.rounding * (grid_.columns + grid_.rows);
   std::int32_t depth = 0;
   for (const RowStep& step : left_) {
     if (std::abs(step.y - y) < near) return std::nullopt;
@@ -251,13 +282,17 @@ std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) cons
 
 void RowSum::add_horizon(const HorizonLine& line) {
   const double width = grid_.columns, height = grid_.rows;
-  // above · (s, t, 1) as a X + b Y + c, from the light's corner.
+  // above · (s, t, 1) as a X + b Y + c, from the window's corner.
+  const LightWindow& window = region_.window;
+  const glm::dvec2 size = window.size();
   const glm::dvec3& above = line.above;
-  const double a = 2 * above.x / width, b = 2 * above.y / height;
-  const double c = above.z - above.x - above.y;
+  const double a = above.x * size.x / width, b = (above.y - window.shear * above.x) * size.y / height;
+  const double c = above.z + above.x * window.low.x + (above.y - window.shear * above.x) * window.low.y;
   const double low = c, high = b * height + c;  // at the ends of the light's left side
-  const double largest = std::abs(above.x) + std::abs(above.y) + std::abs(above.z);
-  const double error = 4 * (line.error.x + line.error.y + line.error.z) + 16 * kUnit * largest;
+  const double t = std::max(std::abs(window.low.y), std::abs(window.high.y)),
+               s = std::max(std::abs(window.low.x), std::abs(window.high.x)) + std::abs(window.shear) * t;
+  const double largest = std::abs(above.x) * s + std::abs(above.y) * t + std::abs(above.z);
+  const double error = 4 * (line.error.x * s + line.error.y * t + line.error.z) + 16 * kUnit * largest;
   // At the end of the side that is farther from the line, so that a line through the corner is counted once.
   if (!(std::max(std::abs(low), std::abs(high)) > error)) {
     is_open_ = true;
@@ -284,17 +319,28 @@ void RowSum::add_horizon(const HorizonLine& line) {
   at_corner_ = std::abs(high) > std::abs(low) ? (high > 0 ? 0 : 1) - change : low > 0 ? 0 : 1;
 }
 
+/// The window's corner and sides are outside of the outline.
+void RowSum::add_outline() {
+  const bool open = corner_is_open_;
+  for (const RowEdge& edge : region_.outline) add(edge, region_.outline_error);
+  corner_is_open_ = open;
+  if (!region_.outline.empty()) ++at_corner_;
+}
+
 std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::vector<Trapezoid>* parts) {
-  const double width = grid_.columns, height = grid_.rows, all = width * height;
+  const double width = grid_.columns, height = grid_.rows;
   if (parts != nullptr) parts->clear();
+  add_outline();
   if (is_open_) return std::nullopt;
-  const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * all;
-  const auto [visible, impossible, disorder] =
-      sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts});
+  const LightMeasure& measure = region_.measure;
+  const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * width * height;
+  const auto [visible, impossible, weighed, disorder] =
+      sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts, measure.plain() ? nullptr : &measure});
   // (bound share)
   const double off = error_ * (width + height + 2) + 4 * disorder + rounded;
-  if (!(off <= kProven * all) || !(impossible <= off)) return std::nullopt;
-  return std::clamp(visible / all, 0.0, 1.0);
+  const double off_weighed = off * measure.densest() + static_cast<double>(weighed) * measure.rounding();
+  if (!(off_weighed <= kProven * measure.whole()) || !(impossible <= off)) return std::nullopt;
+  return std::clamp(visible / measure.whole(), 0.0, 1.0);
 }
 
 }  // namespace penumbra::volumes

@@ -1,7 +1,10 @@
 #pragma once
 
-#include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/edges/light_window.hpp"
+#include "volumes/scatter/vectors/light_measure.hpp"
 #include "volumes/scatter/vectors/row_sweep.hpp"
+
+#include "volumes/scatter/vectors/scatter.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -16,12 +19,24 @@ namespace penumbra::volumes {
 /// unit in the last place.
 constexpr double kProven = 0x1p-26;
 
+/// What of a light's window is the light, in the cells of a grid over it.
+struct LightRegion {
+  LightWindow window;
+  LightMeasure measure;
+  std::vector<RowEdge> outline = {};  ///< of a polygon: outside there is one layer more
+  double outline_error = 0;           ///< of where its corners are
+  double rounding = 1;  ///< a place of the window in the frame's coordinates is off so many times 2⁻⁵³
+};
+LightRegion make_light_region(const visibility::Light& light, const LightWindow& window, const LightGrid& grid,
+                              float scale);
+
 /// Edges as they appear to one view sample, in double, each with the error of where it appears, and the sweep over
 /// them: a share with a proof of how far it may be off, or nothing. docs/edge-scatter.md, "Without light samples" and
 /// "What double proves".
 class RowSum {
  public:
-  RowSum(const LightGrid& grid, const visibility::SceneFloats& scene, float scale);
+  /// All must outlive it.
+  RowSum(const LightGrid& grid, const LightRegion& region, const visibility::SceneFloats& scene, float scale);
 
   void set_view_sample(const GridSample& at);
   /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
@@ -57,7 +72,10 @@ class RowSum {
   [[nodiscard]] bool cut_to_window(Ways& ways);
   void add(RowEdge edge, double error);
 
+  void add_outline();
+
   const LightGrid& grid_;
+  const LightRegion& region_;
   const visibility::SceneFloats& scene_;
   float scale_;
   double per_length_, skew_;  // the axes: cells a length, and what makes them ill-conditioned
@@ -72,7 +90,7 @@ class RowSum {
   std::vector<RowStep> left_;  // of the depth at the light's left side
   double error_ = 0, largest_error_ = 0;
   bool corner_is_open_ = false, is_open_ = false;
-  std::int32_t at_corner_ = 0;  // what add_horizon adds
+  std::int32_t at_corner_ = 0;  // what add_horizon and add_outline add
 };
 
 }  // namespace penumbra::volumes

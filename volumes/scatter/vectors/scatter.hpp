@@ -8,14 +8,19 @@
 #include "visibility/light_samples.hpp"
 #include "visibility/light_touch.hpp"
 #include "visibility/view_samples.hpp"
-#include "volumes/scatter/vectors/areas_on_demand.hpp"
 #include "volumes/edges/cut_ends.hpp"
+#include "volumes/scatter/vectors/areas_on_demand.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
+
+namespace penumbra::areas {
+class TextureBlocks;
+}
 
 /// Edge scatter on a processor: what its stages hand to one another. Inside volumes/ only.
 namespace penumbra::volumes {
@@ -128,10 +133,13 @@ void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std:
 /// prove gets it from integers (areas::ExactArea). `radiance`, if there: form factors of what is visible.
 struct Integral {
   std::span<float> shares;
-  std::span<double> radiance;
+  std::span<glm::dvec3> radiance;
 };
+struct LightRegion;
 struct IntegralInput {
   const ScatterInput& scatter;
+  const LightRegion& region;
+  const std::optional<areas::TextureBlocks>& texture;
   const visibility::SceneFloats& scene;
   const visibility::Light& light;
   const visibility::ViewSamples& samples;

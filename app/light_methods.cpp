@@ -1,0 +1,102 @@
+#include "app/light_methods.hpp"
+
+#include "app/methods.hpp"
+#include "base/error.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using visibility::Light;
+using visibility::MethodDescription;
+using visibility::MethodOptions;
+
+bool has_option(const MethodDescription& method, const std::string& key) {
+  return std::ranges::find(method.options, key, &visibility::OptionDescription::name) != method.options.end();
+}
+
+/// Those of the options that the method has; all, if it was named.
+MethodOptions options_for(const MethodDescription& method, const MethodWish& wish) {
+  if (!wish.method.empty()) return wish.options;
+  MethodOptions options;
+  for (const auto& [key, value] : wish.options) {
+    if (has_option(method, key)) options.emplace(key, value);
+  }
+  return options;
+}
+
+/// The method with the options that make areas of its answers, if the light and what was given allow it.
+std::optional<LightMethod> area_method(const MethodDescription& method, const Light& light, const MethodWish& wish) {
+  if (!method.exact_area || std::ranges::find(method.exact_area->lights, light.kind) == method.exact_area->lights.end())
+    return std::nullopt;
+  const bool has_all =
+      std::ranges::all_of(wish.options, [&](const auto& one) { return has_option(method, one.first); });
+  if (!has_all) return std::nullopt;
+  MethodOptions options = wish.options;
+  options.insert(method.exact_area->options.begin(), method.exact_area->options.end());  // what was given stands
+  try {
+    MethodDescription description = describe_method(method.name, options);
+    if (!description.gives_area() || !can_do(description, {light})) return std::nullopt;
+    return LightMethod{std::move(description), std::move(options), {}};
+  } catch (const UsageError&) {  // what was given excludes it
+    return std::nullopt;
+  }
+}
+
+LightMethod choose(const Light& light, const MethodWish& wish) {
+  if (!wish.samples) {
+    for (const MethodDescription* method : all_methods()) {
+      if (!wish.method.empty() && method->name != wish.method) continue;
+      if (auto found = area_method(*method, light, wish)) return *std::move(found);
+    }
+  }
+  const MethodDescription& method = wish.method.empty() ? default_method(light) : describe_method(wish.method);
+  MethodOptions options = options_for(method, wish);
+  LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
+  if (!wish.samples && !chosen.description.gives_area()) {
+    chosen.note = wish.method.empty()
+                      ? fmt::format("light \"{}\" ({}): no method gives its exact area; {} with {} light samples",
+                                    light.name, visibility::name_of(light.kind), method.name, light.sample_count())
+                      : fmt::format("light \"{}\": {} does not give its exact area; {} light samples", light.name,
+                                    method.name, light.sample_count());
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const MethodWish& wish) {
+  std::vector<LightMethod> all;
+  for (const Light& light : lights) {
+    all.push_back(choose(light, wish));
+    check_light(all.back().description, light);
+  }
+  for (const auto& [key, value] : wish.options) {
+    if (std::ranges::any_of(all, [&](const LightMethod& one) { return one.options.contains(key); })) continue;
+    std::set<std::string> names;
+    for (const LightMethod& one : all) names.insert(one.description.name);
+    throw UsageError("--method-option {}={}: {} has no such option; see `penumbra methods`", key, value,
+                     fmt::format("{}", fmt::join(names, ", ")));
+  }
+  return all;
+}
+
+std::vector<std::vector<std::size_t>> same_methods(const std::vector<LightMethod>& chosen) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const auto same = std::ranges::find_if(groups, [&](const std::vector<std::size_t>& group) {
+      const LightMethod& first = chosen[group.front()];
+      return first.description.name == chosen[i].description.name && first.options == chosen[i].options;
+    });
+    same != groups.end() ? same->push_back(i) : groups.push_back({i});
+  }
+  return groups;
+}
+
+}  // namespace penumbra::app
