@@ -151,7 +151,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   MethodRun result;
   result.visibility.assign(plan.lights.size(), std::vector<float>(session.pixel_count()));
   const std::uint32_t discarded = plan.discard_first ? 1 : 0;
-  progress.begin(method.description().name,
+  progress.begin(plan.stage.empty() ? method.description().name : plan.stage,
                  std::uint64_t{session.height} * plan.lights.size() * (plan.runs + discarded));
   {
     const MayExitAtOnce at_once;

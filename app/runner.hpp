@@ -33,7 +33,8 @@ struct RunPlan {
   std::uint32_t runs = 1;                     ///< timed runs
   bool discard_first = false;                 ///< one more before them, which warms up and does not count
   std::optional<std::vector<std::uint32_t>> pixels =
-      {};  ///< all that will be looked at (ascending); nothing: every pixel
+      {};                  ///< all that will be looked at (ascending); nothing: every pixel
+  std::string stage = {};  ///< what the bar of progress says; empty: the method's name
 };
 
 /// Times of one method over all lights, in seconds: medians where there were several runs.
