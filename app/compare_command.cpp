@@ -45,6 +45,24 @@ void print_table(const compare::Metrics& metrics) {
   line("reference " + metrics.reference.method, metrics.reference, nullptr);
 }
 
+/// By how much each method's RMSE changes when one cause alone is repaired, and what is left without all of them.
+void print_budgets(const compare::Metrics& metrics) {
+  bool first = true;
+  for (const compare::MethodResult& result : metrics.methods) {
+    if (!result.error_budget) continue;
+    const compare::ErrorBudget& budget = *result.error_budget;
+    if (first) {
+      fmt::print("\n{:<28} {:>9}", "RMSE, and its change without", "rmse");
+      for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", name_of(part.cause));
+      fmt::print(" {:>10}\n", "remainder");
+      first = false;
+    }
+    fmt::print("{:<28} {:>9.6f}", result.entry, budget.rmse);
+    for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", number(budget.change(part), "{:+.6f}"));
+    fmt::print(" {:>10}\n", number(budget.together.rmse, "{:.6f}"));
+  }
+}
+
 class CompareCommand : public Command {
  public:
   explicit CompareCommand(CLI::App& app)
@@ -79,6 +97,9 @@ class CompareCommand : public Command {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
+    cli_.add_flag("--error-budget", options_.error_budget,
+                  "why is each image-based method wrong? Runs it again, often: without each cause of error alone, and "
+                  "without all of them");
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: the beauty for eyes");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation")->type_name("F");
@@ -91,6 +112,7 @@ class CompareCommand : public Command {
     if (frame_) spdlog::warn("scenes have no animation yet: every frame shows the same");
     const compare::Metrics metrics = compare_methods(run_, options_, global.arguments, progress);
     print_table(metrics);
+    print_budgets(metrics);
     spdlog::info("{} shows it all", (run_.out / "report.html").string());
     // What failed has been said; the others' answers are written all the same.
     const auto failed =

@@ -1,11 +1,13 @@
 #include "app/comparison.hpp"
 
+#include "app/comparison_entries.hpp"
+#include "app/comparison_files.hpp"
 #include "app/device_source.hpp"
+#include "app/error_budget.hpp"
 #include "app/failure.hpp"
 #include "app/light_judge.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
-#include "app/output_files.hpp"
 #include "app/report_views.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -22,7 +24,6 @@
 #include <algorithm>
 #include <exception>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 namespace penumbra::app {
@@ -31,13 +32,6 @@ namespace {
 using visibility::Light;
 using visibility::MethodDescription;
 using visibility::Output;
-
-/// A method as asked for, with what its options make of it.
-struct Entry {
-  std::string label;
-  MethodDescription description;
-  visibility::MethodOptions options;
-};
 
 /// A run with what is made of it on the way.
 struct Finished {
@@ -57,14 +51,18 @@ class Comparison {
         progress_(progress),
         reference_(describe_reference(options.reference)),
         same_samples_(options.reference_samples == "same"),
+        files_(run.out, {.png = options.png, .bits = options.bits}),
         devices_(run.device) {
     reference_request_ = parse_reference_samples();
-    prepare_folder();
+    if (options.error_budget) require_explainable(options.methods);
+    files_.claim(run.scene, options.methods, options.stats);
     session_ = open_session(run, devices_, options.runs, progress);
-    outputs_.refuse_inputs(session_.scene.sources);
+    files_.refuse_inputs(session_.scene.sources);
     progress.clear();
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
-    choose_entries();
+    for (const Light& light : session_.lights) check_light(reference_.description, light);
+    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
+    entries_ = choose_entries(options, session_, [this](std::string text) { warn(std::move(text)); });
     reference_lights_ = same_samples_ ? session_.lights : lights_of_reference();
     truths_ = choose_pixels(session_, options.sample_pixels);
     for (std::size_t light = 0; light < truths_.size(); ++light) {
@@ -82,6 +80,7 @@ class Comparison {
     run_rays();
     for (const Entry& entry : entries_) run_or_report(entry);
     make_error_pictures();
+    if (options_.error_budget) explain_errors();
     progress_.clear();
     const std::string json = compare::json_text(compare::to_json(report_.metrics));
     write_file_atomically(run_.out / "metrics.json", json);
@@ -93,15 +92,6 @@ class Comparison {
   }
 
  private:
-  static Entry describe_reference(const std::string& name) {
-    const MethodDescription& description = describe_method(name);
-    if (description.family != visibility::Family::reference) {
-      throw UsageError("--reference {}: a {} method is no judge; expected raytrace or exact", name,
-                       visibility::name_of(description.family));
-    }
-    return {"reference", description, {}};
-  }
-
   [[nodiscard]] visibility::SampleRequest parse_reference_samples() const {
     RunOptions reference = run_;
     if (!same_samples_) reference.light_samples = options_.reference_samples;
@@ -112,72 +102,6 @@ class Comparison {
       throw UsageError("--reference-samples {}: expected a number of light samples from 1 to 4096, or same",
                        options_.reference_samples);
     }
-  }
-
-  void prepare_folder() {
-    folder_.make(run_.out);
-    outputs_.add("-o", run_.out / "metrics.json");
-    outputs_.add("-o", run_.out / "report.html");
-    outputs_.add("--stats", options_.stats);
-    for (const std::filesystem::path& file : files_of("reference")) outputs_.add("-o", file);
-    for (const MethodEntry& entry : options_.methods) {
-      for (const std::filesystem::path& file : files_of(entry.label)) outputs_.add("-o", file);
-      outputs_.add("-o", file_of(entry.label, "-error.png"));
-    }
-    outputs_.refuse_inputs({&run_.scene, 1});
-    outputs_.require_writable();
-  }
-
-  /// Refuses, before anything long, what would fail later; leaves out of a group what cannot do the lights.
-  void choose_entries() {
-    for (const Light& light : session_.lights) check_light(reference_.description, light);
-    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
-    for (const MethodEntry& chosen : with_method_options()) {
-      std::optional<Entry> described = describe_entry(chosen);
-      if (!described) continue;
-      Entry& entry = *described;
-      if (chosen.from_group && !can_do(entry.description, session_.lights)) {
-        warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
-        continue;
-      }
-      for (const Light& light : session_.lights) check_light(entry.description, light);
-      if (wants_bits(entry)) check_bits(entry.description, session_.lights.front());
-      entries_.push_back(std::move(entry));
-    }
-    if (entries_.empty()) {
-      throw InputError(
-          "none of the chosen methods can do the lights of {}; name one that can with --methods (see "
-          "`penumbra methods`)",
-          session_.scene.name);
-    }
-  }
-
-  /// With its options: they may change what it gives and which lights it can do. Nothing: a group's exact areas, which
-  /// --method-option excludes.
-  std::optional<Entry> describe_entry(const MethodEntry& chosen) {
-    try {
-      return Entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
-    } catch (const UsageError& error) {
-      if (!chosen.exact_area) throw;
-      warn(fmt::format("{} is left out: {}", chosen.label, error.what()));
-      return std::nullopt;
-    }
-  }
-
-  /// The chosen methods, each with those of --method-option that it has.
-  [[nodiscard]] std::vector<MethodEntry> with_method_options() const {
-    std::vector<MethodEntry> entries = options_.methods;
-    for (const auto& [key, value] : options_.method_options) {
-      bool known = false;
-      for (MethodEntry& entry : entries) {
-        const auto& has = describe_method(entry.name).options;
-        if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
-        entry.options.emplace(key, value);  // an entry's own option stands
-        known = true;
-      }
-      if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
-    }
-    return entries;
   }
 
   [[nodiscard]] std::vector<Light> lights_of_reference() const {
@@ -287,25 +211,7 @@ class Comparison {
     report_.metrics.methods.push_back(std::move(result));
     report_.methods.emplace_back().description = entry.description;
     visibility_.emplace_back();
-    remove_files(entry);
-  }
-
-  /// What lies there is of an earlier run, or of one that did not end: it would pass for what this report speaks of.
-  /// Other files are not touched: they may be anything.
-  void remove_files(const Entry& entry) {
-    std::vector<std::filesystem::path> files = files_of(entry.label);
-    files.push_back(file_of(entry.label, "-error.png"));
-    for (const std::filesystem::path& file : files) {
-      std::error_code error;
-      const auto status = std::filesystem::symlink_status(file, error);
-      if (!std::filesystem::exists(status)) continue;
-      if (!std::filesystem::is_regular_file(status)) {
-        warn(fmt::format("{} is of an earlier run, and no regular file: it stays", file.string()));
-        continue;
-      }
-      std::filesystem::remove(file, error);
-      if (error) warn(fmt::format("{} is of an earlier run and cannot be removed: {}", file.string(), error.message()));
-    }
+    for (std::string& text : files_.remove(entry.label)) warn(std::move(text));
   }
 
   void run_entry(const Entry& entry) {
@@ -331,8 +237,10 @@ class Comparison {
     const auto method = make_method(description.name, entry.options, devices_);
     BeautyAccumulator beauty(session_, lights);
     std::optional<BitsOutput> bits;
-    if (wants_bits(entry)) bits.emplace(file_of(entry.label, ".bits"), session_, lights.front());
+    if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
     RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
+    // Maps answer all pixels in little time, and their pictures are whole.
+    if (description.family == visibility::Family::image) plan.pixels.reset();
     // An oracle without samples is not raced, and it may take minutes: once is enough.
     if (description.family == visibility::Family::reference && description.output != Output::mask) {
       plan.runs = 1;
@@ -354,14 +262,12 @@ class Comparison {
     devices_.check_validation();
     progress_.clear();
     const MethodLabel label = label_of(entry);
-    write_picture(file_of(entry.label, ".exr"), session_, {lights, {&label, 1}}, done.run, done.beauty);
+    write_picture(files_.of(entry.label, ".exr"), session_, {lights, {&label, 1}}, done.run, done.beauty);
     if (bits) bits->commit();
     return done;
   }
 
-  [[nodiscard]] bool wants_bits(const Entry& entry) const {
-    return options_.bits && entry.description.output == Output::mask;
-  }
+  [[nodiscard]] bool wants_bits(const Entry& entry) const { return app::wants_bits(entry, options_); }
 
   [[nodiscard]] compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) const {
     const MethodLabel label = label_of(entry);
@@ -375,7 +281,7 @@ class Comparison {
   compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {
     compare::ReportEntry pictures =
         report_entry(session_, entry.description, report_.exposure, {done.run, done.beauty, std::move(done.masks)});
-    if (options_.png) write_png(file_of(entry.label, ".png"), *pictures.beauty);
+    if (options_.png) write_png(files_.of(entry.label, ".png"), *pictures.beauty);
     return pictures;
   }
 
@@ -395,7 +301,25 @@ class Comparison {
         if (visibility_[i].empty()) continue;  // it failed
         report_.methods[i].lights[light].error = picture(light, visibility_[i][light]);
         if (light == 0)
-          write_png(file_of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].lights[0].error);
+          write_png(files_.of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].lights[0].error);
+      }
+    }
+  }
+
+  /// The errors' scale is known: pictures of what repairs change have the same.
+  void explain_errors() {
+    for (std::size_t i = 0; i < entries_.size() && !hang_; ++i) {
+      if (entries_[i].description.repairs == nullptr || visibility_[i].empty() || truths_.front().judged.empty())
+        continue;
+      try {
+        BudgetAnswer answer =
+            measure_error_budget({session_, truths_.front(), reference_request_, entries_[i], visibility_[i].front()},
+                                 report_.error_limit, devices_, progress_);
+        report_.metrics.methods[i].error_budget = std::move(answer.budget);
+        report_.methods[i].budget_pictures = std::move(answer.pictures);
+      } catch (const render::DeviceDoesNotAnswer&) {
+        hang_ = std::current_exception();
+        warn(fmt::format("{}: no error budget, since the device does not answer any more", entries_[i].label));
       }
     }
   }
@@ -411,18 +335,6 @@ class Comparison {
     report_.warnings = warnings_;
   }
 
-  /// What a run of that name writes, without the error picture.
-  [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::string& name) const {
-    std::vector<std::filesystem::path> files = {file_of(name, ".exr")};
-    if (options_.png) files.push_back(file_of(name, ".png"));
-    if (options_.bits) files.push_back(file_of(name, ".bits"));
-    return files;
-  }
-
-  [[nodiscard]] std::filesystem::path file_of(const std::string& name, const char* ending) const {
-    return run_.out / (name + ending);
-  }
-
   void warn(std::string text) {
     progress_.clear();
     spdlog::warn("{}", text);
@@ -435,8 +347,7 @@ class Comparison {
   const Entry reference_;
   bool same_samples_;
   visibility::SampleRequest reference_request_;
-  OutputFolder folder_;
-  OutputFiles outputs_;
+  ComparisonFiles files_;
   DeviceSource devices_;
   Session session_;
   std::vector<Light> reference_lights_;

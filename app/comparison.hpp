@@ -19,6 +19,7 @@ struct ComparisonOptions {
   std::string sample_pixels = "all";
   std::uint32_t runs = 5;
   bool bits = false, png = false;
+  bool error_budget = false;    ///< why each image-based method is wrong
   std::filesystem::path stats;  ///< empty: only DIR/metrics.json
 };
 

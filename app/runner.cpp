@@ -187,7 +187,8 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   result.visibility.resize(plan.lights.size());
   for (const std::size_t light : chosen) result.visibility[light].resize(session.pixel_count());
   const std::uint32_t discarded = plan.discard_first ? 1 : 0;
-  progress.begin(method.description().name, std::uint64_t{session.height} * chosen.size() * (plan.runs + discarded));
+  progress.begin(plan.stage.empty() ? method.description().name : plan.stage,
+                 std::uint64_t{session.height} * chosen.size() * (plan.runs + discarded));
   {
     const MayExitAtOnce at_once;
     require_mesh_memory(method.description(), session.floats);

@@ -35,6 +35,7 @@ struct RunPlan {
   std::optional<std::vector<std::uint32_t>> pixels =
       {};                              ///< all that will be looked at (ascending); nothing: every pixel
   std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them
+  std::string stage = {};              ///< what the bar of progress says; empty: the method's name
 };
 
 /// Of one light, medians where there were several runs.

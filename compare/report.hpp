@@ -31,19 +31,21 @@ struct ReportLightView {
   std::string packed_masks = {};
 };
 
-/// A part of a method's error: what repairing one cause alone would change.
-struct ErrorBudgetPart {
-  std::string cause;             ///< "resolution", "layers" …
-  std::optional<double> change;  ///< of the RMSE, negative if it shrinks; none: cannot be separated
+/// Where a repair of a method's error changes V, and by how much: MethodResult::error_budget has the numbers.
+struct BudgetPicture {
+  std::string repaired;  ///< "resolution", "layers" …, kAllButView or kAllAtOnce
+  Image8 picture;
 };
+
+inline constexpr const char *kAllButView = "all but the view", *kAllAtOnce = "all at once";
 
 /// What the report shows of one method beside its numbers; what was not made is left out.
 struct ReportEntry {
   visibility::MethodDescription description;
   std::optional<Image8> beauty;
   std::string packed_beauty;
-  std::vector<ReportLightView> lights;        ///< as ReportInput::lights
-  std::vector<ErrorBudgetPart> error_budget;  ///< empty: nobody asked for it
+  std::vector<ReportLightView> lights;         ///< as ReportInput::lights
+  std::vector<BudgetPicture> budget_pictures;  ///< of the first light
 };
 
 /// A light as the report tells of it, with what its read-out needs.

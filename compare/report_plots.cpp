@@ -163,48 +163,4 @@ std::string error_against_time_html(const ReportInput& in) {
   return html + "</p>\n";
 }
 
-std::string error_budget_html(const ReportInput& in) {
-  std::vector<std::string> causes;
-  double largest = 0;
-  for (const ReportEntry& entry : in.methods) {
-    for (const ErrorBudgetPart& part : entry.error_budget) {
-      if (std::ranges::find(causes, part.cause) == causes.end()) causes.push_back(part.cause);
-      largest = std::max(largest, std::abs(part.change.value_or(0)));
-    }
-  }
-  if (causes.empty()) return {};
-  ReportTable table{
-      "Why each method is wrong: by how much its RMSE of V changes when one cause alone is repaired. To the "
-      "left (negative) the error shrinks: that much of it was this cause.",
-      {"Method"},
-      {}};
-  for (const std::string& cause : causes) table.headers.push_back(escape_html(cause));
-  constexpr double kHalf = 38;
-  for (std::size_t i = 0; i < in.methods.size(); ++i) {
-    const auto& budget = in.methods[i].error_budget;
-    if (budget.empty()) continue;
-    std::vector<ReportCell> row{escape_html(in.metrics.methods[i].entry)};
-    for (const std::string& cause : causes) {
-      const auto part = std::ranges::find(budget, cause, &ErrorBudgetPart::cause);
-      if (part == budget.end() || !part->change) {
-        row.emplace_back("–");
-        continue;
-      }
-      const double length = largest > 0 ? kHalf * std::abs(*part->change) / largest : 0;
-      row.emplace_back(
-          fmt::format("{}<svg class=\"plot bar-of-budget\" viewBox=\"0 0 80 10\" aria-hidden=\"true\"><path "
-                      "class=\"frame\" d=\"M40 0V10\"/><rect class=\"{}\" x=\"{:.1f}\" y=\"2\" width=\"{:.1f}\" "
-                      "height=\"6\"/></svg>",
-                      signed_text(*part->change), *part->change < 0 ? "better" : "worse",
-                      *part->change < 0 ? 40 - length : 40.0, length),
-          part->change);
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return "<h3>Error budget</h3>\n" + table_html(table) +
-         "<p class=\"note\">A dash: this cause cannot be separated from the others for that method. The changes need "
-         "not "
-         "add up, since causes hide one another; what is left is the remainder.</p>\n";
-}
-
 }  // namespace penumbra::compare

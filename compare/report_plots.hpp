@@ -11,7 +11,4 @@ namespace penumbra::compare {
 /// at all stands on a line of its own. Empty if no method has both.
 std::string error_against_time_html(const ReportInput& in);
 
-/// What repairing each cause of error alone would change, a bar each. Empty if no method has a budget.
-std::string error_budget_html(const ReportInput& in);
-
 }  // namespace penumbra::compare

@@ -1,6 +1,7 @@
 #include "compare/report_tables.hpp"
 
 #include "compare/question.hpp"
+#include "compare/report_budget.hpp"
 #include "compare/report_parts.hpp"
 #include "compare/report_plots.hpp"
 

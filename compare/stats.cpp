@@ -78,6 +78,9 @@ Json to_json(const MethodResult& result) {
   json["beautyError"] =
       beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
   add_pairs(json, result.pairs, result.verdicts);
+  const auto& budget = result.error_budget;
+  json["errorBudget"] = budget ? to_json(*budget) : Json();
+  json["errorBudgetRuns"] = budget ? runs_json(*budget) : Json();
   const auto& failure = result.failure;
   json["failure"] = failure ? Json{{"exitCode", failure->exit_code}, {"message", failure->message}} : Json();
   return json;

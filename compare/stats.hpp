@@ -1,5 +1,6 @@
 #pragma once
 
+#include "compare/error_budget.hpp"
 #include "compare/metrics.hpp"
 #include "visibility/method.hpp"
 
@@ -89,6 +90,7 @@ struct MethodResult {
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
   std::optional<PairCounts> pairs;               ///< two sample-based methods on the same samples
   std::optional<PairVerdicts> verdicts;          ///< of all differing pairs, or of an evenly spaced sample of them
+  std::optional<ErrorBudget> error_budget;       ///< of an image-based method, if it was asked for
   std::optional<MethodFailure> failure;          ///< then there are no seconds, errors and pairs
 };
 

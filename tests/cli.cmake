@@ -4,6 +4,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/bad_input.cpp
   cli/compare.cpp
   cli/covering_array.cpp
+  cli/error_budget.cpp
   cli/explain.cpp
   cli/inspect.cpp
   cli/interrupt.cpp

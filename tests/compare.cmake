@@ -5,6 +5,7 @@ penumbra_test(compare
   analytic/form_factor_closed_forms.cpp
   analytic/radiance_exact.cpp
   unit/compare_beauty.cpp
+  unit/compare_error_budget.cpp
   unit/compare_metrics.cpp
   unit/compare_picture.cpp
   unit/compare_report.cpp

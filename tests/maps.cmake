@@ -21,6 +21,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps_products.cpp
   analytic/maps_pyramids.cpp
   analytic/maps_rasterisers.cpp
+  analytic/maps_repairs.cpp
   analytic/maps_resolution_table.cpp
   analytic/maps_slices.cpp
   analytic/maps_soft_shadow_map.cpp

@@ -64,6 +64,12 @@ void check_light(const MethodDescription& description, const Light& light) {
       light.name, name_of(light.kind), description.name, kinds);
 }
 
+MethodOptions complete_options(const MethodDescription& description, const MethodOptions& given) {
+  MethodOptions all = given;
+  for (const OptionDescription& option : description.options) all.emplace(option.name, option.default_value);
+  return all;
+}
+
 ParsedOptions parse_options(const MethodDescription& description, const MethodOptions& given) {
   return {description.name, description.options, given};
 }

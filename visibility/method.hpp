@@ -1,5 +1,6 @@
 #pragma once
 
+#include "visibility/error_repair.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/mesh_verdict.hpp"
 #include "visibility/method_options.hpp"
@@ -47,6 +48,8 @@ struct MethodDescription {
   std::optional<ExactArea> exact_area = {};  ///< none: it never gives it
   /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
+  /// Which runs do without each cause of its error, for options that it takes. Image-based methods have one.
+  ErrorRepairs (*repairs)(const MethodDescription& method, const MethodOptions& given) = nullptr;
 
   /// Is V, with these options, the visible area itself? Then light samples play no part in it, nor in the beauty.
   [[nodiscard]] bool gives_area() const { return output == Output::radiance; }
@@ -102,6 +105,9 @@ class Method {
 
 /// Refuses a light that the method cannot do, and says what can be done instead.
 void check_light(const MethodDescription& description, const Light& light);
+
+/// The user's options, and the defaults of the others.
+MethodOptions complete_options(const MethodDescription& description, const MethodOptions& given);
 
 /// The user's options as values of the types that the method declares. Throws UsageError, see ParsedOptions.
 ParsedOptions parse_options(const MethodDescription& description, const MethodOptions& given);

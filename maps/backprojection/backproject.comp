@@ -27,13 +27,22 @@ float share_above() { return light_above_horizon(asked.e, asked.m); }
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }
 
-uint hidden_by(MapFace face, uvec2 cell) {
-  const Tap tap = texel_at(face, 0, cell);
+uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
+  const Tap tap = texel_at(face, layer, cell);
   if (!hides(tap)) return 0;
   if (own.form == kFormSphere) return sphere_hides(face, tap);
   Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
-  if (own.fill != kFillNone) fill_gaps(one, face, 0, cell, own.fill == kFillDiagonal);
+  fill_gaps(one, face, layer, cell, own.fill);
   return light_between(in_light_order(face, one.from), in_light_order(face, one.to));
+}
+
+// Of several layers the deepest that hides some of the light counts: to add them all would count most bodies twice.
+uint hidden_by(MapFace face, uvec2 cell) {
+  for (uint layer = own.layers; layer-- > 0;) {
+    const uint hidden = hidden_by_layer(face, layer, cell);
+    if (hidden > 0) return hidden;
+  }
+  return 0;
 }
 
 #include "maps/host/group_scalar_main.glsl"

@@ -1,6 +1,7 @@
 // Guennebaud, Barthe and Paulin 2006, "Real-time soft shadow mapping by backprojection". Departures: each texel is
 // compared with the receiver's plane in its own direction (taps.glsl); up to five faces hold what one perspective image
-// cannot; parts of the light are added as integers; lights have any planar shape (light_table.hpp).
+// cannot; parts of the light are added as integers; lights have any planar shape (light_table.hpp); several layers may
+// be asked, as Bavoil et al. 2006 do.
 
 #include "maps/backprojection/backproject.hpp"
 
@@ -10,6 +11,7 @@
 #include "maps/backprojection/options.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/repairs.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
@@ -24,6 +26,8 @@ constexpr visibility::ChoiceOption kForm{
     {{"patch", gpu::kFormPatch}, {"sphere", gpu::kFormSphere}},
     gpu::kFormPatch,
     "rectangles on the light, or bounding spheres before the disk of the light's area (without fill)"};
+constexpr visibility::IntegerOption kLayers{
+    "layers", 1, 16, 1, "layers of surfaces that are asked, of which the deepest that hides some of the light counts"};
 constexpr auto kSearch = search_option(Search::hsm);
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
@@ -40,9 +44,11 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .on_request = true,
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = backproject_repairs};
   description.options.push_back(kFill.description());
   description.options.push_back(kForm.description());
+  description.options.push_back(kLayers.description());
   description.options.push_back(kSearch.description());
   return description;
 }
@@ -60,12 +66,13 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
+  recipe.layers.count = parsed[kLayers] + (parsed[kDepth] == DepthUse::first ? 0 : 1);
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<LightTable>(device));
   const Search search = parsed[kSearch];
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
-  const gpu::BackprojectPush push{parsed[kFill], parsed[kForm], search == Search::none ? 0u : 1u};
+  const gpu::BackprojectPush push{parsed[kFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kLayers]};
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
   return make_map_method(device, std::move(recipe), options);

@@ -13,6 +13,7 @@ struct BackprojectPush {
   uint fill;    // kFillNone ...
   uint form;    // kFormPatch or kFormSphere
   uint search;  // whether a pyramid is asked
+  uint layers;  // that are asked
 };
 
 #ifdef __cplusplus

@@ -9,6 +9,7 @@
 #include "maps/backprojection/light_table.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/repairs.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
@@ -43,7 +44,8 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .on_request = true,
       .options = single_map_option_descriptions(DepthUse::midpoint),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = peel_repairs};
   description.options.push_back(kLayers.description());
   description.options.push_back(kSamples.description());
   description.options.push_back(kSelect.description());

@@ -1,10 +1,10 @@
 // One struct, two languages: what backproject_peel.comp has behind LookupPush.
 #ifdef __cplusplus
 #pragma once
-#include "maps/host/map_view.shared.h"
+#include "maps/backprojection/fill.shared.h"
 namespace penumbra::maps::gpu {
 #else
-#include "maps/host/map_view.shared.h"
+#include "maps/backprojection/fill.shared.h"  // fill.glsl's
 #endif
 
 struct PeelLookPush {

@@ -62,7 +62,7 @@ Kernel kernel_of(MapFace face) {
 
 void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {
   Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
-  if (own.fill != kFillNone) fill_gaps(one, face, layer, cell, own.fill == kFillDiagonal);
+  fill_gaps(one, face, layer, cell, own.fill);
   hide_rectangle(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 
@@ -108,6 +108,7 @@ void hide(MapFace fine, uvec2 cell) {
       continue;
     }
     const Tap tap = texel_at(face, layer, cell);
+    if (tap.depth >= tap.far) break;  // behind nothing there is nothing
     if (!hides(tap)) continue;
     if (own.occluder == kOccluderRect && own.level > 0) {
       hide_box(fine, layer, cell, tap);

@@ -13,6 +13,7 @@
 #include "maps/backprojection/options.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/repairs.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
@@ -51,7 +52,8 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .on_request = true,
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = bitmask_repairs};
   for (const auto& option : {kOccluder.description(), kFill.description(), kLayers.description(), kLevel.description(),
                              kSearch.description()}) {
     description.options.push_back(option);

@@ -7,6 +7,7 @@
 
 #include "maps/backprojection/contour_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/repairs.hpp"
 
 #include <utility>
 
@@ -36,7 +37,8 @@ visibility::MethodDescription describe() {
       .textures = false,
       .on_request = true,
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = contour_repairs};
   description.options.push_back(kSearch.description());
   description.options.push_back(kTraversal.description());
   return description;

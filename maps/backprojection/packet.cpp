@@ -8,6 +8,7 @@
 
 #include "maps/backprojection/contour_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/repairs.hpp"
 
 #include <utility>
 
@@ -52,7 +53,8 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = contour_repairs};
   description.options.push_back(kPacket.description());
   description.options.push_back(kSubLights.description());
   description.options.push_back(kHierarchy.description());

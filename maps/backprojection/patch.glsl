@@ -40,3 +40,11 @@ void extend(inout Patch one, vec2 neighbour, bvec2 which) {
     if (which[k]) one.from[k] = one.from[k] <= one.to[k] ? min(one.from[k], neighbour[k]) : max(one.from[k], neighbour[k]);
   }
 }
+
+// Or it begins there, farther out or not: then neighbours neither leave a gap nor overlap. A neighbour that sees the
+// border beyond the patch's other side leaves nothing of it.
+void share(inout Patch one, vec2 neighbour, bvec2 which) {
+  for (int k = 0; k < 2; ++k) {
+    if (which[k]) one.from[k] = one.from[k] <= one.to[k] ? min(neighbour[k], one.to[k]) : max(neighbour[k], one.to[k]);
+  }
+}

@@ -18,6 +18,7 @@
 #include "maps/host/caster_maps.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/repairs.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
 
@@ -66,7 +67,8 @@ visibility::MethodDescription describe() {
       .lights = {visibility::LightKind::rectangle},
       .textures = false,
       .options = map_option_descriptions(kSize, kNoBias),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = soft_shadow_map_repairs};
   for (const visibility::OptionDescription& option :
        {kReceiverSize.description(), kPasses.description(), kPrecision.description(), kForm.description(),
         kFilter.description()}) {

@@ -6,6 +6,7 @@
 
 #include "maps/filters/slice_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/repairs.hpp"
 
 namespace penumbra::maps {
 namespace {
@@ -23,7 +24,8 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
       .lights = planar_lights(),
       .options = map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = slice_repairs};
   description.options.push_back(kSliceFilter.description());
   return description;
 }

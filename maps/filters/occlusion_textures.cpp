@@ -6,6 +6,7 @@
 
 #include "maps/filters/slice_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/repairs.hpp"
 
 namespace penumbra::maps {
 namespace {
@@ -26,7 +27,8 @@ visibility::MethodDescription describe() {
                                                 "rectangle light in the far plane of a slice",
                                             .lights = planar_lights(),
                                             .options = map_option_descriptions(),
-                                            .verdict_on = verdict_on};
+                                            .verdict_on = verdict_on,
+                                            .repairs = slice_repairs};
   description.options.push_back(kSlices.description());
   description.options.push_back(kSliceFilter.description());
   return description;

@@ -9,6 +9,7 @@
 #include "maps/host/map_fit.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/repairs.hpp"
 
 #include <utility>
 
@@ -32,7 +33,8 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = pcf_repairs};
   description.options.push_back(kWindow.description());
   description.options.push_back(kReceiverPlane.description());
   return description;

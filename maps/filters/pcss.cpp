@@ -7,6 +7,7 @@
 #include "maps/products/light_shape.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/repairs.hpp"
 #include "maps/products/nearest_caster.hpp"
 #include "maps/filters/pcss.comp.spv.hpp"
 #include "maps/filters/pcss.shared.h"
@@ -34,7 +35,8 @@ visibility::MethodDescription describe() {
           "the light and cover the search window or none of it",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = filter_repairs};
   description.options.push_back(kBlockerSamples.description());
   description.options.push_back(kFilterSamples.description());
   return description;

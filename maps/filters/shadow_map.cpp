@@ -6,6 +6,7 @@
 
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/repairs.hpp"
 #include "maps/filters/shadow_map.comp.spv.hpp"
 
 namespace penumbra::maps {
@@ -23,7 +24,8 @@ visibility::MethodDescription describe() {
           .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
           .lights = planar_lights(),
           .options = single_map_option_descriptions(),
-          .verdict_on = verdict_on};
+          .verdict_on = verdict_on,
+          .repairs = filter_repairs};
 }
 
 }  // namespace

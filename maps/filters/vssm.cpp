@@ -8,6 +8,7 @@
 #include "maps/filters/vssm.shared.h"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/repairs.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/products/map_frame.hpp"
 #include "maps/products/nearest_caster.hpp"
@@ -66,7 +67,8 @@ visibility::MethodDescription describe() {
                                                 "parallel to a rectangle light",
                                             .lights = planar_lights(),
                                             .options = map_option_descriptions(),
-                                            .verdict_on = verdict_on};
+                                            .verdict_on = verdict_on,
+                                            .repairs = vssm_repairs};
   for (const auto& option :
        {kMoments.description(), kFilter.description(), kLayers.description(), kTerms.description(),
         kScale.description(), kExponent.description(), kFallback.description(), kLeak.description()}) {

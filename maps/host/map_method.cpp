@@ -7,8 +7,8 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "maps/host/receivers.hpp"
-#include "maps/host/sub_lights.hpp"
 #include "render/compute_pass.hpp"
+#include "visibility/light_parts.hpp"
 #include "visibility/visible_share.hpp"
 
 #include <glm/common.hpp>
@@ -45,6 +45,7 @@ class MapMethod final : public visibility::Method {
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return recipe_.description; }
+  void want_pixels(std::span<const std::uint32_t> pixels) override { receivers_.want(pixels); }
   void prepare_mesh(const visibility::SceneFloats& scene) override;
   void prepare_light(const visibility::Light& light) override;
   void prepare_view(const visibility::ViewSamples& samples) override;
@@ -105,12 +106,14 @@ class MapMethod final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
   LightBasis basis_;
-  std::vector<SubLight> parts_;  ///< of the light as maps are made for it; one, unless the recipe says otherwise
+  std::vector<visibility::LightPart>
+      parts_;  ///< of the light as maps are made for it; one, unless the recipe says otherwise
   FittedViews fitted_;
   std::vector<std::uint32_t> own_push_;
   std::uint32_t batch_ = 1;         ///< light points at a time
   std::uint32_t rows_at_once_ = 0;  ///< of a map, that one dispatch looks at
-  std::uint32_t tile_pixels_ = 0;   ///< of the tile last evaluated
+  visibility::Tile tile_{};         ///< last evaluated
+  std::uint32_t tile_pixels_ = 0;   ///< its pixels
   std::unique_ptr<render::Buffer> views_, depths_, results_;
   std::vector<double> mean_;  ///< V of the tile last evaluated, if the light has several parts
 };
@@ -125,13 +128,13 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
   light_ = &light;
   basis_ = light_basis(light);
-  parts_ = sub_lights(light, recipe_.sub_lights);
+  parts_ = visibility::light_parts(light, recipe_.sub_lights);
   std::vector<glm::vec3> centres;
-  for (const SubLight& part : parts_) centres.emplace_back(part.basis.center);
+  for (const visibility::LightPart& part : parts_) centres.emplace_back(light_basis(part.light).center);
   const bool many = recipe_.points == MapPoints::light_samples;
   FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
   if (recipe_.whole_light) {
-    const LightBounds bounds = light_bounds(parts_.front().light, parts_.front().basis);
+    const LightBounds bounds = light_bounds(parts_.front().light, light_basis(parts_.front().light));
     fit.reach = glm::max(-bounds.lower, bounds.upper);
   }
   fitted_ =
@@ -169,7 +172,8 @@ void MapMethod::make_centre_maps(std::uint32_t part) {
   render::Commands commands(*device_);
   render_maps(commands, part, 1);
   render_layers(commands, part);
-  const auto& [light, basis, weight] = parts_[part];
+  const visibility::Light& light = parts_[part].light;
+  const LightBasis basis = light_basis(light);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
     product->record(commands,
                     {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_, recipe_.layers.count});
@@ -262,6 +266,7 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
 
 void MapMethod::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", recipe_.description.name);
+  tile_ = tile;
   tile_pixels_ = tile.row_count * receivers_.width();
   if (tile_pixels_ == 0) return;
   render::grow(*device_, results_, gives_masks() ? "map masks" : "map visibility", result_bytes(tile_pixels_));
@@ -318,12 +323,14 @@ void MapMethod::read_visibility(std::span<float> visibility) {
   if (visibility.empty()) return;
   if (parts_.size() > 1) {
     std::transform(mean_.begin(), mean_.end(), visibility.begin(), [](double v) { return static_cast<float>(v); });
-    return;
+  } else if (!gives_masks()) {
+    results_->read(visibility);
+  } else {
+    std::vector<std::uint32_t> masks(visibility.size() * words_per_pixel());
+    read_masks(masks);
+    visibility::visible_shares(*light_, masks, visibility);
   }
-  if (!gives_masks()) return results_->read(visibility);
-  std::vector<std::uint32_t> masks(visibility.size() * words_per_pixel());
-  read_masks(masks);
-  visibility::visible_shares(*light_, masks, visibility);
+  receivers_.leave_out(tile_, visibility);
 }
 
 std::map<std::string, std::uint64_t> MapMethod::counters() const {

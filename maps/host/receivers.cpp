@@ -5,6 +5,7 @@
 #include "visibility/receivers.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace penumbra::maps {
@@ -16,15 +17,26 @@ void Receivers::upload(const render::Device& device, const visibility::SceneFloa
   bands_.clear();
   const std::uint32_t band_rows = max_rows(device, sizeof(gpu::Receiver));
   std::vector<gpu::Receiver> receivers;
+  left_out_.clear();
+  if (wanted_) left_out_.assign(samples.size(), 1);
+  for (const std::uint32_t pixel : wanted_.value_or(std::vector<std::uint32_t>())) left_out_[pixel] = 0;
   for (std::uint32_t row = 0; row < height_; row += band_rows) {
     const std::uint32_t rows = std::min(band_rows, height_ - row);
     receivers.assign(std::size_t{rows} * width_, {});
     const std::size_t first = std::size_t{row} * width_;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-      if (visibility::is_receiver(scene, samples, first + i))
-        receivers[i] = {samples.p[first + i], samples.n[first + i]};
+      if (!visibility::is_receiver(scene, samples, first + i)) continue;
+      if (!wanted_ || left_out_[first + i] == 0) receivers[i] = {samples.p[first + i], samples.n[first + i]};
     }
     bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});
+  }
+}
+
+void Receivers::leave_out(const visibility::Tile& tile, std::span<float> visibility) const {
+  if (!wanted_) return;
+  const std::size_t first = std::size_t{tile.first_row} * width_;
+  for (std::size_t i = 0; i < visibility.size(); ++i) {
+    if (left_out_[first + i] != 0) visibility[i] = std::numeric_limits<float>::quiet_NaN();
   }
 }
 

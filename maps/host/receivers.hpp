@@ -8,6 +8,8 @@
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace penumbra::maps {
@@ -15,6 +17,8 @@ namespace penumbra::maps {
 /// View samples on the device, in bands of rows that fit into one storage buffer each.
 class Receivers {
  public:
+  /// Only these pixels will be looked at (visibility::Method::want_pixels): upload() makes background of the others.
+  void want(std::span<const std::uint32_t> pixels) { wanted_.emplace(pixels.begin(), pixels.end()); }
   void upload(const render::Device& device, const visibility::SceneFloats& scene,
               const visibility::ViewSamples& samples);
 
@@ -30,6 +34,9 @@ class Receivers {
   };
   [[nodiscard]] std::vector<Part> parts(const visibility::Tile& tile) const;
 
+  /// NaN for the receivers of a tile that nobody wanted, as the interface has it.
+  void leave_out(const visibility::Tile& tile, std::span<float> visibility) const;
+
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }
   [[nodiscard]] std::uint64_t memory_bytes() const;
@@ -44,6 +51,8 @@ class Receivers {
   };
   std::uint32_t width_ = 0, height_ = 0;
   std::vector<Band> bands_;
+  std::optional<std::vector<std::uint32_t>> wanted_;  ///< ascending
+  std::vector<std::uint8_t> left_out_;                ///< of each pixel, if wanted_: a receiver that nobody wanted
 };
 
 }  // namespace penumbra::maps

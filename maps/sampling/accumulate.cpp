@@ -7,6 +7,7 @@
 #include "maps/sampling/accumulate.comp.spv.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/sampling/repairs.hpp"
 
 namespace penumbra::maps {
 namespace {
@@ -25,7 +26,8 @@ visibility::MethodDescription describe() {
               "triangles that can be rasterised",
           .lights = planar_lights(),
           .options = map_option_descriptions(),
-          .verdict_on = verdict_on};
+          .verdict_on = verdict_on,
+          .repairs = sampling_repairs};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "maps/host/map_fit.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/sampling/repairs.hpp"
 #include "maps/host/receivers.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/sampling/adaptive_compare.comp.spv.hpp"
@@ -80,7 +81,8 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps and many levels any soup of triangles that can be rasterised",
       .lights = planar_lights(),
       .options = map_option_descriptions(kSize),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = sampling_repairs};
   for (const visibility::OptionDescription& option :
        {kLevels.description(), kEpsilon.description(), kGamma.description(), kCompare.description(), kPcf.description(),
         kForm.description(), kWeights.description(), kShareOf.description(), kMostMaps.description()}) {

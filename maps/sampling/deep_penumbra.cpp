@@ -7,6 +7,7 @@
 
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/sampling/repairs.hpp"
 #include "maps/products/penumbra_events.hpp"
 #include "maps/sampling/deep_penumbra.comp.spv.hpp"
 #include "maps/sampling/deep_penumbra.shared.h"
@@ -33,7 +34,8 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .on_request = true,
       .options = map_option_descriptions(kSize),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = sampling_repairs};
   description.options.push_back(kBound.description());
   return description;
 }

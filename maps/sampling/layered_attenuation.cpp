@@ -8,6 +8,7 @@
 
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/sampling/repairs.hpp"
 #include "maps/products/layered_depth.hpp"
 #include "maps/sampling/layered_attenuation.comp.spv.hpp"
 #include "maps/sampling/layered_attenuation.shared.h"
@@ -37,7 +38,8 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .on_request = true,
       .options = map_option_descriptions(kSize),
-      .verdict_on = verdict_on};
+      .verdict_on = verdict_on,
+      .repairs = sampling_repairs};
   description.options.push_back(kEpsilon.description());
   description.options.push_back(kNeighbours.description());
   return description;

@@ -7,7 +7,7 @@
 
 namespace penumbra::tests {
 
-enum class Fill { none, edges, diagonal };
+enum class Fill { none, edges, diagonal, shared };
 enum class Occluder { patch, quad, triangle };
 
 class PatchTwin {
@@ -162,8 +162,9 @@ class PatchTwin {
         const double neighbour = hiding(side, number, e, std::int64_t{x} + dx, std::int64_t{y} + dy);
         if (neighbour == 0) return;
         const glm::dvec2 seen = on_light(face, e, from, neighbour);
-        if (dx != 0) lower.x = std::min(lower.x, seen.x);
-        if (dy != 0) lower.y = std::min(lower.y, seen.y);
+        const bool anywhere = fill == Fill::shared;
+        if (dx != 0 && (anywhere || seen.x < lower.x)) lower.x = std::min(seen.x, polygon[2].x);
+        if (dy != 0 && (anywhere || seen.y < lower.y)) lower.y = std::min(seen.y, polygon[2].y);
       };
       reach(-1, 0);
       reach(0, -1);

@@ -214,14 +214,23 @@ TEST(Report, DrawsErrorAgainstTimeAndTheBudget) {
   EXPECT_NE(report_html(in).find("Error against time"), std::string::npos);
   EXPECT_EQ(report_html(in).find("Error budget"), std::string::npos) << "nobody asked for it";
   in.metrics.methods[1].all_lights_error->rmse = 0;
-  in.methods[0].error_budget = {{"layers & gaps", -0.0025}, {"view", 0.00125}, {"fusion", std::nullopt}};
+  ErrorBudget& budget = in.metrics.methods[0].error_budget.emplace();
+  budget.rmse = 0.01;
+  for (const visibility::ErrorCause cause : visibility::kErrorCauses) budget.parts.push_back({.cause = cause});
+  budget.parts[1].rmse = 0.01125;
+  budget.parts[2].rmse = 0.0075;
+  budget.parts[3].words = "added & not joined";
+  budget.together.rmse = 0.005;
+  in.methods[0].budget_pictures.push_back({"layers", *in.reference.beauty});
   const std::string html = report_html(in);
   EXPECT_EQ(unbalanced_tag(html), "");
   // Half as long as the longest, to the right of the line in the middle.
-  EXPECT_NE(html.find("<td data-value=\"0.00125\">+0.00125<svg"), std::string::npos);
+  EXPECT_NE(html.find(">+0.00125<svg"), std::string::npos);
   EXPECT_NE(html.find("class=\"worse\" x=\"40.0\" y=\"2\" width=\"19.0\""), std::string::npos);
   EXPECT_NE(html.find("class=\"better\" x=\"2.0\" y=\"2\" width=\"38.0\""), std::string::npos);
-  EXPECT_NE(html.find("layers &amp; gaps"), std::string::npos);
+  EXPECT_NE(html.find("added &amp; not joined"), std::string::npos);
+  EXPECT_NE(html.find("<b>layers</b><span>RMSE −0.0025"), std::string::npos);
+  EXPECT_NE(html.find("<th scope=\"col\">gaps</th>"), std::string::npos);
   for (MethodResult& result : in.metrics.methods) result.stats.seconds = {};
   EXPECT_EQ(report_html(in).find("Error against time"), std::string::npos);
 }
@@ -351,7 +360,8 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
   in.metrics.methods[0].lights[0].horizon_pixels = 1;
   in.metrics.methods[0].lights[0].same_samples = SameSamples{.pairs = {1, 1, 1}, .verdicts = {1, 1, 0, 0}};
   in.metrics.methods[1].failure = MethodFailure{4, evil};
-  in.methods[0].error_budget = {{evil, 1.0}};
+  in.metrics.methods[0].error_budget.emplace().parts.push_back(
+      {.words = evil, .runs = {{{evil, {{evil, evil}}}, std::nullopt, evil}}});
   in.methods[0].description.paper = in.methods[0].description.exact_for = evil;
   const std::string html = report_html(in);
   EXPECT_EQ(occurrences(html, "<script"), scripts);

@@ -1,0 +1,45 @@
+#include "maps/filters/repairs.hpp"
+
+#include "maps/host/error_repairs.hpp"
+
+namespace penumbra::maps {
+namespace {
+
+using visibility::ErrorRepairs;
+using visibility::MethodDescription;
+using visibility::MethodOptions;
+
+MapRepairs one_surface() {
+  return {.layers = "it asks the nearest surfaces; no form of the method asks more",
+          .fusion = "it takes means of what texels say: nothing is added or joined",
+          .gaps = "texels are averaged, not projected: there is nothing between them"};
+}
+
+}  // namespace
+
+ErrorRepairs filter_repairs(const MethodDescription& method, const MethodOptions& given) {
+  MapRepairs repairs = one_surface();
+  repairs.ends_at_points = true;
+  return map_repairs(method, given, repairs);
+}
+
+ErrorRepairs vssm_repairs(const MethodDescription& method, const MethodOptions& given) {
+  return map_repairs(method, given, one_surface());
+}
+
+ErrorRepairs pcf_repairs(const MethodDescription& method, const MethodOptions& given) {
+  MapRepairs repairs = one_surface();
+  // The window is counted in texels: as many again keep it as wide.
+  repairs.doubled = {"size", "window"};
+  repairs.bias["receiverPlane"] = "on";
+  return map_repairs(method, given, repairs);
+}
+
+ErrorRepairs slice_repairs(const MethodDescription& method, const MethodOptions& given) {
+  MapRepairs repairs = one_surface();
+  repairs.layers = "its slices hold all surfaces";
+  repairs.fusion = "slices are taken to be independent; no form of the method joins them";
+  return map_repairs(method, given, repairs);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,133 @@
+#include "maps/host/error_repairs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+using visibility::ErrorCause;
+using visibility::ErrorRepair;
+using visibility::ErrorRepairs;
+using visibility::MethodDescription;
+using visibility::MethodOptions;
+using visibility::RepairEnd;
+using visibility::RepairRun;
+
+/// The options with some counts multiplied; nothing if one of them cannot be so large.
+std::optional<MethodOptions> multiplied(const MethodDescription& method, MethodOptions options,
+                                        std::span<const std::string> counts, std::uint32_t factor) {
+  for (const std::string& name : counts) {
+    const auto option = std::ranges::find(method.options, name, &visibility::OptionDescription::name);
+    std::string& text = options.at(name);
+    const std::uint64_t count = factor * std::stoull(text);
+    if (static_cast<double>(count) > option->most) return std::nullopt;
+    text = std::to_string(count);
+  }
+  return options;
+}
+
+}  // namespace
+
+MethodOptions options_with(const MethodDescription& method, const MethodOptions& given, const MethodOptions& more) {
+  MethodOptions options = visibility::complete_options(method, given);
+  for (const auto& [key, value] : more) options[key] = value;
+  return options;
+}
+
+ErrorRepair inseparable(ErrorCause cause, std::string words) {
+  return {.cause = cause, .words = std::move(words)};
+}
+
+ErrorRepair finer_maps(const MethodDescription& method, const MethodOptions& given,
+                       std::span<const std::string> doubled) {
+  const MethodOptions options = visibility::complete_options(method, given);
+  ErrorRepair repair{.cause = ErrorCause::resolution,
+                     .end = RepairEnd::limit,
+                     .words = "texels half and a quarter as wide, and the limit of that"};
+  for (const std::uint32_t factor : {2U, 4U}) {
+    if (auto finer = multiplied(method, options, doubled, factor)) repair.runs.push_back({method.name, *finer});
+  }
+  if (repair.runs.empty()) repair.words = "its maps are as large as they can be";
+  return repair;
+}
+
+ErrorRepair points_of_light(const MethodOptions& options) {
+  return {
+      .cause = ErrorCause::view,
+      .runs = {{"accumulate", {{"size", options.at("size")}, {"bias", options.at("bias")}}, 1, kRepairSamples}},
+      .words = fmt::format("sub-lights without end: hard shadows of {} light samples (accumulate)", kRepairSamples)};
+}
+
+ErrorRepair parted_light(const MethodDescription& method, const MethodOptions& given) {
+  const MethodOptions options = visibility::complete_options(method, given);
+  return {.cause = ErrorCause::view,
+          .end = RepairEnd::limit,
+          .runs = {{method.name, options, 2}, {method.name, options, 4}},
+          .words = "the light in 2 × 2 and 4 × 4 parts with maps from the centre of each, and the limit of that"};
+}
+
+ErrorRepair more_layers(const MethodDescription& method, const MethodOptions& given) {
+  MethodOptions options = visibility::complete_options(method, given);
+  const std::string layers[] = {"layers"};
+  ErrorRepair repair{.cause = ErrorCause::layers,
+                     .end = RepairEnd::settled,
+                     .words = "more layers of surfaces behind one another, until another one changes nothing"};
+  while (auto more = multiplied(method, options, layers, 2)) {
+    options = *more;
+    repair.runs.push_back({method.name, std::move(*more)});
+  }
+  if (repair.runs.empty()) repair.words = "it has as many layers as it can have";
+  return repair;
+}
+
+std::vector<RepairRun> from_finest(const MethodDescription& method, const RepairRun& run,
+                                   std::span<const std::string> doubled) {
+  std::vector<RepairRun> runs;
+  for (const std::uint32_t factor : {4U, 2U, 1U}) {
+    RepairRun finer = run;
+    auto options = multiplied(method, run.options, doubled, factor);
+    if (!options) continue;
+    finer.options = std::move(*options);
+    runs.push_back(std::move(finer));
+  }
+  return runs;
+}
+
+ErrorRepairs map_repairs(const MethodDescription& method, const MethodOptions& given, const MapRepairs& repairs) {
+  MethodOptions exact = repairs.bias;
+  // What stands in place of a bias moves the beginning of shadows as well.
+  const bool has_depth =
+      std::ranges::find(method.options, "depth", &visibility::OptionDescription::name) != method.options.end();
+  if (has_depth) exact["depth"] = "first";
+  const RepairRun best{method.name, options_with(method, given, exact)};
+  ErrorRepair view = parted_light(method, given);
+  if (repairs.ends_at_points) view = points_of_light(visibility::complete_options(method, given));
+  if (!repairs.many_views.empty()) view = inseparable(ErrorCause::view, repairs.many_views);
+
+  ErrorRepairs all;
+  all.together = from_finest(method, best, repairs.doubled);
+  if (!view.runs.empty()) {
+    all.one_view = all.together;
+    RepairRun views = best;
+    views.light_parts = 4;
+    if (repairs.ends_at_points) views = points_of_light(best.options).runs.front();
+    all.together = from_finest(method, views, repairs.doubled);
+  }
+  all.alone = {finer_maps(method, given, repairs.doubled),
+               std::move(view),
+               inseparable(ErrorCause::layers, repairs.layers),
+               inseparable(ErrorCause::fusion, repairs.fusion),
+               inseparable(ErrorCause::gaps, repairs.gaps),
+               {.cause = ErrorCause::bias,
+                .runs = {best},
+                .words = fmt::format("a bias of {} texels, which is what rounding needs{}", exact.at("bias"),
+                                     has_depth ? ", behind the nearest surface" : "")}};
+  return all;
+}
+
+}  // namespace penumbra::maps

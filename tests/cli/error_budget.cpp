@@ -1,0 +1,195 @@
+// `compare --error-budget` on scenes where one cause of error is there alone: the budget must name it, with its sign. A
+// floor that casts nothing under casters that receive nothing, the light at height 5; exact areas judge.
+#include "tests/cli/program.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* kCauses[] = {"resolution", "view", "layers", "fusion", "gaps", "bias"};
+
+class ErrorBudget : public ProgramTest {
+ protected:
+  /// Casters as members of "meshes", a comma before each.
+  [[nodiscard]] std::string scene_with(const std::string& casters, double light_half = 0.6) const {
+    const std::string half = std::to_string(light_half);
+    return write("scene.json", R"({"format": "penumbra-scene/1", "size": [20, 16],
+      "camera": {"eye": [0.1, 0.9, 4.5], "target": [0, 0, 0], "verticalFov": 40},
+      "meshes": [{"name": "floor", "castsShadow": false,
+                  "quad": {"center": [0, 0, 0], "halfU": [1.5, 0, 0], "halfV": [0, 0, -1.5]}})" +
+                                   casters + R"(],
+      "lights": [{"name": "key", "rectangle": {"center": [0, 5, 0], "halfU": [)" +
+                                   half + R"(, 0, 0], "halfV": [0, 0, )" + half + "]}}]}")
+        .string();
+  }
+  /// A rectangle, as a caster.
+  static std::string plate(const std::string& center, const std::string& u, const std::string& v) {
+    return R"(, {"name": "plate )" + center + R"(", "receivesShadow": false, "quad": {"center": [)" + center +
+           R"(], "halfU": [)" + u + R"(], "halfV": [)" + v + "]}}";
+  }
+
+  Outcome compare(const std::string& scene, const std::string& methods, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"compare",     scene,   "-o",        path("dir"), "--runs",        "1",
+                                          "--reference", "exact", "--methods", methods,     "--error-budget"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  /// The first method's numbers.
+  [[nodiscard]] json explain(const std::string& scene, const std::string& method) const {
+    const Outcome outcome = compare(scene, method, {"--sample-pixels", "40"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    json result = json::parse(read("dir/metrics.json")).at("methods").at(0);
+    EXPECT_EQ(result.at("errorBudgetRuns").at("rmse"), result.at("error").at("rmse"));
+    for (const auto& [key, value] : result.at("errorBudget").items())
+      RecordProperty(key, value.is_null() ? "null" : value.dump());
+    RecordProperty("rmse", result["error"]["rmse"].dump());
+    return result;
+  }
+  static double number(const json& result, const char* cause) { return result.at("errorBudget").at(cause); }
+  static double rmse(const json& result) { return result.at("error").at("rmse"); }
+};
+
+/// Two long strips at different heights whose shadows on the light overlap as seen from the floor, and not from the
+/// light's centre. Each hides less than half of the light, 0.35 · 5 / 3.5 / 1.2 and 0.15 · 5 / 1.5 / 1.2 of its width,
+/// so no sum is cut off: where they overlap V is too dark by their overlap.
+TEST_F(ErrorBudget, WhereShadowsAreAddedTwiceItIsFusion) {
+  const json result = explain(scene_with(plate("-0.225, 3.5, 0", "0.175, 0, 0", "0, 0, -3") +
+                                         plate("0.125, 1.5, 0", "0.075, 0, 0", "0, 0, -3")),
+                              "backproject:size=64");
+  EXPECT_LT(result.at("error").at("bias").get<double>(), 0);
+  EXPECT_LT(number(result, "fusion"), -0.6 * rmse(result));
+  EXPECT_GT(number(result, "resolution"), -0.3 * rmse(result));
+  for (const char* cause : {"layers", "gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
+  // From each of the light's own points nothing is seen twice: it is the one view that adds what overlaps.
+  EXPECT_LT(number(result, "view"), -0.6 * rmse(result));
+}
+
+/// A plate that another one hides from the light's centre.
+TEST_F(ErrorBudget, WhereACasterIsBehindAnotherItIsLayers) {
+  const json result =
+      explain(scene_with(plate("0, 3.5, 0", "0.3, 0, 0", "0, 0, -0.3") + plate("0, 1, 0", "0.7, 0, 0", "0, 0, -0.7")),
+              "bitmask:occluder=patch:size=64");
+  EXPECT_GT(result.at("error").at("bias").get<double>(), 0);
+  EXPECT_LT(number(result, "layers"), -0.7 * rmse(result));
+  EXPECT_GT(number(result, "resolution"), -0.2 * rmse(result));
+  for (const char* cause : {"gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
+  EXPECT_TRUE(result.at("errorBudget").at("fusion").is_null());
+}
+
+/// One plate parallel to the light, in a coarse map.
+TEST_F(ErrorBudget, WhereTexelsAreLargeItIsResolution) {
+  const json result = explain(scene_with(plate("0.03, 2.5, 0.02", "0.4, 0, 0", "0, 0, -0.4")), "backproject:size=16");
+  EXPECT_LT(number(result, "resolution"), -0.5 * rmse(result));
+  for (const char* cause : {"layers", "gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
+  // Bits of 1024 light samples say the same but for their own error.
+  EXPECT_NEAR(number(result, "fusion"), 0, 0.01);
+}
+
+/// A plate that the light's centre sees edge-on: in no layer of any size is anything of it.
+TEST_F(ErrorBudget, WhatTheCentreDoesNotSeeIsView) {
+  const json result = explain(scene_with(plate("0, 2.5, 0", "0, 0.8, 0", "0, 0, -0.6"), 1), "backproject:size=64");
+  EXPECT_GT(rmse(result), 0.02);
+  EXPECT_EQ(result.at("error").at("bias"), result.at("error").at("mean")) << "V is 1 everywhere";
+  EXPECT_LT(number(result, "view"), -0.5 * rmse(result));
+  for (const char* cause : {"resolution", "layers", "fusion", "gaps", "bias"})
+    EXPECT_EQ(number(result, cause), 0) << cause;
+  EXPECT_LT(number(result, "remainder"), 0.1 * rmse(result));
+  EXPECT_EQ(result.at("errorBudgetRuns").at("allButView").at("rmse"), result["error"]["rmse"]);
+}
+
+/// A plate tilted about one axis, whose texels have a depth each: between their patches are gaps and overlaps. Bits
+/// join what overlaps, and the gaps leak; sums are darkened by the overlaps as much as the gaps lighten them.
+TEST_F(ErrorBudget, BetweenPatchesOfATiltedPlateAreGaps) {
+  const json joined = explain(scene_with(plate("0, 2.5, 0", "0.8, 1.2, 0", "0, 0, -0.9")),
+                              "bitmask:occluder=patch:size=32,backproject:size=32:fill=none");
+  EXPECT_GT(joined.at("error").at("bias").get<double>(), 0);
+  EXPECT_LT(number(joined, "gaps"), -0.4 * rmse(joined));
+  EXPECT_GT(number(joined, "resolution"), -0.3 * rmse(joined)) << "gaps do not shrink with the texels";
+  for (const char* cause : {"layers", "bias"}) EXPECT_EQ(number(joined, cause), 0) << cause;
+  const json added = json::parse(read("dir/metrics.json")).at("methods").at(1);
+  EXPECT_GT(number(added, "fusion"), rmse(added)) << "a union has the gaps and not the overlaps";
+}
+
+/// A plate so close to the floor that a large bias forgives it.
+TEST_F(ErrorBudget, WhereTheShadowIsForgivenItIsBias) {
+  const json result = explain(scene_with(plate("0, 0.3, 0", "0.5, 0, 0", "0, 0, -0.5")), "backproject:size=64:bias=20");
+  EXPECT_GT(result.at("error").at("bias").get<double>(), 0);
+  EXPECT_LT(number(result, "bias"), -0.7 * rmse(result));
+  for (const char* cause : {"layers", "gaps"}) EXPECT_EQ(number(result, cause), 0) << cause;
+  EXPECT_NEAR(number(result, "fusion"), 0, 0.01);
+}
+
+TEST_F(ErrorBudget, StandsInMetricsAndReportOfImageBasedMethodsAlone) {
+  const Outcome outcome = compare(tiny_scene(), "edge-scatter,pcss:size=16,bitmask:size=16",
+                                  {"--sample-pixels", "40", "--light-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("remainder"));
+  const json methods = json::parse(read("dir/metrics.json")).at("methods");
+  EXPECT_TRUE(methods.at(0).at("errorBudget").is_null());
+  EXPECT_TRUE(methods.at(0).at("errorBudgetRuns").is_null());
+  for (const std::size_t i : {1U, 2U}) {
+    const json& budget = methods.at(i).at("errorBudget");
+    ASSERT_EQ(budget.size(), 7U);
+    const json& runs = methods[i].at("errorBudgetRuns");
+    for (const char* cause : kCauses) {
+      const json& part = runs.at(cause);
+      EXPECT_FALSE(part.at("words").get<std::string>().empty());
+      ASSERT_EQ(budget.at(cause).is_null(), part.at("rmse").is_null()) << cause;
+      if (budget[cause].is_null()) continue;
+      const double now = methods[i].at("error").at("rmse"), then = part.at("rmse");
+      EXPECT_EQ(budget[cause].get<double>(), then - now) << cause;
+    }
+    EXPECT_EQ(budget.at("remainder"), runs.at("together").at("rmse"));
+    EXPECT_GE(budget["remainder"].get<double>(), 0);
+    EXPECT_EQ(runs.at("resolution").at("runs").at(1).at("options").at("size"), "64");
+    EXPECT_EQ(runs.at("view").at("runs").at(0).at("method"), "accumulate");
+    EXPECT_EQ(runs.at("allButView").at("options").at("size"), "64");
+  }
+  EXPECT_TRUE(methods.at(1).at("errorBudget").at("layers").is_null()) << "no form of pcss has layers";
+  EXPECT_TRUE(methods.at(2).at("errorBudget").at("layers").is_number());
+  const std::string html = read("dir/report.html");
+  EXPECT_THAT(html, testing::AllOf(HasSubstr("Error budget"), HasSubstr("How the budget of pcss:size=16 was found out"),
+                                   HasSubstr("By how much V of bitmask:size=16 changes with resolution repaired")));
+}
+
+TEST_F(ErrorBudget, WithoutTheOptionThereIsNone) {
+  const Outcome outcome = run({"compare", tiny_scene(), "-o", path("dir"), "--runs", "1", "--methods", "pcss:size=16",
+                               "--light-samples", "4", "--reference-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(json::parse(read("dir/metrics.json")).at("methods").at(0).at("errorBudget").is_null());
+  EXPECT_THAT(read("dir/report.html"), testing::Not(HasSubstr("Error budget")));
+}
+
+TEST_F(ErrorBudget, IsRefusedWhereNoMethodIsImageBased) {
+  const Outcome outcome = compare(tiny_scene(), "edge-scatter,view-sample");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("--error-budget"), HasSubstr("bitmask")));
+  EXPECT_FALSE(std::filesystem::exists(path("dir")));
+}
+
+/// A disk is not cut in parts, and texels that are left out have no other form: both are said.
+TEST_F(ErrorBudget, SaysWhatCannotBeDone) {
+  write("disk.json", scene_text_with("/lights/0", R"({"name": "disk", "disk": {"center": [0, 4, 0],
+      "normal": [0, -1, 0], "radius": 0.6}})"));
+  const Outcome outcome =
+      compare(path("disk.json"), "vssm:size=16,backproject-peel:size=16", {"--sample-pixels", "20"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json methods = json::parse(read("dir/metrics.json")).at("methods");
+  const json &vssm = methods.at(0), &peel = methods.at(1);
+  EXPECT_TRUE(vssm.at("errorBudget").at("view").is_null());
+  EXPECT_THAT(vssm.at("errorBudgetRuns").at("view").at("words").get<std::string>(), HasSubstr("disk"));
+  EXPECT_EQ(vssm["errorBudgetRuns"].at("together").at("lightParts"), 1);
+  EXPECT_TRUE(peel.at("errorBudget").at("fusion").is_null());
+  EXPECT_THAT(peel.at("errorBudgetRuns").at("fusion").at("words").get<std::string>(), HasSubstr("samples=0"));
+  for (const char* part : {"view", "remainder"}) EXPECT_TRUE(peel["errorBudget"].at(part).is_number()) << part;
+}
+
+}  // namespace
+}  // namespace penumbra::tests
