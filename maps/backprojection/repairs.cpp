@@ -89,7 +89,8 @@ ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& 
   if (options.at("samples") != "0") {
     // Half as wide texels would be left out twice as often: the limit is that of all texels.
     ErrorRepair& resolution = of(repairs, ErrorCause::resolution);
-    for (RepairRun& run : resolution.runs) run.options["samples"] = "0";
+    for (RepairRun& run : resolution.runs)
+      run.options.insert_or_assign("samples", std::string(1, '0'));  // g++ 12 warns of "0"
     resolution.runs.insert(resolution.runs.begin(), {method.name, options_with(method, given, {{"samples", "0"}})});
     resolution.words = "all texels, then half and a quarter as wide, and the limit of that";
   } else if (options.at("select") == "contribution") {

@@ -20,6 +20,7 @@ namespace penumbra::compare {
 namespace {
 
 using tests::Stage;
+using tests::trace;
 using visibility::SamplePattern;
 
 struct Pictures {
