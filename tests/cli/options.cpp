@@ -23,7 +23,9 @@ TEST(Options, LightSamples) {
   EXPECT_EQ(parse_light_samples(options).rows, 3u);
   EXPECT_EQ(parse_light_samples(options).columns, 5u);
   EXPECT_EQ(parse_light_samples(options).count, 15u);
-  for (const char* wrong : {"", "0", "-1", "4097", "x", "3x", "x3", "0x3", "3x5x7", " 3", "3 ", "1e3", "4294967297"}) {
+  options.light_samples = "";  // not asked for
+  EXPECT_EQ(parse_light_samples(options).count, 256u);
+  for (const char* wrong : {"0", "-1", "4097", "x", "3x", "x3", "0x3", "3x5x7", " 3", "3 ", "1e3", "4294967297"}) {
     options.light_samples = wrong;
     EXPECT_THROW(parse_light_samples(options), UsageError) << wrong;
   }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace penumbra::fuzz {
 namespace {
@@ -69,7 +70,10 @@ std::vector<SoupMethods::Variant>& SoupMethods::variants_for(const visibility::L
   const render::Device& device = *device_;
   for (const char* engine : {"native", "vulkan"}) {
     const visibility::MethodOptions options{{"engine", engine}};
-    variants.push_back({fmt::format("edge-scatter:engine={}", engine), volumes::make_edge_scatter(device, options)});
+    const bool in_rows = light.kind == visibility::LightKind::rectangle && light.rows > 0;
+    if (in_rows || std::string_view(engine) == "native") {
+      variants.push_back({fmt::format("edge-scatter:engine={}", engine), volumes::make_edge_scatter(device, options)});
+    }
     variants.push_back({fmt::format("view-sample:engine={}", engine), vsm::make_view_sample(device, options)});
   }
   for (const char* crop : {"on", "off"}) {
