@@ -31,7 +31,7 @@ ErrorRepair& of(ErrorRepairs& repairs, ErrorCause cause) {
 /// Those of these options that patches have in every method.
 MethodOptions patch_options(const MethodOptions& options, const MethodOptions& more) {
   MethodOptions chosen = more;
-  for (const char* key : {"size", "bias", "depth"}) chosen.emplace(key, options.at(key));
+  for (const char* key : {"size", "bias", "depth", "rasteriser"}) chosen.emplace(key, options.at(key));
   return chosen;
 }
 

@@ -57,9 +57,11 @@ ErrorRepair finer_maps(const MethodDescription& method, const MethodOptions& giv
 }
 
 ErrorRepair points_of_light(const MethodOptions& options) {
+  MethodOptions alike;
+  for (const char* key : {"size", "bias", "rasteriser"}) alike[key] = options.at(key);
   return {
       .cause = ErrorCause::view,
-      .runs = {{"accumulate", {{"size", options.at("size")}, {"bias", options.at("bias")}}, 1, kRepairSamples}},
+      .runs = {{"accumulate", alike, 1, kRepairSamples}},
       .words = fmt::format("sub-lights without end: hard shadows of {} light samples (accumulate)", kRepairSamples)};
 }
 

@@ -1,0 +1,10 @@
+# Sets `name` to what a shader is called in C++: view_sample.comp → kViewSampleComp.
+string(REPLACE "." "_" parts ${NAME})
+string(REPLACE "_" ";" parts ${parts})
+set(name k)
+foreach(part ${parts})
+  string(SUBSTRING ${part} 0 1 first)
+  string(SUBSTRING ${part} 1 -1 rest)
+  string(TOUPPER ${first} first)
+  string(APPEND name ${first}${rest})
+endforeach()
