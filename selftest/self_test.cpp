@@ -99,9 +99,8 @@ class SelfTest {
         return check_prefilter_levels(device_, stage, kTexels, kind);
       }));
     }
-    checks.push_back(repeated("penumbra events", [&](Check& all) {  // of a window: stages_ begins with one
-      join(all, check_penumbra_events(device_, stages_.front(), 12));
-    }));
+    checks.push_back(
+        each_stage("penumbra events", [&](const Stage& stage) { return check_penumbra_events(device_, stage, 12); }));
     checks.push_back(repeated("silhouettes", [&](Check& all) { silhouettes(all); }));
     checks.push_back(repeated("penumbra wedges", [&](Check& all) { wedges(all); }));
     checks.push_back(masks("view-sample", vsm::make_view_sample, {{"engine", "vulkan"}}));

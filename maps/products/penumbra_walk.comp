@@ -46,11 +46,13 @@ void clip(float x0, float x1, inout float first, inout float last) {
   else if (x0 < 0.0) last = first;
 }
 
-// Where the ray leaves the column (or row) of texels: t of its border at c. Rounding may put it before `from`; far before,
-// it is where the ray's image comes from, and it tends to a place on this side of the border: then it is never crossed.
-float crossing(float o, float d, float ow, float dw, float c, float from, float never) {
-  const float t = -(o - c * ow) / (d - c * dw);
-  return t > from ? t : (t > 0.5 * from ? from : never);
+// Where the ray leaves the column (or row) of texels: t of its border at c, from `from` on; `last`, where the face ends, if
+// it is still on this side of the border there. Asked of the end, since t itself does not say: on a sideways face the ray
+// may come from behind the sample, and borders that it never reaches lie at any t before that.
+float crossing(float o, float d, float ow, float dw, float c, float from, float last, bool grows) {
+  const float here = o - c * ow, slope = d - c * dw, end = here + last * slope;
+  if (grows ? !(end > 0.0) : !(end < 0.0)) return last;
+  return clamp(-here / slope, from, last);
 }
 
 // One face. O, D: the ray on it.
@@ -72,8 +74,8 @@ void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nea
   bool shadow = false;
   for (uint step = 0; step < 2 * push.size + 2; ++step) {
     const vec2 next = lower + (vec2(at) + vec2(turn.x > 0.0 ? 1.0 : 0.0, turn.y > 0.0 ? 1.0 : 0.0)) * width;
-    const float tx = turn.x == 0.0 ? last : crossing(o.x, d.x, o.z, d.z, next.x, t, last);
-    const float ty = turn.y == 0.0 ? last : crossing(o.y, d.y, o.z, d.z, next.y, t, last);
+    const float tx = turn.x == 0.0 ? last : crossing(o.x, d.x, o.z, d.z, next.x, t, last, turn.x > 0.0);
+    const float ty = turn.y == 0.0 ? last : crossing(o.y, d.y, o.z, d.z, next.y, t, last, turn.y > 0.0);
     const float leave = min(min(tx, ty), last);
     const float depth = far * maps[(map * push.size + uint(at.y)) * push.size + uint(at.x)];
     // Behind what the map holds?
