@@ -2,8 +2,11 @@
 
 #include "mesh/triangle_soup.hpp"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -15,14 +18,39 @@
 
 namespace penumbra::scenes {
 
+/// A picture on surfaces, as its file has it.
+struct Picture {
+  std::string file;                                 ///< its name, for people
+  std::uint32_t width = 0, height = 0;              ///< texels
+  std::vector<std::array<std::uint8_t, 4>> texels;  ///< red green blue (sRGB), alpha; row by row from the top left
+};
+
+/// How a picture lies on an object; its places are VertexLooks::places.
+struct PictureUse {
+  enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+  std::uint32_t picture = 0;  ///< index into Scene::pictures
+  Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
+  bool nearest = false;  ///< the nearest texel; else bilinear
+};
+
+/// What lets light through a surface (glTF 2.0, 3.9.4): its alpha is factor × picture × vertices.
+struct Alpha {
+  enum class Mode : std::uint8_t { opaque, mask, blend };
+  Mode mode = Mode::opaque;
+  double factor = 1, cutoff = 0.5;
+};
+
 /// One mesh of the scene. Its triangles are those of Scene::soup whose `object` is its index.
 struct Object {
   std::string name;
-  glm::dvec3 color{0.8};  ///< linear base colour, in [0, 1]
+  glm::dvec3 color{0.8};  ///< linear base colour, in [0, 1]; what follows here multiplies it
   bool casts_shadow = true;
   bool receives_shadow = true;
   std::optional<std::uint32_t> emits;  ///< the light (index into Scene::lights) that this mesh is the body of
   std::optional<std::vector<std::uint32_t>> lit_by = {};  ///< by these lights alone (ascending); nothing: by all
+  std::string material = {};                              ///< its name; empty: it has none
+  std::optional<PictureUse> picture = {};
+  Alpha alpha = {};
 };
 
 struct Rectangle {
@@ -84,7 +112,21 @@ struct AreaLight {
 struct Camera {
   std::string name;
   glm::dvec3 eye{0}, target{0}, up{0, 1, 0};
-  double vertical_fov = 45;  ///< degrees
+  double vertical_fov = 45;           ///< degrees
+  std::optional<double> height = {};  ///< of an orthographic camera: the picture's in world units, in place of an angle
+  std::optional<double> aspect = {};  ///< the picture's width over its height, if the file says so
+};
+
+/// What a file says of vertices beside where they are. Each list is empty, or as long as the soup's positions.
+struct VertexLooks {
+  std::vector<glm::vec3> normals;  ///< unit, world space; 0 where the surface has none but its triangles'
+  std::vector<glm::vec4> colors;   ///< linear red green blue and alpha
+  std::vector<glm::dvec2> places;  ///< in the object's picture, (0, 0) its top left, (1, 1) its bottom right
+};
+
+/// When a scene moves: its first and last key, in seconds.
+struct Motion {
+  double first = 0, last = 0;
 };
 
 /// A scene as the program understood it: world space, double precision, right-handed, Y up.
@@ -92,10 +134,16 @@ struct Scene {
   std::string name;                         ///< the file's name without folder
   std::uint32_t width = 512, height = 512;  ///< pixels
   mesh::TriangleSoup soup;                  ///< world space; triangle order is that of `convert`'s output
+  VertexLooks looks = {};
   std::vector<Object> objects;
+  std::vector<Picture> pictures = {};          ///< of objects
   std::vector<AreaLight> lights;               ///< at least one; names are unique
   std::vector<Camera> cameras;                 ///< at least one
   std::vector<std::filesystem::path> sources;  ///< all files that were opened for the scene, its own included
+  /// The centre of the bounding box of all vertices as they rest, before anything moves or bends them; nothing: that of
+  /// the soup.
+  std::optional<glm::dvec3> origin = {};
+  std::optional<Motion> motion = {};  ///< nothing: it stands still
   std::vector<std::string> warnings;  ///< what was skipped or changed on the way, each with its place and count
 };
 

@@ -1,6 +1,10 @@
 #include "scenes/scene_wire.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 
 namespace penumbra::scenes {
@@ -24,6 +28,23 @@ double get_number(WireReader& from) {
 
 void put_bool(WireWriter& to, bool value) {
   to.put<std::uint8_t>(value ? 1 : 0);
+}
+
+/// One of an enumeration's values, which begin at 0.
+template <typename Enum>
+Enum get_enum(WireReader& from, Enum last) {
+  const auto value = from.get<std::uint8_t>();
+  if (value > static_cast<std::uint8_t>(last)) throw WireError("a value is none of its kind");
+  return static_cast<Enum>(value);
+}
+
+std::optional<double> get_optional(WireReader& from) {
+  return from.get_bool() ? std::optional(get_number(from)) : std::nullopt;
+}
+
+void put_optional(WireWriter& to, const std::optional<double>& value) {
+  put_bool(to, value.has_value());
+  if (value) to.put(*value);
 }
 
 /// How many entries follow; each takes at least one byte, so that a false count runs into the end of the answer.
@@ -96,6 +117,15 @@ Object get_object(WireReader& from) {
   object.casts_shadow = from.get_bool();
   object.receives_shadow = from.get_bool();
   if (from.get_bool()) object.emits = from.get<std::uint32_t>();
+  object.material = from.get_string();
+  if (from.get_bool()) {
+    PictureUse& use = object.picture.emplace();
+    use.picture = from.get<std::uint32_t>();
+    use.wrap_s = get_enum(from, PictureUse::Wrap::clamp), use.wrap_t = get_enum(from, PictureUse::Wrap::clamp);
+    use.nearest = from.get_bool();
+  }
+  object.alpha.mode = get_enum(from, Alpha::Mode::blend);
+  object.alpha.factor = get_number(from), object.alpha.cutoff = get_number(from);
   return object;
 }
 
@@ -116,7 +146,32 @@ Camera get_camera(WireReader& from) {
   camera.target = get_vector(from);
   camera.up = get_vector(from);
   camera.vertical_fov = get_number(from);
+  camera.height = get_optional(from);
+  camera.aspect = get_optional(from);
   return camera;
+}
+
+Picture get_picture(WireReader& from) {
+  Picture picture;
+  picture.file = from.get_string();
+  picture.width = from.get<std::uint32_t>();
+  picture.height = from.get<std::uint32_t>();
+  picture.texels = from.get_array<std::array<std::uint8_t, 4>>();
+  if (picture.texels.empty() || picture.texels.size() != std::uint64_t{picture.width} * picture.height) {
+    throw WireError("a picture has more or fewer texels than its size says");
+  }
+  return picture;
+}
+
+template <typename Vector>
+void get_look(WireReader& from, std::vector<Vector>& list, std::size_t positions) {
+  list = from.get_array<Vector>();
+  if (!list.empty() && list.size() != positions) throw WireError("not every vertex looks like something");
+  for (const Vector& value : list) {
+    for (glm::length_t i = 0; i < Vector::length(); ++i) {
+      if (!std::isfinite(value[i])) throw WireError("a vertex's look is not finite");
+    }
+  }
 }
 
 template <typename Entry>
@@ -134,12 +189,28 @@ void put_scene(WireWriter& to, const Scene& scene) {
   to.put_array(std::span<const mesh::Triangle>(scene.soup.triangles));
   to.put_array(std::span<const std::uint32_t>(scene.soup.object));
   to.put_array(std::span<const std::uint32_t>(scene.soup.source_face));
+  to.put_array(std::span<const glm::vec3>(scene.looks.normals));
+  to.put_array(std::span<const glm::vec4>(scene.looks.colors));
+  to.put_array(std::span<const glm::dvec2>(scene.looks.places));
   put_count(to, scene.objects.size());
   for (const Object& object : scene.objects) {
     to.put_string(object.name);
     to.put(object.color);
     put_bool(to, object.casts_shadow), put_bool(to, object.receives_shadow), put_bool(to, object.emits.has_value());
     if (object.emits) to.put(*object.emits);
+    to.put_string(object.material);
+    put_bool(to, object.picture.has_value());
+    if (object.picture) {
+      to.put(object.picture->picture), to.put(object.picture->wrap_s), to.put(object.picture->wrap_t);
+      put_bool(to, object.picture->nearest);
+    }
+    to.put(object.alpha.mode), to.put(object.alpha.factor), to.put(object.alpha.cutoff);
+  }
+  put_count(to, scene.pictures.size());
+  for (const Picture& picture : scene.pictures) {
+    to.put_string(picture.file);
+    to.put(picture.width), to.put(picture.height);
+    to.put_array(std::span<const std::array<std::uint8_t, 4>>(picture.texels));
   }
   put_count(to, scene.lights.size());
   for (const AreaLight& light : scene.lights) {
@@ -153,7 +224,12 @@ void put_scene(WireWriter& to, const Scene& scene) {
   for (const Camera& camera : scene.cameras) {
     to.put_string(camera.name);
     to.put(camera.eye), to.put(camera.target), to.put(camera.up), to.put(camera.vertical_fov);
+    put_optional(to, camera.height), put_optional(to, camera.aspect);
   }
+  put_bool(to, scene.origin.has_value());
+  if (scene.origin) to.put(*scene.origin);
+  put_bool(to, scene.motion.has_value());
+  if (scene.motion) to.put(scene.motion->first), to.put(scene.motion->last);
   to.put_strings(scene.warnings);
 }
 
@@ -166,9 +242,18 @@ Scene get_scene(WireReader& from) {
   scene.soup.triangles = from.get_array<mesh::Triangle>();
   scene.soup.object = from.get_array<std::uint32_t>();
   scene.soup.source_face = from.get_array<std::uint32_t>();
+  get_look(from, scene.looks.normals, scene.soup.positions.size());
+  get_look(from, scene.looks.colors, scene.soup.positions.size());
+  get_look(from, scene.looks.places, scene.soup.positions.size());
   get_entries(from, scene.objects, get_object);
+  get_entries(from, scene.pictures, get_picture);
   get_entries(from, scene.lights, get_light);
   get_entries(from, scene.cameras, get_camera);
+  if (from.get_bool()) scene.origin = get_vector(from);
+  if (from.get_bool()) {
+    scene.motion.emplace();
+    scene.motion->first = get_number(from), scene.motion->last = get_number(from);
+  }
   scene.warnings = from.get_strings();
 
   mesh::check_soup(scene.soup);
@@ -177,6 +262,7 @@ Scene get_scene(WireReader& from) {
   }
   for (const Object& object : scene.objects) {
     if (object.emits && *object.emits >= scene.lights.size()) throw WireError("an object emits an unknown light");
+    if (object.picture && object.picture->picture >= scene.pictures.size()) throw WireError("a picture is missing");
   }
   if (scene.cameras.empty()) throw WireError("there is no camera");
   return scene;

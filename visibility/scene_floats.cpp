@@ -98,7 +98,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
   require_memory(count_of_triangles * (kTriangle + kSorting) + scene.soup.positions.size() * sizeof(glm::vec3),
                  fmt::format("a scene of {} triangles", count_of_triangles), "make its meshes smaller");
   SceneFloats floats;
-  floats.origin = center_of_bounds(scene.soup.positions);
+  floats.origin = scene.origin ? *scene.origin : center_of_bounds(scene.soup.positions);
   floats.positions.reserve(scene.soup.positions.size());
   for (const glm::dvec3& world : scene.soup.positions) {
     const glm::vec3 position = glm::vec3(world - floats.origin) + 0.0f;  // + 0 turns −0 into +0

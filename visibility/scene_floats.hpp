@@ -13,7 +13,8 @@ namespace penumbra::visibility {
 using Triangle = mesh::Triangle;
 
 /// The one set of numbers that device, rays, predicates and oracles share: float32 of (world − origin), where origin
-/// is the centre of the bounding box of all mesh vertices, in double. Far from zero or tiny, a scene looks the same.
+/// is the centre of the bounding box of all mesh vertices as they rest (Scene::origin), in double. Far from zero or
+/// tiny, a scene looks the same.
 struct SceneFloats {
   glm::dvec3 origin{0};
   std::vector<glm::vec3> positions;   ///< one per soup position

@@ -200,6 +200,7 @@ class GltfImport {
                                   fmt::format("/materials/{}/pbrMetallicRoughness/baseColorFactor", look.material)),
                    glm::dvec3(1));
       if (surface.baseColorTexture.index >= 0) ++textured_;
+      object.material = material.name.empty() ? fmt::format("material {}", look.material) : material.name;
       object.emits = add_light(material, look, placed, first_position, first_triangle);
     }
     scene_.objects.push_back(std::move(object));
