@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
-#include "app/interrupt.hpp"
-#include "app/process.hpp"
+#include "app/process/interrupt.hpp"
+#include "app/process/process.hpp"
 #include "app/unknown_arguments.hpp"
 #include "base/error.hpp"
 #include "render/device.hpp"

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "app/interrupt.hpp"
+#include "app/process/interrupt.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
 #include "compare/stats.hpp"
-#include "visibility/bits_file.hpp"
+#include "visibility/masks/bits_file.hpp"
 #include "visibility/method.hpp"
 
 #include <glm/vec3.hpp>

@@ -1,7 +1,7 @@
 #include "app/runner.hpp"
 
-#include "app/interrupt.hpp"
-#include "app/stopwatch.hpp"
+#include "app/process/interrupt.hpp"
+#include "app/process/stopwatch.hpp"
 #include "base/memory.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/progress.hpp"
+#include "app/process/progress.hpp"
 #include "app/session.hpp"
 #include "visibility/method.hpp"
 

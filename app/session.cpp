@@ -1,7 +1,7 @@
 #include "app/session.hpp"
 
-#include "app/interrupt.hpp"
-#include "app/stopwatch.hpp"
+#include "app/process/interrupt.hpp"
+#include "app/process/stopwatch.hpp"
 #include "base/assert.hpp"
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"

@@ -2,7 +2,7 @@
 
 #include "app/device_source.hpp"
 #include "app/options.hpp"
-#include "app/progress.hpp"
+#include "app/process/progress.hpp"
 #include "scenes/scene.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"

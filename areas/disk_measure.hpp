@@ -1,7 +1,7 @@
 #pragma once
 
 #include "areas/area_sweep.hpp"
-#include "visibility/disk_part.hpp"
+#include "visibility/lights/disk_part.hpp"
 
 #include <gmpxx.h>
 

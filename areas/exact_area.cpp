@@ -21,8 +21,8 @@
 #include "areas/light_shaft.hpp"
 #include "areas/texture_measure.hpp"
 #include "visibility/pair_truth.hpp"
-#include "visibility/unshadowed_light.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <glm/common.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -60,9 +60,9 @@ class ExactArea {
   /// In [0, 1]; 0 if p is not strictly on an emitting side of the light.
   [[nodiscard]] double visibility(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded,
                                   AreaWork* work = nullptr) const;
-  /// The visible share, and the form factor (visibility/form_factor.hpp) of the visible region: the trapezoids that the
-  /// sweep finds uncovered, each in closed form, under a texture by texels or blocks of them (TextureBlocks); of a
-  /// light that nothing hides, UnshadowedLight::whole(). Cosines are those of receiver.n.
+  /// The visible share, and the form factor (visibility/lights/form_factor.hpp) of the visible region: the trapezoids
+  /// that the sweep finds uncovered, each in closed form, under a texture by texels or blocks of them (TextureBlocks);
+  /// of a light that nothing hides, UnshadowedLight::whole(). Cosines are those of receiver.n.
   [[nodiscard]] ExactView view(const Receiver& receiver, SweepArithmetic arithmetic = SweepArithmetic::rounded) const;
   [[nodiscard]] std::uint64_t memory_bytes() const;
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/light_texture.hpp"
-#include "visibility/unshadowed_light.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

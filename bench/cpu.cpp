@@ -1,9 +1,9 @@
 #include "bench/cpu.hpp"
 
 #include "app/session.hpp"
-#include "app/stopwatch.hpp"
+#include "app/process/stopwatch.hpp"
 #include "mesh/edge_graph.hpp"
-#include "visibility/tree_texels.hpp"
+#include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/edges/edge_set.hpp"
 #include "volumes/wedges/penumbra_wedge.hpp"

@@ -1,7 +1,7 @@
 #include "bench/frames.hpp"
 
+#include "app/process/stopwatch.hpp"
 #include "app/session.hpp"
-#include "app/stopwatch.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/raster/wedge_builder.hpp"

@@ -1,5 +1,5 @@
 #include "app/device_source.hpp"
-#include "app/output_files.hpp"
+#include "app/process/output_files.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "bench/cpu.hpp"

@@ -1,5 +1,5 @@
 #include "app/methods.hpp"
-#include "app/stopwatch.hpp"
+#include "app/process/stopwatch.hpp"
 #include "bench/runner.hpp"
 #include "compare/machine.hpp"
 #include "compare/metrics.hpp"

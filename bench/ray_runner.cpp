@@ -1,4 +1,4 @@
-#include "app/stopwatch.hpp"
+#include "app/process/stopwatch.hpp"
 #include "bench/runner.hpp"
 #include "compare/machine.hpp"
 

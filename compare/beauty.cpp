@@ -1,5 +1,5 @@
 // Direct light on diffuse surfaces, equations 1.3 and 1.4 of Eisemann, Schwarz, Assarsson, Wimmer: Real-Time Shadows
-// (2011), with the integrals in closed form where they have one (visibility/form_factor.hpp).
+// (2011), with the integrals in closed form where they have one (visibility/lights/form_factor.hpp).
 #include "compare/beauty.hpp"
 
 #include "base/assert.hpp"

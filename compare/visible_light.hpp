@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
-#include "visibility/unshadowed_light.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -17,8 +17,8 @@ struct LitPoint {
   glm::vec3 p{0};
 };
 
-/// From masks of one light to form factors (visibility/form_factor.hpp) of what is visible of it, with a texture each
-/// colour's own: Σ over texels of texel · form factor.
+/// From masks of one light to form factors (visibility/lights/form_factor.hpp) of what is visible of it, with a texture
+/// each colour's own: Σ over texels of texel · form factor.
 ///
 /// All of the light: its form factor in closed form, so that methods agree wherever nothing is in between.
 ///

@@ -14,10 +14,10 @@
 #include "reference/embree_packets.hpp"
 #include "reference/embree_scene.hpp"
 #include "reference/tracing_order.hpp"
-#include "visibility/horizon.hpp"
+#include "visibility/lights/horizon.hpp"
+#include "visibility/masks/visible_share.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
-#include "visibility/visible_share.hpp"
 
 #include <glm/common.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/scene_floats.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 
 #include <glm/vec3.hpp>
 

@@ -6,9 +6,9 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 #include "vsm/closed_parts.hpp"
 #include "vsm/view_sample.shared.h"
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "visibility/tree_texels.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/tree/tree_texels.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 #include "visibility/view_samples.hpp"
 #include "vsm/closed_parts.hpp"
 

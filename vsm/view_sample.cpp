@@ -4,7 +4,7 @@
 
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "vsm/vectors/view_sample_native.hpp"
 #include "vsm/view_sample_vulkan.hpp"
 

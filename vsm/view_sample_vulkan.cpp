@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "engines/device/mask_method.hpp"
 #include "render/compute_pass.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "vsm/leaf_lists.hpp"
 #include "vsm/resolve.comp.spv.hpp"
 #include "vsm/test_pairs.comp.spv.hpp"

@@ -1,7 +1,7 @@
 #include "app/inspect/examine.hpp"
 
-#include "app/interrupt.hpp"
 #include "app/methods.hpp"
+#include "app/process/interrupt.hpp"
 #include "base/assert.hpp"
 #include "mesh/import.hpp"
 #include "mesh/silhouettes.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/progress.hpp"
+#include "app/process/progress.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/triangle_soup.hpp"
 #include "visibility/light_samples.hpp"

@@ -3,7 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "engines/device/settle.comp.spv.hpp"
-#include "visibility/visible_share.hpp"
+#include "visibility/masks/visible_share.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -8,9 +8,9 @@
 #include "render/commands.hpp"
 #include "render/compute_pass.hpp"
 #include "render/device.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "visibility/method.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <cstdint>
 #include <map>

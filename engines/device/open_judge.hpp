@@ -2,7 +2,7 @@
 
 #include "engines/device/mask.shared.h"
 #include "engines/device/mask_layout.hpp"
-#include "visibility/pair_judge.hpp"
+#include "visibility/tree/pair_judge.hpp"
 
 #include <cstddef>
 #include <cstdint>

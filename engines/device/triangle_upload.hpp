@@ -3,8 +3,8 @@
 #include "render/buffer.hpp"
 #include "render/device.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/tree_texels.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/tree_texels.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "engines/device/view_upload.hpp"
 
 #include "visibility/receivers.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <cstddef>
 

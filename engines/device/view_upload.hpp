@@ -4,7 +4,7 @@
 #include "render/device.hpp"
 #include "visibility/method.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/tree_texels.hpp"
+#include "visibility/tree/tree_texels.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>

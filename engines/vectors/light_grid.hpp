@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engines/vectors/light_tiles.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

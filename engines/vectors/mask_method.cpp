@@ -3,7 +3,7 @@
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "engines/vectors/open_judge.hpp"
-#include "visibility/visible_share.hpp"
+#include "visibility/masks/visible_share.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>

@@ -5,7 +5,7 @@
 #include "engines/vectors/masks.hpp"
 #include "engines/vectors/trees.hpp"
 #include "visibility/method.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <atomic>
 #include <cstddef>

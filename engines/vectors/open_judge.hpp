@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engines/vectors/masks.hpp"
-#include "visibility/pair_judge.hpp"
+#include "visibility/tree/pair_judge.hpp"
 
 #include <cstdint>
 #include <optional>

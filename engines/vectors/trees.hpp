@@ -1,8 +1,8 @@
 #pragma once
 
-#include "visibility/tree_texels.hpp"
+#include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <array>
 #include <cstddef>

@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
-#include "visibility/light_parts.hpp"
-#include "visibility/visible_share.hpp"
+#include "visibility/lights/light_parts.hpp"
+#include "visibility/masks/visible_share.hpp"
 
 #include <glm/common.hpp>
 

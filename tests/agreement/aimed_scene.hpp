@@ -8,7 +8,7 @@
 #include "tests/agreement/device_twins.hpp"
 #include "tests/agreement/most_used.hpp"
 #include "tests/agreement/support.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <algorithm>

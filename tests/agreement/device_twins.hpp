@@ -4,7 +4,7 @@
 // The numbers are the device's, operation by operation (a driver may sum in another order); exact ones are taken in
 // long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴ and more. Nothing is scaled: scales are powers of two.
 
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "volumes/edges/plane_normal.hpp"
 
 #include <glm/common.hpp>

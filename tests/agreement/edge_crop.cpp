@@ -4,7 +4,7 @@
 #include "tests/agreement/differences.hpp"
 
 #include "scenes/formats/reader.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "volumes/counters/depth_complexity.hpp"
 #include "volumes/edges/edge_lists.hpp"
 

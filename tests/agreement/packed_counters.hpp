@@ -4,7 +4,7 @@
 // triangles, as docs/depth-complexity.md says what a counter is.
 
 #include "tests/agreement/support.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 #include "volumes/counters/packed_counters.hpp"
 #include "volumes/wedges/wedge_casters.hpp"
 

@@ -7,10 +7,10 @@
 #include "render/device.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
 #include "tests/unit/visibility_scenes.hpp"
+#include "visibility/masks/visible_share.hpp"
 #include "visibility/method.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
-#include "visibility/visible_share.hpp"
 #include "vsm/view_sample.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Form factors against closed forms of others (J. Howell, A Catalog of Radiation Heat Transfer Configuration Factors),
 // against quadrature, and against one another.
 
-#include "visibility/form_factor.hpp"
+#include "visibility/lights/form_factor.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "tests/analytic/maps_parallel_square.hpp"
 #include "tests/analytic/patch_twin.hpp"
 
-#include "visibility/light_parts.hpp"
+#include "visibility/lights/light_parts.hpp"
 
 #include <algorithm>
 

@@ -3,8 +3,8 @@
 
 #include "reference/exact_method.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
-#include "visibility/form_factor.hpp"
-#include "visibility/unshadowed_light.hpp"
+#include "visibility/lights/form_factor.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
 
 #include <fmt/format.h>
 #include <glm/common.hpp>

@@ -2,7 +2,7 @@
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
-#include "visibility/bits_file.hpp"
+#include "visibility/masks/bits_file.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

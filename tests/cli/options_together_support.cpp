@@ -3,7 +3,7 @@
 #include "base/exr.hpp"
 #include "base/image.hpp"
 #include "base/png.hpp"
-#include "visibility/bits_file.hpp"
+#include "visibility/masks/bits_file.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,7 @@
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
-#include "visibility/tree_texels.hpp"
+#include "visibility/tree/tree_texels.hpp"
 #include "volumes/edges/edge_sides.hpp"
 #include "volumes/edges/edge_upload.hpp"
 #include "volumes/scatter/vectors/cut.hpp"

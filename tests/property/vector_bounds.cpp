@@ -5,8 +5,8 @@
 #include "engines/vectors/light_grid.hpp"
 #include "tests/agreement/most_used.hpp"
 #include "tests/agreement/support.hpp"
-#include "visibility/device_light.hpp"
-#include "visibility/tree_texels.hpp"
+#include "visibility/lights/device_light.hpp"
+#include "visibility/tree/tree_texels.hpp"
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>

@@ -3,9 +3,9 @@
 
 #include "tests/property/literal_truth.hpp"
 #include "tests/unit/visibility_scenes.hpp"
-#include "visibility/pair_judge.hpp"
 #include "visibility/pair_truth.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/pair_judge.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <gtest/gtest.h>
 

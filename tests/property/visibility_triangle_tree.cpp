@@ -2,7 +2,7 @@
 // is smaller than what is below it.
 
 #include "tests/agreement/lattice.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <gtest/gtest.h>
 

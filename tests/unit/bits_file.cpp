@@ -1,5 +1,5 @@
 #include "base/error.hpp"
-#include "visibility/bits_file.hpp"
+#include "visibility/masks/bits_file.hpp"
 
 #include <gtest/gtest.h>
 

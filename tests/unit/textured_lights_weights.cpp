@@ -5,7 +5,7 @@
 #include "tests/unit/scenes_support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 #include "visibility/light_samples.hpp"
-#include "visibility/visible_share.hpp"
+#include "visibility/masks/visible_share.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Which light samples something in the light's plane touches.
 
 #include "tests/unit/visibility_scenes.hpp"
-#include "visibility/light_touch.hpp"
+#include "visibility/lights/light_touch.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "tests/unit/visibility_scenes.hpp"
-#include "visibility/horizon.hpp"
+#include "visibility/lights/horizon.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <glm/common.hpp>

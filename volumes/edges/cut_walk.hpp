@@ -1,7 +1,7 @@
 #pragma once
 
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 #include "volumes/edges/cut_ends.hpp"
 #include "volumes/edges/edge_cut.hpp"
 #include "volumes/edges/edge_set.hpp"

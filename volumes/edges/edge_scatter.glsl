@@ -78,7 +78,7 @@ ViewSample fetch_view_sample(uint pixel) {
 float level_error(vec3 p) { return 16.0 * kRound * skew * (size1(push.center - p) + size1(p)) + push.deviation; }
 
 // Something is near the light's plane, and a way to a light sample may rise by less than 1 / 256. `away`: |p − center|.
-// (visibility/light_touch)
+// (visibility/lights/light_touch)
 bool sees_flat(float away, float height) {
   const float farthest = away + 1.0001 * (length(push.u) + length(push.v)) + push.deviation;
   return push.near_plane != 0 && height < farthest / 256.0;

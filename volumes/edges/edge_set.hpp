@@ -1,9 +1,9 @@
 #pragma once
 
 #include "mesh/edge_graph.hpp"
-#include "visibility/tree_texels.hpp"
+#include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <glm/vec3.hpp>
 

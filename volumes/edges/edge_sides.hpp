@@ -1,7 +1,7 @@
 #pragma once
 
-#include "visibility/device_light.hpp"
 #include "visibility/light_samples.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/edges/edge_cut.hpp"
 

@@ -1,6 +1,6 @@
 #include "volumes/edges/edge_upload.hpp"
 
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <algorithm>
 #include <span>

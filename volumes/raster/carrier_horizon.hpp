@@ -2,7 +2,7 @@
 
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <glm/vec3.hpp>
 

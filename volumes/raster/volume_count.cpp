@@ -14,7 +14,7 @@
 #include "render/raster_pass.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 #include "volumes/raster/light_volumes.hpp"
 #include "volumes/raster/screen_box.hpp"
 #include "volumes/raster/volume_count.frag.spv.hpp"

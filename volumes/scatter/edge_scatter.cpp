@@ -8,7 +8,7 @@
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
-#include "visibility/device_light.hpp"
+#include "visibility/lights/device_light.hpp"
 #include "volumes/edges/edge_method.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
 #include "volumes/scatter/scatter_edges.comp.spv.hpp"

@@ -3,7 +3,7 @@
 #include "mesh/predicates.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
-#include "visibility/triangle_tree.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 #include "volumes/wedges/radial_coverage.hpp"
 #include "volumes/wedges/texture_weights.hpp"
 #include "volumes/wedges/wedge_casters.hpp"

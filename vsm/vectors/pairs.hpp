@@ -5,8 +5,8 @@
 #include "engines/vectors/masks.hpp"
 #include "engines/vectors/table.hpp"
 #include "engines/vectors/trees.hpp"
-#include "visibility/device_light.hpp"
 #include "visibility/light_samples.hpp"
+#include "visibility/lights/device_light.hpp"
 
 #include <glm/vec3.hpp>
 

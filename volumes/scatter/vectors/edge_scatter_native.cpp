@@ -6,7 +6,7 @@
 #include "base/assert.hpp"
 #include "engines/vectors/horizon.hpp"
 #include "engines/vectors/mask_method.hpp"
-#include "visibility/unshadowed_light.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
 #include "volumes/edges/edge_sides.hpp"
 #include "volumes/scatter/vectors/cut.hpp"
 #include "volumes/scatter/vectors/rows.hpp"

@@ -2,7 +2,7 @@
 // samples.
 
 #include "areas/form_factor_sum.hpp"
-#include "visibility/unshadowed_light.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 

@@ -1,6 +1,6 @@
 #include "volumes/scatter/vectors/light_measure.hpp"
 
-#include "visibility/disk_part.hpp"
+#include "visibility/lights/disk_part.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include "engines/vectors/table.hpp"
 #include "engines/vectors/trees.hpp"
 #include "visibility/light_samples.hpp"
-#include "visibility/light_touch.hpp"
+#include "visibility/lights/light_touch.hpp"
 #include "visibility/view_samples.hpp"
 #include "volumes/edges/cut_ends.hpp"
 #include "volumes/scatter/vectors/areas_on_demand.hpp"

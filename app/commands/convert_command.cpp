@@ -1,0 +1,68 @@
+#include "app/commands.hpp"
+#include "app/options.hpp"
+#include "app/process/interrupt.hpp"
+#include "app/process/output_files.hpp"
+#include "base/error.hpp"
+#include "scenes/formats/reader.hpp"
+#include "scenes/formats/writer.hpp"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+namespace penumbra::app {
+namespace {
+
+class ConvertCommand : public Command {
+ public:
+  explicit ConvertCommand(CLI::App& app)
+      : Command(app, "convert", "write the scene as the program understood it, in world space") {
+    cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
+    cli_.add_option("-o,--output", out_,
+                    "FILE.json (textures of lights go beside it: FILE-light0.exr), FILE.glb or FILE.obj")
+        ->required()
+        ->type_name("FILE");
+    cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
+    add_lamp_options(cli_, lamps_);
+  }
+
+  int run(const GlobalOptions&) override {
+    constexpr std::array kExtensions = {".json", ".glb", ".obj"};
+    if (std::ranges::find(kExtensions, out_.extension()) == kExtensions.end()) {
+      throw UsageError("-o {}: expected a name that ends in .json, .glb or .obj", out_.string());
+    }
+    const scenes::ReadOptions reading = read_options(lamps_, allow_outside_);
+    OutputFiles outputs;
+    outputs.add("-o", out_);
+    outputs.refuse_inputs({&scene_, 1});
+    outputs.require_writable();
+    scenes::Scene scene;
+    {
+      const MayExitAtOnce at_once;
+      scene = scenes::read_scene(scene_, reading);
+    }
+    for (const std::filesystem::path& texture : scenes::texture_files(scene, out_)) outputs.add("-o", texture);
+    scene.sources.push_back(scene_);
+    outputs.refuse_inputs(scene.sources);
+    for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
+    for (const std::string& loss : scenes::write_scene(scene, out_)) spdlog::warn("{}", loss);
+    spdlog::info("{}: {} triangles, {} lights", out_.string(), scene.soup.triangles.size(), scene.lights.size());
+    return 0;
+  }
+
+ private:
+  std::filesystem::path scene_, out_;
+  bool allow_outside_ = false;
+  LampSizes lamps_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_convert_command(CLI::App& app) {
+  return std::make_unique<ConvertCommand>(app);
+}
+
+}  // namespace penumbra::app

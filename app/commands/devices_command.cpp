@@ -1,0 +1,123 @@
+#include "app/commands.hpp"
+#include "app/commands/self_test_report.hpp"
+#include "app/device_source.hpp"
+#include "base/error.hpp"
+#include "render/device.hpp"
+#include "render/opengl/context.hpp"
+#include "selftest/self_test.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace penumbra::app {
+namespace {
+
+std::string verdict_of(const std::vector<std::string>& refusals, const char* what) {
+  return refusals.empty() ? what : fmt::format("no: {}", fmt::join(refusals, "; "));
+}
+
+void print_table(const std::vector<render::DeviceInfo>& devices,
+                 const std::vector<render::opengl::ContextInfo>& contexts) {
+  fmt::print("{:<6} {:<52} {:<11} {:<8} {:>9}  {}\n", "index", "name", "kind", "Vulkan", "memory", "can run Penumbra");
+  for (const render::DeviceInfo& device : devices) {
+    fmt::print("{:<6} {:<52} {:<11} {:<8} {:>5.1f} GiB  {}\n", device.index, device.name, device.kind,
+               device.api_version, static_cast<double>(device.memory_bytes) / (1u << 30),
+               verdict_of(device.refusals, "yes"));
+  }
+  fmt::print("\n{:<12} {:<46} {:<11} {:<8}  {}\n", "EGL", "OpenGL renderer", "kind", "snaps to",
+             "can draw maps (rasteriser=opengl)");
+  for (const render::opengl::ContextInfo& context : contexts) {
+    fmt::print("{:<12} {:<46} {:<11} {:<8}  {}\n", context.platform, context.name, context.kind,
+               context.usable() ? fmt::format("2^-{}", context.subpixel_bits) : "",
+               verdict_of(context.refusals, "yes; no display needed"));
+  }
+}
+
+nlohmann::ordered_json json_of(const render::DeviceInfo& device) {
+  return {{"index", device.index},
+          {"name", device.name},
+          {"kind", device.kind},
+          {"driver", device.driver},
+          {"apiVersion", device.api_version},
+          {"usable", device.usable()},
+          {"refusals", device.refusals},
+          {"maxStorageBufferRange", device.max_storage_buffer_range},
+          {"subgroupSize", device.subgroup_size},
+          {"memoryBytes", device.memory_bytes}};
+}
+
+nlohmann::ordered_json json_of(const render::opengl::ContextInfo& context) {
+  return {{"index", context.index},
+          {"platform", context.platform},
+          {"name", context.name},
+          {"kind", context.kind},
+          {"driver", context.driver},
+          {"usable", context.usable()},
+          {"refusals", context.refusals},
+          {"subpixelBits", context.subpixel_bits},
+          {"maxImageSize", context.max_image_size},
+          {"maxStorageBlock", context.max_storage_block}};
+}
+
+class DevicesCommand : public Command {
+ public:
+  explicit DevicesCommand(CLI::App& app)
+      : Command(app, "devices", "list the Vulkan devices and OpenGL beside them, and why one cannot be used") {
+    cli_.add_flag("--json", json_, "as JSON");
+    cli_.add_flag(
+        "--self-test", self_test_,
+        "hold every pass against its twin in C++, and both rasterisers (Vulkan's and OpenGL's) against double "
+        "arithmetic and against each other, on this machine's device and drivers; exit 1 if one fails");
+    cli_.add_option("--device", device_, "with --self-test: a part of its name, its index, or cpu");
+    cli_.footer(
+        "OpenGL needs no display: EGL gives it a context without a surface. It draws the maps of methods with\n"
+        "rasteriser=opengl; docs/rasterisers.md says what the self-test proves.");
+  }
+
+  int run(const GlobalOptions&) override {
+    if (self_test_) return run_self_test();
+    const auto devices = render::list_devices();
+    if (devices.empty()) {
+      spdlog::warn(
+          "no Vulkan device: no loader, no driver, or VK_DRIVER_FILES points nowhere; on Debian, "
+          "mesa-vulkan-drivers has one that runs on the processor");
+    }
+    const auto contexts = render::opengl::list_contexts();
+    if (!json_) {
+      print_table(devices, contexts);
+      return 0;
+    }
+    nlohmann::ordered_json rows{{"devices", nlohmann::ordered_json::array()},
+                                {"opengl", nlohmann::ordered_json::array()}};
+    for (const auto& device : devices) rows["devices"].push_back(json_of(device));
+    for (const auto& context : contexts) rows["opengl"].push_back(json_of(context));
+    fmt::print("{}\n", rows.dump(2));
+    return 0;
+  }
+
+ private:
+  [[nodiscard]] int run_self_test() const {
+    DeviceSource source(device_);
+    const render::Device& device = source.device();
+    const SelfTestReport report(device, selftest::run_self_test(device));
+    source.check_validation();
+    json_ ? report.print_json() : report.print_table();
+    return static_cast<int>(report.passed() ? ExitCode::done : ExitCode::answer_is_no);
+  }
+
+  bool json_ = false, self_test_ = false;
+  std::string device_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_devices_command(CLI::App& app) {
+  return std::make_unique<DevicesCommand>(app);
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,152 @@
+#include "app/commands.hpp"
+#include "app/compare/comparison.hpp"
+#include "app/methods.hpp"
+#include "app/options.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+namespace penumbra::app {
+namespace {
+
+std::string number(const std::optional<double>& value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+/// The result for people, on stdout: one line a method.
+void print_table(const compare::Metrics& metrics) {
+  const bool samples = describe_method(metrics.reference.method).output == visibility::Output::mask;
+  fmt::print("{} judged pixels, {} at the horizon; errors of V against {}{}\n", metrics.judged_pixels,
+             metrics.horizon_pixels, metrics.reference.method,
+             samples ? fmt::format(" with {} light samples", metrics.reference.light_samples) : "");
+  fmt::print("{:<28} {:>9} {:>9} {:>9} {:>10} {:>12} {:>9}\n", "method", "rmse", "max", "bias", "differing", "of pairs",
+             "shadow s");
+  const auto line = [](const std::string& name, const compare::Stats& stats, const compare::MethodResult* result) {
+    std::string rmse = "-", max = "-", bias = "-", differing = "-", pairs = "-";
+    if (result != nullptr && result->failure) rmse = "failed";
+    if (result != nullptr && result->error) {
+      rmse = fmt::format("{:.6f}", result->error->rmse);
+      max = fmt::format("{:.5f}", result->error->max);
+      bias = fmt::format("{:+.5f}", result->error->bias);
+    }
+    if (result != nullptr && result->pairs) {
+      differing = fmt::format("{}", result->pairs->differing);
+      pairs = fmt::format("{}", result->pairs->all);
+    }
+    fmt::print("{:<28} {:>9} {:>9} {:>9} {:>10} {:>12} {:>9}\n", name, rmse, max, bias, differing, pairs,
+               number(stats.seconds.shadow(), "{:.3f}"));
+  };
+  for (const compare::MethodResult& result : metrics.methods) line(result.entry, result.stats, &result);
+  line("reference " + metrics.reference.method, metrics.reference, nullptr);
+}
+
+/// By how much each method's RMSE changes when one cause alone is repaired, and what is left without all of them.
+void print_budgets(const compare::Metrics& metrics) {
+  bool first = true;
+  for (const compare::MethodResult& result : metrics.methods) {
+    if (!result.error_budget) continue;
+    const compare::ErrorBudget& budget = *result.error_budget;
+    if (first) {
+      fmt::print("\n{:<28} {:>9}", "RMSE, and its change without", "rmse");
+      for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", name_of(part.cause));
+      fmt::print(" {:>10}\n", "remainder");
+      first = false;
+    }
+    fmt::print("{:<28} {:>9.6f}", result.entry, budget.rmse);
+    for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", number(budget.change(part), "{:+.6f}"));
+    fmt::print(" {:>10}\n", number(budget.together.rmse, "{:.6f}"));
+  }
+}
+
+class CompareCommand : public Command {
+ public:
+  explicit CompareCommand(CLI::App& app)
+      : Command(app, "compare", "several methods on the same view samples against a reference") {
+    add_run_options(cli_, run_);
+    cli_.add_option("-o,--output", run_.out, "folder for metrics.json, report.html, and each method's pictures")
+        ->required()
+        ->type_name("DIR");
+    cli_.add_option(
+            "--methods,--method", methods_,
+            "what to compare: names with options of their own, a:key=value,b; or geometry, image, all; default: "
+            "those of geometry and image that do not take minutes")
+        ->type_name("LIST")
+        ->capture_default_str();
+    cli_.add_option("--reference", options_.reference,
+                    "who judges: raytrace, or exact: areas, not samples (slow; see --sample-pixels)")
+        ->type_name("NAME")
+        ->capture_default_str();
+    cli_.add_option("--reference-samples", options_.reference_samples,
+                    "light samples of the reference; same: those of the methods, which are then compared pair by pair")
+        ->type_name("M|same")
+        ->capture_default_str();
+    cli_.add_option("--sample-pixels", options_.sample_pixels,
+                    "take the error over N judged pixels, all, or these: x,y;x,y; exact evaluates no others")
+        ->type_name("N|all|x,y;...")
+        ->capture_default_str();
+    cli_.add_option("--max-rmse", max_rmse_, "exit with 1 if the error of a method exceeds this")
+        ->type_name("X")
+        ->check(CLI::NonNegativeNumber);
+    cli_.add_option("--runs", options_.runs, "timed runs of each method, after a discarded one; their median counts")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
+    cli_.add_flag("--error-budget", options_.error_budget,
+                  "why is each image-based method wrong? Runs it again, often: without each cause of error alone, and "
+                  "without all of them");
+    cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: the beauty for eyes");
+    cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
+    cli_.add_option("--frame", frame_, "frame of the scene's animation")->type_name("F");
+  }
+
+  int run(const GlobalOptions& global) override {
+    options_.methods = parse_methods(methods_);
+    options_.method_options = parse_method_options(run_.method_options);
+    Progress progress(!global.quiet);
+    if (frame_) spdlog::warn("scenes have no animation yet: every frame shows the same");
+    const compare::Metrics metrics = compare_methods(run_, options_, global.arguments, progress);
+    print_table(metrics);
+    print_budgets(metrics);
+    spdlog::info("{} shows it all", (run_.out / "report.html").string());
+    // What failed has been said; the others' answers are written all the same.
+    const auto failed =
+        std::ranges::find_if(metrics.methods, [](const auto& result) { return result.failure.has_value(); });
+    const bool exceeded = max_rmse_ && exceeds_max_rmse(metrics);
+    if (failed != metrics.methods.end()) return failed->failure->exit_code;
+    return static_cast<int>(exceeded ? ExitCode::answer_is_no : ExitCode::done);
+  }
+
+ private:
+  [[nodiscard]] bool exceeds_max_rmse(const compare::Metrics& metrics) const {
+    bool exceeded = false;
+    for (const compare::MethodResult& result : metrics.methods) {
+      if (result.failure) continue;
+      // No judged pixel, no error: that the error is small has not been shown.
+      if (result.error && result.error->rmse <= *max_rmse_) continue;
+      exceeded = true;
+      spdlog::error("{}: rmse {} exceeds --max-rmse {}", result.entry,
+                    result.error ? fmt::format("{}", result.error->rmse) : "(no judged pixels)", *max_rmse_);
+    }
+    return exceeded;
+  }
+
+  RunOptions run_;
+  ComparisonOptions options_;
+  std::string methods_ = "default";
+  std::optional<double> max_rmse_;
+  std::optional<std::int64_t> frame_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_compare_command(CLI::App& app) {
+  return std::make_unique<CompareCommand>(app);
+}
+
+}  // namespace penumbra::app

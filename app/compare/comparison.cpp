@@ -1,0 +1,372 @@
+#include "app/compare/comparison.hpp"
+
+#include "app/compare/comparison_entries.hpp"
+#include "app/compare/comparison_files.hpp"
+#include "app/compare/error_budget.hpp"
+#include "app/compare/light_judge.hpp"
+#include "app/compare/report_views.hpp"
+#include "app/device_source.hpp"
+#include "app/methods.hpp"
+#include "app/output.hpp"
+#include "app/process/failure.hpp"
+#include "app/runner.hpp"
+#include "app/session.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "base/memory.hpp"
+#include "base/png.hpp"
+#include "compare/error_picture.hpp"
+#include "compare/report.hpp"
+#include "render/device.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using visibility::Light;
+using visibility::MethodDescription;
+using visibility::Output;
+
+/// A run with what is made of it on the way.
+struct Finished {
+  MethodRun run;
+  std::vector<glm::vec3> beauty;
+  std::vector<std::string> masks;  ///< PackedMasks::finish()
+};
+
+class Comparison {
+ public:
+  /// Of all lights' masks by rays, which are kept while the methods run.
+  static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
+
+  Comparison(const RunOptions& run, const ComparisonOptions& options, Progress& progress)
+      : run_(run),
+        options_(options),
+        progress_(progress),
+        reference_(describe_reference(options.reference)),
+        same_samples_(options.reference_samples == "same"),
+        files_(run.out, {.png = options.png, .bits = options.bits}),
+        devices_(run.device) {
+    reference_request_ = parse_reference_samples();
+    if (options.error_budget) require_explainable(options.methods);
+    files_.claim(run.scene, options.methods, options.stats);
+    session_ = open_session(run, devices_, options.runs, progress);
+    files_.refuse_inputs(session_.scene.sources);
+    progress.clear();
+    for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
+    for (const Light& light : session_.lights) check_light(reference_.description, light);
+    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
+    entries_ = choose_entries(options, session_, [this](std::string text) { warn(std::move(text)); });
+    reference_lights_ = same_samples_ ? session_.lights : lights_of_reference();
+    truths_ = choose_pixels(session_, options.sample_pixels);
+    for (std::size_t light = 0; light < truths_.size(); ++light) {
+      if (!truths_[light].judged.empty()) continue;
+      const std::string of_light = truths_.size() > 1 ? fmt::format("light {}: ", session_.lights[light].name) : "";
+      warn(of_light +
+           "no pixel is judged (none sees the whole light above its tangent plane, or --sample-pixels chose none): "
+           "there is no error to report");
+    }
+    if (options_.sample_pixels != "all") wanted_ = all_pixels(truths_);
+  }
+
+  compare::Metrics run(const std::vector<std::string>& arguments) {
+    run_reference();
+    run_rays();
+    for (const Entry& entry : entries_) run_or_report(entry);
+    make_error_pictures();
+    if (options_.error_budget) explain_errors();
+    progress_.clear();
+    const std::string json = compare::json_text(compare::to_json(report_.metrics));
+    write_file_atomically(run_.out / "metrics.json", json);
+    if (!options_.stats.empty()) write_file_atomically(options_.stats, json);
+    finish_report(arguments);
+    compare::write_report(run_.out / "report.html", report_);
+    if (hang_) std::rethrow_exception(hang_);
+    return std::move(report_.metrics);
+  }
+
+ private:
+  [[nodiscard]] visibility::SampleRequest parse_reference_samples() const {
+    RunOptions reference = run_;
+    if (!same_samples_) reference.light_samples = options_.reference_samples;
+    try {
+      return parse_light_samples(reference);
+    } catch (const UsageError&) {
+      if (same_samples_) throw;
+      throw UsageError("--reference-samples {}: expected a number of light samples from 1 to 4096, or same",
+                       options_.reference_samples);
+    }
+  }
+
+  [[nodiscard]] std::vector<Light> lights_of_reference() const {
+    std::vector<Light> lights;
+    for (const Light& light : session_.lights) {
+      lights.push_back(visibility::make_light(session_.scene, static_cast<std::uint32_t>(light.index),
+                                              session_.floats.origin, reference_request_));
+    }
+    return lights;
+  }
+
+  /// Of all lights' masks, on the methods' light samples.
+  [[nodiscard]] std::uint64_t mask_bytes() const {
+    std::uint64_t words = 0;
+    for (const Light& light : session_.lights) words += std::uint64_t{session_.pixel_count()} * light.words_per_mask();
+    return words * sizeof(std::uint32_t);
+  }
+
+  /// Masks of rays are kept whole, light by light: every method's are held against them.
+  [[nodiscard]] TileSink keep_rays() {
+    return [this](const TileResult& tile) {
+      auto& masks = truths_[tile.light].ray_masks;
+      masks.insert(masks.end(), tile.masks.begin(), tile.masks.end());
+    };
+  }
+
+  void run_reference() {
+    const bool rays = same_samples_ && reference_.description.output == Output::mask;
+    if (rays) {
+      require_memory(mask_bytes(), "the reference's masks",
+                     "choose a smaller --size or fewer --light-samples, or leave out --reference-samples same");
+    }
+    Finished done = run_one(reference_, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
+    report_.exposure = compare::auto_exposure(done.beauty);
+    report_.metrics.reference = stats_of(reference_, reference_lights_, done.run);
+    report_.metrics.judged_pixels = truths_.front().judged.size();
+    report_.metrics.horizon_pixels = truths_.front().horizon.size();
+    report_.reference = pictures_of(reference_, done);
+    for (std::size_t light = 0; light < truths_.size(); ++light) {
+      if (rays) truths_[light].rays = done.run.visibility[light];
+      truths_[light].reference = std::move(done.run.visibility[light]);
+    }
+    reference_beauty_ = std::move(done.beauty);
+  }
+
+  /// Methods with masks are held against rays on their own light samples, whatever else the reference looks at: so one
+  /// sees what is the method's fault, and what the number of light samples costs. Once, untimed.
+  void run_rays() {
+    if (!truths_.front().ray_masks.empty()) return;
+    if (std::ranges::none_of(entries_, [](const Entry& e) { return e.description.output == Output::mask; })) return;
+    if (mask_bytes() > kMostRayBytes) {
+      warn(
+          fmt::format("masks of rays on the same light samples would take {} MiB: pairs are not compared; "
+                      "--reference-samples same asks for it all the same",
+                      mask_bytes() >> 20));
+      return;
+    }
+    const Entry rays{"rays", describe_method("raytrace"), {}};
+    const auto method = make_method(rays.description.name, rays.options, devices_);
+    PackedMasks masks(session_.lights.size());
+    const TileSink keep = keep_rays();
+    Finished done;
+    done.run = run_method(
+        *method, session_, {.lights = session_.lights, .runs = 1, .pixels = wanted_},
+        [&](const TileResult& tile) {
+          keep(tile);
+          masks.add(tile);
+        },
+        progress_);
+    progress_.clear();
+    compare::SampleCost cost;
+    cost.stats = stats_of(rays, session_.lights, done.run);
+    cost.stats.seconds = {};  // one run that nothing warmed up
+    cost.all_lights_error = error_of_all_lights(done.run, truths_);
+    cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
+    report_.rays = report_entry(session_, rays.description, report_.exposure, {done.run, {}, masks.finish()});
+    report_.metrics.same_samples = std::move(cost);
+    for (std::size_t light = 0; light < truths_.size(); ++light)
+      truths_[light].rays = std::move(done.run.visibility[light]);
+  }
+
+  /// One method that fails is no reason to lose what the others have to say. After a device that does not answer no
+  /// other method runs, and what it threw is thrown on once everything is written.
+  void run_or_report(const Entry& entry) {
+    if (hang_) {
+      report_failure(entry, {ExitCode::resource, "not run, since the device does not answer any more"});
+      return;
+    }
+    try {
+      run_entry(entry);
+    } catch (const render::DeviceDoesNotAnswer& error) {
+      hang_ = std::current_exception();
+      report_failure(entry, {error.code(), error.what()});
+    } catch (...) {
+      report_failure(entry, current_failure());
+    }
+  }
+
+  void report_failure(const Entry& entry, const Failure& failure) {
+    progress_.clear();
+    spdlog::error("{}: {}", entry.label, failure.message);
+    compare::MethodResult result;
+    result.entry = entry.label;
+    result.stats = stats_of(entry, session_.lights, {});
+    result.stats.seconds = {};
+    result.failure = {static_cast<int>(failure.code), failure.message};
+    report_.metrics.methods.push_back(std::move(result));
+    report_.methods.emplace_back().description = entry.description;
+    visibility_.emplace_back();
+    for (std::string& text : files_.remove(entry.label)) warn(std::move(text));
+  }
+
+  void run_entry(const Entry& entry) {
+    const bool pairs_of_reference = same_samples_ && reference_.description.output == Output::mask;
+    // Exact decisions take milliseconds each: a few say who is right, and who asks for pairs gets many.
+    LightJudge judge(session_, truths_, pairs_of_reference ? 4000 : 400);
+    Finished done = run_one(entry, session_.lights, [&](const TileResult& tile) { judge.add(tile); });
+
+    compare::MethodResult result;
+    result.entry = entry.label;
+    result.stats = stats_of(entry, session_.lights, done.run);
+    judge.fill(result, done.run, pairs_of_reference, progress_);
+    result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
+    compare::ReportEntry pictures = pictures_of(entry, done);
+    report_.metrics.methods.push_back(std::move(result));
+    report_.methods.push_back(std::move(pictures));
+    visibility_.push_back(std::move(done.run.visibility));
+  }
+
+  /// Runs a method and writes its EXR and, if wanted, its bits.
+  Finished run_one(const Entry& entry, const std::vector<Light>& lights, const TileSink& sink) {
+    const MethodDescription& description = entry.description;
+    const auto method = make_method(description.name, entry.options, devices_);
+    BeautyAccumulator beauty(session_, lights);
+    std::optional<BitsOutput> bits;
+    if (wants_bits(entry)) bits.emplace(files_.of(entry.label, ".bits"), session_, lights.front());
+    RunPlan plan{.lights = lights, .runs = options_.runs, .discard_first = true, .pixels = wanted_};
+    // Maps answer all pixels in little time, and their pictures are whole.
+    if (description.family == visibility::Family::image) plan.pixels.reset();
+    // An oracle without samples is not raced, and it may take minutes: once is enough.
+    if (description.family == visibility::Family::reference && description.output != Output::mask) {
+      plan.runs = 1;
+      plan.discard_first = false;
+    }
+    PackedMasks masks(lights.size());
+    Finished done;
+    done.run = run_method(
+        *method, session_, plan,
+        [&](const TileResult& tile) {
+          beauty.add(tile);
+          masks.add(tile);
+          if (bits && tile.light == 0) bits->add(tile);
+          sink(tile);
+        },
+        progress_);
+    done.beauty = beauty.pixels();
+    done.masks = masks.finish();
+    devices_.check_validation();
+    progress_.clear();
+    const MethodLabel label = label_of(entry);
+    write_picture(files_.of(entry.label, ".exr"), session_, {lights, {&label, 1}}, done.run, done.beauty);
+    if (bits) bits->commit();
+    return done;
+  }
+
+  [[nodiscard]] bool wants_bits(const Entry& entry) const { return app::wants_bits(entry, options_); }
+
+  [[nodiscard]] compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) const {
+    const MethodLabel label = label_of(entry);
+    return make_stats(session_, {lights, {&label, 1}}, run);
+  }
+
+  [[nodiscard]] MethodLabel label_of(const Entry& entry) const {
+    return {entry.description, entry.options, device_of(entry.description, devices_.name())};
+  }
+
+  compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {
+    compare::ReportEntry pictures =
+        report_entry(session_, entry.description, report_.exposure, {done.run, done.beauty, std::move(done.masks)});
+    if (options_.png) write_png(files_.of(entry.label, ".png"), *pictures.beauty);
+    return pictures;
+  }
+
+  /// Last, because all share one scale.
+  void make_error_pictures() {
+    double largest = 0;
+    for (const compare::MethodResult& result : report_.metrics.methods) {
+      if (result.all_lights_error) largest = std::max(largest, result.all_lights_error->max);
+    }
+    report_.error_limit = compare::error_scale_limit(largest);
+    const auto picture = [&](std::size_t light, std::span<const float> v) {
+      return compare::error_picture(session_.samples, v, truths_[light].reference, report_.error_limit);
+    };
+    for (std::size_t light = 0; light < truths_.size(); ++light) {
+      if (report_.rays) report_.rays->lights[light].error = picture(light, truths_[light].rays);
+      for (std::size_t i = 0; i < visibility_.size(); ++i) {
+        if (visibility_[i].empty()) continue;  // it failed
+        report_.methods[i].lights[light].error = picture(light, visibility_[i][light]);
+        if (light == 0)
+          write_png(files_.of(report_.metrics.methods[i].entry, "-error.png"), *report_.methods[i].lights[0].error);
+      }
+    }
+  }
+
+  /// The errors' scale is known: pictures of what repairs change have the same.
+  void explain_errors() {
+    for (std::size_t i = 0; i < entries_.size() && !hang_; ++i) {
+      if (entries_[i].description.repairs == nullptr || visibility_[i].empty() || truths_.front().judged.empty())
+        continue;
+      try {
+        BudgetAnswer answer =
+            measure_error_budget({session_, truths_.front(), reference_request_, entries_[i], visibility_[i].front()},
+                                 report_.error_limit, devices_, progress_);
+        report_.metrics.methods[i].error_budget = std::move(answer.budget);
+        report_.methods[i].budget_pictures = std::move(answer.pictures);
+      } catch (const render::DeviceDoesNotAnswer&) {
+        hang_ = std::current_exception();
+        warn(fmt::format("{}: no error budget, since the device does not answer any more", entries_[i].label));
+      }
+    }
+  }
+
+  void finish_report(const std::vector<std::string>& arguments) {
+    report_.version = PENUMBRA_VERSION;
+    report_.arguments = arguments;
+    report_.scene = compare::describe_scene(session_.scene, session_.camera_index);
+    report_.lights = report_lights(session_, reference_lights_, same_samples_);
+    report_.same_samples = same_samples_;
+    report_.sampled_pixels = options_.sample_pixels == "all" ? 0 : truths_.front().judged.size();
+    report_.machine = compare::this_machine();
+    report_.warnings = warnings_;
+  }
+
+  void warn(std::string text) {
+    progress_.clear();
+    spdlog::warn("{}", text);
+    warnings_.push_back(std::move(text));
+  }
+
+  const RunOptions& run_;
+  const ComparisonOptions& options_;
+  Progress& progress_;
+  const Entry reference_;
+  bool same_samples_;
+  visibility::SampleRequest reference_request_;
+  ComparisonFiles files_;
+  DeviceSource devices_;
+  Session session_;
+  std::vector<Light> reference_lights_;
+  std::vector<Entry> entries_;
+  std::vector<LightTruth> truths_;  ///< of each light
+  std::optional<std::vector<std::uint32_t>>
+      wanted_;  ///< all their pixels, if --sample-pixels chose; nothing: every one
+  std::vector<glm::vec3> reference_beauty_;
+  std::vector<std::vector<std::vector<float>>> visibility_;  ///< of each entry, of each light; empty: it failed
+  std::vector<std::string> warnings_;
+  compare::ReportInput report_;
+  std::exception_ptr hang_;  ///< what a device that does not answer threw; it must not be used again
+};
+
+}  // namespace
+
+compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
+                                 const std::vector<std::string>& arguments, Progress& progress) {
+  return Comparison(run, options, progress).run(arguments);
+}
+
+}  // namespace penumbra::app

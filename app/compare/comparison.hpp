@@ -1,0 +1,31 @@
+#pragma once
+
+#include "app/options.hpp"
+#include "app/process/progress.hpp"
+#include "compare/stats.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// What `compare` was asked beside RunOptions.
+struct ComparisonOptions {
+  std::vector<MethodEntry> methods;
+  visibility::MethodOptions method_options;  ///< for every method that has such an option
+  std::string reference = "raytrace";
+  std::string reference_samples = "1024";  ///< or "same"
+  std::string sample_pixels = "all";
+  std::uint32_t runs = 5;
+  bool bits = false, png = false;
+  bool error_budget = false;    ///< why each image-based method is wrong
+  std::filesystem::path stats;  ///< empty: only DIR/metrics.json
+};
+
+/// Runs the reference, then each method on the same view samples, and writes all of DIR. Every light is judged; what is
+/// said once is of the first. Seconds are sums over all lights. `arguments` is the command line, for the report.
+compare::Metrics compare_methods(const RunOptions& run, const ComparisonOptions& options,
+                                 const std::vector<std::string>& arguments, Progress& progress);
+
+}  // namespace penumbra::app

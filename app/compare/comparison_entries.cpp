@@ -1,0 +1,88 @@
+#include "app/compare/comparison_entries.hpp"
+
+#include "app/methods.hpp"
+#include "app/output.hpp"
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+std::vector<MethodEntry> with_method_options(const ComparisonOptions& options) {
+  std::vector<MethodEntry> entries = options.methods;
+  for (const auto& [key, value] : options.method_options) {
+    bool known = false;
+    for (MethodEntry& entry : entries) {
+      const auto& has = describe_method(entry.name).options;
+      if (std::ranges::find(has, key, &visibility::OptionDescription::name) == has.end()) continue;
+      entry.options.emplace(key, value);  // an entry's own option stands
+      known = true;
+    }
+    if (!known) throw UsageError("--method-option {}={}: none of the chosen methods has such an option", key, value);
+  }
+  return entries;
+}
+
+/// With its options: they may change what it gives and which lights it can do. Nothing: a group's exact areas, which
+/// --method-option excludes.
+std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::function<void(std::string)>& warn) {
+  try {
+    return Entry{chosen.label, describe_method(chosen.name, chosen.options), chosen.options};
+  } catch (const UsageError& error) {
+    if (!chosen.exact_area) throw;
+    warn(fmt::format("{} is left out: {}", chosen.label, error.what()));
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+Entry describe_reference(const std::string& name) {
+  const visibility::MethodDescription& description = describe_method(name);
+  if (description.family != visibility::Family::reference) {
+    throw UsageError("--reference {}: a {} method is no judge; expected raytrace or exact", name,
+                     visibility::name_of(description.family));
+  }
+  return {"reference", description, {}};
+}
+
+std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,
+                                  const std::function<void(std::string)>& warn) {
+  std::vector<Entry> entries;
+  for (const MethodEntry& chosen : with_method_options(options)) {
+    std::optional<Entry> described = describe_entry(chosen, warn);
+    if (!described) continue;
+    Entry& entry = *described;
+    if (chosen.from_group && !can_do(entry.description, session.lights)) {
+      warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
+      continue;
+    }
+    for (const visibility::Light& light : session.lights) check_light(entry.description, light);
+    if (wants_bits(entry, options)) check_bits(entry.description, session.lights.front());
+    entries.push_back(std::move(entry));
+  }
+  if (entries.empty()) {
+    throw InputError(
+        "none of the chosen methods can do the lights of {}; name one that can with --methods (see "
+        "`penumbra methods`)",
+        session.scene.name);
+  }
+  return entries;
+}
+
+void require_explainable(std::span<const MethodEntry> methods) {
+  if (std::ranges::any_of(methods, [](const MethodEntry& m) { return describe_method(m.name).repairs != nullptr; }))
+    return;
+  throw UsageError(
+      "--error-budget: none of the chosen methods is image-based; it takes the errors of those apart: name one with "
+      "--methods, such as backproject or bitmask");
+}
+
+bool wants_bits(const Entry& entry, const ComparisonOptions& options) {
+  return options.bits && entry.description.output == visibility::Output::mask;
+}
+
+}  // namespace penumbra::app

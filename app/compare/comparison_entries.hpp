@@ -1,0 +1,35 @@
+#pragma once
+
+#include "app/compare/comparison.hpp"
+#include "app/session.hpp"
+#include "visibility/method.hpp"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::app {
+
+/// A method as asked for, with what its options make of it.
+struct Entry {
+  std::string label;
+  visibility::MethodDescription description;
+  visibility::MethodOptions options;
+};
+
+/// Who judges. UsageError for a method that is no reference.
+Entry describe_reference(const std::string& name);
+
+/// The chosen methods, each with those of --method-option that it has. Refuses, before anything long, what would fail
+/// later; leaves out of a group what cannot do the lights, and says so to `warn`.
+std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,
+                                  const std::function<void(std::string)>& warn);
+
+/// UsageError if none of these methods says what repairs its error.
+void require_explainable(std::span<const MethodEntry> methods);
+
+/// --bits were asked for, and the method has some.
+bool wants_bits(const Entry& entry, const ComparisonOptions& options);
+
+}  // namespace penumbra::app

@@ -1,0 +1,168 @@
+#include "app/compare/error_budget.hpp"
+
+#include "app/methods.hpp"
+#include "app/process/failure.hpp"
+#include "app/runner.hpp"
+#include "compare/error_picture.hpp"
+#include "compare/metrics.hpp"
+#include "visibility/lights/light_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using compare::BudgetPart;
+using compare::BudgetRun;
+using visibility::ErrorCause;
+using visibility::ErrorRepair;
+using visibility::Light;
+using visibility::RepairEnd;
+using visibility::RepairRun;
+
+/// Why the first light cannot be looked at part by part; empty if it can.
+std::string why_whole(const Light& light) {
+  if (light.kind != visibility::LightKind::rectangle)
+    return fmt::format("the light is a {}: only rectangles are cut in parts", visibility::name_of(light.kind));
+  if (light.texture) return "the light has a texture: its parts would have none";
+  return {};
+}
+
+class BudgetRuns {
+ public:
+  BudgetRuns(const BudgetQuestion& question, DeviceSource& devices, Progress& progress)
+      : question_(question), devices_(devices), progress_(progress) {
+    const Entry& entry = question.entry;
+    runs_[key_of({entry.description.name, visibility::complete_options(entry.description, entry.options)})] =
+        std::make_shared<const std::vector<float>>(question.visibility.begin(), question.visibility.end());
+  }
+
+  /// V of each pixel; nothing, and why in `run`, if it cannot be done.
+  std::shared_ptr<const std::vector<float>> visibility_of(BudgetRun& run, const std::string& stage) {
+    auto& known = runs_[key_of(run.run)];
+    try {
+      if (!known) known = std::make_shared<const std::vector<float>>(evaluate(run.run, stage));
+    } catch (...) {
+      run.failure = current_failure().message;
+      progress_.clear();
+      return nullptr;
+    }
+    run.rmse = compare::visibility_error(*known, question_.truth.reference, question_.truth.judged)->rmse;
+    run.acts_on = compare::share_changed(*known, question_.visibility, question_.truth.judged);
+    return known;
+  }
+
+ private:
+  using Key = std::tuple<std::string, visibility::MethodOptions, std::uint32_t, std::uint32_t>;
+  static Key key_of(const RepairRun& run) { return {run.method, run.options, run.light_parts, run.light_samples}; }
+
+  std::vector<float> evaluate(const RepairRun& run, const std::string& stage) {
+    const auto method = make_method(run.method, run.options, devices_);
+    const Light whole = light_for(run);
+    const std::vector<visibility::LightPart> parts = visibility::light_parts(whole, run.light_parts);
+    std::vector<double> sum(question_.session.pixel_count(), 0.0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::string part = parts.size() > 1 ? fmt::format(", part {} of {}", i + 1, parts.size()) : "";
+      const RunPlan plan{
+          .lights = {&parts[i].light, 1}, .runs = 1, .pixels = question_.truth.judged, .stage = stage + part};
+      const MethodRun done = run_method(*method, question_.session, plan, {}, progress_);
+      const std::vector<float>& values = done.visibility.front();
+      for (std::size_t pixel = 0; pixel < sum.size(); ++pixel)
+        sum[pixel] += parts[i].weight * static_cast<double>(values[pixel]);
+    }
+    devices_.check_validation();
+    return {sum.begin(), sum.end()};
+  }
+
+  [[nodiscard]] Light light_for(const RepairRun& run) const {
+    const Light& light = question_.session.lights.front();
+    if (run.light_samples == 0) return light;
+    visibility::SampleRequest request = question_.samples;
+    request.rows = request.columns = 0;
+    request.count = run.light_samples;
+    return visibility::make_light(question_.session.scene, static_cast<std::uint32_t>(light.index),
+                                  question_.session.floats.origin, request);
+  }
+
+  const BudgetQuestion& question_;
+  DeviceSource& devices_;
+  Progress& progress_;
+  std::map<Key, std::shared_ptr<const std::vector<float>>> runs_;
+};
+
+/// By how much a repair changes V, over judged pixels.
+Image8 picture_of(const BudgetQuestion& question, const std::vector<float>& repaired, double limit) {
+  constexpr float kNobody = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> shown(repaired.size(), kNobody);
+  for (const std::uint32_t pixel : question.truth.judged) shown[pixel] = repaired[pixel];
+  return compare::error_picture(question.session.samples, shown, question.visibility, limit);
+}
+
+}  // namespace
+
+BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, DeviceSource& devices,
+                                  Progress& progress) {
+  const Entry& entry = question.entry;
+  const std::string whole = why_whole(question.session.lights.front());
+  const visibility::ErrorRepairs repairs = entry.description.repairs(entry.description, entry.options);
+  BudgetRuns runs(question, devices, progress);
+  BudgetAnswer answer;
+  compare::ErrorBudget& budget = answer.budget;
+  budget.rmse = compare::visibility_error(question.visibility, question.truth.reference, question.truth.judged)->rmse;
+  const auto show = [&](const char* repaired, const BudgetRun& run, const std::vector<float>& visibility) {
+    if (run.acts_on.value_or(0) > 0) answer.pictures.push_back({repaired, picture_of(question, visibility, limit)});
+  };
+
+  for (const ErrorRepair& repair : repairs.alone) {
+    const std::string stage = fmt::format("{}: {} repaired", entry.label, name_of(repair.cause));
+    BudgetPart& part = budget.parts.emplace_back(BudgetPart{.cause = repair.cause, .words = repair.words});
+    std::shared_ptr<const std::vector<float>> last;
+    BudgetRun last_made;
+    bool settled = false;
+    for (const RepairRun& run : repair.runs) {
+      if (run.light_parts > 1 && !whole.empty()) {
+        part.words = whole;
+        break;
+      }
+      BudgetRun& made = part.runs.emplace_back(BudgetRun{run});
+      const auto now = runs.visibility_of(made, stage);
+      if (!now) break;
+      settled = last != nullptr && std::ranges::all_of(question.truth.judged, [&](std::uint32_t pixel) {
+                  return (*now)[pixel] == (*last)[pixel];
+                });
+      last = now;
+      last_made = made;
+      if (repair.end == RepairEnd::settled && settled) break;
+    }
+    conclude(part, repair.end, budget.rmse, settled);
+    if (last) show(name_of(repair.cause), last_made, *last);
+  }
+
+  // The most thorough that can be done.
+  const auto first_of = [&](const std::vector<RepairRun>& wanted, const char* repaired) {
+    BudgetRun made;
+    for (RepairRun run : wanted) {
+      if (!whole.empty()) run.light_parts = 1;
+      made = {run};
+      const auto visibility = runs.visibility_of(made, fmt::format("{}: {} repaired", entry.label, repaired));
+      if (!visibility) continue;
+      show(repaired, made, *visibility);
+      break;
+    }
+    return made;
+  };
+  if (!repairs.one_view.empty()) budget.one_view = first_of(repairs.one_view, compare::kAllButView);
+  budget.together = first_of(repairs.together, compare::kAllAtOnce);
+  return answer;
+}
+
+}  // namespace penumbra::app

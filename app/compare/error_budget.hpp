@@ -1,0 +1,37 @@
+#pragma once
+
+#include "app/device_source.hpp"
+#include "app/compare/comparison_entries.hpp"
+#include "app/compare/light_judge.hpp"
+#include "app/process/progress.hpp"
+#include "app/session.hpp"
+#include "compare/error_budget.hpp"
+#include "compare/report.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace penumbra::app {
+
+/// What is explained: a method's V under the session's first light, over that light's judged pixels.
+struct BudgetQuestion {
+  const Session& session;
+  const LightTruth& truth;                   ///< of the first light; it has judged pixels
+  const visibility::SampleRequest& samples;  ///< pattern and seed for runs with a number of light samples of their own
+  const Entry& entry;                        ///< its description has repairs
+  std::span<const float> visibility;         ///< as asked, of each pixel
+};
+
+struct BudgetAnswer {
+  compare::ErrorBudget budget;
+  std::vector<compare::BudgetPicture>
+      pictures;  ///< where each repair changes V, by how much; not those that do nothing
+};
+
+/// Runs what the method's description says, one run after the other. A run that the device or the scene refuses is
+/// noted and left out. `limit`: of the pictures' scale.
+BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, DeviceSource& devices,
+                                  Progress& progress);
+
+}  // namespace penumbra::app

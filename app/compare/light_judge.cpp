@@ -1,0 +1,96 @@
+#include "app/compare/light_judge.hpp"
+
+#include "app/sample_pixels.hpp"
+#include "compare/metrics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace penumbra::app {
+
+std::vector<LightTruth> choose_pixels(const Session& session, const std::string& sample_pixels) {
+  std::vector<LightTruth> truths;
+  for (const auto& classes : session.classes) {
+    const auto chosen = [&](visibility::PixelClass wanted) {
+      return app::sample_pixels(compare::pixels_of_class(classes, wanted), sample_pixels, session.width,
+                                session.height);
+    };
+    LightTruth& truth = truths.emplace_back();
+    truth.judged = chosen(visibility::PixelClass::judged);
+    truth.horizon = chosen(visibility::PixelClass::horizon);
+  }
+  return truths;
+}
+
+std::vector<std::uint32_t> all_pixels(std::span<const LightTruth> truths) {
+  std::vector<std::uint32_t> pixels;
+  for (const LightTruth& truth : truths) {
+    pixels.insert(pixels.end(), truth.judged.begin(), truth.judged.end());
+    pixels.insert(pixels.end(), truth.horizon.begin(), truth.horizon.end());
+  }
+  std::ranges::sort(pixels);
+  pixels.erase(std::unique(pixels.begin(), pixels.end()), pixels.end());
+  return pixels;
+}
+
+LightJudge::LightJudge(const Session& session, std::span<const LightTruth> truths, std::size_t most_decided)
+    : session_(session), truths_(truths), masks_(truths.size()) {
+  for (std::size_t light = 0; light < truths.size(); ++light) {
+    if (truths[light].ray_masks.empty()) continue;
+    masks_[light].emplace(session, MaskQuestion{light, truths[light].ray_masks, most_decided});
+  }
+}
+
+void LightJudge::add(const TileResult& tile) {
+  if (tile.masks.empty() || !masks_[tile.light]) return;
+  has_masks_ = true;
+  masks_[tile.light]->add(tile);
+}
+
+std::vector<compare::LightResult> LightJudge::judge(const MethodRun& run, Progress& progress) {
+  std::vector<compare::LightResult> results;
+  for (std::size_t light = 0; light < truths_.size(); ++light) {
+    const LightTruth& truth = truths_[light];
+    compare::LightResult& result = results.emplace_back();
+    result.name = session_.lights[light].name;
+    result.judged_pixels = truth.judged.size();
+    result.horizon_pixels = truth.horizon.size();
+    result.error = compare::visibility_error(run.visibility[light], truth.reference, truth.judged);
+    result.horizon_error = compare::visibility_error(run.visibility[light], truth.reference, truth.horizon);
+    if (!has_masks_ || !masks_[light]) continue;
+    result.same_samples =
+        compare::SameSamples{compare::visibility_error(run.visibility[light], truth.rays, truth.judged),
+                             masks_[light]->counts(), masks_[light]->decide(progress)};
+  }
+  return results;
+}
+
+void LightJudge::fill(compare::MethodResult& result, const MethodRun& run, bool pairs_of_reference,
+                      Progress& progress) {
+  result.lights = judge(run, progress);
+  result.all_lights_error = error_of_all_lights(run, truths_);
+  const compare::LightResult& first = result.lights.front();
+  result.error = first.error;
+  result.horizon_error = first.horizon_error;
+  if (!pairs_of_reference || !first.same_samples) return;
+  result.pairs = first.same_samples->pairs;
+  result.verdicts = first.same_samples->verdicts;
+  result.stats.counters["exactDecided"] = result.verdicts->decided;
+  result.stats.counters["methodRight"] = result.verdicts->method_right;
+  result.stats.counters["referenceRight"] = result.verdicts->reference_right;
+  if (!masks_.front()->kept_all()) {
+    result.stats.warnings.push_back(fmt::format("{}: {} pairs differ; {} of them, evenly spaced, were decided exactly",
+                                                result.entry, result.pairs->differing, result.verdicts->decided));
+  }
+}
+
+std::optional<compare::VisibilityError> error_of_all_lights(const MethodRun& run, std::span<const LightTruth> truths) {
+  std::vector<compare::JudgedVisibility> lights;
+  for (std::size_t light = 0; light < truths.size(); ++light)
+    lights.push_back({run.visibility[light], truths[light].reference, truths[light].judged});
+  return compare::visibility_error(lights);
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,67 @@
+#include "app/compare/report_views.hpp"
+
+#include "compare/error_picture.hpp"
+#include "compare/report_data.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <utility>
+
+namespace penumbra::app {
+
+void PackedMasks::add(const TileResult& tile) {
+  if (tile.masks.empty()) return;
+  One& light = lights_[tile.light];
+  if (!light.deflated) light.deflated.emplace();
+  light.bytes += tile.masks.size_bytes();
+  if (light.bytes <= kMostBytes) light.deflated->add(std::as_bytes(tile.masks));
+}
+
+std::vector<std::string> PackedMasks::finish() {
+  std::vector<std::string> packed;
+  for (One& light : lights_) {
+    std::string& text = packed.emplace_back();
+    if (!light.deflated || light.bytes > kMostBytes) continue;
+    const std::vector<std::byte> bytes = light.deflated->finish();
+    if (bytes.size() <= kMostPackedBytes) text = base64(bytes);
+  }
+  return packed;
+}
+
+std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
+                                                bool same_samples) {
+  std::vector<compare::ReportLight> lights;
+  for (std::size_t i = 0; i < session.lights.size(); ++i) {
+    const visibility::Light& light = session.lights[i];
+    compare::ReportLight& shown = lights.emplace_back();
+    shown.name = light.name;
+    shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(session.classes[i])));
+    shown.round = is_round(light.kind);
+    if (light.kind == visibility::LightKind::rectangle || light.kind == visibility::LightKind::ellipse) {
+      const visibility::LightFrame frame = visibility::light_frame(light);
+      shown.aspect = glm::length(frame.u) / glm::length(frame.v);
+    }
+    shown.samples = light.coordinates;
+    if (!same_samples) shown.reference_samples = reference[i].coordinates;
+  }
+  return lights;
+}
+
+compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
+                                  float exposure, SeenByRun seen) {
+  compare::ReportEntry entry;
+  entry.description = description;
+  if (!seen.beauty.empty()) {
+    entry.beauty = to_srgb(session.width, session.height, seen.beauty, exposure);
+    entry.packed_beauty = compare::pack_radiance(session.width, seen.beauty);
+  }
+  for (std::size_t light = 0; light < seen.run.visibility.size(); ++light) {
+    compare::ReportLightView& view = entry.lights.emplace_back();
+    view.visibility = compare::visibility_picture(session.samples, seen.run.visibility[light]);
+    view.packed_visibility = compare::pack_floats(seen.run.visibility[light]);
+    view.packed_masks = std::move(seen.masks[light]);
+  }
+  return entry;
+}
+
+}  // namespace penumbra::app

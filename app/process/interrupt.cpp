@@ -1,0 +1,75 @@
+#include "app/process/interrupt.hpp"
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+
+#include <pthread.h>
+#include <unistd.h>
+
+namespace penumbra::app {
+namespace {
+
+// A signal is the process's, so its state is too: the one global of this program.
+std::atomic<bool> g_interrupted{false};
+std::mutex g_at_once_mutex;  // held while the process ends, so that no stretch ends and opens a file meanwhile
+int g_at_once_depth = 0;
+int g_open_files = 0;
+
+[[noreturn]] void wait_for_signals(sigset_t signals) {
+  for (;;) {
+    int signal = 0;
+    if (sigwait(&signals, &signal) != 0) continue;
+    g_interrupted = true;
+    const std::lock_guard lock(g_at_once_mutex);
+    if (g_at_once_depth > 0 && g_open_files == 0) {
+      // Not exit(): its handlers would run under the feet of the working threads.
+      constexpr char kText[] = "penumbra: interrupted\n";
+      [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText, sizeof(kText) - 1);
+      ::_exit(static_cast<int>(ExitCode::interrupted));
+    }
+  }
+}
+
+}  // namespace
+
+void watch_for_interrupts() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction current {};
+    if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler != SIG_IGN) sigaddset(&signals, signal);
+  }
+  // Threads inherit the mask: only the watcher ever sees these signals.
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread(wait_for_signals, signals).detach();
+}
+
+void check_interrupt() {
+  if (g_interrupted) throw Interrupted();
+}
+
+MayExitAtOnce::MayExitAtOnce() {
+  check_interrupt();
+  const std::lock_guard lock(g_at_once_mutex);
+  ++g_at_once_depth;
+}
+
+MayExitAtOnce::~MayExitAtOnce() {
+  const std::lock_guard lock(g_at_once_mutex);
+  --g_at_once_depth;
+}
+
+FileIsOpen::FileIsOpen() {
+  const std::lock_guard lock(g_at_once_mutex);
+  ++g_open_files;
+}
+
+FileIsOpen::~FileIsOpen() {
+  const std::lock_guard lock(g_at_once_mutex);
+  --g_open_files;
+}
+
+}  // namespace penumbra::app

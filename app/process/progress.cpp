@@ -1,0 +1,54 @@
+#include "app/process/progress.hpp"
+
+#include "app/process/interrupt.hpp"
+#include "app/process/process.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <unistd.h>
+
+namespace penumbra::app {
+
+Progress::Progress(bool wanted) : visible_(wanted && ::isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  clear();
+}
+
+void Progress::begin(std::string stage, std::uint64_t steps) {
+  check_interrupt();
+  stage_ = std::move(stage);
+  steps_ = std::max<std::uint64_t>(steps, 1);
+  done_ = 0;
+  last_draw_ = {};
+  draw();
+}
+
+void Progress::advance(std::uint64_t steps) {
+  check_interrupt();
+  done_ = std::min(done_ + steps, steps_);
+  draw();
+}
+
+void Progress::clear() {
+  if (!drawn_) return;
+  say("\r\033[K");
+  drawn_ = false;
+}
+
+void Progress::draw() {
+  if (!visible_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a tile
+  last_draw_ = now;
+  constexpr std::uint64_t kWidth = 30;
+  const std::uint64_t filled = kWidth * done_ / steps_;
+  say(fmt::format("\r\033[K[{}{}] {:3}% {}", std::string(filled, '='), std::string(kWidth - filled, ' '),
+                  100 * done_ / steps_, stage_));
+  drawn_ = true;
+}
+
+}  // namespace penumbra::app

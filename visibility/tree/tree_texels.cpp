@@ -1,0 +1,47 @@
+#include "visibility/tree/tree_texels.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace penumbra::visibility {
+
+float device_scale(const SceneFloats& scene) {
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(scene.lower[axis]), std::abs(scene.upper[axis])});
+  // Of subnormal floats the inverse is none: they are scaled as far as floats go.
+  return largest > 0 ? std::ldexp(1.0F, std::min(-std::ilogb(largest), 127)) : 1.0F;
+}
+
+bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
+  const glm::dvec3 cross = glm::abs(glm::cross(e1, e2)), size1 = glm::abs(e1), size2 = glm::abs(e2);
+  return cross.x + cross.y + cross.z > 0x1p-25 * (size1.x + size1.y + size1.z) * (size2.x + size2.y + size2.z);
+}
+
+/// Of a flat box: half an extent that no coordinate's last digit notices, but far from the subnormal numbers, each
+/// product with which costs a processor a hundred and more cycles.
+constexpr float kThinnest = 0x1p-40F;
+
+std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
+  std::vector<Texel> texels;
+  texels.reserve(tree.nodes.size() * 2 * TriangleTree::kWidth);
+  for (const TriangleTree::Node& node : tree.nodes) {
+    for (const TriangleTree::Child& child : node) {
+      const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
+      const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
+      glm::vec3 half = glm::max(upper - middle, middle - lower);
+      for (int axis = 0; axis < 3; ++axis)
+        half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
+      texels.push_back({middle, child.reference});
+      texels.push_back({half, 0});
+    }
+  }
+  return texels;
+}
+
+}  // namespace penumbra::visibility
