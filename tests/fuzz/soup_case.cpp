@@ -179,7 +179,7 @@ std::optional<SoupCase> read_soup_case(std::span<const std::uint8_t> bytes) {
   try {
     return Reader(bytes).read();
   } catch (const InputError&) {
-    return std::nullopt;  // a light without area in float32, say
+    return std::nullopt;  // a light without area in float32, say: no method was asked
   }
 }
 

@@ -1,6 +1,7 @@
 #include "tests/fuzz/soup_methods.hpp"
 
 #include "base/error.hpp"
+#include "tests/agreement/light_span.hpp"
 #include "tests/fuzz/soup_judge.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
@@ -115,15 +116,14 @@ SoupFindings SoupMethods::check(const SoupCase& judged) {
   });
   for (Variant& variant : variants_for(judged.light)) {
     if (!can_do(*variant.method, judged.light)) continue;
-    try {
-      const std::vector<std::uint32_t> masks = masks_of(*variant.method, judged);
-      for_each_pair([&](std::size_t pixel, std::uint32_t j) {
-        if (!visibility::is_receiver(judged.floats, judged.samples, pixel)) return;  // lit, whatever the truth
-        compare(variant.name, pixel, j, bit(masks, pixel, j));
-      });
-    } catch (const InputError&) {
-      ++found.refusals;  // float32 cannot span light and scene together
-    }
+    const auto masks =
+        tests::unless_too_far_apart(judged.floats, judged.light, [&] { return masks_of(*variant.method, judged); });
+    found.refusals += masks ? 0 : 1;
+    if (!masks) continue;
+    for_each_pair([&](std::size_t pixel, std::uint32_t j) {
+      if (!visibility::is_receiver(judged.floats, judged.samples, pixel)) return;  // lit, whatever the truth
+      compare(variant.name, pixel, j, bit(*masks, pixel, j));
+    });
   }
   return found;
 }

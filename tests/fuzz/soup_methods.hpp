@@ -17,7 +17,7 @@ namespace penumbra::fuzz {
 struct SoupFindings {
   std::uint64_t cases = 0, pairs = 0, visible = 0;  ///< pairs: of each case, by the judge
   std::uint64_t answers = 0;                        ///< pairs that a method answered
-  std::uint64_t refusals = 0;                       ///< cases that a method refuses, though it can do such lights
+  std::uint64_t refusals = 0;                       ///< answers of a method that float32 does not span the case for
   std::uint64_t wrong = 0;
   std::string first_wrong;  ///< which method, and the pair in numbers
 
