@@ -24,6 +24,12 @@ struct LinearImage {
   std::vector<glm::vec3> pixels;  ///< red green blue, primaries of Rec. 709
 };
 
+/// A picture as its file has it, with alpha: red green blue (sRGB) and alpha, in scan-line order from the top left.
+struct RgbaImage {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::array<std::uint8_t, 4>> pixels;
+};
+
 /// The linear value of an sRGB-encoded one, both in [0, 1].
 double linear_of_srgb(double encoded);
 

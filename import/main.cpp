@@ -69,11 +69,13 @@ bool parse(int argc, char** argv, Arguments& arguments) {
   for (int i = 6; i < argc; ++i) {
     const std::string_view flag = argv[i];
     if (parse_number(flag, "--lamp-radius=", arguments.options.lamp_radius) ||
-        parse_number(flag, "--sun-angle=", arguments.options.sun_angle)) {
+        parse_number(flag, "--sun-angle=", arguments.options.sun_angle) ||
+        parse_number(flag, "--time=", arguments.options.time)) {
       continue;
     }
-    if (flag != "--allow-outside" && flag != "--without-light") return false;
+    if (flag != "--allow-outside" && flag != "--without-light" && flag != "--lenient") return false;
     arguments.options.allow_outside |= flag == "--allow-outside";
+    arguments.options.lenient |= flag == "--lenient";
     arguments.options.needs_light &= flag != "--without-light";
   }
   constexpr std::array<std::string_view, 3> kKinds = {"mesh", "gltf", "texture"};

@@ -119,6 +119,10 @@ glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
 
 PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width,
                           std::uint32_t height) {
+  if (camera.height) {
+    throw InputError("camera \"{}\" is orthographic, which is not supported; choose a perspective one (--camera)",
+                     camera.name);
+  }
   const glm::dvec3 view = camera.target - camera.eye;
   const double distance = glm::length(view);
   if (!(distance > 0) || !std::isfinite(distance)) {

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 
+#include <fmt/ranges.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
@@ -134,6 +135,17 @@ void apply_sparse(const tinygltf::Model& model, const std::string& place, const 
   }
 }
 
+std::string name_of_type(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_SCALAR:
+      return "SCALAR";
+    case TINYGLTF_TYPE_MAT4:
+      return "MAT4";
+    default:
+      return fmt::format("VEC{}", tinygltf::GetNumComponentsInType(static_cast<unsigned>(type)));
+  }
+}
+
 const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int number) {
   if (number < 0 || static_cast<std::size_t>(number) >= model.accessors.size()) {
     throw InputError("/accessors/{}: it does not exist; there are {}", number, model.accessors.size());
@@ -143,36 +155,59 @@ const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int number
 
 }  // namespace
 
-std::vector<glm::dvec3> read_positions(const tinygltf::Model& model, int number) {
+Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_list<int> types, const char* what) {
   const tinygltf::Accessor& accessor = find_accessor(model, number);
   const std::string place = fmt::format("/accessors/{}", number);
-  if (accessor.type != TINYGLTF_TYPE_VEC3) throw InputError("{}: positions must be of type VEC3", place);
+  if (std::ranges::find(types, accessor.type) == types.end()) {
+    std::string wanted;
+    for (const int type : types) wanted += (wanted.empty() ? "" : " or ") + name_of_type(type);
+    throw InputError("{}: {} must be of type {}", place, what, wanted);
+  }
   const std::size_t bytes = component_bytes(place, accessor.componentType);
-  const auto load_vector = [&](const unsigned char* from) {
-    const auto component = [&](std::size_t i) {
-      return load_component(from + i * bytes, accessor.componentType, accessor.normalized);
-    };
-    return glm::dvec3(component(0), component(1), component(2));
+  Numbers numbers;
+  numbers.components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<unsigned>(accessor.type)));
+  const std::size_t element_bytes = numbers.components * bytes;
+  const auto store = [&](std::size_t i, const unsigned char* from) {
+    for (std::size_t c = 0; c < numbers.components; ++c) {
+      numbers.values[i * numbers.components + c] =
+          load_component(from + c * bytes, accessor.componentType, accessor.normalized);
+    }
   };
-  std::vector<glm::dvec3> positions;
   if (accessor.bufferView < 0) {
-    positions.resize(accessor.count, glm::dvec3(0));
+    numbers.values.resize(accessor.count * numbers.components, 0.0);
   } else {
     // In this order: only a count that the buffer holds may be allocated.
     const ElementView view =
-        view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, 3 * bytes});
-    positions.resize(accessor.count);
-    for (std::size_t i = 0; i < accessor.count; ++i) positions[i] = load_vector(view.at(i));
+        view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, element_bytes});
+    numbers.values.resize(accessor.count * numbers.components);
+    for (std::size_t i = 0; i < accessor.count; ++i) store(i, view.at(i));
   }
-  apply_sparse(model, place, accessor, 3 * bytes,
-               [&](std::size_t i, const unsigned char* from) { positions[i] = load_vector(from); });
+  apply_sparse(model, place, accessor, element_bytes, store);
+  for (std::size_t i = 0; i < numbers.values.size(); ++i) {
+    if (std::isfinite(numbers.values[i])) continue;
+    const std::size_t element = i / numbers.components;
+    const auto all = std::span(numbers.values).subspan(element * numbers.components, numbers.components);
+    throw InputError("{}: {} {} is not finite: ({})", place, accessor.type == TINYGLTF_TYPE_VEC3 ? "vertex" : what,
+                     element, fmt::join(all, ", "));
+  }
+  return numbers;
+}
+
+std::vector<glm::dvec3> read_positions(const tinygltf::Model& model, int number) {
+  const Numbers numbers = read_numbers(model, number, {TINYGLTF_TYPE_VEC3}, "positions");
+  std::vector<glm::dvec3> positions(numbers.count());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const glm::dvec3& p = positions[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      throw InputError("{}: vertex {} is not finite: ({}, {}, {})", place, i, p.x, p.y, p.z);
-    }
+    const double* from = &numbers.values[3 * i];
+    positions[i] = {from[0], from[1], from[2]};
   }
   return positions;
+}
+
+std::span<const unsigned char> read_view(const tinygltf::Model& model, int view, const std::string& place) {
+  if (view < 0 || static_cast<std::size_t>(view) >= model.bufferViews.size())
+    throw InputError("{}: bufferView {} does not exist; there are {}", place, view, model.bufferViews.size());
+  const std::size_t size = model.bufferViews[static_cast<std::size_t>(view)].byteLength;
+  return {view_elements(model, place, view, 0, {1, size}).first, size};
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int number) {

@@ -2,7 +2,11 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace tinygltf {
@@ -11,10 +15,23 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// A POSITION accessor's vertices: three components of any type, normalized or not, strided, sparse, or all zero
-/// (no buffer view). Throws InputError with the accessor's or the view's place if it does not fit its buffer, or if a
-/// vertex is not finite.
+/// All components of all elements of an accessor, one after the other.
+struct Numbers {
+  std::vector<double> values;
+  std::size_t components = 1;
+  [[nodiscard]] std::size_t count() const { return values.size() / components; }
+};
+
+/// Elements of one of these types (TINYGLTF_TYPE_…), components of any type, normalized or not, strided, sparse, or all
+/// zero (no buffer view); `what` they are, for messages. InputError with the accessor's or the view's place if they do
+/// not fit the buffer, or one is not finite.
+Numbers read_numbers(const tinygltf::Model& model, int accessor, std::initializer_list<int> types, const char* what);
+
+/// A POSITION accessor's vertices.
 std::vector<glm::dvec3> read_positions(const tinygltf::Model& model, int accessor);
+
+/// All bytes of a buffer view; `place` says whose it is. They live in the model.
+std::span<const unsigned char> read_view(const tinygltf::Model& model, int view, const std::string& place);
 
 /// An index accessor's numbers: unsigned integers of 1, 2 or 4 bytes.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);

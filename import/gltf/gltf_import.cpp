@@ -3,9 +3,14 @@
 #include "base/error.hpp"
 #include "import/gltf/flat_light.hpp"
 #include "import/gltf/gltf_accessor.hpp"
+#include "import/gltf/gltf_animation.hpp"
+#include "import/gltf/gltf_deform.hpp"
 #include "import/gltf/gltf_load.hpp"
+#include "import/gltf/gltf_losses.hpp"
 #include "import/gltf/gltf_nodes.hpp"
+#include "import/gltf/gltf_surface.hpp"
 #include "import/gltf/punctual_lights.hpp"
+#include "import/gltf/sphere_light.hpp"
 
 #include <tiny_gltf.h>
 
@@ -18,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -50,33 +56,39 @@ std::vector<mesh::Triangle> assemble(int mode, std::span<const std::uint32_t> v,
   return triangles;
 }
 
-glm::dvec3 checked_factor(const std::vector<double>& numbers, glm::dvec3 otherwise, const std::string& place) {
-  if (numbers.size() < 3) return otherwise;
-  const glm::dvec3 factor(numbers[0], numbers[1], numbers[2]);
-  for (glm::length_t i = 0; i < 3; ++i) {
-    if (!std::isfinite(factor[i]) || factor[i] < 0)
-      throw InputError("{}: {} is not a colour; expected 0 or more", place, factor[i]);
-  }
-  return factor;
-}
+constexpr std::array<std::string_view, 5> kUnderstood{"KHR_materials_emissive_strength", "KHR_materials_transmission",
+                                                      "KHR_lights_punctual", "KHR_mesh_quantization",
+                                                      "KHR_texture_transform"};
+/// What these say changes no diffuse surface; Blender writes some of them into every file.
+constexpr std::array<std::string_view, 9> kWithoutEffect{
+    "KHR_materials_specular",   "KHR_materials_ior",         "KHR_materials_clearcoat",
+    "KHR_materials_sheen",      "KHR_materials_iridescence", "KHR_materials_anisotropy",
+    "KHR_materials_dispersion", "KHR_materials_volume",      "KHR_xmp_json_ld"};
 
-/// What the file is read for.
-enum class Purpose { lit_scene, any_scene, mesh };
+/// What the file is read for; `rest`: a mesh as it is modelled, which no skin and no morph target bends.
+enum class Purpose { lit_scene, any_scene, mesh, rest };
 
 /// Builds the scene from a parsed model, node by node.
 class GltfImport {
  public:
   GltfImport(const tinygltf::Model& model, std::string name, Purpose purpose, const ReadOptions& options)
-      : model_(model), purpose_(purpose), lamps_(model, options) {
+      : model_(model),
+        purpose_(purpose),
+        lenient_(options.lenient || purpose != Purpose::lit_scene),
+        lamps_(model, options),
+        surfaces_(model, scene_.pictures, losses_) {
     scene_.name = std::move(name);
   }
 
   Scene run() {
-    for (const PlacedNode& placed : place_nodes(model_, scene_.warnings)) {
+    const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
+    to_world_.resize(model_.nodes.size());
+    for (const PlacedNode& placed : nodes) to_world_[static_cast<std::size_t>(placed.number)] = placed.to_world;
+    for (const PlacedNode& placed : nodes) {
       const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
       const std::string name = node.name.empty() ? fmt::format("node {}", placed.number) : node.name;
       if (node.mesh >= 0) add_mesh(node, placed, name);
-      if (purpose_ == Purpose::mesh) continue;
+      if (is_mesh()) continue;
       if (node.camera >= 0) add_camera(node, placed, name);
       if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, placed, name);
     }
@@ -93,12 +105,16 @@ class GltfImport {
           "Punctual Lights (area lamps are lost in glTF){}",
           refused_lights_.empty() ? "" : "; emissive but no light: " + refused_lights_);
     }
-    if (scene_.cameras.empty() && purpose_ != Purpose::mesh) add_camera_that_sees_all();
+    if (scene_.cameras.empty() && !is_mesh()) add_camera_that_sees_all();
+    complete_looks();
     add_warnings();
+    if (!is_mesh()) losses_.report(lenient_, scene_.warnings);
     return std::move(scene_);
   }
 
  private:
+  [[nodiscard]] bool is_mesh() const { return purpose_ == Purpose::mesh || purpose_ == Purpose::rest; }
+
   void add_mesh(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
     if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
       throw InputError("/nodes/{}/mesh: mesh {} does not exist; there are {}", placed.number, node.mesh,
@@ -107,14 +123,13 @@ class GltfImport {
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
       const std::string place = fmt::format("/meshes/{}/primitives/{}", node.mesh, i);
-      add_primitive(mesh.primitives[i], placed, place,
+      add_primitive(mesh.primitives[i], node, placed, place,
                     mesh.primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name);
     }
-    if (node.skin >= 0) ++skinned_;
   }
 
-  void add_primitive(const tinygltf::Primitive& primitive, const PlacedNode& placed, const std::string& place,
-                     const std::string& name) {
+  void add_primitive(const tinygltf::Primitive& primitive, const tinygltf::Node& node, const PlacedNode& placed,
+                     const std::string& place, const std::string& name) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) throw InputError("{}/mode: {}; expected 0 to 6", place, mode);
     if (mode < TINYGLTF_MODE_TRIANGLES) {
@@ -129,7 +144,7 @@ class GltfImport {
       ++without_positions_;
       return;
     }
-    const std::vector<glm::dvec3> positions = read_positions(model_, attribute->second);
+    std::vector<glm::dvec3> positions = read_positions(model_, attribute->second);
     std::vector<std::uint32_t> indices;
     if (primitive.indices >= 0) {
       indices = read_indices(model_, primitive.indices);
@@ -149,38 +164,72 @@ class GltfImport {
       ++without_triangles_;
       return;
     }
-    if (!primitive.targets.empty()) ++morphed_;
-    add_object(positions, std::move(triangles), placed, {primitive.material, place, unique_name(object_names_, name)});
+    std::optional<std::vector<glm::dmat4>> skinned;
+    if (purpose_ != Purpose::rest) {
+      morph(model_, node, primitive, "POSITION", place, positions);
+      skinned = skin(model_, node, primitive, place, to_world_);
+      if (skinned && skinned->size() != positions.size()) {
+        throw InputError("{}/attributes/JOINTS_0: joints of {} vertices; there are {}", place, skinned->size(),
+                         positions.size());
+      }
+    }
+    const std::string own_name = unique_name(object_names_, name);
+    Look look = surfaces_.read(primitive, place, own_name, positions.size());
+    if (purpose_ != Purpose::rest) morph(model_, node, primitive, "NORMAL", place, look.normals);
+    switch (opacity_of(look, scene_.pictures)) {
+      case Opacity::gone:
+        return;
+      case Opacity::neither:
+        losses_.refuse(look.alpha.mode == Alpha::Mode::mask
+                           ? "has holes (alphaMode MASK), which are not supported: whole faces would cast shadows"
+                           : "is translucent (alphaMode BLEND), which is not supported: it would cast full shadows",
+                       own_name);
+        break;
+      case Opacity::solid:
+        break;
+    }
+    add_object({positions, skinned, look}, std::move(triangles), placed, {place, own_name});
   }
 
-  struct Look {
-    int material;
+  /// A primitive's vertices as they were modelled; of skinned ones also what takes each into the world.
+  struct Vertices {
+    std::span<const glm::dvec3> local;
+    const std::optional<std::vector<glm::dmat4>>& skinned;
+    const Look& look;
+
+    [[nodiscard]] const glm::dmat4& to_world(const PlacedNode& placed, std::uint32_t vertex) const {
+      return skinned ? (*skinned)[vertex] : placed.to_world;
+    }
+  };
+
+  struct Named {
     std::string place, name;
   };
 
   /// Adds the triangles in world space, with only the vertices that they use: exporters share one long list of
   /// vertices among many primitives.
-  void add_object(std::span<const glm::dvec3> local, std::vector<mesh::Triangle> triangles, const PlacedNode& placed,
-                  const Look& look) {
+  void add_object(const Vertices& vertices, std::vector<mesh::Triangle> triangles, const PlacedNode& placed,
+                  const Named& named) {
     auto& soup = scene_.soup;
     const auto number = static_cast<std::uint32_t>(scene_.objects.size());
     const std::size_t first_position = soup.positions.size(), first_triangle = soup.triangles.size();
     // A mirroring node turns the front of its triangles (glTF 2.0, 3.7.4); swapped corners turn it back outward.
-    const bool mirrored = glm::determinant(glm::dmat3(placed.to_world)) < 0;
     constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> renumbered(local.size(), kUnused);
+    std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
     for (mesh::Triangle& triangle : triangles) {
+      const bool mirrored = glm::determinant(glm::dmat3(vertices.to_world(placed, triangle[0]))) < 0;
       for (std::uint32_t& index : triangle) {
         std::uint32_t& target = renumbered[index];
         if (target == kUnused) {
-          if (soup.positions.size() >= kUnused) throw InputError("{}: more than 4,294,967,294 vertices", look.place);
+          if (soup.positions.size() >= kUnused) throw InputError("{}: more than 4,294,967,294 vertices", named.place);
           target = static_cast<std::uint32_t>(soup.positions.size());
-          const glm::dvec3 p(placed.to_world * glm::dvec4(local[index], 1));
+          const glm::dvec3 p(vertices.to_world(placed, index) * glm::dvec4(vertices.local[index], 1));
           if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-            throw InputError("{}: vertex {} is not finite after the transform of /nodes/{}", look.place, index,
+            throw InputError("{}: vertex {} is not finite after the transform of /nodes/{}", named.place, index,
                              placed.number);
           }
           soup.positions.push_back(p);
+          add_look(vertices, placed, index);
         }
         index = target;
       }
@@ -190,52 +239,51 @@ class GltfImport {
       soup.object.push_back(number);
     }
     Object object;
-    object.name = look.name;
-    object.color = glm::dvec3(1);  // glTF's default material is white
-    if (look.material >= 0) {
-      const tinygltf::Material& material = find_material(look);
-      const auto& surface = material.pbrMetallicRoughness;
-      object.color =
-          glm::min(checked_factor(surface.baseColorFactor, glm::dvec3(1),
-                                  fmt::format("/materials/{}/pbrMetallicRoughness/baseColorFactor", look.material)),
-                   glm::dvec3(1));
-      if (surface.baseColorTexture.index >= 0) ++textured_;
-      object.material = material.name.empty() ? fmt::format("material {}", look.material) : material.name;
-      object.emits = add_light(material, look, placed, first_position, first_triangle);
-    }
+    object.name = named.name;
+    object.color = vertices.look.color;
+    object.material = vertices.look.material;
+    object.picture = vertices.look.picture;
+    object.alpha = vertices.look.alpha;
+    object.emits = add_light(vertices.look, named.name, placed, first_position, first_triangle);
     scene_.objects.push_back(std::move(object));
   }
 
-  const tinygltf::Material& find_material(const Look& look) const {
-    if (static_cast<std::size_t>(look.material) >= model_.materials.size()) {
-      throw InputError("{}/material: material {} does not exist; there are {}", look.place, look.material,
-                       model_.materials.size());
+  /// What the vertex that was added last looks like.
+  void add_look(const Vertices& vertices, const PlacedNode& placed, std::uint32_t index) {
+    const Look& look = vertices.look;
+    const std::size_t count = scene_.soup.positions.size();
+    const auto put = [count](auto& list, const auto& value, const auto& otherwise) {
+      list.resize(count - 1, otherwise);
+      list.push_back(value);
+    };
+    if (!look.normals.empty()) {
+      const glm::dmat3 turned = glm::transpose(glm::inverse(glm::dmat3(vertices.to_world(placed, index))));
+      const glm::dvec3 normal = turned * look.normals[index];
+      const double length = glm::length(normal);
+      const bool is_normal = length > 0 && std::isfinite(length);
+      put(scene_.looks.normals, is_normal ? glm::vec3(normal / length) : glm::vec3(0), glm::vec3(0));
     }
-    return model_.materials[static_cast<std::size_t>(look.material)];
+    if (!look.colors.empty()) put(scene_.looks.colors, look.colors[index], glm::vec4(1));
+    if (!look.places.empty()) put(scene_.looks.places, look.places[index], glm::dvec2(0));
+  }
+
+  /// Vertices without a look after the last that has one.
+  void complete_looks() {
+    const std::size_t count = scene_.soup.positions.size();
+    if (!scene_.looks.normals.empty()) scene_.looks.normals.resize(count, glm::vec3(0));
+    if (!scene_.looks.colors.empty()) scene_.looks.colors.resize(count, glm::vec4(1));
+    if (!scene_.looks.places.empty()) scene_.looks.places.resize(count, glm::dvec2(0));
   }
 
   /// The number of the light that the triangles from `first_triangle` on are the body of, if they are one.
-  std::optional<std::uint32_t> add_light(const tinygltf::Material& material, const Look& look, const PlacedNode& placed,
+  std::optional<std::uint32_t> add_light(const Look& look, const std::string& name, const PlacedNode& placed,
                                          std::size_t first_position, std::size_t first_triangle) {
-    const std::string place = fmt::format("/materials/{}", look.material);
-    glm::dvec3 radiance = checked_factor(material.emissiveFactor, glm::dvec3(0), place + "/emissiveFactor");
-    const auto extension = material.extensions.find("KHR_materials_emissive_strength");
-    if (extension != material.extensions.end() && extension->second.Has("emissiveStrength")) {
-      const tinygltf::Value& strength = extension->second.Get("emissiveStrength");
-      const double factor = strength.IsNumber() ? strength.GetNumberAsDouble() : -1;
-      if (!std::isfinite(factor) || factor < 0) {
-        throw InputError(
-            "{}/extensions/KHR_materials_emissive_strength/emissiveStrength: expected a number of 0 or more", place);
-      }
-      radiance *= factor;
-    }
+    const glm::dvec3& radiance = look.radiance;
     if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) return std::nullopt;
-    if (purpose_ == Purpose::mesh) {
+    if (is_mesh()) {
       ++emissive_;
       return std::nullopt;
     }
-    if (material.emissiveTexture.index >= 0) ++emissive_textures_;
-
     // Files hold single precision: a position is rounded by half a float's step at its distance from the node's
     // origin, and so is each coordinate; the world's own double rounding is nothing beside it.
     const auto positions = std::span(scene_.soup.positions).subspan(first_position);
@@ -248,21 +296,25 @@ class GltfImport {
       const auto first = static_cast<std::uint32_t>(first_position);
       body.push_back({t[0] - first, t[1] - first, t[2] - first});
     }
+    AreaLight light;
     const FlatLight shape = recognise_flat_light(positions, body, rounding);
     if (const auto* why_not = std::get_if<std::string>(&shape)) {
-      scene_.warnings.push_back(fmt::format(
-          "'{}' is emissive, but no area light, because {}; it is rendered as plain geometry", look.name, *why_not));
-      refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", look.name, *why_not);
-      return std::nullopt;
-    }
-    AreaLight light;
-    light.name = unique_name(light_names_, look.name);
-    if (const auto* rectangle = std::get_if<Rectangle>(&shape))
+      const auto sphere = recognise_sphere(positions, body, rounding);
+      if (!sphere) {
+        losses_.refuse(fmt::format("is emissive, but no area light, because {}; it would be plain geometry", *why_not),
+                       name);
+        refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", name, *why_not);
+        return std::nullopt;
+      }
+      light.shape = *sphere;
+    } else if (const auto* rectangle = std::get_if<Rectangle>(&shape)) {
       light.shape = *rectangle;
-    else
+    } else {
       light.shape = std::get<Polygon>(shape);
+    }
+    light.name = unique_name(light_names_, name);
     light.radiance = radiance;
-    light.two_sided = material.doubleSided;
+    light.two_sided = look.two_sided && !std::holds_alternative<Sphere>(light.shape);
     scene_.lights.push_back(std::move(light));
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
   }
@@ -280,13 +332,13 @@ class GltfImport {
                        model_.cameras.size());
     }
     const tinygltf::Camera& source = model_.cameras[static_cast<std::size_t>(node.camera)];
-    if (source.type != "perspective") {
-      ++other_cameras_;
-      return;
-    }
-    const double angle = source.perspective.yfov;
-    if (!(angle > 0 && angle < glm::radians(180.0))) {
+    const bool perspective = source.type == "perspective";
+    const double angle = source.perspective.yfov, height = 2 * source.orthographic.ymag;
+    if (perspective && !(angle > 0 && angle < glm::radians(180.0))) {
       throw InputError("/cameras/{}/perspective/yfov: {}; expected more than 0 and less than pi", node.camera, angle);
+    }
+    if (!perspective && !(height > 0 && std::isfinite(height))) {
+      throw InputError("/cameras/{}/orthographic/ymag: {}; expected a length above 0", node.camera, height / 2);
     }
     // A camera looks along −Z of its node, with +Y up (glTF 2.0, 3.10).
     const glm::dvec3 forward(placed.to_world * glm::dvec4(0, 0, -1, 0)), up(placed.to_world * glm::dvec4(0, 1, 0, 0));
@@ -298,7 +350,12 @@ class GltfImport {
     camera.eye = glm::dvec3(placed.to_world[3]);
     camera.target = camera.eye + glm::normalize(forward);
     camera.up = glm::normalize(up);
-    camera.vertical_fov = glm::degrees(angle);
+    if (perspective)
+      camera.vertical_fov = glm::degrees(angle);
+    else
+      camera.height = height;
+    const double aspect = perspective ? source.perspective.aspectRatio : 2 * source.orthographic.xmag / height;
+    if (aspect > 0 && std::isfinite(aspect)) camera.aspect = aspect;
     scene_.cameras.push_back(std::move(camera));
   }
 
@@ -314,51 +371,68 @@ class GltfImport {
         std::max(radius, std::numeric_limits<float>::min() * 1.0) / std::sin(glm::radians(camera.vertical_fov) / 2);
     camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.5, 0.5, 1));
     scene_.cameras.push_back(camera);
-    scene_.warnings.emplace_back(
-        "there is no perspective camera in the file; one that sees the whole scene was put in");
+    scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
   }
 
   void add_warnings() {
     const auto count = [&](std::uint64_t number, const char* what) {
       if (number > 0) scene_.warnings.push_back(fmt::format("{} {}", number, what));
     };
-    if (purpose_ != Purpose::mesh) lamps_.add_warnings(scene_.warnings);
-    count(other_cameras_, "orthographic cameras ignored");
+    if (!is_mesh()) lamps_.add_warnings(scene_.warnings);
     count(points_and_lines_, "primitives of points or lines skipped");
     count(without_positions_, "primitives without POSITION skipped");
     count(without_triangles_, "primitives with fewer than three vertices skipped");
     count(leftover_indices_, "indices at the end of primitives skipped: they make no whole triangle");
-    count(skinned_, "skinned meshes shown as modelled: skins are not supported");
-    count(morphed_, "primitives shown without their morph targets");
-    count(model_.animations.size(), "animations ignored");
     count(emissive_, "emissive objects are no lights here: those are the scene's");
-    if (purpose_ != Purpose::mesh)
-      count(textured_, "objects shown in their base colour factor: textures are not supported");
-    count(emissive_textures_, "emissive textures ignored: these lights shine evenly");
-    constexpr std::array<std::string_view, 3> kUnderstood{"KHR_materials_emissive_strength", "KHR_lights_punctual",
-                                                          "KHR_mesh_quantization"};
     for (const std::string& extension : model_.extensionsUsed) {
-      if (std::ranges::find(kUnderstood, extension) == kUnderstood.end()) {
-        scene_.warnings.push_back(fmt::format("extension {} ignored", extension));
-      }
+      if (std::ranges::find(kUnderstood, extension) != kUnderstood.end()) continue;
+      if (std::ranges::find(kWithoutEffect, extension) != kWithoutEffect.end()) continue;
+      scene_.warnings.push_back(fmt::format("extension {} ignored", extension));
     }
   }
 
   const tinygltf::Model& model_;
   Purpose purpose_;
+  bool lenient_;
   Scene scene_;
+  std::vector<std::optional<glm::dmat4>> to_world_;  // of each node; nothing for those that are not in the scene
+  Losses losses_;
   PunctualLights lamps_;
+  SurfaceReader surfaces_;
   std::set<std::string> object_names_, camera_names_, light_names_;
   std::string refused_lights_;
-  std::uint64_t other_cameras_ = 0, points_and_lines_ = 0, without_positions_ = 0, without_triangles_ = 0,
-                leftover_indices_ = 0, skinned_ = 0, morphed_ = 0, textured_ = 0, emissive_textures_ = 0, emissive_ = 0;
+  std::uint64_t points_and_lines_ = 0, without_positions_ = 0, without_triangles_ = 0, leftover_indices_ = 0,
+                emissive_ = 0;
 };
+
+/// Does anything but nodes move vertices?
+bool bends(const tinygltf::Model& model) {
+  const auto morphs = [](const tinygltf::Mesh& mesh) {
+    return std::ranges::any_of(mesh.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
+  };
+  return !model.skins.empty() || std::ranges::any_of(model.meshes, morphs);
+}
 
 Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOptions& options) {
   tinygltf::Model model;
   load_gltf_model(input, options.allow_outside, model);
+  const std::string name = input.name.filename().string();
   try {
-    return GltfImport(model, input.name.filename().string(), purpose, options).run();
+    const std::optional<Motion> motion = motion_of(model);
+    std::optional<glm::dvec3> origin;
+    if (bends(model) || (motion && options.time)) {
+      const Scene rest = GltfImport(model, name, Purpose::rest, options).run();
+      glm::dvec3 lower = rest.soup.positions.front(), upper = lower;
+      for (const glm::dvec3& p : rest.soup.positions) lower = glm::min(lower, p), upper = glm::max(upper, p);
+      origin = 0.5 * lower + 0.5 * upper;
+    }
+    std::vector<std::string> warnings;
+    if (options.time) pose_model(model, *options.time, warnings);
+    Scene scene = GltfImport(model, name, purpose, options).run();
+    scene.origin = origin;
+    scene.motion = motion;
+    scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());
+    return scene;
   } catch (const InputError& error) {
     throw InputError("{}: {}", input.name.string(), error.what());  // places alone do not say in which file
   }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -97,6 +98,22 @@ std::string_view check_glb(std::string_view bytes, const std::string& file) {
   return bytes.substr(kHeader + kChunkHeader, little_endian(bytes, kHeader));
 }
 
+/// A URI's percent signs undone.
+std::string decoded(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const auto* end = uri.data() + i + 3;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(uri.data() + i + 1, end, value, 16).ptr == end) {
+      text += static_cast<char>(value);
+      i += 2;
+    } else {
+      text += uri[i];
+    }
+  }
+  return text;
+}
+
 std::string without_line_ends(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
   std::ranges::replace(text, '\n', ' ');
@@ -113,9 +130,15 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
   Confinement confinement{input.folder.get(), std::filesystem::absolute(input.name).parent_path(), allow_outside, {}};
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(confined_files(confinement));
-  parser.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                           void*) { return true; },
-                        nullptr);
+  // As they are: who uses a picture decodes it.
+  parser.SetImageLoader(
+      [](tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* data, int count,
+         void*) {
+        // tinygltf does not check that a view lies in its buffer: bytes of views are looked at later, by read_view.
+        if (image->bufferView < 0) image->image.assign(data, data + count);
+        return true;
+      },
+      nullptr);
   std::string error, warning;  // its warnings are about images only
   const auto size = static_cast<unsigned>(bytes.size());
   const std::string here;  // names are looked for from the folder's descriptor
@@ -128,9 +151,15 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
     check_gltf_numbers(bytes, name);
     loaded = parser.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, here, tinygltf::NO_REQUIRE);
   }
-  // Images are not read, but they belong to the scene: no output may take their place.
-  for (const tinygltf::Image& image : model.images) {
-    if (!image.uri.empty()) mesh::note_opened_file(confinement.folder_name / image.uri);
+  // Files of images are opened here, by the names that the file gives them and no other place.
+  for (tinygltf::Image& image : model.images) {
+    if (image.uri.empty() || !image.image.empty()) continue;
+    const std::string file = decoded(image.uri);
+    mesh::note_opened_file(confinement.folder_name / file);  // no output may take its place
+    if (const Descriptor content = confinement.open(file); content.is_open()) {
+      const std::string data = mesh::read_content(content.get(), file);
+      image.image.assign(data.begin(), data.end());
+    }
   }
   if (!confinement.refused.empty() && !loaded) {
     throw InputError("{}: it refers to {}, which is outside its folder; copy it there or pass --allow-outside", name,

@@ -13,10 +13,12 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   const mesh::InputFile input = mesh::open_input(file);
   mesh::HelperJob job{"gltf", input, {}};
   if (options.allow_outside) job.flags.emplace_back("--allow-outside");
+  if (options.lenient) job.flags.emplace_back("--lenient");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
   // {} gives the shortest text that is this very number again.
   if (options.lamp_radius) job.flags.push_back(fmt::format("--lamp-radius={}", *options.lamp_radius));
   if (options.sun_angle) job.flags.push_back(fmt::format("--sun-angle={}", *options.sun_angle));
+  if (options.time) job.flags.push_back(fmt::format("--time={}", *options.time));
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {
     mesh::WireReader from(answer.payload);

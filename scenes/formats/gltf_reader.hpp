@@ -11,6 +11,7 @@ namespace penumbra::scenes {
 /// its limits, like every foreign file.
 ///
 ///  - The default scene's node tree; a node's mesh becomes one object a primitive, named after the node.
+///  - Skins and morph targets; animations of nodes (cameras and lamps too) and weights, at `options.time`.
 ///  - Perspective cameras; without one, a camera that sees everything, and a warning.
 ///  - Base colour factors; textures are counted in a warning.
 ///  - A flat convex primitive whose material is emissive is an area light (a rectangle or a polygon) with radiance

@@ -1,0 +1,36 @@
+#include "import/gltf/gltf_losses.hpp"
+
+#include "base/error.hpp"
+
+#include <algorithm>
+
+namespace penumbra::scenes {
+
+void Losses::add(std::vector<Loss>& losses, const std::string& what, const std::string& object) {
+  auto loss = std::ranges::find(losses, what, &Loss::what);
+  if (loss == losses.end()) loss = losses.insert(losses.end(), {what, {}});
+  if (std::ranges::find(loss->objects, object) == loss->objects.end()) loss->objects.push_back(object);
+}
+
+std::string Losses::text_of(const Loss& loss) {
+  constexpr std::size_t kMost = 4;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(loss.objects.size(), kMost); ++i)
+    names += fmt::format("{}'{}'", i == 0 ? "" : ", ", loss.objects[i]);
+  if (loss.objects.size() > kMost) names += fmt::format(" and {} more", loss.objects.size() - kMost);
+  return names + " " + loss.what;
+}
+
+void Losses::report(bool lenient, std::vector<std::string>& warnings) const {
+  std::vector<std::string> texts;
+  for (const Loss& loss : refused_) texts.push_back(text_of(loss));
+  if (!lenient && !texts.empty()) {
+    std::string all;
+    for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
+    throw InputError("{}. Shadows would be wrong: --lenient renders all the same, and warns", all);
+  }
+  for (const Loss& loss : mentioned_) texts.push_back(text_of(loss));
+  warnings.insert(warnings.begin(), texts.begin(), texts.end());
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace penumbra::scenes {
+
+/// What a file has and the scene will not, with the names of the objects that it is about.
+class Losses {
+ public:
+  /// It changes a shadow, or takes one away: refused unless the user is lenient. `what` follows the names.
+  void refuse(const std::string& what, const std::string& object) { add(refused_, what, object); }
+  /// It changes how a surface looks.
+  void mention(const std::string& what, const std::string& object) { add(mentioned_, what, object); }
+
+  /// Throws InputError with all that is refused; if `lenient`, that becomes warnings. What matters more comes first.
+  void report(bool lenient, std::vector<std::string>& warnings) const;
+
+ private:
+  struct Loss {
+    std::string what;
+    std::vector<std::string> objects;
+  };
+  static void add(std::vector<Loss>& losses, const std::string& what, const std::string& object);
+  static std::string text_of(const Loss& loss);
+
+  std::vector<Loss> refused_, mentioned_;
+};
+
+}  // namespace penumbra::scenes

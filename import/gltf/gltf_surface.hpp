@@ -1,0 +1,73 @@
+#pragma once
+
+#include "import/gltf/gltf_losses.hpp"
+#include "scenes/scene.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tinygltf {
+class Model;
+struct Material;
+struct Primitive;
+struct TextureInfo;
+}  // namespace tinygltf
+
+namespace penumbra::scenes {
+
+/// What a primitive's material and vertices say of how it looks.
+struct Look {
+  glm::dvec3 color{1};     ///< linear base colour
+  glm::dvec3 radiance{0};  ///< what it emits
+  bool two_sided = false;
+  std::string material;  ///< its name
+  std::optional<PictureUse> picture = {};
+  Alpha alpha = {};
+  /// Of the primitive's vertices; empty: none.
+  std::vector<glm::dvec3> normals = {};  ///< where it was modelled
+  std::vector<glm::vec4> colors = {};
+  std::vector<glm::dvec2> places = {};
+};
+
+/// Reads materials, textures and vertices' attributes. Surfaces are diffuse here: what else glTF says of them goes to
+/// the losses, under the objects' names.
+class SurfaceReader {
+ public:
+  /// All must outlive it. Pictures are added to `pictures` as they are used.
+  SurfaceReader(const tinygltf::Model& model, std::vector<Picture>& pictures, Losses& losses)
+      : model_(model), pictures_(pictures), losses_(losses) {}
+
+  /// `place` and `object`: the primitive's, for messages; `vertices`: how many it has. Throws InputError.
+  Look read(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
+            std::size_t vertices);
+
+ private:
+  void read_material(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
+                     Look& look);
+  void read_picture(const tinygltf::Primitive& primitive, const std::string& object, Look& look);
+  std::optional<std::uint32_t> picture_of(int texture, const std::string& place, std::string& why_not);
+
+  const tinygltf::Model& model_;
+  std::vector<Picture>& pictures_;
+  Losses& losses_;
+  std::map<int, std::optional<std::uint32_t>> known_;  // of images
+  std::map<int, std::string> unreadable_;
+};
+
+/// The least and the greatest alpha that the surface may have anywhere, over these of its vertices.
+struct AlphaRange {
+  double least = 1, greatest = 1;
+};
+AlphaRange alpha_range(const Look& look, std::span<const Picture> pictures);
+
+/// What its alpha makes of a whole surface: nothing stops light (`gone`), everything does, or neither.
+enum class Opacity { solid, gone, neither };
+Opacity opacity_of(const Look& look, std::span<const Picture> pictures);
+
+}  // namespace penumbra::scenes
