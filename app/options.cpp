@@ -45,7 +45,8 @@ visibility::SamplePattern parse_pattern(const std::string& text) {
   throw UsageError("--sample-pattern {}: expected rows, grid, sobol or jittered", text);
 }
 
-/// A label becomes a file name: what a shell, a URL or a file system could stumble over becomes '_'.
+}  // namespace
+
 std::string file_name_of(std::string_view label) {
   std::string name(label);
   std::ranges::replace_if(
@@ -56,8 +57,6 @@ std::string file_name_of(std::string_view label) {
       '_');
   return name;
 }
-
-}  // namespace
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("SCENE", options.scene, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
@@ -72,9 +71,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->capture_default_str();
   command.add_option("--size", options.size, "image size in pixels (default: the scene's)")->type_name("WxH");
   command
-      .add_option("--light", options.light,
-                  "the light that comes first: channel V, --bits, error (default: the scene's first)")
-      ->type_name("NAME");
+      .add_option("--light", options.lights,
+                  "only this light; may be given again, and the first comes first: channel V, --bits, error (default: "
+                  "all of the scene's)")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command.add_option("--camera", options.camera, "camera to look through (default: the scene's first)")
       ->type_name("NAME");
   command
@@ -84,6 +85,15 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command.add_flag("--allow-outside", options.allow_outside, "let a scene name files outside its own folder");
+  command
+      .add_option(
+          "--normals", options.normals,
+          "of the beauty: geometric (facets), or shading (the file's smooth ones); visibility is the triangles' "
+          "(default: geometric)")
+      ->type_name("NAME");
+  command.add_flag(
+      "--lenient", options.lenient,
+      "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
   add_lamp_options(command, options.lamps);
 }
 
@@ -137,6 +147,12 @@ visibility::SampleRequest parse_light_samples(const RunOptions& options) {
   return request;
 }
 
+bool parse_normals(const std::string& text) {
+  if (!text.empty() && text != "geometric" && text != "shading")
+    throw UsageError("--normals {}: expected geometric or shading", text);
+  return text == "shading";
+}
+
 std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text) {
   const auto size = parse_product(text);
   if (!size || size->first == 0 || size->second == 0 || size->first > kLongestSide || size->second > kLongestSide) {
@@ -145,34 +161,10 @@ std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text) {
   return *size;
 }
 
-FrameRange parse_frames(std::string_view text) {
-  const auto dash = text.find('-', 1);  // from 1: a first frame may be negative
-  if (dash != std::string_view::npos) {
-    const auto first = parse_integer<std::int64_t>(text.substr(0, dash));
-    const auto last = parse_integer<std::int64_t>(text.substr(dash + 1));
-    if (first && last && *first <= *last && *last - *first < 100'000) return {*first, *last};
-  }
-  throw UsageError("--frames {}: expected A-B with A not above B and fewer than 100000 frames, such as 1-24", text);
-}
-
 visibility::MethodOptions parse_method_options(const std::vector<std::string>& texts) {
   visibility::MethodOptions options;
   for (const std::string& text : texts) insert_option(options, text);
   return options;
-}
-
-std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame) {
-  const std::string name = out.filename().string();
-  if (const auto percent = name.find('%'); percent != std::string::npos) {
-    auto end = percent + 1;
-    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0) ++end;
-    const auto width = parse_integer<int>(std::string_view(name).substr(percent + 1, end - percent - 1));
-    if (end < name.size() && name[end] == 'd' && width.value_or(1) <= 20) {
-      return out.parent_path() /
-             fmt::format("{}{:0{}}{}", name.substr(0, percent), frame, width.value_or(1), name.substr(end + 1));
-    }
-  }
-  return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
 }
 
 std::vector<MethodEntry> parse_methods(std::string_view text) {

@@ -18,10 +18,6 @@ class App;
 
 namespace penumbra::app {
 
-struct FrameRange {
-  std::int64_t first = 0, last = 0;
-};
-
 /// Of glTF lamps whose file gives none.
 struct LampSizes {
   std::optional<double> radius, sun_angle;
@@ -33,10 +29,13 @@ struct RunOptions {
   std::filesystem::path out;
   std::string light_samples, sample_pattern;  ///< empty: nobody asked for any; then 256 and rows
   std::uint32_t sample_seed = 0;
-  std::string size;                   ///< empty: the scene's
-  std::string light, camera, device;  ///< empty: the first, the first, the best
+  std::string size;                 ///< empty: the scene's
+  std::vector<std::string> lights;  ///< these alone, in this order; empty: all
+  std::string camera, device;       ///< empty: the first, the best
   std::vector<std::string> method_options;
   bool allow_outside = false;
+  bool lenient = false;
+  std::string normals;  ///< empty: geometric
   LampSizes lamps;
 };
 
@@ -49,14 +48,14 @@ void add_run_options(CLI::App& command, RunOptions& options);
 scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside);
 /// "256" or "16x16"; 1 … 4096 samples. All parsers here throw UsageError that says what would be right.
 visibility::SampleRequest parse_light_samples(const RunOptions& options);
+/// --normals: shading ones?
+bool parse_normals(const std::string& text);
 /// "1920x1080" → width, height.
 std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text);
-/// "A-B", A ≤ B.
-FrameRange parse_frames(std::string_view text);
 /// KEY=VALUE texts → options; a key given twice is an error.
 visibility::MethodOptions parse_method_options(const std::vector<std::string>& texts);
-/// OUT.exr and frame 7 → OUT.0007.exr; a name that holds "%04d" (any width) gets the number there.
-std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame);
+/// A label as a file's name: what a shell, a URL or a file system could stumble over becomes '_'.
+std::string file_name_of(std::string_view label);
 
 /// One entry of `--methods`: a name with options of its own.
 struct MethodEntry {

@@ -2,15 +2,13 @@
 
 #include "app/methods.hpp"
 #include "base/error.hpp"
-#include "base/exr.hpp"
 #include "compare/beauty.hpp"
+#include "compare/error_picture.hpp"
 #include "compare/machine.hpp"
 
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -18,23 +16,22 @@
 namespace penumbra::app {
 namespace {
 
-std::string options_text(const visibility::MethodOptions& options) {
-  std::string text;
-  for (const auto& [key, value] : options) text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, value);
-  return text;
+/// Rows [tile.first_row, + row_count) as view samples of their own.
+visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibility::Tile& tile) {
+  const auto first = static_cast<std::ptrdiff_t>(std::size_t{tile.first_row} * all.width);
+  const auto end = first + static_cast<std::ptrdiff_t>(std::size_t{tile.row_count} * all.width);
+  visibility::ViewSamples rows;
+  rows.width = all.width;
+  rows.height = tile.row_count;
+  rows.triangle.assign(all.triangle.begin() + first, all.triangle.begin() + end);
+  rows.p.assign(all.p.begin() + first, all.p.begin() + end);
+  rows.n.assign(all.n.begin() + first, all.n.begin() + end);
+  rows.depth.assign(all.depth.begin() + first, all.depth.begin() + end);
+  rows.eye = all.eye;
+  return rows;
 }
 
-const char* beauty_text(visibility::Output output) {
-  switch (output) {
-    case visibility::Output::mask:
-      return "radiance and cosines integrated sample by sample, each with its cell of the light";
-    case visibility::Output::scalar:
-      return "V times the unshadowed integral";
-    case visibility::Output::radiance:
-      return "radiance and cosines integrated over the visible part of the light";
-  }
-  return "?";
-}
+}  // namespace
 
 std::uint32_t samples_of(const LabelledLights& all, std::size_t light) {
   return all.label(light).description.gives_area() ? 0 : all.lights[light].sample_count();
@@ -56,59 +53,55 @@ compare::LightStats light_stats(const LabelledLights& all, std::size_t light) {
           .sample_pattern = pattern_of(all, light).value_or("")};
 }
 
-/// `lights` of stats.json, without the seconds: the same command gives the same bytes.
-std::string lights_text(const LabelledLights& all) {
-  auto rows = nlohmann::ordered_json::array();
-  for (std::size_t light = 0; light < all.lights.size(); ++light) {
-    rows.push_back(compare::to_json(light_stats(all, light)));
-    rows.back().erase("seconds");
-  }
-  return rows.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-/// Rows [tile.first_row, + row_count) as view samples of their own.
-visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibility::Tile& tile) {
-  const auto first = static_cast<std::ptrdiff_t>(std::size_t{tile.first_row} * all.width);
-  const auto end = first + static_cast<std::ptrdiff_t>(std::size_t{tile.row_count} * all.width);
-  visibility::ViewSamples rows;
-  rows.width = all.width;
-  rows.height = tile.row_count;
-  rows.triangle.assign(all.triangle.begin() + first, all.triangle.begin() + end);
-  rows.p.assign(all.p.begin() + first, all.p.begin() + end);
-  rows.n.assign(all.n.begin() + first, all.n.begin() + end);
-  rows.depth.assign(all.depth.begin() + first, all.depth.begin() + end);
-  rows.eye = all.eye;
-  return rows;
-}
-
-/// The components of interleaved vectors or colours as channels that need no copy.
-void add_components(ExrImage& image, std::array<const char*, 3> names, std::span<const glm::vec3> values) {
-  const auto* floats = &values.front().x;
-  for (std::size_t c = 0; c < 3; ++c) {
-    image.channels.push_back({names[c], std::span<const float>(floats + c, 3 * values.size() - 2), 3});
-  }
-}
-
-}  // namespace
-
 BeautyAccumulator::BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights)
-    : session_(session), lights_(lights), pixels_(session.pixel_count(), glm::vec3(0)) {
-  for (const scenes::Object& object : session.scene.objects) colors_.push_back(object.color);
-}
+    : session_(session),
+      lights_(lights),
+      looks_(compare::look_at(session.scene, session.floats, session.samples, session.shading_normals)),
+      parts_(lights.size()) {}
 
 void BeautyAccumulator::add(const TileResult& result) {
   // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
+  std::vector<glm::vec3>& pixels = parts_[result.light];
+  pixels.resize(session_.pixel_count(), glm::vec3(0));
   const visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
   compare::LightVisibility seen;
   seen.form_factors = result.form_factors;
   seen.masks = result.masks;
-  if (result.form_factors.empty() && result.masks.empty()) seen.visibility = result.visibility;
-  const auto band =
-      compare::integrate_beauty({session_.floats, rows, colors_, lights_.subspan(result.light, 1)}, {&seen, 1});
-  const std::size_t first = std::size_t{result.tile.first_row} * session_.width;
+  if (result.masks.empty() && (result.form_factors.empty() || !looks_.normals.empty()))
+    seen.visibility = result.visibility;
+  const std::size_t first_pixel = std::size_t{result.tile.first_row} * session_.width;
+  const auto rows_from = [&](const auto& all) {
+    return all.empty() ? std::span(all) : std::span(all).subspan(first_pixel, rows.size());
+  };
+  const auto band = compare::integrate_beauty({.scene = session_.floats,
+                                               .samples = rows,
+                                               .colors = {},
+                                               .lights = lights_.subspan(result.light, 1),
+                                               .pixel_colors = rows_from(looks_.colors),
+                                               .normals = rows_from(looks_.normals)},
+                                              {&seen, 1});
   for (std::size_t i = 0; i < band.size(); ++i) {
-    if (!std::isnan(result.visibility[i])) pixels_[first + i] += band[i];  // what was not evaluated stays black
+    if (!std::isnan(result.visibility[i])) pixels[first_pixel + i] = band[i];  // what was not evaluated stays black
   }
+}
+
+std::vector<glm::vec3> BeautyAccumulator::sum() const {
+  std::vector<glm::vec3> pixels(session_.pixel_count(), glm::vec3(0));
+  for (const std::vector<glm::vec3>& part : parts_) {
+    for (std::size_t i = 0; i < part.size(); ++i) pixels[i] += part[i];
+  }
+  return pixels;
+}
+
+float auto_exposure(const Session& session, std::span<const glm::vec3> beauty) {
+  std::vector<glm::vec3> surfaces;
+  for (std::size_t i = 0; i < beauty.size(); ++i) {
+    const std::int32_t triangle = session.samples.triangle[i];
+    const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
+    if (!body) surfaces.push_back(beauty[i]);
+  }
+  const bool black = std::ranges::all_of(surfaces, [](const glm::vec3& color) { return color == glm::vec3(0); });
+  return compare::auto_exposure(black ? beauty : std::span<const glm::vec3>(surfaces));
 }
 
 void check_bits(const visibility::MethodDescription& description, const visibility::Light& light) {
@@ -140,51 +133,6 @@ void BitsOutput::commit() {
 std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device) {
   const bool vulkan = runs_on_device(description.name) && !description.gives_area();
   return vulkan ? vulkan_device : compare::this_machine().processor;
-}
-
-void write_picture(const std::filesystem::path& path, const Session& session, const LabelledLights& all,
-                   const MethodRun& run, std::span<const glm::vec3> beauty) {
-  const std::span<const visibility::Light> lights = all.lights;
-  const MethodLabel& label = all.label(0);
-  const visibility::ViewSamples& samples = session.samples;
-  const std::size_t count = session.pixel_count();
-  std::vector<float> alpha(count);
-  std::vector<std::uint32_t> id(count);
-  std::vector<glm::vec3> world(count, glm::vec3(0));
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool background = samples.triangle[i] == visibility::ViewSamples::kBackground;
-    alpha[i] = background ? 0.0f : 1.0f;
-    id[i] = static_cast<std::uint32_t>(samples.triangle[i]);  // background: 4294967295
-    if (!background) world[i] = glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
-  }
-
-  ExrImage image;
-  image.width = session.width;
-  image.height = session.height;
-  add_components(image, {"R", "G", "B"}, beauty);
-  image.channels.push_back({"A", std::span<const float>(alpha), 1});
-  image.channels.push_back({"V", std::span<const float>(run.visibility.front()), 1});
-  for (std::size_t light = 0; light < lights.size(); ++light) {
-    image.channels.push_back({"V." + lights[light].name, std::span<const float>(run.visibility[light]), 1});
-  }
-  add_vector_channels(image, "P", world);
-  add_vector_channels(image, "Prel", samples.p);
-  add_vector_channels(image, "N", samples.n);
-  image.channels.push_back({"Z", std::span<const float>(samples.depth), 1});
-  image.channels.push_back({"id", std::span<const std::uint32_t>(id), 1});
-
-  image.attributes = {{"penumbra.method", label.description.name},
-                      {"penumbra.options", options_text(label.options)},
-                      {"penumbra.output", visibility::name_of(label.description.output)},
-                      {"penumbra.beauty", beauty_text(label.description.output)},
-                      {"penumbra.lightSamples", fmt::format("{}", samples_of(all, 0))},
-                      {"penumbra.samplePattern", pattern_of(all, 0).value_or("null")},
-                      {"penumbra.lights", lights_text(all)},
-                      {"penumbra.scene", session.scene.name},
-                      {"penumbra.version", PENUMBRA_VERSION},
-                      {"penumbra.device", label.device}};
-  image.vectors = {{"penumbra.origin", session.floats.origin}};
-  write_exr(path, image);
 }
 
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run) {

@@ -4,6 +4,7 @@
 #include "app/runner.hpp"
 #include "app/session.hpp"
 #include "compare/stats.hpp"
+#include "compare/surface.hpp"
 #include "visibility/masks/bits_file.hpp"
 #include "visibility/method.hpp"
 
@@ -18,20 +19,27 @@
 
 namespace penumbra::app {
 
-/// The linear beauty of a run, tile by tile and light by light as results come, so that no light's masks need be kept.
+/// The linear beauty of a run, of each light alone, tile by tile and light by light as results come, so that no light's
+/// masks need be kept.
 class BeautyAccumulator {
  public:
   /// Both must outlive it.
   BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights);
   void add(const TileResult& result);
-  [[nodiscard]] const std::vector<glm::vec3>& pixels() const { return pixels_; }
+  /// For each light each pixel; empty for a light of which nothing came.
+  [[nodiscard]] const std::vector<std::vector<glm::vec3>>& parts() const { return parts_; }
+  /// All lights together, added in their order: what does not depend on the order in which they were done.
+  [[nodiscard]] std::vector<glm::vec3> sum() const;
 
  private:
   const Session& session_;
   std::span<const visibility::Light> lights_;
-  std::vector<glm::dvec3> colors_;
-  std::vector<glm::vec3> pixels_;
+  compare::SurfaceLooks looks_;
+  std::vector<std::vector<glm::vec3>> parts_;
 };
+
+/// compare::auto_exposure of what is no body of a light; of everything, if nothing else is seen.
+float auto_exposure(const Session& session, std::span<const glm::vec3> beauty);
 
 /// Throws UsageError if `--bits` cannot be had of this method and light.
 void check_bits(const visibility::MethodDescription& description, const visibility::Light& light);
@@ -73,9 +81,12 @@ struct LabelledLights {
   [[nodiscard]] const MethodLabel& label(std::size_t light) const { return labels[labels.size() == 1 ? 0 : light]; }
 };
 
-/// OUT.exr with all channels and attributes.
-void write_picture(const std::filesystem::path& path, const Session& session, const LabelledLights& lights,
-                   const MethodRun& run, std::span<const glm::vec3> beauty);
+/// Of one of them: 0 if V is an area.
+std::uint32_t samples_of(const LabelledLights& all, std::size_t light);
+/// Nothing if V is an area.
+std::optional<std::string> pattern_of(const LabelledLights& all, std::size_t light);
+/// What stats.json says of it, but for its seconds.
+compare::LightStats light_stats(const LabelledLights& all, std::size_t light);
 
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run);
 

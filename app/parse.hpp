@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -15,6 +16,12 @@ std::optional<Integer> parse_integer(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+/// The whole text as a finite number, or nothing.
+inline std::optional<double> parse_number(std::string_view text) {
+  const auto value = parse_integer<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// The parts between separators; of a text without any, the text.

@@ -36,7 +36,7 @@ void require_mesh_memory(const visibility::MethodDescription& method, const visi
 /// One run's times, of each light, and of meshes.
 struct OneRun {
   std::vector<LightTimes> lights;
-  double mesh = 0;
+  double mesh = 0, view = 0, read = 0;
 };
 
 double sum_of(const OneRun& run, double LightTimes::*time) {
@@ -57,10 +57,12 @@ class Host {
  public:
   Host(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
        Progress& progress)
-      : method_(method), session_(session), plan_(plan), sink_(sink), progress_(progress) {}
+      : method_(method), session_(session), plan_(plan), sink_(sink), progress_(progress), mesh_(plan.prepared) {}
+
+  [[nodiscard]] const visibility::SceneFloats* prepared() const { return mesh_; }
 
   OneRun run(bool last, MethodRun& result) {
-    OneRun times{std::vector<LightTimes>(plan_.lights.size()), 0};
+    OneRun times{std::vector<LightTimes>(plan_.lights.size())};
     for (const std::size_t light : chosen_lights(plan_)) {
       Stopwatch watch;
       {
@@ -74,14 +76,18 @@ class Host {
         watch.restart();
         method_.prepare_light(plan_.lights[light]);
         times.lights[light].light = watch.seconds();
+        watch.restart();
         method_.prepare_view(session_.samples);
+        times.view += watch.seconds();
       }
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
       rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
         times.lights[light].evaluate += evaluate(tile);
+        watch.restart();
         if (last) read(light, tile, result);
+        times.read += watch.seconds();
         progress_.advance(tile.row_count);
       }
       if (last) {
@@ -148,7 +154,7 @@ class Host {
   const RunPlan& plan_;
   const TileSink& sink_;
   Progress& progress_;
-  const visibility::SceneFloats* mesh_ = nullptr;  // that the method has
+  const visibility::SceneFloats* mesh_;  // that the method has
   std::vector<std::uint32_t> masks_;
   std::vector<glm::dvec3> form_factors_;
 };
@@ -163,6 +169,8 @@ void add_run(MethodRun& to, MethodRun&& other) {
   to.times.mesh += other.times.mesh;
   to.times.light += other.times.light;
   to.times.evaluate += other.times.evaluate;
+  to.times.view += other.times.view;
+  to.times.read += other.times.read;
   to.times.total += other.times.total;
   for (std::size_t light = 0; light < to.visibility.size(); ++light) {
     if (other.visibility[light].empty()) continue;
@@ -202,6 +210,8 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
     const bool last = run + 1 == plan.runs + discarded;
     OneRun times = host.run(last, result);
     if (run == 0) result.times.mesh = times.mesh;  // later runs prepare meshes anew only where lights' casters differ
+    result.times.view = times.view;
+    result.times.read = times.read;
     if (run < discarded) {
       first = std::move(times);
     } else {
@@ -225,6 +235,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
                           result.times.light - result.times.evaluate;
     result.times.warmup = std::max(longer, 0.0);
   }
+  result.prepared = host.prepared();
   result.passes = method.take_pass_times();
   result.memory_bytes = method.memory_bytes();
   result.times.total = total.seconds();

@@ -35,7 +35,9 @@ struct RunPlan {
   std::optional<std::vector<std::uint32_t>> pixels =
       {};                              ///< all that will be looked at (ascending); nothing: every pixel
   std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them
-  std::string stage = {};              ///< what the bar of progress says; empty: the method's name
+  /// The scene of the last run of this method, if nothing in it has changed: it is not prepared again.
+  const visibility::SceneFloats* prepared = nullptr;
+  std::string stage = {};  ///< what the bar of progress says; empty: the method's name
 };
 
 /// Of one light, medians where there were several runs.
@@ -46,6 +48,8 @@ struct LightTimes {
 /// Times of one method over all lights, in seconds: medians where there were several runs.
 struct RunTimes {
   double mesh = 0, light = 0, evaluate = 0;
+  double view = 0;                 ///< of the last run: handing view samples to the method
+  double read = 0;                 ///< of the last run: reading back, and sinks
   std::vector<LightTimes> lights;  ///< of each of the plan's; 0 for those that were not done
   std::optional<double> warmup;    ///< the discarded run's light + evaluate less the medians, >= 0; empty: no such run
   double total = 0;                ///< wall-clock of all that was done for this method, reading back and sinks included
@@ -57,6 +61,7 @@ struct MethodRun {
   std::vector<visibility::PassTime> passes;    ///< of the last run
   std::map<std::string, std::uint64_t> counters;
   std::uint64_t memory_bytes = 0;
+  const visibility::SceneFloats* prepared = nullptr;  ///< what the method holds now (RunPlan::prepared)
 };
 
 /// Adds what another method made of other lights of the same plan.

@@ -6,12 +6,13 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
-#include "render/visibility_buffer.hpp"
-#include "scenes/formats/reader.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace penumbra::app {
@@ -30,16 +31,60 @@ std::size_t find_named(const std::vector<Named>& elements, const std::string& wa
                    did_you_mean(wanted, names));
 }
 
+/// The scene's lights (indices) that are asked for, in the order asked for; all, if none is.
+std::vector<std::size_t> wanted_lights(const scenes::Scene& scene, const std::vector<std::string>& names,
+                                       const std::string& scene_name) {
+  std::vector<std::size_t> wanted;
+  for (const std::string& name : names) {
+    const std::size_t light = find_named(scene.lights, name, "--light", scene_name);
+    if (std::ranges::find(wanted, light) != wanted.end()) throw UsageError("--light {} is given twice", name);
+    wanted.push_back(light);
+  }
+  if (!names.empty()) return wanted;
+  wanted.resize(scene.lights.size());
+  std::iota(wanted.begin(), wanted.end(), std::size_t{0});
+  return wanted;
+}
+
+/// The scene's size, in the shape that the camera says: then its longer side is the scene's.
+std::pair<std::uint32_t, std::uint32_t> size_of(const scenes::Scene& scene, const scenes::Camera& camera) {
+  if (!camera.aspect) return {scene.width, scene.height};
+  const double longest = std::max(scene.width, scene.height), aspect = *camera.aspect;
+  const auto pixels = [&](double share) {
+    return static_cast<std::uint32_t>(std::max(1.0, std::round(longest * std::min(share, 1.0))));
+  };
+  return {pixels(aspect), pixels(1 / aspect)};
+}
+
 /// Refuses an image that this machine has no memory for, before minutes of work end in a killed process.
 void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights) {
-  // A pixel: view sample 48, scene colours and normals in the EXR 76, beauty 12 bytes; a light: V, class and its
-  // channel 9.
-  require_memory(width * height * (136 + 9 * lights), fmt::format("an image of {}x{} pixels", width, height),
+  // A pixel: view sample 48, scene colours, normals, depths and ids in the EXR 120, beauty 12 bytes; a light: V, class
+  // and channel 9, beauty and channels 24.
+  require_memory(width * height * (180 + 33 * lights), fmt::format("an image of {}x{} pixels", width, height),
                  "choose a smaller --size");
+}
+
+/// Do the two scenes, with the objects' flags, give the same scene floats?
+bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
+  const auto alike = [](const scenes::Object& one, const scenes::Object& other) {
+    return one.casts_shadow == other.casts_shadow && one.receives_shadow == other.receives_shadow &&
+           one.emits == other.emits;
+  };
+  return a.origin == b.origin && a.soup.positions == b.soup.positions && a.soup.triangles == b.soup.triangles &&
+         a.soup.object == b.soup.object && std::ranges::equal(a.objects, b.objects, alike);
+}
+
+/// For each light, whom its own scene leaves out (Light::unshaded_by).
+std::vector<std::vector<std::uint8_t>> casters_of(const std::vector<visibility::Light>& lights) {
+  std::vector<std::vector<std::uint8_t>> all;
+  for (const visibility::Light& light : lights) all.push_back(light.unshaded_by);
+  return all;
 }
 
 /// Lights with the same casters share a scene.
 void link_casters(Session& session) {
+  session.linked.clear();
+  session.linked_of.clear();
   std::vector<const std::vector<std::uint8_t>*> known;
   for (const visibility::Light& light : session.lights) {
     std::optional<std::size_t>& own = session.linked_of.emplace_back();
@@ -62,64 +107,98 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-Session open_session(const RunOptions& options, DeviceSource& devices, std::uint32_t runs, Progress& progress) {
-  const Stopwatch open;
-  Session session;
-  progress.begin("reading " + options.scene.filename().string(), 1);
-  // What is wrong with the command line is said before anything long begins.
-  const visibility::SampleRequest request = parse_light_samples(options);
-  const scenes::ReadOptions reading = read_options(options.lamps, options.allow_outside);
-  const auto size = options.size.empty() ? std::pair<std::uint32_t, std::uint32_t>{} : parse_size(options.size);
+SessionMaker::SessionMaker(const RunOptions& options, DeviceSource& devices)
+    : options_(options), devices_(devices), request_(parse_light_samples(options)) {
+  if (!options.size.empty()) size_ = parse_size(options.size);
+  session_.shading_normals = parse_normals(options.normals);
+}
 
+void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress) {
+  const bool first = session_.floats.triangles.empty();
+  const bool changed = first || !same_mesh(session_.scene, scene);
   Stopwatch load;
-  {
-    const MayExitAtOnce at_once;
-    session.scene = scenes::read_scene(options.scene, reading);
-  }
-  session.warnings = session.scene.warnings;
-  session.width = options.size.empty() ? session.scene.width : size.first;
-  session.height = options.size.empty() ? session.scene.height : size.second;
-  const std::string scene_name = options.scene.string();
-  const std::size_t first_light = find_named(session.scene.lights, options.light, "--light", scene_name);
-  session.camera_index = find_named(session.scene.cameras, options.camera, "--camera", scene_name);
-  require_image_memory(session.width, session.height, session.scene.lights.size());
+  session_.scene = std::move(scene);
+  session_.warnings = session_.scene.warnings;
+  const std::string scene_name = options_.scene.string();
+  const std::vector<std::size_t> wanted = wanted_lights(session_.scene, options_.lights, scene_name);
+  session_.camera_index = find_named(session_.scene.cameras, camera, "--camera", scene_name);
+  const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
+  std::tie(session_.width, session_.height) = size_.value_or(size_of(session_.scene, seen_by));
+  require_image_memory(session_.width, session_.height, wanted.size());
 
-  session.floats = visibility::make_scene_floats(session.scene);
-  session.camera = visibility::make_camera(session.scene.cameras[session.camera_index], session.floats.origin,
-                                           session.width, session.height);
-  for (std::size_t i = 0; i < session.scene.lights.size(); ++i) {
-    // The chosen light moves to the front; the others keep their order.
-    const std::size_t index = i == 0 ? first_light : i <= first_light ? i - 1 : i;
-    session.lights.push_back(visibility::make_light(session.scene, static_cast<std::uint32_t>(index),
-                                                    session.floats.origin, request,
-                                                    i == 0 ? &session.warnings : nullptr));
+  if (changed) {
+    session_.floats = visibility::make_scene_floats(session_.scene);
+    ++session_.mesh_version;
   }
-  link_casters(session);
-  double load_seconds = load.seconds();
+  session_.camera = visibility::make_camera(seen_by, session_.floats.origin, session_.width, session_.height);
+  const auto casters = casters_of(session_.lights);
+  session_.lights.clear();
+  for (const std::size_t light : wanted) {
+    session_.lights.push_back(visibility::make_light(session_.scene, static_cast<std::uint32_t>(light),
+                                                     session_.floats.origin, request_,
+                                                     light == wanted.front() ? &session_.warnings : nullptr));
+  }
+  if (changed || casters != casters_of(session_.lights)) {
+    link_casters(session_);
+    if (!changed) ++session_.mesh_version;
+  }
+  session_.load_seconds = load.seconds();
 
-  const render::Device& device = devices.device();  // its start-up is nobody's time
+  const Stopwatch start_up;
+  const render::Device& device = devices_.device();
+  session_.device_seconds = start_up.seconds();
   load.restart();
-  render::VisibilityBuffer buffer(device, session.floats);
-  session.load_seconds = load_seconds + load.seconds();
+  if (changed) {
+    buffer_.reset();
+    buffer_.emplace(device, session_.floats);
+  }
+  session_.load_seconds += load.seconds();
 
   progress.begin("view samples", runs + 1);
   std::vector<double> view_seconds;
   for (std::uint32_t run = 0; run <= runs; ++run) {
     const MayExitAtOnce at_once;
     const Stopwatch view;
-    session.samples = buffer.render(session.camera);
+    session_.samples = buffer_->render(session_.camera);
     view_seconds.push_back(view.seconds());
     progress.advance();
   }
   if (view_seconds.size() > 1) view_seconds.erase(view_seconds.begin());
-  session.view_seconds = median(std::move(view_seconds));
+  session_.view_seconds = median(std::move(view_seconds));
 
-  progress.begin("receivers", session.lights.size());
-  for (const visibility::Light& light : session.lights) {
+  progress.begin("receivers", session_.lights.size());
+  const Stopwatch receivers;
+  session_.classes.clear();
+  for (const visibility::Light& light : session_.lights) {
     const MayExitAtOnce at_once;
-    session.classes.push_back(visibility::classify_pixels(session.floats, session.samples, light));
+    session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
     progress.advance();
   }
+  session_.receiver_seconds = receivers.seconds();
+}
+
+scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time) {
+  scenes::ReadOptions reading = read_options(options.lamps, options.allow_outside);
+  reading.time = time;
+  reading.lenient = options.lenient;
+  return scenes::read_scene(options.scene, reading);
+}
+
+Session open_session(const RunOptions& options, DeviceSource& devices, std::uint32_t runs, Progress& progress) {
+  const Stopwatch open;
+  progress.begin("reading " + options.scene.filename().string(), 1);
+  // What is wrong with the command line is said before anything long begins.
+  SessionMaker maker(options, devices);
+  const Stopwatch load;
+  scenes::Scene scene;
+  {
+    const MayExitAtOnce at_once;
+    scene = read_session_scene(options, {});
+  }
+  const double read_seconds = load.seconds();
+  maker.show(std::move(scene), options.camera, runs, progress);
+  Session session = maker.take();
+  session.load_seconds += read_seconds;
   session.open_seconds = open.seconds();
   return session;
 }

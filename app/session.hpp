@@ -3,6 +3,7 @@
 #include "app/device_source.hpp"
 #include "app/options.hpp"
 #include "app/process/progress.hpp"
+#include "render/visibility_buffer.hpp"
 #include "scenes/scene.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
@@ -11,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::app {
@@ -24,11 +26,15 @@ struct Session {
   std::size_t camera_index = 0;                 ///< the chosen one of scene.cameras
   visibility::PinholeCamera camera;
   visibility::ViewSamples samples;
-  std::vector<visibility::Light> lights;  ///< the chosen one first, then the others in the scene's order
+  std::vector<visibility::Light> lights;                     ///< those asked for, in that order, or all of the scene's
   std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
-  double load_seconds = 0;  ///< reading the scene, its floats, and handing them to the visibility buffer
-  double view_seconds = 0;  ///< finding the view samples: the median of the runs asked for
-  double open_seconds = 0;  ///< wall-clock of all that made this session
+  bool shading_normals = false;                              ///< of beauty: vertices' normals, where there are any
+  std::uint64_t mesh_version = 0;                            ///< another number, another scene to prepare methods for
+  double load_seconds = 0;      ///< reading the scene, its floats, and handing them to the visibility buffer
+  double device_seconds = 0;    ///< starting the device
+  double receiver_seconds = 0;  ///< classes
+  double view_seconds = 0;      ///< finding the view samples: the median of the runs asked for
+  double open_seconds = 0;      ///< wall-clock of all that made this session
   std::vector<std::string> warnings;
 
   std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, its own among these; nothing: `floats`
@@ -39,6 +45,34 @@ struct Session {
     return light < linked_of.size() && linked_of[light] ? linked[*linked_of[light]] : floats;
   }
 };
+
+/// Makes a session, and makes it again of the same scene at other times or from other cameras: what has not changed
+/// since is kept, where methods look for it too. An object that stays where it is, since its session is looked at.
+class SessionMaker {
+ public:
+  /// Both must outlive it. Throws UsageError for what is wrong with the options.
+  SessionMaker(const RunOptions& options, DeviceSource& devices);
+  SessionMaker(const SessionMaker&) = delete;
+  SessionMaker& operator=(const SessionMaker&) = delete;
+
+  /// `camera`: its name; empty: the first. View samples are found once if `runs` is 0, else `runs` times after a
+  /// discarded one.
+  void show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress);
+  [[nodiscard]] const Session& session() const { return session_; }
+  /// Gives it away: this object is of no more use.
+  Session take() { return std::move(session_); }
+
+ private:
+  const RunOptions& options_;
+  DeviceSource& devices_;
+  visibility::SampleRequest request_;
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> size_;
+  Session session_;
+  std::optional<render::VisibilityBuffer> buffer_;
+};
+
+/// The scene at a time of its animation; at rest without one.
+scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time);
 
 /// Reads the scene and finds its view samples on the device; once if `runs` is 0, else `runs` times after a
 /// discarded one.

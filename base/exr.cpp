@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
@@ -96,6 +97,14 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
     check_name(path, "attribute's name", name);
     header.insert(name, Imf::V3dAttribute(Imath::V3d(value.x, value.y, value.z)));
   }
+  for (const auto& [name, value] : image.matrices) {
+    check_name(path, "attribute's name", name);
+    Imath::M44f matrix;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) matrix[i][j] = value[i][j];
+    }
+    header.insert(name, Imf::M44fAttribute(matrix));
+  }
 
   Imf::FrameBuffer pixels;
   std::set<std::string> names;
@@ -150,6 +159,11 @@ ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selectio
       } else if (const auto* vector = dynamic_cast<const Imf::V3dAttribute*>(&attribute.attribute())) {
         const Imath::V3d& v = vector->value();
         file.vectors[attribute.name()] = {v.x, v.y, v.z};
+      } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute.attribute())) {
+        glm::mat4& to = file.matrices[attribute.name()];
+        for (int i = 0; i < 4; ++i) {
+          for (int j = 0; j < 4; ++j) to[i][j] = matrix->value()[i][j];
+        }
       }
     }
     Imf::FrameBuffer pixels;
@@ -171,8 +185,10 @@ ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selectio
         insert(channel.name(), Imf::FLOAT, file.floats[channel.name()]);
       }
     }
-    input.setFrameBuffer(pixels);
-    input.readPixels(window.min.y, window.max.y);
+    if (pixels.begin() != pixels.end()) {
+      input.setFrameBuffer(pixels);
+      input.readPixels(window.min.y, window.max.y);
+    }
     return file;
   } catch (const Error&) {
     throw;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -29,6 +30,10 @@ struct ExrImage {
   std::vector<ExrChannel> channels;
   std::map<std::string, std::string> attributes;  ///< header attributes of type string, by full name ("penumbra.scene")
   std::map<std::string, glm::dvec3> vectors;      ///< header attributes of three doubles ("penumbra.origin")
+  /// Header attributes of 4 x 4 floats ("worldToCamera"). OpenEXR's row vectors stand on the left of a matrix whose
+  /// rows follow each other in memory; glm's column vectors stand on the right of one whose columns do: the same 16
+  /// numbers.
+  std::map<std::string, glm::mat4> matrices = {};
 };
 
 /// The three components "<layer>.X", ".Y", ".Z" of an array of vectors, which must outlive them.
@@ -47,6 +52,7 @@ struct ExrFile {
   std::map<std::string, std::vector<std::uint32_t>> integers;
   std::map<std::string, std::string> attributes;
   std::map<std::string, glm::dvec3> vectors;
+  std::map<std::string, glm::mat4> matrices;
 };
 
 struct ExrSelection {

@@ -26,10 +26,10 @@ glm::dvec3 radiance_at(const visibility::Light& light, const glm::vec3& p) {
   return light.radiance * glm::dvec3(light.texture->colors[light.texture->texel_at(st)]);
 }
 
-/// The form factor of what a shadowed pixel sees of the light.
+/// The form factor of what a shadowed pixel sees of the light; `bent`: its normal is not its triangle's.
 glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const LightVisibility& seen, std::size_t pixel,
-                          std::size_t words) {
-  if (!seen.form_factors.empty()) return seen.form_factors[pixel];
+                          std::size_t words, bool bent) {
+  if (!seen.form_factors.empty() && (!bent || seen.visibility.empty())) return seen.form_factors[pixel];
   if (!seen.masks.empty()) return light.visible(at, seen.masks.subspan(pixel * words, words));
   const double share = seen.visibility[pixel];
   return share == 0 ? glm::dvec3(0) : share * light.unshadowed(at);
@@ -44,14 +44,15 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     if (in.scene.emits[triangle] >= 0) continue;
     if (!is_lit_by(in.scene, light, static_cast<std::uint32_t>(triangle))) continue;
-    const visibility::UnshadowedLight view(light, in.samples.p[i], in.samples.n[i]);
+    const bool bent = !in.normals.empty() && in.normals[i] != in.samples.n[i];
+    const visibility::UnshadowedLight view(light, in.samples.p[i], bent ? in.normals[i] : in.samples.n[i]);
     if (!view.shines()) continue;
     const LitPoint at{view, in.samples.p[i]};
     const bool shadowed = in.scene.receives_shadow[triangle] != 0;
     const glm::dvec3 form_factor =
-        shadowed ? form_factor_of(at, visible, seen, i, light.words_per_mask()) : visible.unshadowed(at);
-    beauty[i - begin] +=
-        in.colors[in.scene.object[triangle]] * light.radiance * spot_share(light, in.samples.p[i]) * form_factor;
+        shadowed ? form_factor_of(at, visible, seen, i, light.words_per_mask(), bent) : visible.unshadowed(at);
+    const glm::dvec3 color = in.pixel_colors.empty() ? in.colors[in.scene.object[triangle]] : in.pixel_colors[i];
+    beauty[i - begin] += color * light.radiance * spot_share(light, in.samples.p[i]) * form_factor;
   }
 }
 

@@ -13,7 +13,8 @@
 namespace penumbra::compare {
 
 /// What a method said about one light, one entry a pixel: form factors if it integrates cosines itself, else masks
-/// (words_per_mask() words a pixel) if it makes them, else V. Exactly one of the three is not empty.
+/// (words_per_mask() words a pixel) if it makes them, else V. Exactly one of the three is not empty, but that V comes
+/// with form factors if there are shading normals.
 struct LightVisibility {
   std::span<const std::uint32_t> masks = {};
   std::span<const float> visibility = {};
@@ -26,6 +27,8 @@ struct BeautyScene {
   const visibility::ViewSamples& samples;
   std::span<const glm::dvec3> colors;  ///< linear base colour of each object
   std::span<const visibility::Light> lights;
+  std::span<const glm::dvec3> pixel_colors = {};  ///< of each pixel, in place of the objects' (compare/surface.hpp)
+  std::span<const glm::vec3> normals = {};        ///< of each pixel, for cosines, in place of the samples' own
 };
 
 /// The linear beauty of each pixel, for diffuse surfaces lit directly:
@@ -43,6 +46,10 @@ struct BeautyScene {
 /// visibility out of the integral: where the light is half hidden the two differ by what a method that only knows V
 /// cannot know. As the number of light samples grows, the second becomes the integral. Where nothing hides the light
 /// all are the same to the last bit. docs/radiance.md has derivations and errors.
+///
+/// With shading normals (BeautyScene::normals) cosines are theirs, and light comes from what is visible all the same:
+/// V and masks know only the triangle and what is above its plane, so the terminator is where either normal turns away.
+/// Form factors are of the triangle's own normal: where a pixel has another, its beauty is V · F of the whole light.
 ///
 /// Pixels of a light's body show its radiance (with a texture, times the texel that is there or nearest; black if that
 /// light is not among `lights`: it is off), the background is 0, and what receives no shadow is lit as if nothing stood

@@ -14,6 +14,7 @@ Json to_json(const Seconds& seconds) {
   return {{"load", or_null(seconds.load)},         {"mesh", or_null(seconds.mesh)},
           {"view", or_null(seconds.view)},         {"light", or_null(seconds.light)},
           {"evaluate", or_null(seconds.evaluate)}, {"shadow", or_null(seconds.shadow())},
+          {"beauty", or_null(seconds.beauty)},     {"write", or_null(seconds.write)},
           {"warmup", or_null(seconds.warmup)},     {"total", or_null(seconds.total)}};
 }
 

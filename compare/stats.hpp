@@ -21,6 +21,8 @@ struct Seconds {
   std::optional<double> view;      ///< view samples: shared by all methods
   std::optional<double> light;     ///< redone when a light moves
   std::optional<double> evaluate;  ///< from stored view samples to V or masks in the method's memory
+  std::optional<double> beauty;    ///< reading back what a method found, and integrating it
+  std::optional<double> write;     ///< files
   std::optional<double> warmup;    ///< first run less the median, at least 0
   std::optional<double> total;     ///< of the command up to here
 

@@ -6,6 +6,8 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/covering_array.cpp
   cli/error_budget.cpp
   cli/explain.cpp
+  cli/exr_layers.cpp
+  cli/frames.cpp
   cli/inspect.cpp
   cli/interrupt.cpp
   cli/lights.cpp

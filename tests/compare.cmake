@@ -11,5 +11,6 @@ penumbra_test(compare
   unit/compare_report.cpp
   unit/compare_report_data.cpp
   unit/compare_stats.cpp
+  unit/compare_surface.cpp
   unit/compare_visible_light.cpp
   LIBRARIES penumbra_compare penumbra_reference nlohmann_json::nlohmann_json TBB::tbb ZLIB::ZLIB)

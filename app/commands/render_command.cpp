@@ -1,142 +1,196 @@
 #include "app/commands.hpp"
-#include "app/light_methods.hpp"
+#include "app/pictures/frame_render.hpp"
+#include "app/pictures/frames.hpp"
+#include "app/process/interrupt.hpp"
 #include "app/methods.hpp"
 #include "app/options.hpp"
-#include "app/output.hpp"
 #include "app/process/output_files.hpp"
-#include "app/runner.hpp"
-#include "base/atomic_file.hpp"
+#include "app/parse.hpp"
+#include "app/process/stopwatch.hpp"
 #include "base/error.hpp"
-#include "base/png.hpp"
-#include "compare/error_picture.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <future>
 #include <optional>
 #include <utility>
 
 namespace penumbra::app {
 namespace {
 
+/// A scene with what reading it took.
+struct ReadScene {
+  scenes::Scene scene;
+  double seconds = 0;
+};
+
 class RenderCommand : public Command {
  public:
-  explicit RenderCommand(CLI::App& app) : Command(app, "render", "render one image with one method") {
+  explicit RenderCommand(CLI::App& app) : Command(app, "render", "render one image, or a sequence, with one method") {
     add_run_options(cli_, options_);
-    cli_.add_option("-o,--output", options_.out, "image to write: linear beauty, V, positions, normals, ids")
+    cli_.add_option("-o,--output", options_.out,
+                    "image to write: linear beauty and V, of each light too, positions, normals, ids")
         ->required()
         ->type_name("OUT.exr");
-    cli_.add_option("--method", method_,
+    cli_.add_option("--method", wish_.method,
                     "shadow method, see `penumbra methods` (default: for each light the best one that gives its exact "
                     "area; where light samples are asked for, or none does, the best geometry-based one, or raytrace)")
         ->type_name("NAME");
     cli_.add_option("--stats", stats_, "times, counters and warnings as JSON; times of one run, the first")
         ->type_name("FILE.json");
-    cli_.add_option("--png", png_, "the beauty for eyes, exposed automatically")->type_name("FILE.png");
+    cli_.add_option("--png", png_, "the beauty for eyes")->type_name("FILE.png");
+    cli_.add_option("--exposure", exposure_,
+                    "of the PNG: auto (lit surfaces fill it; light bodies do not count), first (a sequence's first "
+                    "frame decides for all) or stops (default: auto)")
+        ->type_name("auto|first|EV");
     cli_.add_option("--bits", bits_, "every pair's answer for the first light (penumbra-bits/1; mask methods)")
         ->type_name("FILE");
     auto* frame = cli_.add_option("--frame", frame_, "frame of the scene's animation")->type_name("F");
-    cli_.add_option("--frames", frames_, "several frames, to OUT.0001.exr and so on")
-        ->type_name("A-B")
+    cli_.add_option(
+            "--frames", frames_,
+            "a sequence, every N-th frame of it; files are numbered where their names say \"####\" or \"%04d\", "
+            "else before the extension")
+        ->type_name("A-B[xN]")
         ->excludes(frame);
+    cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
+    cli_.add_flag("--skip-existing", skip_existing_,
+                  "leave out pictures whose files are all there: resumes a sequence");
   }
 
   int run(const GlobalOptions& global) override {
-    const auto method_options = parse_method_options(options_.method_options);
-    if (!method_.empty()) describe_method(method_, method_options);  // refuses now what would be refused later
-    const std::vector<std::filesystem::path> pictures = picture_paths();
+    wish_.options = parse_method_options(options_.method_options);
+    if (!wish_.method.empty()) describe_method(wish_.method, wish_.options);  // refuses now what would be refused later
+    wish_.samples = !options_.light_samples.empty() || !options_.sample_pattern.empty() || !bits_.empty();
+    Exposure exposure = parse_exposure(exposure_);
+    seconds_per_frame_ = 1 / parse_fps();
     if (options_.out.extension() != ".exr") {
       throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                        options_.out.string());
     }
+    const bool all_cameras = options_.camera == "all";
+    const std::vector<std::optional<std::int64_t>> frames = frame_numbers();
+    // Cameras' names are in the scene; everything else is refused before it is read.
+    std::vector<std::string> cameras = {options_.camera};
     OutputFiles outputs;
-    for (const std::filesystem::path& path : pictures) outputs.add("-o", path);
-    outputs.add("--stats", stats_);
-    outputs.add("--png", png_);
-    outputs.add("--bits", bits_);
-    outputs.refuse_inputs({&options_.scene, 1});
-    outputs.require_writable();
+    if (!all_cameras) claim(outputs, frames, cameras);
     if (!png_.empty() && png_.extension() != ".png") {
       throw UsageError("--png {}: expected a name that ends in .png", png_.string());
     }
-
     Progress progress(!global.quiet);
     DeviceSource devices(options_.device);
-    Session session = open_session(options_, devices, 0, progress);
-    outputs.refuse_inputs(session.scene.sources);
-    report_warnings(session, progress);
-    const bool samples = !options_.light_samples.empty() || !options_.sample_pattern.empty() || !bits_.empty();
-    const auto chosen = choose_light_methods(session.lights, {method_, method_options, samples});
-    const std::vector<MethodLabel> labels = labels_of(chosen, devices, session.warnings);
-    std::optional<BitsOutput> bits;
-    if (!bits_.empty()) {
-      check_bits(chosen.front().description, session.lights.front());
-      bits.emplace(bits_, session, session.lights.front());
+    FrameRenderer renderer(options_, wish_, devices, progress);
+
+    progress.begin("reading " + options_.scene.filename().string(), 1);
+    std::size_t at = all_cameras ? 0 : next_wanted(frames, cameras, 0);
+    if (at == frames.size()) {
+      spdlog::info("all {} pictures are there", frames.size());
+      return 0;
+    }
+    ReadScene now;
+    {
+      const MayExitAtOnce at_once;
+      now = read(frames[at]);
+    }
+    if (all_cameras) {
+      cameras.clear();
+      for (const scenes::Camera& camera : now.scene.cameras) cameras.push_back(camera.name);
+      claim(outputs, frames, cameras);
+    }
+    outputs.refuse_inputs(now.scene.sources);
+    const bool moves = now.scene.motion.has_value();
+    if (frames.front() && !moves) {
+      progress.clear();
+      spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);
+    }
+    if (exposure.kind == Exposure::Kind::first && skip_existing_) {
+      exposure.stops = written_exposure(files_of(frames.front(), cameras.front()).picture).value_or(exposure.stops);
     }
 
-    BeautyAccumulator beauty(session, session.lights);
-    MethodRun result;
-    for (const std::vector<std::size_t>& lights : same_methods(chosen)) {
-      const LightMethod& with = chosen[lights.front()];
-      const auto method = make_method(with.description.name, with.options, devices);
-      add_run(result, run_method(
-                          *method, session, {.lights = session.lights, .only = lights},
-                          [&](const TileResult& tile) {
-                            beauty.add(tile);
-                            if (bits && tile.light == 0) bits->add(tile);
-                          },
-                          progress));
+    while (at < frames.size()) {
+      const std::size_t next = next_wanted(frames, cameras, at + 1);
+      // The next scene is read while this one is rendered, by a process of its own.
+      std::future<ReadScene> coming;
+      if (moves && next < frames.size())
+        coming = std::async(std::launch::async, [this, frame = frames[next]] { return read(frame); });
+      for (const std::string& camera : cameras) {
+        const FrameFiles files = files_of(frames[at], camera);
+        if (skip_existing_ && files.all_there()) continue;
+        renderer.render(now.scene, {frames[at], camera}, files.bits, now.seconds);
+        now.seconds = 0;  // once
+        spdlog::info("{}", summary(renderer.write(files, exposure)));
+        check_interrupt();
+      }
+      if (coming.valid()) now = coming.get();
+      at = next;
     }
-    devices.check_validation();  // before anything appears: a picture that cannot be trusted is none
-
-    progress.clear();
-    for (const std::filesystem::path& path : pictures) {
-      write_picture(path, session, {session.lights, labels}, result, beauty.pixels());
-    }
-    if (bits) bits->commit();
-    if (!png_.empty()) {
-      write_png(png_, to_srgb(session.width, session.height, beauty.pixels(), compare::auto_exposure(beauty.pixels())));
-    }
-    const compare::Stats stats = make_stats(session, {session.lights, labels}, result);
-    if (!stats_.empty()) write_file_atomically(stats_, compare::json_text(compare::to_json(stats)));
-    spdlog::info("{}", summary(stats));
     return 0;
   }
 
  private:
-  /// Says, and notes, where light samples are looked at though nobody asked for them.
-  static std::vector<MethodLabel> labels_of(const std::vector<LightMethod>& chosen, DeviceSource& devices,
-                                            std::vector<std::string>& warnings) {
-    std::vector<MethodLabel> labels;
-    for (const LightMethod& one : chosen) {
-      labels.push_back({one.description, one.options, device_of(one.description, devices.name())});
-      if (one.note.empty()) continue;
-      spdlog::info("{}", one.note);
-      warnings.push_back(one.note);
+  [[nodiscard]] double parse_fps() const {
+    if (fps_.empty()) return 24;
+    const auto fps = parse_number(fps_);
+    if (!fps || !(*fps > 0)) throw UsageError("--fps {}: expected a number above 0, such as 24 or 29.97", fps_);
+    return *fps;
+  }
+
+  /// One entry without a number if no frame was asked for.
+  [[nodiscard]] std::vector<std::optional<std::int64_t>> frame_numbers() const {
+    if (frames_.empty()) return {frame_};
+    std::vector<std::optional<std::int64_t>> all;
+    for (const std::int64_t frame : numbers_of(parse_frames(frames_))) all.emplace_back(frame);
+    return all;
+  }
+
+  [[nodiscard]] ReadScene read(std::optional<std::int64_t> frame) const {
+    const Stopwatch watch;
+    std::optional<double> time;
+    if (frame) time = static_cast<double>(*frame) * seconds_per_frame_;
+    ReadScene read;
+    read.scene = read_session_scene(options_, time);
+    read.seconds = watch.seconds();
+    return read;
+  }
+
+  /// Named after camera and frame, where there are several.
+  [[nodiscard]] FrameFiles files_of(std::optional<std::int64_t> frame, const std::string& camera) const {
+    const auto named = [&](std::filesystem::path path) {
+      if (path.empty()) return path;
+      if (options_.camera == "all") path = camera_path(path, camera);
+      return frame && (!frames_.empty() || has_frame_number(path)) ? frame_path(path, *frame) : path;
+    };
+    return {named(options_.out), named(stats_), named(png_), named(bits_)};
+  }
+
+  void claim(OutputFiles& outputs, const std::vector<std::optional<std::int64_t>>& frames,
+             const std::vector<std::string>& cameras) const {
+    for (const auto& frame : frames) {
+      for (const std::string& camera : cameras) {
+        for (const auto& [option, path] : files_of(frame, camera).all()) outputs.add(option, path);
+      }
     }
-    return labels;
+    outputs.refuse_inputs({&options_.scene, 1});
+    outputs.require_writable();
   }
 
-  /// Scenes stand still so far: every frame shows the same, and is written all the same.
-  [[nodiscard]] std::vector<std::filesystem::path> picture_paths() const {
-    if (frames_.empty()) return {options_.out};
-    std::vector<std::filesystem::path> paths;
-    const FrameRange range = parse_frames(frames_);
-    for (std::int64_t frame = range.first; frame <= range.last; ++frame)
-      paths.push_back(frame_path(options_.out, frame));
-    return paths;
-  }
-
-  void report_warnings(const Session& session, Progress& progress) const {
-    progress.clear();
-    for (const std::string& warning : session.warnings) spdlog::warn("{}", warning);
-    if (frame_ || !frames_.empty()) spdlog::warn("{} has no animation: every frame shows the same", session.scene.name);
+  /// The first frame from `from` on of which something is to be made.
+  [[nodiscard]] std::size_t next_wanted(const std::vector<std::optional<std::int64_t>>& frames,
+                                        const std::vector<std::string>& cameras, std::size_t from) const {
+    const auto is_wanted = [&](const std::optional<std::int64_t>& frame) {
+      return std::ranges::any_of(cameras, [&](const auto& camera) { return !files_of(frame, camera).all_there(); });
+    };
+    while (skip_existing_ && from < frames.size() && !is_wanted(frames[from])) ++from;
+    return std::min(from, frames.size());
   }
 
   RunOptions options_;
-  std::string method_;
+  MethodWish wish_;
   std::optional<std::int64_t> frame_;
-  std::string frames_;
+  std::string frames_, fps_, exposure_;
+  bool skip_existing_ = false;
+  double seconds_per_frame_ = 0;
   std::filesystem::path stats_, png_, bits_;
 };
 

@@ -8,6 +8,7 @@
 #include "app/device_source.hpp"
 #include "app/methods.hpp"
 #include "app/output.hpp"
+#include "app/pictures/picture_file.hpp"
 #include "app/process/failure.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -135,7 +136,7 @@ class Comparison {
                      "choose a smaller --size or fewer --light-samples, or leave out --reference-samples same");
     }
     Finished done = run_one(reference_, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
-    report_.exposure = compare::auto_exposure(done.beauty);
+    report_.exposure = auto_exposure(session_, done.beauty);
     report_.metrics.reference = stats_of(reference_, reference_lights_, done.run);
     report_.metrics.judged_pixels = truths_.front().judged.size();
     report_.metrics.horizon_pixels = truths_.front().horizon.size();
@@ -257,12 +258,13 @@ class Comparison {
           sink(tile);
         },
         progress_);
-    done.beauty = beauty.pixels();
+    done.beauty = beauty.sum();
     done.masks = masks.finish();
     devices_.check_validation();
     progress_.clear();
     const MethodLabel label = label_of(entry);
-    write_picture(files_.of(entry.label, ".exr"), session_, {lights, {&label, 1}}, done.run, done.beauty);
+    write_picture(files_.of(entry.label, ".exr"),
+                  {session_, {lights, {&label, 1}}, done.run.visibility, beauty.parts(), done.beauty});
     if (bits) bits->commit();
     return done;
   }

@@ -42,7 +42,7 @@ class Page:
         self.bits = {name: read_bits(self.folder / f"{name}.bits") for name in ("edge-scatter", "accumulate:size=16")}
 
     def v(self, entry, light, pixel):
-        return self.exr[self.entries[entry]][f"V.{self.lights[light]}"][pixel]
+        return self.exr[self.entries[entry]][self.lights[light].replace(".", "_").replace("/", "_") + ".V"][pixel]
 
     def look(self, words="", **window):
         self.browser.open(f"{self.url}#look?{words}", **window)

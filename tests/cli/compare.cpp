@@ -193,7 +193,7 @@ TEST_F(Compare, EveryLightIsJudged) {
     const ExrFile mine = read_exr(path("dir/" + method["entry"].get<std::string>() + ".exr"));
     std::vector<double> errors;
     for (const json& light : method["lights"]) {
-      const std::string channel = "V." + light.at("name").get<std::string>();
+      const std::string channel = light.at("name").get<std::string>() + ".V";
       ASSERT_EQ(light.at("judgedPixels"), 1) << channel;
       errors.push_back(double{mine.floats.at(channel)[kPixel]} - double{truth.floats.at(channel)[kPixel]});
       EXPECT_EQ(light.at("error").at("bias"), errors.back()) << channel;

@@ -122,7 +122,7 @@ TEST_F(LightKinds, AMeshIsLitByItsLightsAlone) {
     ASSERT_EQ(render({"--method", method}).code, 0);
     const ExrFile image = read_exr(path("out.exr"));
     scene_with(lights);
-    ASSERT_EQ(render({"--method", method, "--light", "other"}).code, 0);
+    ASSERT_EQ(render({"--method", method, "--light", "other", "--light", "key"}).code, 0);
     const ExrFile plain = read_exr(path("out.exr"));
     std::size_t floor = 0, above = 0;
     for (std::size_t i = 0; i < image.floats.at("V").size(); ++i) {

@@ -1,5 +1,6 @@
 #include "app/options.hpp"
 
+#include "app/pictures/frames.hpp"
 #include "app/sample_pixels.hpp"
 #include "app/session.hpp"
 #include "base/error.hpp"
@@ -37,13 +38,22 @@ TEST(Options, FramePaths) {
   EXPECT_EQ(frame_path("out.%04d.exr", 7), "out.0007.exr");
   EXPECT_EQ(frame_path("f%dx.exr", 7), "f7x.exr");
   EXPECT_EQ(frame_path("100%.exr", 7), "100%.0007.exr");
+  EXPECT_EQ(frame_path("d/g.####.exr", 7), "d/g.0007.exr");
+  EXPECT_EQ(frame_path("g##.png", 123), "g123.png");
+  EXPECT_EQ(frame_path("take#1.%03d.exr", 7), "take#1.007.exr");
+  EXPECT_EQ(frame_path("g.####.exr", -7), "g.-007.exr");
+  EXPECT_TRUE(has_frame_number("g.####.exr") && has_frame_number("%d.exr") && !has_frame_number("100%.exr"));
+  EXPECT_EQ(camera_path("a/out.exr", "Shot 1"), "a/out.Shot_1.exr");
+  EXPECT_EQ(frame_path(camera_path("out.####.exr", "B"), 3), "out.B.0003.exr");
 }
 
 TEST(Options, Frames) {
   EXPECT_EQ(parse_frames("3-9").first, 3);
   EXPECT_EQ(parse_frames("3-9").last, 9);
   EXPECT_EQ(parse_frames("-2-1").first, -2);
-  for (const char* wrong : {"", "3", "-", "-3", "3-", "9-3", "a-b", "0-1000000000"})
+  EXPECT_THAT(numbers_of(parse_frames("1-10x4")), ElementsAre(1, 5, 9));
+  EXPECT_THAT(numbers_of(parse_frames("-1-1")), ElementsAre(-1, 0, 1));
+  for (const char* wrong : {"", "3", "-", "-3", "3-", "9-3", "a-b", "0-1000000000", "1-3x0", "1-3x", "1-3x-1", "1x2"})
     EXPECT_THROW(parse_frames(wrong), UsageError) << wrong;
 }
 

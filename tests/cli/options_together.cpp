@@ -50,8 +50,13 @@ class OptionsTogether : public ProgramTest {
     return *std::ranges::find(scenes_, row["scene"], &LitScene::name);
   }
 
-  [[nodiscard]] std::string name_of_second_light(const LitScene& scene) const {
-    return json::parse(read(scene.name + ".json")).at("lights").at(1).at("name");
+  /// All lights' names, the second one first.
+  [[nodiscard]] std::vector<std::string> lights_from_second(const LitScene& scene) const {
+    std::vector<std::string> names;
+    const json whole = json::parse(read(scene.name + ".json"));
+    for (const json& light : whole.at("lights")) names.push_back(light.at("name"));
+    std::swap(names.at(0), names.at(1));
+    return names;
   }
 
   /// What both commands are told.
@@ -66,7 +71,9 @@ class OptionsTogether : public ProgramTest {
     add("--sample-seed", row["seed"]);
     add("--size", row["size"]);
     add("--device", row["device"]);
-    if (!row["light"].empty()) add("--light", name_of_second_light(scene));
+    if (!row["light"].empty()) {
+      for (const std::string& name : lights_from_second(scene)) add("--light", name);
+    }
     if (!row["verbose"].empty()) arguments.emplace_back("--verbose");
     return arguments;
   }

@@ -39,8 +39,29 @@ TEST_P(Render, WritesTheChannelsOfTheContract) {
   const ExrFile image = read_exr(path("out.exr"));
   EXPECT_EQ(image.width, 48u);
   EXPECT_EQ(image.height, 32u);
-  for (const char* channel : {"R", "G", "B", "A", "V", "V.key", "P.X", "P.Y", "P.Z", "Prel.X", "Prel.Y", "Prel.Z",
-                              "N.X", "N.Y", "N.Z", "Z"}) {
+  for (const char* channel : {"R",
+                              "G",
+                              "B",
+                              "A",
+                              "V",
+                              "key.V",
+                              "key.R",
+                              "key.G",
+                              "key.B",
+                              "P.X",
+                              "P.Y",
+                              "P.Z",
+                              "Prel.X",
+                              "Prel.Y",
+                              "Prel.Z",
+                              "N.X",
+                              "N.Y",
+                              "N.Z",
+                              "Z",
+                              "object.X",
+                              "material.X",
+                              "CryptoObject00.R",
+                              "CryptoObject00.G"}) {
     EXPECT_TRUE(image.floats.contains(channel)) << channel;
   }
   EXPECT_TRUE(image.integers.contains("id"));
@@ -57,11 +78,16 @@ TEST_P(Render, WritesTheChannelsOfTheContract) {
     const float v = image.floats.at("V")[i], a = image.floats.at("A")[i];
     ASSERT_TRUE(a == 0 || a == 1);
     ASSERT_TRUE(v >= 0 && v <= 1);
-    ASSERT_EQ(v, image.floats.at("V.key")[i]);
+    ASSERT_EQ(v, image.floats.at("key.V")[i]);
+    ASSERT_EQ(image.floats.at("R")[i], image.floats.at("key.R")[i]) << "one light: its beauty is all there is";
     if (a == 0) {
       background = true;
       EXPECT_EQ(v, 1);
       EXPECT_EQ(image.floats.at("R")[i], 0);
+      EXPECT_EQ(image.floats.at("Z")[i], 1e10f);
+      EXPECT_EQ(image.floats.at("P.X")[i], 0);
+      EXPECT_EQ(image.integers.at("id")[i], 4294967295u);
+      EXPECT_EQ(image.floats.at("object.X")[i], 0);
       continue;
     }
     lit = lit || v == 1;
@@ -141,11 +167,11 @@ TEST_P(Render, RoundedCountsAreSaid) {
 TEST_P(Render, ChosenLightComesFirst) {
   write("scene.json", scene_text_with("/lights/1", kFill));
   ASSERT_EQ(render("key.exr").code, 0);
-  ASSERT_EQ(render("fill.exr", {"--light", "fill"}).code, 0);
+  ASSERT_EQ(render("fill.exr", {"--light", "fill", "--light", "key"}).code, 0);
   const ExrFile key = read_exr(path("key.exr")), fill = read_exr(path("fill.exr"));
-  EXPECT_EQ(key.floats.at("V"), key.floats.at("V.key"));
-  EXPECT_EQ(fill.floats.at("V"), fill.floats.at("V.fill"));
-  EXPECT_EQ(key.floats.at("V.fill"), fill.floats.at("V.fill"));
+  EXPECT_EQ(key.floats.at("V"), key.floats.at("key.V"));
+  EXPECT_EQ(fill.floats.at("V"), fill.floats.at("fill.V"));
+  EXPECT_EQ(key.floats.at("fill.V"), fill.floats.at("fill.V"));
   EXPECT_NE(key.floats.at("V"), fill.floats.at("V"));
 }
 
@@ -276,10 +302,10 @@ TEST_F(ExactByDefault, LightByLight) {
   EXPECT_THAT(rendered.err, testing::AllOf(HasSubstr("\"noon\""), HasSubstr("256 light samples")));
   EXPECT_THAT(rendered.stats["warnings"].dump(), HasSubstr("noon"));
   const auto& v = rendered.image.floats;
-  EXPECT_EQ(v.at("V.noon"), render({"--method", "raytrace"}).image.floats.at("V.noon"));
-  const Rendered sun_first = render({"--light", "noon"});
+  EXPECT_EQ(v.at("noon.V"), render({"--method", "raytrace"}).image.floats.at("noon.V"));
+  const Rendered sun_first = render({"--light", "noon", "--light", "key", "--light", "fill"});
   EXPECT_EQ(sun_first.stats["method"], "raytrace");
-  for (const char* channel : {"V.key", "V.noon", "V.fill"})
+  for (const char* channel : {"key.V", "noon.V", "fill.V"})
     EXPECT_EQ(v.at(channel), sun_first.image.floats.at(channel)) << channel;
 }
 

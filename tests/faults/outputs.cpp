@@ -139,8 +139,8 @@ TEST_F(OutputFaults, NoTwoOutputsAreOneFile) {
                  path("dir/reference.exr"));
   // Frames are files of their own.
   expect_refused(
-      with({"render", path("s.json"), "-o", path("f.exr"), "--frames", "1-3"}, {"--bits", path("f.0002.exr")}),
-      "--bits", path("f.0002.exr"));
+      with({"render", path("s.json"), "-o", path("f.exr"), "--frames", "1-3"}, {"--bits", path("f.####.exr")}),
+      "--bits", path("f.0001.exr"));
 }
 
 TEST_F(OutputFaults, NoInputIsAnOutput) {

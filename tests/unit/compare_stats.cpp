@@ -23,7 +23,15 @@ Stats some_stats() {
   stats.options = {{"search", "16"}, {"bias", "auto"}};
   stats.light_samples = 256;
   stats.sample_pattern = "rows";
-  stats.seconds = {.load = 0.5, .mesh = 0.25, .view = {}, .light = 0.125, .evaluate = 1.0, .warmup = {}, .total = 3.0};
+  stats.seconds = {.load = 0.5,
+                   .mesh = 0.25,
+                   .view = {},
+                   .light = 0.125,
+                   .evaluate = 1.0,
+                   .beauty = {},
+                   .write = {},
+                   .warmup = {},
+                   .total = 3.0};
   stats.passes = {{"filter", 12.5}, {"blockers", 3.0}};
   stats.peak_memory_bytes = 1ull << 40;
   stats.counters = {{"texels", 1234567890123ull}};
@@ -38,8 +46,8 @@ TEST(StatsJson, HasTheNamesOfTheInterface) {
                                                      "peakMemoryBytes", "counters", "warnings", "lights"}));
   EXPECT_EQ(json["size"], nlohmann::ordered_json::array({640, 480}));
   EXPECT_EQ(json["options"]["search"], "16");
-  EXPECT_EQ(keys_of(json["seconds"]),
-            (std::vector<std::string>{"load", "mesh", "view", "light", "evaluate", "shadow", "warmup", "total"}));
+  EXPECT_EQ(keys_of(json["seconds"]), (std::vector<std::string>{"load", "mesh", "view", "light", "evaluate", "shadow",
+                                                                "beauty", "write", "warmup", "total"}));
   EXPECT_EQ(json["seconds"]["shadow"], 1.125);
   EXPECT_TRUE(json["seconds"]["view"].is_null());
   EXPECT_EQ(json["passes"][0]["name"], "filter");

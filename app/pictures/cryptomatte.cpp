@@ -1,0 +1,74 @@
+#include "app/pictures/cryptomatte.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <bit>
+#include <cstddef>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+std::uint32_t id_bits(std::string_view name) {
+  const std::uint32_t hash = murmur3(name);
+  const std::uint32_t exponent = hash >> 23 & 255;
+  return exponent == 0 || exponent == 255 ? hash ^ (1u << 23) : hash;
+}
+
+}  // namespace
+
+std::uint32_t murmur3(std::string_view text) {
+  constexpr std::uint32_t kFirst = 0xcc9e2d51, kSecond = 0x1b873593;
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
+  const auto mixed = [](std::uint32_t k) { return std::rotl(k * kFirst, 15) * kSecond; };
+  std::uint32_t hash = 0;
+  std::size_t at = 0;
+  for (; at + 4 <= text.size(); at += 4) {
+    hash ^= mixed(byte(at) | byte(at + 1) << 8 | byte(at + 2) << 16 | byte(at + 3) << 24);
+    hash = std::rotl(hash, 13) * 5 + 0xe6546b64;
+  }
+  std::uint32_t rest = 0;
+  for (std::size_t i = text.size(); i-- > at;) rest = rest << 8 | byte(i);
+  hash ^= mixed(rest);
+  hash ^= static_cast<std::uint32_t>(text.size());
+  hash = (hash ^ hash >> 16) * 0x85ebca6b;
+  hash = (hash ^ hash >> 13) * 0xc2b2ae35;
+  return hash ^ hash >> 16;
+}
+
+float cryptomatte_id(std::string_view name) {
+  return std::bit_cast<float>(id_bits(name));
+}
+
+Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, std::span<const std::uint32_t> of_pixel)
+    : layer_(std::move(layer)),
+      ids_(of_pixel.size(), 0.0f),
+      coverage_(of_pixel.size(), 0.0f),
+      nothing_(of_pixel.size(), 0.0f) {
+  nlohmann::json manifest = nlohmann::json::object();
+  std::vector<float> numbers;
+  for (const std::string& name : names) {
+    numbers.push_back(cryptomatte_id(name));
+    manifest[name] = fmt::format("{:08x}", id_bits(name));
+  }
+  manifest_ = manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (std::size_t i = 0; i < of_pixel.size(); ++i) {
+    if (of_pixel[i] == kNothing) continue;
+    ids_[i] = numbers[of_pixel[i]];
+    coverage_[i] = 1;
+  }
+}
+
+void Cryptomatte::add_to(ExrImage& image) const {
+  const std::vector<float>* const values[] = {&ids_, &coverage_, &nothing_, &nothing_};
+  for (std::size_t c = 0; c < 4; ++c)
+    image.channels.push_back({fmt::format("{}00.{}", layer_, "RGBA"[c]), std::span<const float>(*values[c]), 1});
+  const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", murmur3(layer_)));
+  image.attributes[key + "name"] = layer_;
+  image.attributes[key + "hash"] = "MurmurHash3_32";
+  image.attributes[key + "conversion"] = "uint32_to_float32";
+  image.attributes[key + "manifest"] = manifest_;
+}
+
+}  // namespace penumbra::app

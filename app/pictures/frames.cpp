@@ -1,0 +1,97 @@
+#include "app/pictures/frames.hpp"
+
+#include "app/options.hpp"
+#include "app/parse.hpp"
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace penumbra::app {
+namespace {
+
+constexpr std::int64_t kMostFrames = 100'000;
+
+/// Where a number goes in a name: the characters that it replaces, and its least number of digits.
+struct NumberPlace {
+  std::size_t at = 0, size = 0;
+  int digits = 1;
+};
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+std::optional<NumberPlace> number_place(std::string_view name) {
+  std::optional<NumberPlace> last;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    std::size_t end = i;
+    if (name[i] == '#') {
+      while (end < name.size() && name[end] == '#') ++end;
+      last = NumberPlace{i, end - i, static_cast<int>(end - i)};
+      i = end - 1;
+    } else if (name[i] == '%') {
+      ++end;
+      while (end < name.size() && is_digit(name[end])) ++end;
+      const auto digits = parse_integer<int>(name.substr(i + 1, end - i - 1));
+      if (end < name.size() && name[end] == 'd' && digits.value_or(1) <= 20)
+        last = NumberPlace{i, end + 1 - i, digits.value_or(1)};
+    }
+  }
+  return last;
+}
+
+}  // namespace
+
+FrameRange parse_frames(std::string_view text) {
+  std::string_view frames = text;
+  std::optional<std::int64_t> step = 1;
+  if (const auto x = text.find('x'); x != std::string_view::npos) {
+    step = parse_integer<std::int64_t>(text.substr(x + 1));
+    frames = text.substr(0, x);
+  }
+  const auto dash = frames.find('-', 1);  // from 1: a first frame may be negative
+  if (dash != std::string_view::npos && step && *step >= 1) {
+    const auto first = parse_integer<std::int64_t>(frames.substr(0, dash));
+    const auto last = parse_integer<std::int64_t>(frames.substr(dash + 1));
+    constexpr std::int64_t kFar = 1'000'000'000;
+    const bool near = first && last && *first >= -kFar && *last <= kFar && *first <= *last;
+    if (near && (*last - *first) / *step < kMostFrames) return {*first, *last, *step};
+  }
+  throw UsageError(
+      "--frames {}: expected A-B or A-BxN (every N-th) with A not above B and at most {} frames, such as "
+      "1-24 or 1-240x10",
+      text, kMostFrames);
+}
+
+std::vector<std::int64_t> numbers_of(const FrameRange& range) {
+  std::vector<std::int64_t> numbers;
+  for (std::int64_t frame = range.first; frame <= range.last; frame += range.step) numbers.push_back(frame);
+  return numbers;
+}
+
+bool has_frame_number(const std::filesystem::path& out) {
+  return number_place(out.filename().string()).has_value();
+}
+
+std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame) {
+  std::string name = out.filename().string();
+  if (const auto place = number_place(name))
+    name.replace(place->at, place->size, fmt::format("{:0{}}", frame, place->digits));
+  else
+    name = fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
+  return out.parent_path() / name;
+}
+
+std::filesystem::path camera_path(const std::filesystem::path& out, std::string_view camera) {
+  std::string name = out.filename().string();
+  const auto place = number_place(name);
+  std::size_t at = place ? place->at : out.stem().string().size();
+  if (place && at > 0 && name[at - 1] == '.') --at;
+  return out.parent_path() / name.insert(at, "." + file_name_of(camera));
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,207 @@
+#include "app/pictures/picture_file.hpp"
+
+#include "app/pictures/cryptomatte.hpp"
+#include "base/exr.hpp"
+
+#include <glm/mat4x4.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+
+namespace penumbra::app {
+namespace {
+
+constexpr float kFar = 1e10f;  // Z of the background, as Blender has it
+
+/// What the picture has beside lights.
+constexpr std::array kOwnLayers = {"P", "Prel", "N", "object", "material", "CryptoObject00", "CryptoMaterial00"};
+
+std::string options_text(const visibility::MethodOptions& options) {
+  std::string text;
+  for (const auto& [key, value] : options) text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, value);
+  return text;
+}
+
+const char* beauty_text(visibility::Output output) {
+  switch (output) {
+    case visibility::Output::mask:
+      return "radiance and cosines integrated sample by sample, each with its cell of the light";
+    case visibility::Output::scalar:
+      return "V times the unshadowed integral";
+    case visibility::Output::radiance:
+      return "radiance and cosines integrated over the visible part of the light";
+  }
+  return "?";
+}
+
+std::string text_of(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// `lights` of stats.json without the seconds (the same command gives the same bytes), each with its layer and what it
+/// emits.
+std::string lights_text(const Session& session, const LabelledLights& all, std::span<const std::string> layers) {
+  auto rows = nlohmann::ordered_json::array();
+  for (std::size_t light = 0; light < all.lights.size(); ++light) {
+    rows.push_back(compare::to_json(light_stats(all, light)));
+    auto& row = rows.back();
+    row.erase("seconds");
+    row["layer"] = layers[light];
+    row["kind"] = visibility::name_of(all.lights[light].kind);
+    const glm::dvec3& radiance = session.scene.lights[static_cast<std::size_t>(all.lights[light].index)].radiance;
+    row["radiance"] = {radiance.r, radiance.g, radiance.b};
+  }
+  return text_of(rows);
+}
+
+/// The components of interleaved vectors or colours as channels that need no copy.
+void add_components(ExrImage& image, const std::string& prefix, std::span<const glm::vec3> values) {
+  const auto* floats = &values.front().x;
+  for (std::size_t c = 0; c < 3; ++c) {
+    image.channels.push_back({prefix + "RGB"[c], std::span<const float>(floats + c, 3 * values.size() - 2), 3});
+  }
+}
+
+/// Which object, and which material, each pixel shows.
+struct Surfaces {
+  std::vector<std::string> objects, materials;        ///< names
+  std::vector<std::uint32_t> object, material;        ///< of each pixel, or Cryptomatte::kNothing
+  std::vector<float> object_number, material_number;  ///< from 1; 0: nothing
+};
+
+Surfaces surfaces_of(const Session& session) {
+  Surfaces all;
+  std::vector<std::uint32_t> material_of;
+  for (const scenes::Object& object : session.scene.objects) {
+    all.objects.push_back(object.name);
+    material_of.push_back(Cryptomatte::kNothing);
+    if (object.material.empty()) continue;
+    const auto known = std::ranges::find(all.materials, object.material);
+    material_of.back() = static_cast<std::uint32_t>(known - all.materials.begin());
+    if (known == all.materials.end()) all.materials.push_back(object.material);
+  }
+  const auto number = [](std::uint32_t index) {
+    return index == Cryptomatte::kNothing ? 0.0f : static_cast<float>(index) + 1;
+  };
+  for (const std::int32_t triangle : session.samples.triangle) {
+    const bool background = triangle == visibility::ViewSamples::kBackground;
+    all.object.push_back(background ? Cryptomatte::kNothing
+                                    : session.floats.object[static_cast<std::size_t>(triangle)]);
+    all.material.push_back(background ? Cryptomatte::kNothing : material_of[all.object.back()]);
+    all.object_number.push_back(number(all.object.back()));
+    all.material_number.push_back(number(all.material.back()));
+  }
+  return all;
+}
+
+/// World space to the camera's (X right, Y up, looking along −Z), and on to [−1, 1] over the picture.
+struct CameraMatrices {
+  glm::mat4 to_camera, to_picture;
+};
+
+CameraMatrices matrices_of(const Session& session) {
+  const visibility::PinholeCamera& camera = session.camera;
+  const glm::dvec3 eye = camera.eye + session.floats.origin;
+  const std::array axes = {camera.right, camera.up, -camera.forward};
+  glm::dmat4 to_camera(1);
+  for (glm::length_t row = 0; row < 3; ++row) {
+    const glm::dvec3& axis = axes[static_cast<std::size_t>(row)];
+    for (glm::length_t column = 0; column < 3; ++column) to_camera[column][row] = axis[column];
+    to_camera[3][row] = -glm::dot(axis, eye);
+  }
+  // OpenGL's projection, with the far plane at infinity and, for want of one, the near plane at 1.
+  const double aspect = static_cast<double>(session.width) / session.height;
+  glm::dmat4 projection(0);
+  projection[0][0] = 1 / (aspect * camera.tan_half_fov);
+  projection[1][1] = 1 / camera.tan_half_fov;
+  projection[2][2] = -1;
+  projection[2][3] = -1;
+  projection[3][2] = -2;
+  return {glm::mat4(to_camera), glm::mat4(projection * to_camera)};
+}
+
+}  // namespace
+
+std::vector<std::string> layer_names(std::span<const visibility::Light> lights) {
+  std::set<std::string> taken(kOwnLayers.begin(), kOwnLayers.end());
+  std::vector<std::string> names;
+  for (const visibility::Light& light : lights) {
+    std::string plain = light.name;
+    std::ranges::replace_if(
+        plain, [](char c) { return c == '.' || c == '/'; }, '_');
+    std::string name = plain;
+    for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+    names.push_back(name);
+  }
+  return names;
+}
+
+void write_picture(const std::filesystem::path& path, const PictureContent& content) {
+  const Session& session = content.session;
+  const LabelledLights& all = content.lights;
+  const MethodLabel& label = all.label(0);
+  const visibility::ViewSamples& samples = session.samples;
+  const std::size_t count = session.pixel_count();
+  std::vector<float> alpha(count), depth = samples.depth;
+  std::ranges::copy(content.alpha, alpha.begin());
+  std::vector<std::uint32_t> id(count);
+  std::vector<glm::vec3> world(count, glm::vec3(0));
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool background = samples.triangle[i] == visibility::ViewSamples::kBackground;
+    if (content.alpha.empty()) alpha[i] = background ? 0.0f : 1.0f;
+    id[i] = static_cast<std::uint32_t>(samples.triangle[i]);  // background: 4294967295
+    if (background)
+      depth[i] = kFar;
+    else
+      world[i] = glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
+  }
+
+  ExrImage image;
+  image.width = session.width;
+  image.height = session.height;
+  add_components(image, "", content.sum);
+  image.channels.push_back({"A", std::span<const float>(alpha), 1});
+  image.channels.push_back({"V", std::span<const float>(content.visibility.front()), 1});
+  const std::vector<std::string> layers = layer_names(all.lights);
+  for (std::size_t light = 0; light < layers.size(); ++light) {
+    image.channels.push_back({layers[light] + ".V", std::span<const float>(content.visibility[light]), 1});
+    add_components(image, layers[light] + ".", content.beauty[light]);
+  }
+  add_vector_channels(image, "P", world);
+  add_vector_channels(image, "Prel", samples.p);
+  add_vector_channels(image, "N", samples.n);
+  image.channels.push_back({"Z", std::span<const float>(depth), 1});
+  image.channels.push_back({"id", std::span<const std::uint32_t>(id), 1});
+  const Surfaces surfaces = surfaces_of(session);
+  image.channels.push_back({"object.X", std::span<const float>(surfaces.object_number), 1});
+  image.channels.push_back({"material.X", std::span<const float>(surfaces.material_number), 1});
+
+  const CameraMatrices matrices = matrices_of(session);
+  image.attributes = {{"penumbra.method", label.description.name},
+                      {"penumbra.options", options_text(label.options)},
+                      {"penumbra.output", visibility::name_of(label.description.output)},
+                      {"penumbra.beauty", beauty_text(label.description.output)},
+                      {"penumbra.lightSamples", fmt::format("{}", samples_of(all, 0))},
+                      {"penumbra.samplePattern", pattern_of(all, 0).value_or("null")},
+                      {"penumbra.lights", lights_text(session, all, layers)},
+                      {"penumbra.objects", text_of(surfaces.objects)},
+                      {"penumbra.materials", text_of(surfaces.materials)},
+                      {"penumbra.camera", session.scene.cameras[session.camera_index].name},
+                      {"penumbra.axes", "world: right-handed, Y up; camera: X right, Y up, looking along -Z"},
+                      {"penumbra.scene", session.scene.name},
+                      {"penumbra.version", PENUMBRA_VERSION},
+                      {"penumbra.device", label.device}};
+  image.attributes.insert(content.more_attributes.begin(), content.more_attributes.end());
+  image.vectors = {{"penumbra.origin", session.floats.origin}};
+  image.matrices = {{"worldToCamera", matrices.to_camera}, {"worldToNDC", matrices.to_picture}};
+  const Cryptomatte objects("CryptoObject", surfaces.objects, surfaces.object);
+  const Cryptomatte materials("CryptoMaterial", surfaces.materials, surfaces.material);
+  objects.add_to(image);
+  materials.add_to(image);
+  write_exr(path, image);
+}
+
+}  // namespace penumbra::app

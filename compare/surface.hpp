@@ -1,0 +1,25 @@
+#pragma once
+
+#include "scenes/scene.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace penumbra::compare {
+
+/// How the surface looks where each pixel sees it.
+struct SurfaceLooks {
+  std::vector<glm::dvec3> colors;  ///< linear base colour: the object's × its picture's × its vertices'; background 0
+  std::vector<glm::vec3> normals;  ///< unit, on the viewer's side of the geometric one; empty: nobody asked
+};
+
+/// `scene` is what `floats` were made from. Barycentric coordinates of p in the carrier's plane, in double; pictures
+/// at level 0, the nearest texel or bilinear between texel centres in linear light; vertices' colours and normals
+/// linear over the triangle. A vertex without a normal leaves its triangles flat.
+SurfaceLooks look_at(const scenes::Scene& scene, const visibility::SceneFloats& floats,
+                     const visibility::ViewSamples& samples, bool shading_normals);
+
+}  // namespace penumbra::compare

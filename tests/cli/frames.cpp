@@ -1,0 +1,124 @@
+// `render` of what moves: which frames, which files, and that a frame of a sequence is the frame by itself.
+#include "tests/cli/program.hpp"
+
+#include "base/exr.hpp"
+#include "tests/unit/gltf_file.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class Frames : public ProgramTest {
+ protected:
+  Frames() {
+    test::Gltf gltf;
+    // A body over a floor that its lamp shines down on, seen by two cameras from above.
+    gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};
+    gltf.at("/nodes/0")["translation"] = {0, 1, 0};
+    gltf.at("/nodes/0")["scale"] = {1, 1, 1};
+    gltf.at("/nodes/0")["rotation"] = {-0.70710678, 0, 0, 0.70710678};
+    gltf.at("/meshes").push_back(
+        {{"primitives", {{{"attributes", {{"POSITION", 2}}}, {"indices", 3}, {"material", 0}}}}});
+    gltf.at("/nodes").push_back({{"name", "Floor"}, {"mesh", 2}, {"scale", {4, 1, 4}}});
+    gltf.at("/nodes/2") = {
+        {"name", "Camera"}, {"camera", 0}, {"translation", {0, 4, 0}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}};
+    gltf.at("/nodes").push_back(
+        {{"name", "B.2"}, {"camera", 0}, {"translation", {1, 3, 0}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}});
+    gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+    gltf.animate(0, "translation", {0, 1}, {0, 1, 0, 1, 1, 0});
+    gltf.animate(2, "translation", {0, 1}, {0, 4, 0, 0, 3, 0});
+    write("scene.glb", gltf.glb());
+  }
+  Outcome render(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"render", path("scene.glb"), "--size", "24x16"};
+    if (std::ranges::find(more, "--fps") == more.end()) more.insert(more.end(), {"--fps", "10"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+};
+
+TEST_F(Frames, OfASequenceAreThoseByThemselves) {
+  const Outcome outcome = render({"--frames", "0-8x4", "-o", path("s.####.exr"), "--png", path("s.png"), "--stats",
+                                  path("t%02d.json"), "--bits", path("s.####.bits")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, Not(HasSubstr("animation")));
+  EXPECT_THAT(files(),
+              ElementsAre("s.0000.bits", "s.0000.exr", "s.0000.png", "s.0004.bits", "s.0004.exr", "s.0004.png",
+                          "s.0008.bits", "s.0008.exr", "s.0008.png", "scene.glb", "t00.json", "t04.json", "t08.json"));
+  std::set<std::string> different;
+  for (const char* frame : {"0", "4", "8"}) {
+    ASSERT_EQ(render({"--frame", frame, "-o", path("one.exr"), "--bits", path("one.bits")}).code, 0);
+    const std::string number = std::string("s.000") + frame;
+    EXPECT_EQ(read("one.exr"), read(number + ".exr")) << frame;
+    EXPECT_EQ(read("one.bits"), read(number + ".bits")) << frame;
+    EXPECT_EQ(read_exr(path("one.exr")).attributes.at("penumbra.frame"), frame);
+    EXPECT_EQ(json::parse(read(std::string("t0") + frame + ".json")).at("size"), json::array({24, 16}));
+    different.insert(read("one.bits"));
+  }
+  EXPECT_EQ(different.size(), 3u) << "it moves";
+}
+
+/// Frame F is time F / fps: the camera is between 4 and 3 units above the floor, and the pixels next to the middle
+/// see the floor or the body, which is a unit above it.
+TEST_F(Frames, AreAtTheirTime) {
+  ASSERT_EQ(render({"--frame", "5", "-o", path("f.##.exr")}).code, 0);
+  const ExrFile image = read_exr(path("f.05.exr"));
+  const float z = image.floats.at("Z")[23];  // of a corner: the floor
+  EXPECT_FLOAT_EQ(z, 3.5f);
+  ASSERT_EQ(render({"--frame", "5", "--fps", "20", "-o", path("g.exr")}).code, 0);
+  EXPECT_FLOAT_EQ(read_exr(path("g.exr")).floats.at("Z")[23], 3.75f);
+  for (const char* wrong : {"0", "-24", "x", "nan"})
+    EXPECT_EQ(render({"--frame", "5", "--fps", wrong, "-o", path("h.exr")}).code, 2) << wrong;
+}
+
+TEST_F(Frames, ThatAreThereAreSkipped) {
+  const std::vector<std::string> sequence = {"--frames",    "1-3",        "-o",    path("s.exr"),    "--png",
+                                             path("s.png"), "--exposure", "first", "--skip-existing"};
+  ASSERT_EQ(render(sequence).code, 0);
+  const std::string third = read("s.0003.exr"), picture = read("s.0003.png");
+  write("s.0002.exr", "kept as it is");
+  std::filesystem::remove(path("s.0003.exr"));
+  const Outcome again = render(sequence);
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(read("s.0002.exr"), "kept as it is");
+  EXPECT_EQ(read("s.0003.exr"), third);
+  EXPECT_EQ(read("s.0003.png"), picture) << "exposed as the first was";
+  EXPECT_EQ(read_exr(path("s.0003.exr")).attributes.at("penumbra.exposure"),
+            read_exr(path("s.0001.exr")).attributes.at("penumbra.exposure"));
+  EXPECT_THAT(render(sequence).err, HasSubstr("all 3 pictures are there"));
+}
+
+TEST_F(Frames, ExposuresAreStops) {
+  const auto png = [&](const std::string& exposure) {
+    EXPECT_EQ(render({"--frame", "1", "-o", path("e.exr"), "--png", path("e.png"), "--exposure", exposure}).code, 0);
+    return read("e.png");
+  };
+  const std::string automatic = png("auto");
+  const std::string stops = read_exr(path("e.exr")).attributes.at("penumbra.exposure");
+  EXPECT_EQ(png(stops), automatic) << "what the header says is what was done";
+  EXPECT_NE(png("-3"), png("-4"));
+  for (const char* wrong : {"bright", "1e9", "nan", "101"})
+    EXPECT_EQ(render({"--frame", "1", "-o", path("e.exr"), "--exposure", wrong}).code, 2) << wrong;
+}
+
+TEST_F(Frames, OfAllCameras) {
+  ASSERT_EQ(render({"--camera", "all", "--frames", "2-3", "-o", path("o.####.exr")}).code, 0);
+  EXPECT_THAT(files(),
+              ElementsAre("o.B.2.0002.exr", "o.B.2.0003.exr", "o.Camera.0002.exr", "o.Camera.0003.exr", "scene.glb"));
+  ASSERT_EQ(render({"--camera", "B.2", "--frame", "3", "-o", path("one.exr")}).code, 0);
+  EXPECT_EQ(read("one.exr"), read("o.B.2.0003.exr"));
+}
+
+}  // namespace
+}  // namespace penumbra::tests
