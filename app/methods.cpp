@@ -12,7 +12,10 @@
 
 // A family that this build goes without is not a CMake target; its methods are then not in the table.
 #ifdef PENUMBRA_HAS_VSM
+#include "vsm/alias_free.hpp"
+#include "vsm/hierarchical_penumbra.hpp"
 #include "vsm/view_sample.hpp"
+#include "vsm/view_sample_planar.hpp"
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
 #include "volumes/counters/depth_complexity.hpp"
@@ -109,6 +112,11 @@ const std::vector<TableRow>& table() {
       on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
       on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
+#endif
+#ifdef PENUMBRA_HAS_VSM
+      on_processor<vsm::make_hierarchical_penumbra>(),
+      on_processor<vsm::make_view_sample_planar>(),
+      on_processor<vsm::make_alias_free>(),
 #endif
 #ifdef PENUMBRA_HAS_MAPS
       on_device<maps::bitmask_description, maps::make_bitmask>(),
@@ -219,6 +227,8 @@ const MethodDescription& default_method(const Light& light) {
   const MethodDescription* other = nullptr;
   for (const MethodDescription* method : all_methods()) {
     if (!can_do(*method, {light})) continue;
+    // A hard shadow of the light's centre is no answer where rays give one, nor is what takes longer than rays.
+    if (method->output == visibility::Output::scalar || method->on_request) continue;
     if (method->family == Family::geometry) return *method;
     if (method->family == Family::reference && method->output == visibility::Output::mask) other = method;
   }

@@ -22,6 +22,7 @@ set(may_areas ${all_visibility} scenes mesh base)
 set(may_render/opengl base)
 set(may_render render/opengl ${all_visibility} scenes mesh base)
 set(may_engines/vectors ${all_visibility} scenes mesh base)
+set(may_engines/pairs ${all_visibility} scenes mesh base)
 set(may_engines/device render ${all_visibility} scenes mesh base)
 set(may_engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
 set(may_volumes/wedges ${all_visibility} scenes/formats scenes mesh base)
@@ -30,7 +31,7 @@ set(may_volumes/raster volumes/edges volumes/wedges render ${all_visibility} sce
 set(may_volumes/soft volumes/raster volumes/edges volumes/wedges render ${all_visibility} scenes mesh base)
 set(may_volumes/counters volumes/raster volumes/edges volumes/wedges engines/device render ${all_visibility} scenes mesh base)
 set(may_volumes/scatter areas volumes/edges engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
-set(may_vsm engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
+set(may_vsm engines engines/device engines/vectors engines/pairs render ${all_visibility} scenes mesh base)
 set(may_maps/host render/opengl render ${all_visibility} scenes mesh base)
 set(may_maps/products maps/host render/opengl render ${all_visibility} scenes mesh base)
 set(may_maps/filters maps/products maps/host render ${all_visibility} scenes mesh base)
@@ -50,7 +51,7 @@ list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility visibility/tree visibility/lights
-    visibility/masks areas render/opengl render engines/device engines/vectors engines
+    visibility/masks areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products
     maps/filters maps/sampling maps/backprojection selftest reference compare
     app/process app app/pictures app/commands app/compare app/inspect app/wedges bench)
@@ -75,7 +76,7 @@ set(kept_OpenEXR base)
 set(kept_png base)
 set(kept_CLI app)
 set(kept_gmpxx volumes areas)
-set(kept_hwy engines/vectors volumes/scatter vsm)
+set(kept_hwy engines/vectors engines/pairs volumes/scatter vsm)
 set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR png CLI gmpxx hwy)
 
 # room_of(folder result): the innermost room that the folder is, or lies in; empty if none.

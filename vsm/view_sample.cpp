@@ -1,12 +1,16 @@
-// `view-sample`: which of its two engines does a light.
+// `view-sample`: which of its two engines does a light; or the published variant.
 
 #include "vsm/view_sample.hpp"
 
+#include "base/error.hpp"
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "vsm/vectors/view_sample_native.hpp"
+#include "vsm/view_sample_lists.hpp"
 #include "vsm/view_sample_vulkan.hpp"
+
+#include <utility>
 
 namespace penumbra::vsm {
 namespace {
@@ -17,6 +21,14 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
+
+enum class Variant : std::uint8_t { tree, sintorn };
+constexpr visibility::ChoiceOption kVariant{"variant",
+                                            {{"tree", Variant::tree}, {"sintorn", Variant::sintorn}},
+                                            Variant::tree,
+                                            "tree: find pairs by a hierarchy of triangles; sintorn: as published, view "
+                                            "samples in lists of light pixels, on the "
+                                            "processor, suns too"};
 
 }  // namespace
 
@@ -29,7 +41,7 @@ const visibility::MethodDescription& view_sample_description() {
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
       .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
                  visibility::LightKind::polygon},
-      .options = {engines::kEngine.description()},
+      .options = {engines::kEngine.description(), kVariant.description()},
       .verdict_on = verdict_on,
   };
   return description;
@@ -38,6 +50,14 @@ const visibility::MethodDescription& view_sample_description() {
 std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
                                                      const visibility::MethodOptions& given) {
   const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
+  if (options[kVariant] == Variant::sintorn) {
+    if (options[engines::kEngine] == engines::Engine::vulkan) {
+      throw UsageError("view-sample: variant=sintorn runs on the processor; leave engine=vulkan out");
+    }
+    visibility::MethodDescription description = view_sample_description();
+    description.lights.push_back(visibility::LightKind::sun);
+    return make_view_sample_lists(std::move(description));
+  }
   if (!engines::runs_on_vectors(device, options[engines::kEngine])) return make_vulkan_view_sample(device);
   return engines::make_engine_by_light({[] { return make_native_view_sample(view_sample_description()); },
                                         [&device] { return make_vulkan_view_sample(device); }, visibility::has_rows});

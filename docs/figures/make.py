@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parent / "papers"))
 import disks  # noqa: E402
 import family  # noqa: E402
 import filters  # noqa: E402
+import lists  # noqa: E402
 import maps  # noqa: E402
 import pairs  # noqa: E402
 import papers  # noqa: E402
@@ -32,7 +33,7 @@ IMAGES = ROOT / "docs" / "images"
 
 def stale_figures(check):
     stale = []
-    for module in (scatter, pairs, disks, volumes, maps, filters, texels, family, rooms):
+    for module in (scatter, pairs, disks, volumes, maps, filters, texels, family, lists, rooms):
         for name, draw in module.FIGURES.items():
             path, text = IMAGES / f"{name}.svg", draw()
             if not check:

@@ -101,7 +101,8 @@ TEST_F(LightKinds, CastersAreEachLightsOwn) {
     EXPECT_EQ(outcome.code, 0) << method << outcome.err;
     return read("out.bits");
   };
-  for (const char* method : {"raytrace", "view-sample", "depth-complexity", "accumulate"}) {
+  for (const char* method :
+       {"raytrace", "view-sample", "depth-complexity", "accumulate", "hierarchical-penumbra", "view-sample-planar"}) {
     scene_with(fmt::format(R"({{"name": "key", {}}}, {})", kRectangle, other), R"(, "castsShadow": false)");
     const std::string none = bits_of(method, "key");
     scene_with(fmt::format(R"({{"name": "key", {}}}, {})", kRectangle, other));

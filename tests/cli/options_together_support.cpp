@@ -154,6 +154,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
     return (exact && on_device) || (on_device && !in_rows) ||
            (on_device && !std::ranges::all_of(scene.lights, is_rectangle));
   }
+  if (method == "view-sample") return is("engine", "vulkan") && is("variant", "sintorn");
   if (method == "depth-complexity") {
     const bool forest = is("variant", "forest");
     return (forest && (options.contains("crop") || row["light-samples"] == "5x7")) ||

@@ -1,0 +1,257 @@
+"""docs/alias-free.md, hierarchical-penumbra.md, view-sample-planar.md, and the variant of view-sample.md: view samples in
+lists of light pixels, pairs of boxes, footprints and left-sample maps."""
+
+from math import atan2, cos, floor, hypot, pi, sin
+
+from drawing import BLUE, DARK, FAINT, GREEN, INK, LIGHT, PALE, RED, Drawing, View
+from geometry import SQUARE, clip_to, crosses, hull, inside, meet, rows_pattern
+
+
+def surface(x):
+    """The height of a ground with a step."""
+    return 0.0 if x < 4.6 else 0.9
+
+
+def alias_free_figure():
+    """In a plane: light pixels are intervals of a line, casters segments."""
+    lamp, line, count = (3.6, 6.2), -0.85, 12
+    casters = [((1.5, 2.2), (2.9, 2.5)), ((4.3, 2.9), (5.1, 2.5))]
+    samples = [(0.55 * i + 0.15, surface(0.55 * i + 0.15)) for i in range(15)]
+    d = Drawing(860, 470, "View samples in lists of light pixels")
+    d.text((20, 26), "Light pixels where view samples are, and lists of these", 14, bold=True)
+    view = View(d, (10, 40, 590, 420), (-1.2, 9.2), (-1.6, 6.5))
+
+    def place(p):
+        return meet(lamp, p, (0, line), (1, line))[0]
+
+    places = [place(p) for p in samples]
+    low, high = min(places), max(places)
+    width = (high - low) / count
+
+    def pixel(x):
+        return min(max(floor((x - low) / width), 0), count - 1)
+
+    lists = {}
+    for i, x in enumerate(places):
+        lists.setdefault(pixel(x), []).append(i)
+    dark, tested, touched = set(), set(), set()
+    for a, b in casters:
+        ends = sorted((place(a), place(b)))
+        for k in range(pixel(ends[0]), pixel(ends[1]) + 1):
+            touched.add(k)
+            for i in lists.get(k, []):
+                tested.add(i)
+                if crosses(lamp, samples[i], a, b):
+                    dark.add(i)
+    # The lists of what a footprint touches have all that the caster hides.
+    assert dark == {i for i, p in enumerate(samples) if any(crosses(lamp, p, *c) for c in casters)}
+    assert dark < tested and len(tested) < len(samples)
+    for a, b in casters:
+        view.polygon([a, b, (place(b), line), (place(a), line)], DARK, opacity=0.14)
+        view.line(a, b, INK, 4)
+    view.path([(-1, 0), (4.6, 0), (4.6, 0.9), (9, 0.9)], DARK, 2)
+    for k in range(count):
+        box = [(low + k * width, line), (low + (k + 1) * width, line), (low + (k + 1) * width, line - 0.32),
+               (low + k * width, line - 0.32)]
+        view.polygon(box, "#f6d9d5" if k in touched else "#ffffff", FAINT, 1)
+        view.text((low + (k + 0.5) * width, line - 0.25), len(lists.get(k, [])), 12, anchor="middle")
+    for i, p in enumerate(samples):
+        view.line(p, (places[i], line), FAINT, 0.8, "2 3")
+        view.dot(p, 4.2, DARK if i in dark else "#ffffff" if i in tested else LIGHT, stroke=INK)
+    view.dot(lamp, 6, LIGHT, stroke=INK)
+    view.text(lamp, "centre of the light", 12.5, (10, 4))
+    x = 612
+    d.legend((x, 90), [("dot", LIGHT, "view sample in no touched list"), ("ring", INK, "tested, in the light"),
+                       ("dot", DARK, "tested, in shadow"), ("box", "#f6d9d5", "light pixel that a caster touches")])
+    d.text((x, 190), "Numbers: the length of each", 12.5)
+    d.text((x, 207), f"pixel's list. {len(tested)} of {len(samples)} view", 12.5)
+    d.text((x, 224), f"samples are tested, {len(dark)} are", 12.5)
+    d.text((x, 241), "in shadow.", 12.5)
+    return d.finish()
+
+
+def side(p, l, x):
+    """On which side of x the line from p to l passes, in a plane: affine in p and in l."""
+    return (l[0] - p[0]) * (x[1] - p[1]) - (l[1] - p[1]) * (x[0] - p[0])
+
+
+def hierarchical_figure():
+    """In a plane: light samples on a line, view samples on another, a caster between; and the product of the two sets."""
+    lights = [(-1.5 + 3.0 * (i + 0.5) / 16, 5.0) for i in range(16)]
+    views = [(-4.0 + 8.0 * (i + 0.5) / 32, 0.0) for i in range(32)]
+    caster = ((-0.4, 2.6), (2.1, 3.0))
+    boxes, tested = [], set()
+
+    def visit(l0, l1, v0, v1):
+        """[l0, l1) × [v0, v1): with both sets on lines the ends of a stretch are its corners."""
+        corners = [(p, l) for p in (views[v0], views[v1 - 1]) for l in (lights[l0], lights[l1 - 1])]
+        signs = [[side(p, l, x) > 0 for p, l in corners] for x in caster]
+        if all(signs[0]) == any(signs[0]) and all(signs[1]) == any(signs[1]):
+            boxes.append((l0, l1, v0, v1, "hidden" if signs[0][0] != signs[1][0] else "beside"))
+            return
+        if l1 - l0 <= 2 and v1 - v0 <= 2:
+            boxes.append((l0, l1, v0, v1, "leaf"))
+            tested.update((l, v) for l in range(l0, l1) for v in range(v0, v1))
+            return
+        if (v1 - v0) * 0.25 * 2.2 > (l1 - l0) * 0.1875 * 2.8:
+            middle = (v0 + v1) // 2
+            visit(l0, l1, v0, middle), visit(l0, l1, middle, v1)
+        else:
+            middle = (l0 + l1) // 2
+            visit(l0, middle, v0, v1), visit(middle, l1, v0, v1)
+
+    visit(0, 16, 0, 32)
+    truth = {(l, v) for l in range(16) for v in range(32) if crosses(views[v], lights[l], *caster)}
+    for l0, l1, v0, v1, what in boxes:
+        own = {(l, v) for l in range(l0, l1) for v in range(v0, v1)}
+        assert what == "leaf" or (own <= truth if what == "hidden" else not own & truth)
+    assert sum((l1 - l0) * (v1 - v0) for l0, l1, v0, v1, _ in boxes) == 16 * 32
+    d = Drawing(860, 430, "Pairs of boxes that a caster is between")
+    d.text((20, 26), "Light samples, a caster, view samples", 14, bold=True)
+    view = View(d, (10, 40, 380, 330), (-4.3, 4.3), (-0.6, 5.5))
+    view.line(lights[0], lights[-1], LIGHT, 2)
+    view.line((-4.2, 0), (4.2, 0), DARK, 2)
+    view.line(*caster, INK, 4)
+    for l in lights:
+        view.dot(l, 2.6, LIGHT, stroke=INK, width=0.8)
+    for p in views:
+        view.dot(p, 2.6, "#ffffff", stroke=INK, width=0.8)
+    l0, l1, v0, v1, _ = max((b for b in boxes if b[4] == "hidden"), key=lambda b: (b[1] - b[0]) * (b[3] - b[2]))
+    view.polygon([lights[l0], lights[l1 - 1], views[v1 - 1], views[v0]], DARK, opacity=0.25)
+    d.text((20, 400), "Shaded: the largest pair of boxes that it hides.", 12.5)
+    d.text((410, 26), "All pairs, and what was done with as a whole", 14, bold=True)
+    cell, left, top = 12.6, 420, 60
+    fills = {"hidden": DARK, "beside": "#fdf3d8", "leaf": "#ffffff"}
+    for l0, l1, v0, v1, what in boxes:
+        d.polygon([(left + v0 * cell, top + l0 * cell), (left + v1 * cell, top + l0 * cell),
+                   (left + v1 * cell, top + l1 * cell), (left + v0 * cell, top + l1 * cell)], fills[what], FAINT, 1)
+    for l, v in tested:
+        d.circle((left + (v + 0.5) * cell, top + (l + 0.5) * cell), 2.4, INK if (l, v) in truth else "#ffffff",
+                 stroke=INK, width=0.8)
+    d.text((left, top - 10), "view samples →, light samples ↓", 12.5)
+    d.legend((left, top + 16 * cell + 30),
+             [("box", DARK, "hidden, as a box"), ("box", "#fdf3d8", "beside the caster, as a box"),
+              ("dot", INK, "tried one by one: hidden"), ("ring", INK, "tried one by one: not hidden")])
+    d.text((left, top + 16 * cell + 120), f"{len(tested)} of {16 * 32} pairs are tried one by one.", 12.5)
+    return d.finish()
+
+
+LAMP3 = [(-1.0, -0.7), (1.0, -0.7), (1.0, 0.7), (-1.0, 0.7)]
+CASTER3 = [((-0.9, 0.3), 2.6), ((0.7, 0.9), 3.0), ((0.3, -0.8), 2.2)]
+DEEP = 5.0
+
+
+def footprint_points():
+    """What the light's corners (height 0) project of the caster's corners on the plane at depth DEEP."""
+    return [(l[0] + (x[0] - l[0]) * DEEP / h, l[1] + (x[1] - l[1]) * DEEP / h) for x, h in CASTER3 for l in LAMP3]
+
+
+def footprint_figure():
+    """The hull of Sintorn et al. in light pixels, and the box of Eisemann and Décoret."""
+    points = footprint_points()
+    outline = hull(points)
+    xs, ys = [q[0] for q in points], [q[1] for q in points]
+    d = Drawing(820, 440, "Footprints of a triangle on a receiver")
+    d.text((20, 26), "Twelve points, their hull in light pixels, and their box", 14, bold=True)
+    view = View(d, (10, 40, 560, 390), (min(xs) - 0.6, max(xs) + 0.6), (min(ys) - 0.6, max(ys) + 0.6))
+    cell, touched = 0.5, 0
+    for i in range(floor((min(xs) - 0.5) / cell), floor((max(xs) + 0.5) / cell) + 1):
+        for j in range(floor((min(ys) - 0.5) / cell), floor((max(ys) + 0.5) / cell) + 1):
+            square = [(i * cell, j * cell), ((i + 1) * cell, j * cell), ((i + 1) * cell, (j + 1) * cell),
+                      (i * cell, (j + 1) * cell)]
+            hit = len(clip_to(square, outline)) > 2
+            touched += hit
+            view.polygon(square, "#f6d9d5" if hit else None, PALE, 0.8)
+    # What a point of the light and one of the triangle project is in the hull.
+    for i in range(7):
+        for j in range(7):
+            l = (-1 + i / 3, -0.7 + j * 0.7 / 3)
+            a, b = i / 6, (1 - i / 6) * j / 6
+            weights = (a, b, 1 - a - b)
+            x = [sum(w * c[0][k] for w, c in zip(weights, CASTER3)) for k in (0, 1)]
+            h = sum(w * c[1] for w, c in zip(weights, CASTER3))
+            q = (l[0] + (x[0] - l[0]) * DEEP / h, l[1] + (x[1] - l[1]) * DEEP / h)
+            assert inside(q, [(c[0] * 1.0001, c[1] * 1.0001) for c in outline])
+    view.polygon([(min(xs), min(ys)), (max(xs), min(ys)), (max(xs), max(ys)), (min(xs), max(ys))], None, BLUE, 2, "6 4")
+    view.polygon(outline, None, RED, 2)
+    for k, l in enumerate(LAMP3):
+        view.polygon(points[k::4], None, FAINT, 1)
+    for q in points:
+        view.dot(q, 3.4, INK)
+    d.legend((600, 90), [("line", FAINT, "the triangle from a corner"), ("dot", INK, "its corners there: 12"),
+                         ("line", RED, "hull: Sintorn et al."), ("box", "#f6d9d5", "light pixels that it touches"),
+                         ("dash", BLUE, "box: Eisemann, Décoret")])
+    d.text((600, 205), f"{touched} light pixels", 12.5)
+    return d.finish()
+
+
+def left_samples_figure():
+    """One texel of a left-sample map: a sheaf of lines."""
+    samples = [x for row in rows_pattern(8, 8) for x in row]
+    angles, distances, radius = 24, 16, max(hypot(*x) for x in samples)
+    line = (0.83, 0.35)  # angle and distance
+    i = floor((line[0] + pi) / (2 * pi) * angles)
+    k = floor((line[1] + radius) / (2 * radius) * distances)
+    from_angle, to_angle = i * 2 * pi / angles - pi, (i + 1) * 2 * pi / angles - pi
+    low, high = k * 2 * radius / distances - radius, (k + 1) * 2 * radius / distances - radius
+
+    def along(angle, x):
+        return cos(angle) * x[0] + sin(angle) * x[1]
+
+    def extent(x):
+        values = [along(from_angle, x), along(to_angle, x)]
+        phi = atan2(x[1], x[0])
+        values += [s * hypot(*x) for s, at in ((1, phi), (-1, phi - pi), (-1, phi + pi)) if from_angle <= at <= to_angle]
+        return min(values), max(values)
+
+    kinds = []
+    for x in samples:
+        least, most = extent(x)
+        kinds.append("all" if least > high else "none" if most <= low else "some")
+        left = along(line[0], x) > line[1]
+        assert kinds[-1] == "some" or left == (kinds[-1] == "all")
+    d = Drawing(760, 420, "One texel of a left-sample map")
+    d.text((20, 26), "All lines of one texel (angle, distance), and the light samples to their left", 14, bold=True)
+    view = View(d, (10, 40, 380, 370), (-1.25, 1.25), (-1.25, 1.25))
+    view.polygon(SQUARE, "#fff7df", LIGHT, 2)
+    for s in range(5):
+        for t in (low, high):
+            angle = from_angle + (to_angle - from_angle) * s / 4
+            foot = (t * cos(angle), t * sin(angle))
+            a, b = ((foot[0] + u * -sin(angle), foot[1] + u * cos(angle)) for u in (-3, 3))
+            ends = clip_line(a, b)
+            if ends:
+                view.line(*ends, FAINT, 0.8)
+    angle, t = line
+    foot = (t * cos(angle), t * sin(angle))
+    ends = clip_line(*((foot[0] + u * -sin(angle), foot[1] + u * cos(angle)) for u in (-3, 3)))
+    view.line(*ends, RED, 2)
+    colors = {"all": GREEN, "some": "#ffffff", "none": PALE}
+    for x, kind in zip(samples, kinds):
+        view.dot(x, 4.4, colors[kind], stroke=INK, width=0.9)
+    d.legend((420, 100), [("line", RED, "the line that is asked for"), ("line", FAINT, "others of the same texel"),
+                          ("dot", GREEN, "left of all of them"), ("ring", INK, "left of some: decided exactly"),
+                          ("box", PALE, "left of none")])
+    d.text((420, 220), f"{kinds.count('all')} + {kinds.count('some')} of {len(samples)} light samples,", 12.5)
+    d.text((420, 237), f"{angles} angles, {distances} distances", 12.5)
+    return d.finish()
+
+
+def clip_line(a, b, size=1.2):
+    """The part of a segment in [−size, size]²."""
+    low, high = 0.0, 1.0
+    for k in (0, 1):
+        change = b[k] - a[k]
+        if abs(change) < 1e-12:
+            if abs(a[k]) > size:
+                return None
+            continue
+        ends = sorted(((-size - a[k]) / change, (size - a[k]) / change))
+        low, high = max(low, ends[0]), min(high, ends[1])
+    if low >= high:
+        return None
+    return tuple((a[0] + u * (b[0] - a[0]), a[1] + u * (b[1] - a[1])) for u in (low, high))
+
+
+FIGURES = {"alias-free": alias_free_figure, "hierarchical-penumbra": hierarchical_figure,
+           "footprints": footprint_figure, "left-samples": left_samples_figure}

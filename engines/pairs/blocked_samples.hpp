@@ -1,0 +1,53 @@
+#pragma once
+
+#include "visibility/light_samples.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::pairs {
+
+/// How often what was decided how.
+struct PairCounts {
+  std::uint64_t triangles = 0;  ///< (view sample, triangle) tried
+  std::uint64_t missed = 0;     ///< of those, triangles that are certainly between p and no part of the light
+  std::uint64_t covered = 0;    ///< triangles that certainly hide the whole light
+  std::uint64_t pairs = 0;      ///< (view sample, light sample) tried against a triangle
+  std::uint64_t exact = 0;      ///< of those, decided by exact predicates
+};
+
+/// Which light samples a triangle hides from a view sample: the set B_jk of Eisemann and Décoret 2007. Each bit is
+/// visibility::segment_meets_triangle: double arithmetic where its bound says that it is certain, else that itself.
+/// Planar lights and suns.
+///
+/// p sees the triangle a b c turned so that D = det(a − p, b − p, c − p) > 0. Then the segment p→l meets it iff
+///     f_i(l) = (l − p) · ((x_i − p) × (x_i+1 − p)) > 0 for its three edges, and l is beyond its plane.
+/// All four are affine in l: with l = o + w, w from a table, three products and sums a light sample.
+class BlockedSamples {
+ public:
+  BlockedSamples() = default;
+  explicit BlockedSamples(const visibility::Light& light);
+
+  /// Clears in `visible` (words_per_mask() words, or those from `first_word` on) the light samples that the triangle
+  /// hides from p. Those that are not set are not looked at.
+  void hide(const glm::vec3& p, const std::array<glm::vec3, 3>& corners, std::span<std::uint32_t> visible,
+            PairCounts& counts, std::size_t first_word = 0) const;
+
+ private:
+  void decide(const glm::vec3& p, const std::array<glm::vec3, 3>& corners, std::size_t word, std::uint32_t open,
+              std::uint32_t& visible, PairCounts& counts) const;
+
+  const visibility::Light* light_ = nullptr;
+  std::size_t padded_ = 0;          // light samples, up to whole words
+  std::vector<double> ways_;        // w: all x, all y, all z
+  glm::dvec3 origin_{0};            // o
+  glm::dvec3 middle_{0}, half_{0};  // a box around all w
+  double farthest_ = 0;             // the largest |w|
+};
+
+}  // namespace penumbra::pairs

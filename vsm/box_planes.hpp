@@ -1,0 +1,49 @@
+#pragma once
+
+#include "vsm/light_tree.hpp"
+#include "vsm/receiver_tree.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace penumbra::vsm {
+
+/// Between which boxes of view samples and a box of light samples a triangle is. Inside vsm/ only.
+///
+/// The segment p→l passes the edge a→b on the side of f(p, l) = det(l − p, a − p, b − p), which is affine in p and in
+/// l. So of a box of light samples its four corners decide, and each gives a plane through the edge, f as a function of
+/// p alone: between them is the edge's penumbra wedge. With the triangle's own plane these are thirteen half-spaces; p
+/// sees no light sample of the box if it is in all of them, and all (of what this triangle hides) if it is outside of
+/// the four of an edge, or of the triangle's plane.
+class BoxPlanes {
+ public:
+  static constexpr std::uint32_t kAll =
+      (1U << 13) - 1;  ///< bit 4 e + i: edge e, corner i; bit 12: the triangle's plane
+  static constexpr std::uint32_t kEdges = kAll >> 1;
+
+  BoxPlanes() = default;
+  BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& tree, const LightTree::Node& light);
+
+  /// Is the box of light samples certainly on one side of the triangle's plane? Otherwise no box is hidden as a whole.
+  [[nodiscard]] bool one_side() const { return one_side_; }
+
+  enum class Answer : std::uint8_t { beside, hidden, open };
+  /// `open`: the half-spaces that a box around this one was not certainly in; those that this box is not in are left.
+  [[nodiscard]] Answer look(const ReceiverTree::Node& box, std::uint32_t& open) const;
+
+ private:
+  /// normal · (base − p) > 0. The value is off by less than `relative` times the length of base − p, and what l may be
+  /// beside the corners of its box comes on top.
+  struct Plane {
+    glm::dvec3 normal{0}, base{0};
+    double relative = 0;
+  };
+  std::array<Plane, 13> planes_;
+  std::array<glm::dvec3, 3> corners_{};
+  double off_ = 0;
+  bool sun_ = false, one_side_ = false;
+};
+
+}  // namespace penumbra::vsm

@@ -1,0 +1,127 @@
+#include "vsm/far_plane.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace penumbra::vsm {
+namespace {
+
+/// Nearer than this share of the far plane's distance, a triangle's footprint is not computed but bounded.
+constexpr double kNear = 0x1p-12;
+
+/// A triangle cut at two heights: up to five corners.
+class Slab {
+ public:
+  Slab(const std::array<glm::dvec3, 3>& corners, double from, double to)
+      : corners_{corners[0], corners[1], corners[2]}, count_(3) {
+    cut(1, from);
+    cut(-1, to);
+  }
+  [[nodiscard]] std::span<const glm::dvec3> corners() const { return std::span(corners_).first(count_); }
+
+ private:
+  void cut(double sign, double height) {
+    std::array<glm::dvec3, 6> kept{};
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const glm::dvec3 &a = corners_[i], &b = corners_[(i + 1) % count_];
+      const double at_a = sign * (a.z - height), at_b = sign * (b.z - height);
+      if (at_a >= 0) kept[count++] = a;
+      if ((at_a >= 0) == (at_b >= 0)) continue;
+      kept[count] = a + (b - a) * (at_a / (at_a - at_b));
+      kept[count++].z = height;
+    }
+    corners_ = kept;
+    count_ = count;
+  }
+
+  std::array<glm::dvec3, 6> corners_;
+  std::size_t count_;
+};
+
+}  // namespace
+
+FarPlane::FarPlane(const pairs::LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
+                   std::span<const glm::vec3> p, double per_pixel)
+    : light_(light), side_(side) {
+  // Fewer than 8 roundings of twice the reach, and cuts interpolate with as many; light samples are `off` their plane,
+  // which moves what a segment meets by no more.
+  error_ = 0x1p-46 * reach + (light.sun ? 0 : light.off);
+  for (const std::uint32_t pixel : pixels) {
+    const glm::dvec3 at = place(p[pixel]);
+    if (!light.sun && at.z < -16 * error_) continue;
+    if (!light.sun && (at.z <= 16 * error_ || std::max(std::abs(at.x), std::abs(at.y)) > kWidest * at.z)) {
+      outside_.push_back(pixel);
+      continue;
+    }
+    pixels_.push_back(pixel);
+    heights_.push_back(at.z);
+  }
+  if (pixels_.empty()) return;
+  far_ = *std::ranges::max_element(heights_);
+  std::vector<glm::dvec2> places;
+  double stretch = 1;
+  for (const std::uint32_t pixel : pixels_) {
+    const glm::dvec3 at = place(p[pixel]);
+    places.push_back(light.sun ? glm::dvec2(at) : glm::dvec2(at) * (far_ / at.z));
+    if (!light.sun) stretch = std::max(stretch, (1 + kWidest) * far_ / at.z);
+  }
+  light_pixels_ = pairs::LightPixels(places, 4 * error_ * stretch, per_pixel);
+}
+
+double FarPlane::nearest(const std::array<glm::vec3, 3>& corners) const {
+  return std::min({place(corners[0]).z, place(corners[1]).z, place(corners[2]).z}) - 2 * error_;
+}
+
+/// Of what is nearer than n = kNear · far: q = k (x − f l), k ≥ far / n and f in [0, 1) as above. If x is beyond all
+/// of the light and its centre in one direction by m > 0, q is there beyond m far / n.
+bool FarPlane::misses_window(std::span<const glm::dvec3> polygon) const {
+  const double least = 0.99 / kNear;
+  for (int i = 0; i < 2; ++i) {
+    double from = std::numeric_limits<double>::max(), to = -from;
+    for (const glm::dvec3& x : polygon) {
+      from = std::min(from, x[i] - 4 * error_);
+      to = std::max(to, x[i] + 4 * error_);
+    }
+    if ((from - light_.upper[i]) * least > std::max(light_pixels_.upper()[i], 0.0) * 1.01) return true;
+    if ((light_.lower[i] - to) * least > std::max(-light_pixels_.lower()[i], 0.0) * 1.01) return true;
+  }
+  return false;
+}
+
+void FarPlane::add_upper(pairs::Footprint& footprint, std::span<const glm::dvec3> polygon) const {
+  for (const glm::dvec3& x : polygon) {
+    const double k = light_.sun ? far_ - x.z : far_ / x.z;
+    for (const glm::dvec2& l : light_.corners()) {
+      const glm::dvec2 way = light_.sun ? -l : glm::dvec2(x) - l;
+      footprint.add(light_.sun ? glm::dvec2(x) + k * way : l + k * way);
+      // Of x by its error, once more for each of its height over that; of a sun's slope by `off`.
+      const double error = light_.sun ? error_ * (4 + 4 * glm::length(l)) + std::abs(k) * (light_.off + 0x1p-50)
+                                      : k * error_ * (4 + 4 * glm::length(way) / x.z);
+      footprint.error = std::max(footprint.error, error);
+    }
+  }
+}
+
+pairs::Footprint FarPlane::footprint(const std::array<glm::vec3, 3>& corners) const {
+  const std::array at{place(corners[0]), place(corners[1]), place(corners[2])};
+  pairs::Footprint footprint;
+  const double high = std::max({at[0].z, at[1].z, at[2].z}), low = std::min({at[0].z, at[1].z, at[2].z});
+  const double all = std::numeric_limits<double>::max();
+  if (low > far_ + 4 * error_) return footprint;
+  if (light_.sun) {
+    add_upper(footprint, Slab(at, -all, far_ + 4 * error_).corners());
+    return footprint;
+  }
+  if (high < -4 * error_) return footprint;
+  const double near = kNear * far_;
+  footprint.everywhere = !(near > 64 * error_) || (low < near && !misses_window(Slab(at, -4 * error_, near).corners()));
+  if (!footprint.everywhere && high >= near) add_upper(footprint, Slab(at, near, far_ + 4 * error_).corners());
+  return footprint;
+}
+
+}  // namespace penumbra::vsm

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "engines/pairs/light_box.hpp"
+#include "engines/pairs/light_pixels.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace penumbra::vsm {
+
+/// The far plane of a light's frustum, parallel to the light through the farthest view sample: view samples are
+/// projected on it from the light's centre and lie in lists of light pixels, and a triangle's footprint there is the
+/// hull of what the light's corners project of its corners (Sintorn, Eisemann and Assarsson 2008, sections 4.1
+/// and 4.2).
+///
+/// The footprint has the place q of each view sample p that a point x of the triangle hides a light point l from, also
+/// of those above the plane: with k = f / x_h and s = p_h / x_h, 1 ≤ s ≤ k, p = l + s (x − l), so
+///     q = p f / p_h = k x + k (1/s − 1) l = k x + (1 − k) l',  l' = l (k − k/s) / (k − 1),
+/// and l' is between the centre, 0, and l. For each l' that is the place where the segment from it through x ends, and
+/// those of a triangle's x are a triangle, of all l' and x the hull of those of corners. A sun is the same from
+/// infinity: q = x − (f − x_h) σ', σ' between 0 and σ.
+class FarPlane {
+ public:
+  /// Wider than that the frustum is not: |a| or |b| of a view sample over its distance h.
+  static constexpr double kWidest = 8;
+
+  FarPlane() = default;
+  /// `side`: −1 for what a two-sided light sees behind it. `reach`: at least the length of all positions. View samples
+  /// on the other side are left out; those in the light's plane up to rounding, or outside of the frustum, are in
+  /// `outside`.
+  FarPlane(const pairs::LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
+           std::span<const glm::vec3> p, double per_pixel);
+
+  [[nodiscard]] bool empty() const { return pixels_.empty(); }
+  [[nodiscard]] const std::vector<std::uint32_t>& outside() const { return outside_; }
+  /// Of a number in its lists.
+  [[nodiscard]] std::uint32_t pixel(std::uint32_t number) const { return pixels_[number]; }
+  [[nodiscard]] std::span<const double> heights() const { return heights_; }
+  [[nodiscard]] pairs::LightPixels& light_pixels() { return light_pixels_; }
+
+  /// No points and not everywhere: it hides nothing from any view sample.
+  [[nodiscard]] pairs::Footprint footprint(const std::array<glm::vec3, 3>& corners) const;
+  /// How near to the light it is at least: less than the height of what it hides anything from.
+  [[nodiscard]] double nearest(const std::array<glm::vec3, 3>& corners) const;
+
+ private:
+  /// (a, b, h), h growing away from the light on this side.
+  [[nodiscard]] glm::dvec3 place(const glm::vec3& x) const {
+    glm::dvec3 at = light_.place(glm::dvec3(x));
+    at.z *= side_;
+    return at;
+  }
+  void add_upper(pairs::Footprint& footprint, std::span<const glm::dvec3> polygon) const;
+  [[nodiscard]] bool misses_window(std::span<const glm::dvec3> polygon) const;
+
+  pairs::LightBox light_;
+  double side_ = 1, error_ = 0;  ///< of a place
+  double far_ = 0;
+  std::vector<std::uint32_t> pixels_, outside_;
+  std::vector<double> heights_;
+  pairs::LightPixels light_pixels_;
+};
+
+}  // namespace penumbra::vsm

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "engines/pairs/light_box.hpp"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+
+namespace penumbra::vsm {
+
+/// A box in a LightBox's axes: (a, b, h).
+struct PlaceBox {
+  glm::dvec3 lower{0}, upper{0};
+};
+
+/// What is between a light and view samples, in the light's axes. At the share s of the way from the light (a point l
+/// of it) to p the segment is at l + s (p − l); as h is 0 at the light, s is known from h, so a box between two h is
+/// met only where [l + s (p − l)] over those s meets it. A sun's ray is at p + (h_p − h) σ, σ its slope. Bounds,
+/// rounded outward.
+class LightShaft {
+ public:
+  LightShaft() = default;
+  /// `reach`: at least the length of all positions.
+  LightShaft(const pairs::LightBox& light, double reach);
+
+  /// Around points, rounded outward.
+  template <typename Points>
+  [[nodiscard]] PlaceBox box_of(const Points& points) const;
+  /// May some segment from `receivers` to the light samples in [lower, upper] meet what is in `triangle`?
+  [[nodiscard]] bool meets(const PlaceBox& receivers, const PlaceBox& triangle, const glm::dvec2& lower,
+                           const glm::dvec2& upper) const;
+
+ private:
+  [[nodiscard]] bool sun_meets(const PlaceBox& receivers, const PlaceBox& triangle, const glm::dvec2& lower,
+                               const glm::dvec2& upper) const;
+
+  pairs::LightBox light_;
+  double margin_ = 0;
+};
+
+template <typename Points>
+PlaceBox LightShaft::box_of(const Points& points) const {
+  PlaceBox box{light_.place(glm::dvec3(points[0])), {}};
+  box.upper = box.lower;
+  for (const auto& point : points) {
+    const glm::dvec3 place = light_.place(glm::dvec3(point));
+    for (int i = 0; i < 3; ++i) {
+      box.lower[i] = place[i] < box.lower[i] ? place[i] : box.lower[i];
+      box.upper[i] = place[i] > box.upper[i] ? place[i] : box.upper[i];
+    }
+  }
+  box.lower -= margin_;
+  box.upper += margin_;
+  return box;
+}
+
+}  // namespace penumbra::vsm
