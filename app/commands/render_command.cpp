@@ -13,6 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <functional>
 #include <future>
 #include <optional>
 #include <utility>
@@ -55,6 +56,16 @@ class RenderCommand : public Command {
         ->type_name("A-B[xN]")
         ->excludes(frame);
     cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
+    cli_.add_option("--pixel-samples", pixel_samples_,
+                    "view samples a pixel on a square grid, of which R G B A and V are the mean: 1, 4, 9 … 64 "
+                    "(default: 1, the pixel's centre)")
+        ->type_name("S");
+    cli_.add_option(
+            "--motion-samples", motion_samples_,
+            "moments of an open shutter, of which R G B A and V are the mean: 1 to 256 (default: 1, the frame's)")
+        ->type_name("N");
+    cli_.add_option("--shutter", shutter_, "how long it is open, in frames, around the frame's time (default: 0.5)")
+        ->type_name("FRAMES");
     cli_.add_flag("--skip-existing", skip_existing_,
                   "leave out pictures whose files are all there: resumes a sequence");
   }
@@ -65,6 +76,7 @@ class RenderCommand : public Command {
     wish_.samples = !options_.light_samples.empty() || !options_.sample_pattern.empty() || !bits_.empty();
     Exposure exposure = parse_exposure(exposure_);
     seconds_per_frame_ = 1 / parse_fps();
+    parse_means();
     if (options_.out.extension() != ".exr") {
       throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                        options_.out.string());
@@ -117,7 +129,8 @@ class RenderCommand : public Command {
       for (const std::string& camera : cameras) {
         const FrameFiles files = files_of(frames[at], camera);
         if (skip_existing_ && files.all_there()) continue;
-        renderer.render(now.scene, {frames[at], camera}, files.bits, now.seconds);
+        renderer.render(now.scene, {frames[at], camera, pixel_side_, moments_of(frames[at], moves)}, files.bits,
+                        now.seconds);
         now.seconds = 0;  // once
         spdlog::info("{}", summary(renderer.write(files, exposure)));
         check_interrupt();
@@ -134,6 +147,42 @@ class RenderCommand : public Command {
     const auto fps = parse_number(fps_);
     if (!fps || !(*fps > 0)) throw UsageError("--fps {}: expected a number above 0, such as 24 or 29.97", fps_);
     return *fps;
+  }
+
+  void parse_means() {
+    const auto whole = [](const std::string& text, const char* option, std::uint32_t most, const char* wanted) {
+      const auto value = parse_integer<std::uint32_t>(text.empty() ? "1" : text);
+      if (!value || *value < 1 || *value > most) throw UsageError("{} {}: expected {}", option, text, wanted);
+      return *value;
+    };
+    const char* const squares = "a square number from 1 to 64, such as 4, 9 or 16";
+    const std::uint32_t samples = whole(pixel_samples_, "--pixel-samples", 64, squares);
+    while (pixel_side_ * pixel_side_ < samples) ++pixel_side_;
+    if (pixel_side_ * pixel_side_ != samples)
+      throw UsageError("--pixel-samples {}: expected {}", pixel_samples_, squares);
+    moments_ = whole(motion_samples_, "--motion-samples", 256, "a number from 1 to 256");
+    const auto shutter = parse_number(shutter_.empty() ? "0.5" : shutter_);
+    if (!shutter || !(*shutter >= 0 && *shutter <= 100))
+      throw UsageError("--shutter {}: expected frames from 0 to 100, such as 0.5", shutter_);
+    shutter_frames_ = *shutter;
+    if (!bits_.empty() && (samples > 1 || moments_ > 1))
+      throw UsageError(
+          "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples and --motion-samples");
+    if (moments_ > 1 && frames_.empty() && !frame_)
+      throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", motion_samples_);
+  }
+
+  /// The middle of each of so many equal parts of the time that the shutter is open; none if one is enough.
+  [[nodiscard]] std::vector<std::function<scenes::Scene()>> moments_of(std::optional<std::int64_t> frame,
+                                                                       bool moves) const {
+    std::vector<std::function<scenes::Scene()>> all;
+    if (!frame || !moves || moments_ == 1) return all;
+    for (std::uint32_t i = 0; i < moments_; ++i) {
+      const double offset = shutter_frames_ * ((i + 0.5) / moments_ - 0.5);
+      const double time = (static_cast<double>(*frame) + offset) * seconds_per_frame_;
+      all.emplace_back([this, time] { return read_session_scene(options_, time); });
+    }
+    return all;
   }
 
   /// One entry without a number if no frame was asked for.
@@ -188,7 +237,9 @@ class RenderCommand : public Command {
   RunOptions options_;
   MethodWish wish_;
   std::optional<std::int64_t> frame_;
-  std::string frames_, fps_, exposure_;
+  std::string frames_, fps_, exposure_, pixel_samples_, motion_samples_, shutter_;
+  std::uint32_t pixel_side_ = 1, moments_ = 1;
+  double shutter_frames_ = 0.5;
   bool skip_existing_ = false;
   double seconds_per_frame_ = 0;
   std::filesystem::path stats_, png_, bits_;

@@ -4,6 +4,7 @@
 #include "app/parse.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/process/stopwatch.hpp"
+#include "base/assert.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/exr.hpp"
@@ -23,6 +24,30 @@ constexpr const char* kExposure = "penumbra.exposure";
 bool is_there(const std::filesystem::path& file) {
   std::error_code error;
   return std::filesystem::is_regular_file(file, error);
+}
+
+/// All lights together, in their order.
+std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std::size_t pixels) {
+  std::vector<glm::vec3> sum(pixels, glm::vec3(0));
+  for (const std::vector<glm::vec3>& part : parts) {
+    for (std::size_t i = 0; i < part.size(); ++i) sum[i] += part[i];
+  }
+  return sum;
+}
+
+/// What other moments of the same lights cost is added to what this one did.
+void add_times(MethodRun& to, const MethodRun& before) {
+  to.times.mesh += before.times.mesh;
+  to.times.light += before.times.light;
+  to.times.evaluate += before.times.evaluate;
+  to.times.read += before.times.read;
+  for (std::size_t light = 0; light < before.times.lights.size(); ++light) {
+    to.times.lights[light].light += before.times.lights[light].light;
+    to.times.lights[light].evaluate += before.times.lights[light].evaluate;
+  }
+  to.passes.insert(to.passes.begin(), before.passes.begin(), before.passes.end());
+  for (const auto& [name, count] : before.counters) to.counters[name] += count;
+  to.memory_bytes = std::max(to.memory_bytes, before.memory_bytes);
 }
 
 }  // namespace
@@ -56,9 +81,62 @@ std::optional<float> written_exposure(const std::filesystem::path& picture) {
   return stops ? std::optional(static_cast<float>(*stops)) : std::nullopt;
 }
 
+PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, std::size_t lights)
+    : width_(width),
+      height_(height),
+      visibility_(lights, std::vector<double>(std::size_t{width} * height, 0)),
+      beauty_(lights, std::vector<glm::dvec3>(std::size_t{width} * height, glm::dvec3(0))),
+      alpha_(std::size_t{width} * height, 0) {}
+
+void PictureMean::add(const visibility::ViewSamples& samples, std::span<const std::vector<float>> visibility,
+                      std::span<const std::vector<glm::vec3>> beauty, std::uint32_t side) {
+  PENUMBRA_ASSERT(
+      samples.width == width_ * side && samples.height == height_ * side && visibility.size() == visibility_.size(),
+      "{}x{} view samples of {} lights for {}x{} blocks of {} of {}", samples.width, samples.height, visibility.size(),
+      width_, height_, side, visibility_.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t x = i % samples.width / side, y = i / samples.width / side, pixel = y * width_ + x;
+    alpha_[pixel] += samples.triangle[i] == visibility::ViewSamples::kBackground ? 0 : 1;
+    for (std::size_t light = 0; light < visibility.size(); ++light) {
+      visibility_[light][pixel] += double{visibility[light][i]};
+      if (!beauty[light].empty()) beauty_[light][pixel] += glm::dvec3(beauty[light][i]);
+    }
+  }
+  blocks_ += static_cast<double>(side) * side;
+}
+
+std::vector<std::vector<float>> PictureMean::visibility() const {
+  std::vector<std::vector<float>> means;
+  for (const std::vector<double>& sums : visibility_) {
+    auto& mean = means.emplace_back();
+    for (const double sum : sums) mean.push_back(static_cast<float>(sum / blocks_));
+  }
+  return means;
+}
+
+std::vector<std::vector<glm::vec3>> PictureMean::beauty() const {
+  std::vector<std::vector<glm::vec3>> means;
+  for (const std::vector<glm::dvec3>& sums : beauty_) {
+    auto& mean = means.emplace_back();
+    for (const glm::dvec3& sum : sums) mean.emplace_back(sum / blocks_);
+  }
+  return means;
+}
+
+std::vector<float> PictureMean::alpha() const {
+  std::vector<float> mean;
+  for (const double sum : alpha_) mean.push_back(static_cast<float>(sum / blocks_));
+  return mean;
+}
+
 FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices,
                              Progress& progress)
-    : options_(options), wish_(wish), devices_(devices), progress_(progress), maker_(options, devices) {}
+    : options_(options),
+      wish_(wish),
+      devices_(devices),
+      progress_(progress),
+      maker_(options, devices),
+      fine_options_(options) {}
 
 void FrameRenderer::say_warnings() {
   progress_.clear();
@@ -74,7 +152,7 @@ void FrameRenderer::say_warnings() {
 
 /// Says, and notes, where light samples are looked at though nobody asked for them.
 void FrameRenderer::choose_methods() {
-  chosen_ = choose_light_methods(session().lights, wish_);
+  chosen_ = choose_light_methods(lit().lights, wish_);
   labels_.clear();
   notes_.clear();
   for (const LightMethod& one : chosen_) {
@@ -90,36 +168,35 @@ void FrameRenderer::choose_methods() {
 FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
   for (Kept& kept : kept_) {
     if (kept.with.description.name != wanted.description.name || kept.with.options != wanted.options) continue;
-    if (kept.mesh_version != session().mesh_version) kept.prepared = nullptr;
-    kept.mesh_version = session().mesh_version;
+    if (kept.mesh_version != lit().mesh_version) kept.prepared = nullptr;
+    kept.mesh_version = lit().mesh_version;
     return kept;
   }
   kept_.push_back(
-      {wanted, make_method(wanted.description.name, wanted.options, devices_), nullptr, session().mesh_version});
+      {wanted, make_method(wanted.description.name, wanted.options, devices_), nullptr, lit().mesh_version});
   return kept_.back();
 }
 
-void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
-                           double read_seconds) {
-  const Stopwatch busy;
-  frame_ = frame;
-  read_seconds_ = read_seconds;
-  bits_seconds_ = 0;
-  beauty_.reset();
-  bits_.reset();
-  run_ = {};
-  maker_.show(std::move(scene), frame.camera, 0, progress_);
+void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
+  maker.show(std::move(scene), frame_.camera, 0, progress_);
+  load_seconds_ += maker.session().load_seconds;
+  device_seconds_ += maker.session().device_seconds;
+  view_seconds_ += maker.session().view_seconds + maker.session().receiver_seconds;
+}
+
+void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   say_warnings();
   choose_methods();
   if (!bits.empty()) {
-    check_bits(chosen_.front().description, session().lights.front());
-    bits_.emplace(bits, session(), session().lights.front());
+    check_bits(chosen_.front().description, lit().lights.front());
+    bits_.emplace(bits, lit(), lit().lights.front());
   }
-  beauty_.emplace(session(), session().lights);
+  beauty_.emplace(lit(), lit().lights);
+  MethodRun all;
   for (const std::vector<std::size_t>& lights : same_methods(chosen_)) {
     Kept& kept = method_for(chosen_[lights.front()]);
     MethodRun run = run_method(
-        *kept.method, session(), {.lights = session().lights, .only = lights, .prepared = kept.prepared},
+        *kept.method, lit(), {.lights = lit().lights, .only = lights, .prepared = kept.prepared},
         [&](const TileResult& tile) {
           beauty_->add(tile);
           if (!bits_ || tile.light != 0) return;
@@ -129,16 +206,68 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
         },
         progress_);
     kept.prepared = run.prepared;
-    add_run(run_, std::move(run));
+    add_run(all, std::move(run));
+  }
+  view_seconds_ += all.times.view;
+  run_ = std::move(all);
+}
+
+void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
+                           double read_seconds) {
+  const Stopwatch busy;
+  frame_ = frame;
+  load_seconds_ = read_ahead_seconds_ = read_seconds;
+  device_seconds_ = view_seconds_ = bits_seconds_ = 0;
+  beauty_.reset();
+  bits_.reset();
+  mean_.reset();
+  run_ = {};
+  if (frame.moments.empty() && frame.pixel_side == 1) {
+    show(maker_, std::move(scene));
+    run_methods(bits);
+  } else {
+    render_mean(std::move(scene));
   }
   devices_.check_validation();  // before anything appears: a picture that cannot be trusted is none
   busy_seconds_ = busy.seconds();
 }
 
+void FrameRenderer::render_mean(scenes::Scene scene) {
+  const std::uint32_t side = frame_.pixel_side;
+  if (side > 1) {
+    show(maker_, scene);
+    const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
+    if (!fine_ || fine_options_.size != size) {
+      kept_.clear();  // what they hold is of the session that goes
+      fine_options_.size = size;
+      fine_.emplace(fine_options_, devices_);
+    }
+  }
+  const auto add = [&](scenes::Scene moment) {
+    show(side > 1 ? *fine_ : maker_, std::move(moment));
+    MethodRun before = std::exchange(run_, {});
+    run_methods({});
+    if (!mean_) mean_.emplace(lit().width / side, lit().height / side, lit().lights.size());
+    mean_->add(lit().samples, run_.visibility, beauty_->parts(), side);
+    add_times(run_, before);
+  };
+  if (frame_.moments.empty()) add(scene);
+  for (const auto& moment : frame_.moments) {
+    const Stopwatch read;
+    scenes::Scene then = moment();
+    load_seconds_ += read.seconds();
+    add(std::move(then));
+  }
+  if (side == 1) show(maker_, std::move(scene));
+}
+
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
   const LabelledLights lights{session().lights, labels_};
-  const std::vector<glm::vec3> sum = beauty_->sum();
+  const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty() : beauty_->parts();
+  const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility() : std::move(run_.visibility);
+  const std::vector<float> alpha = mean_ ? mean_->alpha() : std::vector<float>();
+  const std::vector<glm::vec3> sum = sum_of(beauty, session().pixel_count());
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops)) stops = std::log2(auto_exposure(session(), sum));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
@@ -151,17 +280,17 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (!files.png.empty()) {
     write_png(files.png, to_srgb(session().width, session().height, sum, std::exp2(stops)));
   }
-  write_picture(files.picture, {session(), lights, run_.visibility, beauty_->parts(), sum, {}, std::move(attributes)});
+  write_picture(files.picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
   compare::Stats stats = make_stats(session(), lights, run_);
   stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
   // What stands between the phases is a few milliseconds of choosing and messages.
   compare::Seconds& seconds = stats.seconds;
-  seconds.load = *seconds.load + read_seconds_;
-  seconds.mesh = *seconds.mesh + session().device_seconds;
-  seconds.view = *seconds.view + session().receiver_seconds + run_.times.view;
+  seconds.load = load_seconds_;
+  seconds.mesh = *seconds.mesh + device_seconds_;
+  seconds.view = view_seconds_;
   seconds.beauty = std::max(run_.times.read - bits_seconds_, 0.0);
   seconds.write = write.seconds() + bits_seconds_;
-  seconds.total = read_seconds_ + busy_seconds_ + write.seconds();
+  seconds.total = read_ahead_seconds_ + busy_seconds_ + write.seconds();
   if (!files.stats.empty()) write_file_atomically(files.stats, compare::json_text(compare::to_json(stats)));
   return stats;
 }

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,30 @@ std::optional<float> written_exposure(const std::filesystem::path& picture);
 struct Frame {
   std::optional<std::int64_t> number;  ///< none was asked for
   std::string camera;                  ///< empty: the first
+  std::uint32_t pixel_side = 1;        ///< view samples a pixel along each axis
+  /// Scenes at other moments, whose mean the picture is; empty: it is that of the one moment. Each is asked for once.
+  std::vector<std::function<scenes::Scene()>> moments = {};
+};
+
+/// The mean of several pictures, or of blocks of pixels of larger ones.
+class PictureMean {
+ public:
+  /// Of so many lights and pixels.
+  PictureMean(std::uint32_t width, std::uint32_t height, std::size_t lights);
+  /// A picture of `side` times the width and height: each block counts as much as any other block of any picture.
+  void add(const visibility::ViewSamples& samples, std::span<const std::vector<float>> visibility,
+           std::span<const std::vector<glm::vec3>> beauty, std::uint32_t side);
+
+  [[nodiscard]] std::vector<std::vector<float>> visibility() const;
+  [[nodiscard]] std::vector<std::vector<glm::vec3>> beauty() const;
+  [[nodiscard]] std::vector<float> alpha() const;
+
+ private:
+  std::uint32_t width_, height_;
+  double blocks_ = 0;                            // that were added, in view samples of a pixel
+  std::vector<std::vector<double>> visibility_;  // sums, in double: order matters to no digit that is kept
+  std::vector<std::vector<glm::dvec3>> beauty_;
+  std::vector<double> alpha_;
 };
 
 /// Renders pictures of one scene after each other. Methods, and what they prepared, are kept from one to the next.
@@ -51,8 +76,9 @@ class FrameRenderer {
   /// All must outlive it.
   FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices, Progress& progress);
 
-  /// Looks at a scene and computes all lights' V and beauty. `read_seconds`: what reading the scene took, of which
-  /// nobody waited for anything else.
+  /// Looks at a scene and computes all lights' V and beauty: of it, or the mean of `frame.moments`; then positions,
+  /// normals, depths and ids are those of `scene` and of pixels' centres. `read_seconds`: what reading the scene took,
+  /// of which nobody waited for anything else.
   void render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits, double read_seconds);
   /// Writes what was computed last. `exposure` gets its stops if it is of a sequence's first picture and has none yet.
   /// Returns what stats.json says.
@@ -70,6 +96,11 @@ class FrameRenderer {
   };
 
   void choose_methods();
+  void run_methods(const std::filesystem::path& bits);
+  void show(SessionMaker& maker, scenes::Scene scene);
+  void render_mean(scenes::Scene scene);
+  /// What methods look at: the picture's session, or that of more view samples a pixel.
+  [[nodiscard]] const Session& lit() const { return fine_ ? fine_->session() : maker_.session(); }
   Kept& method_for(const LightMethod& wanted);
   void say_warnings();
 
@@ -78,6 +109,8 @@ class FrameRenderer {
   DeviceSource& devices_;
   Progress& progress_;
   SessionMaker maker_;
+  RunOptions fine_options_;  // of the next, whose picture is several times as large
+  std::optional<SessionMaker> fine_;
   std::vector<Kept> kept_;
   std::vector<std::string> said_;  // warnings, once each
 
@@ -88,8 +121,10 @@ class FrameRenderer {
   std::vector<std::string> notes_;
   MethodRun run_;
   std::optional<BeautyAccumulator> beauty_;
+  std::optional<PictureMean> mean_;  // nothing: the picture is that of one moment and of pixels' centres
   std::optional<BitsOutput> bits_;
-  double read_seconds_ = 0, bits_seconds_ = 0, busy_seconds_ = 0;
+  double read_ahead_seconds_ = 0, load_seconds_ = 0, device_seconds_ = 0, view_seconds_ = 0, bits_seconds_ = 0,
+         busy_seconds_ = 0;
 };
 
 }  // namespace penumbra::app

@@ -112,6 +112,66 @@ TEST_F(Frames, ExposuresAreStops) {
     EXPECT_EQ(render({"--frame", "1", "-o", path("e.exr"), "--exposure", wrong}).code, 2) << wrong;
 }
 
+/// R G B A and V are means of a larger picture's blocks; everything else is of the pixel's centre.
+TEST_F(Frames, PixelSamplesAreMeans) {
+  ASSERT_EQ(render({"--frame", "3", "-o", path("one.exr")}).code, 0);
+  ASSERT_EQ(render({"--frame", "3", "-o", path("four.exr"), "--pixel-samples", "4"}).code, 0);
+  ASSERT_EQ(
+      run({"render", path("scene.glb"), "--size", "48x32", "--fps", "10", "--frame", "3", "-o", path("large.exr")})
+          .code,
+      0);
+  const ExrFile one = read_exr(path("one.exr")), four = read_exr(path("four.exr")), large = read_exr(path("large.exr"));
+  ASSERT_EQ(four.width, 24u);
+  std::size_t between = 0;
+  for (const auto& [name, values] : four.floats) {
+    const bool is_mean = name == "R" || name == "G" || name == "B" || name == "A" || name == "V" || name == "Lamp.V" ||
+                         name == "Lamp.R" || name == "Lamp.G" || name == "Lamp.B";
+    if (!is_mean) {
+      EXPECT_EQ(values, one.floats.at(name)) << name;
+    }
+    for (std::size_t i = 0; is_mean && i < values.size(); ++i) {
+      const auto& source = large.floats.at(name);
+      const std::size_t first = 2 * (i / 24) * 48 + 2 * (i % 24);
+      const double sum =
+          double{source[first]} + double{source[first + 1]} + double{source[first + 48]} + double{source[first + 49]};
+      ASSERT_EQ(values[i], static_cast<float>(sum / 4)) << name << " " << i;
+      between += name == "V" && values[i] != one.floats.at(name)[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(between, 5u);
+  EXPECT_EQ(four.integers.at("id"), one.integers.at("id"));
+}
+
+/// Two moments of a shutter that is open for 0.4 frames: 0.1 frames before and after.
+TEST_F(Frames, MotionSamplesAreMeansOfMoments) {
+  ASSERT_EQ(render({"--frame", "5", "-o", path("m.exr"), "--motion-samples", "2", "--shutter", "0.4"}).code, 0);
+  ASSERT_EQ(render({"--frame", "5", "-o", path("now.exr")}).code, 0);
+  ASSERT_EQ(render({"--frame", "49", "--fps", "100", "-o", path("a.exr")}).code, 0);
+  ASSERT_EQ(render({"--frame", "51", "--fps", "100", "-o", path("b.exr")}).code, 0);
+  const ExrFile mean = read_exr(path("m.exr")), now = read_exr(path("now.exr")), a = read_exr(path("a.exr")),
+                b = read_exr(path("b.exr"));
+  EXPECT_EQ(mean.floats.at("Z"), now.floats.at("Z"));
+  EXPECT_NE(mean.floats.at("V"), now.floats.at("V"));
+  for (const char* name : {"R", "V", "A", "Lamp.V"}) {
+    for (std::size_t i = 0; i < mean.floats.at(name).size(); ++i) {
+      // The two times are computed in different orders, and may differ by a double's step; radiance goes up to 20.
+      EXPECT_NEAR(mean.floats.at(name)[i], (a.floats.at(name)[i] + b.floats.at(name)[i]) / 2, 2e-5) << name << i;
+    }
+  }
+}
+
+TEST_F(Frames, MeansAreOfWholeSquaresAndOfNoBits) {
+  const auto code = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"-o", path("x.exr")});
+    return render(more).code;
+  };
+  for (const char* wrong : {"0", "3", "65", "x"}) EXPECT_EQ(code({"--pixel-samples", wrong}), 2) << wrong;
+  EXPECT_EQ(code({"--pixel-samples", "4", "--bits", path("x.bits")}), 2);
+  EXPECT_EQ(code({"--motion-samples", "4"}), 2) << "of no frame";
+  EXPECT_EQ(code({"--frame", "1", "--motion-samples", "0"}), 2);
+  EXPECT_EQ(code({"--frame", "1", "--motion-samples", "2", "--shutter", "-1"}), 2);
+}
+
 TEST_F(Frames, OfAllCameras) {
   ASSERT_EQ(render({"--camera", "all", "--frames", "2-3", "-o", path("o.####.exr")}).code, 0);
   EXPECT_THAT(files(),
