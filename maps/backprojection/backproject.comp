@@ -23,6 +23,12 @@ Kernel kernel_of(MapFace face) {
   return kernel_on(face, lookup.size, asked.e, light.lower, light.upper, near, 0);
 }
 
+// Patches reach to their left and lower neighbours' depths; spheres, beyond their texels.
+bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
+  vec2 depths;
+  return none_hides(face, first - 1, last, own.layers, own.form == kFormPatch, depths);
+}
+
 float share_above() { return light_above_horizon(asked.e, asked.m); }
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }

@@ -28,6 +28,11 @@ Kernel kernel_of(MapFace face) {
   return kernel;
 }
 
+bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
+  vec2 depths;
+  return none_hides(face, first - 1, last, own.layers, true, depths);
+}
+
 float share_above() { return light_above_horizon(asked.e, asked.m); }
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }

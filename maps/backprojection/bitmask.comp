@@ -45,9 +45,30 @@ Tap texel_at(MapFace face, uint layer, uvec2 cell) {
   return tap;
 }
 
+// Quads and triangles lie between centres, of a texel and its right and upper neighbours; patches reach to the left and
+// lower ones.
+bool between_centres() { return own.occluder == kOccluderQuad || own.occluder == kOccluderTriangle; }
+
+// A rectangle of the light that holds what texels first ... last of a face parallel to it can hide, none of them nearer to
+// the light than depths.x or farther than depths.y; a texel more on every side, as in all_beside_light.
+bool may_hide_samples(MapFace face, ivec2 first, ivec2 last, vec2 depths) {
+  if (face.axis != 2) return true;
+  const vec2 from = (face.lower + vec2(first - 1) * face.texel) * asked.e.z - asked.e.xy;
+  const vec2 to = (face.lower + vec2(last + 2) * face.texel) * asked.e.z - asked.e.xy;
+  const vec2 scales = depths / max(asked.e.z - depths, vec2(1e-8 * asked.e.z));
+  return holds_samples(min(from * scales.x, from * scales.y), max(to * scales.x, to * scales.y));
+}
+
+bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
+  const ivec2 from = (between_centres() ? first : first - 1) << own.level;
+  const ivec2 to = ((between_centres() ? last + 2 : last + 1) << own.level) - 1;
+  vec2 depths;
+  return none_hides(face, from, to, own.layers, true, depths) || !may_hide_samples(face, from, to, depths);
+}
+
 Kernel kernel_of(MapFace face) {
-  // Quads and triangles lie between centres.
-  const int padding = own.occluder == kOccluderPatch || own.occluder == kOccluderRect ? 0 : 1;
+  const int padding = between_centres() ? 1 : 0;
+  tile_shift = padding;
   float near = nearest[asked.number];
   Kernel kernel = kNoKernel;
   if (own.search != 0) {
@@ -83,7 +104,8 @@ void hide_quad(MapFace face, uint layer, uvec2 cell) {
   vec3 seen[4];
   uint hiding = 0;
   int missing = 0;
-  for (int k = 0; k < 4; ++k) {
+  const uint fewest = own.occluder == kOccluderTriangle ? 3 : 4;
+  for (int k = 0; k < 4 && hiding + 4 >= uint(k) + fewest; ++k) {
     const Tap tap = texel_at(face, layer, at[k]);
     if (hides(tap)) {
       seen[k] = onto_light(asked.e, tap.depth * tap.direction);
@@ -103,7 +125,7 @@ void hide_quad(MapFace face, uint layer, uvec2 cell) {
 void hide(MapFace fine, uvec2 cell) {
   const MapFace face = at_level(fine);
   for (uint layer = 0; layer < own.layers; ++layer) {
-    if (own.occluder == kOccluderQuad || own.occluder == kOccluderTriangle) {
+    if (between_centres()) {
       hide_quad(face, layer, cell);
       continue;
     }

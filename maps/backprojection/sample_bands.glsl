@@ -42,6 +42,42 @@ uint first_sample(uint first, uint last, float x) {
 void hide_sample(uint j);
 bool all_samples_hidden();
 
+// The light's bounding rectangle in 64 x 64 squares, and which of them hold samples that are looked for: most of what texels
+// hide lies between samples. A row is two words.
+const uint kSquares = 64;
+shared uint square_words[2 * kSquares];
+
+uvec2 square_of(vec2 s) {
+  precise vec2 from_lower = s - light.lower;
+  precise vec2 at = from_lower * (float(kSquares) / (light.upper - light.lower));
+  return uvec2(clamp(at, vec2(0.0), vec2(kSquares - 1)));
+}
+
+// Of a row's word the squares first ... last.
+uint squares_between(uint first, uint last, uint word) {
+  const int from = max(int(first) - 32 * int(word), 0), to = min(int(last) - 32 * int(word), 31);
+  return to < from ? 0 : 0xffffffffu >> (31 - (to - from)) << from;
+}
+
+bool holds_samples(vec2 lower, vec2 upper) {
+  if (any(greaterThan(lower, light.upper)) || any(lessThan(upper, light.lower)) || all_samples_hidden()) return false;
+  const uvec2 first = square_of(lower), last = square_of(upper);
+  const uvec2 masks = uvec2(squares_between(first.x, last.x, 0), squares_between(first.x, last.x, 1));
+  for (uint row = first.y; row <= last.y; ++row) {
+    if ((square_words[2 * row] & masks.x) != 0 || (square_words[2 * row + 1] & masks.y) != 0) return true;
+  }
+  return false;
+}
+
+// The whole workgroup marks samples after it has cleared all squares.
+void clear_squares() {
+  for (uint word = gl_LocalInvocationIndex; word < 2 * kSquares; word += gl_WorkGroupSize.x) square_words[word] = 0;
+}
+void mark_sample(uint j) {
+  const uvec2 square = square_of(light_sample(j));
+  atomicOr(square_words[2 * square.y + square.x / 32], 1u << (square.x & 31));
+}
+
 // Edges a to b, b to c, c to a of a triangle in the light's plane, in homogeneous coordinates with w > 0: cross products of
 // their ends, so that a sample on the side of the first triangle of a common edge is exactly not on that of the other, or
 // on both. Samples on an edge are in.
@@ -61,7 +97,6 @@ float side_of(vec3 edge, vec2 s) {
 
 // What stands in the light between two corners, both included; `triangle`: only what is in it, too.
 void hide_between(vec2 lower, vec2 upper, bool in_triangle, LightTriangle triangle) {
-  if (any(greaterThan(lower, light.upper)) || any(lessThan(upper, light.lower)) || all_samples_hidden()) return;
   const uint last_band = band_of(upper.y);
   for (uint band = band_of(lower.y); band <= last_band; ++band) {
     const uint words = 2 * bands.samples + band;
@@ -83,7 +118,7 @@ void hide_between(vec2 lower, vec2 upper, bool in_triangle, LightTriangle triang
 void hide_rectangle(vec2 a, vec2 b) {
   LightTriangle none;
   none.edges[0] = none.edges[1] = none.edges[2] = vec3(0.0);
-  hide_between(min(a, b), max(a, b), false, none);
+  if (holds_samples(min(a, b), max(a, b))) hide_between(min(a, b), max(a, b), false, none);
 }
 
 // Corners as onto_light gives them, w > 0.
@@ -91,9 +126,11 @@ void hide_triangle(vec3 a, vec3 b, vec3 c) {
   const vec2 p = a.xy / a.z, q = b.xy / b.z, r = c.xy / c.z;
   // Quotients are rounded: a sample on the triangle's very corner is decided by its edges.
   const vec2 margin = 1e-5 * (light.upper - light.lower);
+  const vec2 lower = min(min(p, q), r) - margin, upper = max(max(p, q), r) + margin;
+  if (!holds_samples(lower, upper)) return;
   LightTriangle triangle;
   triangle.edges[0] = edge_between(a, b);
   triangle.edges[1] = edge_between(b, c);
   triangle.edges[2] = edge_between(c, a);
-  hide_between(min(min(p, q), r) - margin, max(max(p, q), r) + margin, true, triangle);
+  hide_between(lower, upper, true, triangle);
 }

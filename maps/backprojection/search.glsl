@@ -2,6 +2,7 @@
 // nearest depth, which makes a narrower kernel, with a nearest depth of its own, until it stays as it is. Where its
 // deepest texel, too, is in front of the receiver, all of the light is hidden. Included after group_kernel.glsl, with
 // PYRAMID_BINDING.
+#include "maps/backprojection/thresholds.glsl"
 #include "maps/products/depth_pyramid.glsl"
 
 const int kSearchRounds = 4;
@@ -47,4 +48,20 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, int
     if (same) break;
   }
   return kernel;
+}
+
+// Texels first ... last of a face, all that a tile's answers depend on, in so many layers: is none of them near enough to the
+// light to shade the receiver, or are all of them, no nearer than their nearest, seen beside the light? `projected`: what
+// they hide is no wider than they are. Else what can hide light is at depths.x ... depths.y.
+bool none_hides(MapFace face, ivec2 first, ivec2 last, uint layers, bool projected, out vec2 depths) {
+  first = max(first, ivec2(0));
+  last = min(last, ivec2(lookup.size) - 1);
+  const vec2 range = depth_range(face.map, uvec2(first), uvec2(last));
+  if (range.x >= 1.0) return true;
+  const Bounds receiver = bounds_of(face, asked.e, asked.m);
+  const float end = thresholds(receiver, face, first, last, asked.view.far).y;
+  depths = asked.view.far * range;
+  if (depths.x >= end) return true;
+  depths.y = min(layers > 1 ? end : min(depths.y, end), asked.e.z);
+  return projected && all_beside_light(receiver, face, first, last, depths.x, light.lower, light.upper);
 }

@@ -1,5 +1,5 @@
-// How near to the light what a map has must be to shade the receivers of a group, over a rectangle of texels: nearer than
-// x it shades all of them, at y or farther none. Bounds of what blocks_light (taps.glsl) asks of a single texel, with
+// What a rectangle of texels can do to the receivers of a group. How near to the light what a map has must be to shade them:
+// nearer than x it shades all of them, at y or farther none; and whether they see it beside the light. Bounds of what blocks_light (taps.glsl) asks of a single texel, with
 // room for its rounding, so that whoever decides by them and whoever asks each texel decide alike (Yang et al. 2009,
 // equation 3, here with each texel's own depth of the receiver's plane).
 
@@ -9,6 +9,7 @@ struct Bounds {
   float h_low, h_high;           // the distances of their planes from the light's centre
   float z_low, z_high;           // their own heights
   float across_low, across_high; // of the normals, across the face
+  vec2 at_low, at_high;          // where a face parallel to the light sees them
   int above;                     // the centre is above the horizon of all: 1; of none: 0; of some: -1
 };
 
@@ -25,6 +26,7 @@ Bounds bounds_of(MapFace face, vec3 e, vec3 m) {
   one.h_high = h + slack;
   one.z_low = one.z_high = e.z;
   one.across_low = one.across_high = abs(f.x) + abs(f.y);
+  one.at_low = one.at_high = e.xy / e.z;
   one.above = h > 0.0 ? 1 : 0;
   return one;
 }
@@ -36,6 +38,8 @@ Bounds join(Bounds a, Bounds b) {
   a.h_high = max(a.h_high, b.h_high);
   a.z_low = min(a.z_low, b.z_low);
   a.z_high = max(a.z_high, b.z_high);
+  a.at_low = min(a.at_low, b.at_low);
+  a.at_high = max(a.at_high, b.at_high);
   a.across_low = min(a.across_low, b.across_low);
   a.across_high = max(a.across_high, b.across_high);
   if (a.above != b.above) a.above = -1;
@@ -50,12 +54,13 @@ vec2 product_range(vec2 m, vec2 x) {
 
 // Over texels lower ... upper of a face; never beyond `far`, where there is nothing: what is empty shades nobody.
 vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far) {
-  // A surface begins to be shaded elsewhere than at its depth: pyramids and ranges know nothing of it.
-  if (lookup.depth_use != kDepthFirst || group.above < 0) return vec2(-1e30, far);
+  if (group.above < 0) return vec2(-1e30, far);
   const vec2 from = face.lower + (vec2(lower) + 0.5) * face.texel, to = face.lower + (vec2(upper) + 0.5) * face.texel;
   vec2 limit = vec2(group.z_low, group.z_high);
   if (face.axis != 2) limit = vec2(group.z_low / to.y, group.z_high / max(from.y, 0.25 * face.texel.y));
-  const vec2 forgiven = lookup.bias * max(face.texel.x, face.texel.y) * limit;
+  // Shadow that begins at or before another surface begins nowhere before this one; what pyramids know of no other.
+  const bool nearest_alone = lookup.depth_use == kDepthFirst;
+  const vec2 forgiven = (nearest_alone ? lookup.bias : 0.0) * max(face.texel.x, face.texel.y) * limit;
   vec2 plane = limit, slope = vec2(0.0);
   if (group.above > 0) {
     const vec2 a = product_range(vec2(group.m_low.x, group.m_high.x), vec2(from.x, to.x));
@@ -70,5 +75,16 @@ vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far)
   }
   const vec2 taken = forgiven * (1.0 + slope);
   const float slack = 4.0 * kSlack * (plane.y + taken.y);
-  return min(vec2(plane.x - taken.y - slack, plane.y - taken.x + slack), far);
+  return min(vec2(nearest_alone ? plane.x - taken.y - slack : -1e30, plane.y - taken.x + slack), far);
+}
+
+// Do all of the group see texels lower ... upper, at depths of at least `near`, beside the light's bounding rectangle? As
+// kernel_on (kernel.glsl) has it, on a face parallel to the light; a texel more on every side, for what rounding sees on the
+// light's border.
+bool all_beside_light(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float near, vec2 light_lower, vec2 light_upper) {
+  if (face.axis != 2) return false;
+  const float reach = max(1.0 / near - 1.0 / group.z_high, 0.0);
+  const vec2 from = (group.at_low + reach * light_lower - face.lower) / face.texel;
+  const vec2 to = (group.at_high + reach * light_upper - face.lower) / face.texel;
+  return any(lessThan(vec2(upper + 2), from)) || any(greaterThan(vec2(lower - 1), to));
 }

@@ -1,6 +1,8 @@
-// A workgroup of 8 x 8 invocations looks at the texels of a receiver's kernel; see look_up.glsl. The shader defines
-//   Kernel kernel_of(MapFace face)       which texels of a face to look at
-// and what its main asks for: group_scalar_main.glsl, group_mask_main.glsl. All of them read `asked`.
+// A workgroup, one subgroup wide, looks at the texels of a receiver's kernel; see look_up.glsl. The shader defines
+//   Kernel kernel_of(MapFace face)                              which texels of a face to look at
+//   bool nothing_hides(MapFace face, ivec2 first, ivec2 last)   is it known that none of these texels hides any light?
+// and what its main asks for: group_scalar_main.glsl, group_mask_main.glsl, which look by group_tiles.glsl. All of them
+// read `asked`.
 #include "maps/host/kernel.glsl"
 
 // The receiver of this workgroup in (x, y, |z|): e from the light's centre, m its normal away from the light.
@@ -13,6 +15,7 @@ struct Asked {
 Asked asked;
 int stride = 1;           // kernel_of may take texels so far apart, each for its block
 bool all_hidden = false;  // kernel_of may find that nothing of the light is seen
+int tile_shift = 0;       // kernel_of may have tiles begin so many texels before a multiple of 8
 
 // False if no light reaches the receiver's side of the light's plane.
 bool ask(Receiver receiver) {
@@ -32,12 +35,6 @@ Tap ask_texel(MapFace face, uint layer, uvec2 cell) {
   Tap tap = tap_of(asked.view, lookup.size, face, cell);
   tap.along = asked.e.z / tap.direction.z;
   return tap;
-}
-
-// The first row of a kernel to look at that is in this part of the map: blocks begin where the kernel does.
-int first_row_of(Kernel kernel) {
-  const int before = max(int(lookup.first_row) - kernel.first.y, 0);
-  return kernel.first.y + (before + stride - 1) / stride * stride;
 }
 
 // Drivers for processors end all loops of an invocation after 65,535 turns together. Then this loop, too, ends at once:

@@ -2,6 +2,7 @@
 // group_kernel.glsl. The shader defines, too,
 //   void hide(MapFace face, uvec2 cell)                       calls hide_sample(j) for what a texel hides
 //   uint light_sample_count(), vec2 light_sample(uint j)      the samples, in the light's basis
+//   void clear_squares(), void mark_sample(uint j)            which of them are looked for: all invocations call these
 const uint kMaskWords = 128;  // 4096 light samples
 shared uint hidden_bits[kMaskWords];
 shared uint hidden_count;
@@ -13,12 +14,26 @@ void hide_sample(uint j) {
 
 bool all_samples_hidden() { return hidden_count >= light_sample_count(); }
 
+void before_tiles() {
+  clear_squares();
+  barrier();
+  for (uint j = gl_LocalInvocationIndex; j < light_sample_count(); j += gl_WorkGroupSize.x) {
+    if ((hidden_bits[j / 32] & 1u << (j & 31)) == 0) mark_sample(j);
+  }
+}
+
+void look_at(MapFace face, uvec2 cell) {
+  if (!all_samples_hidden()) hide(face, cell);
+}
+
+#include "maps/host/group_tiles.glsl"
+
 void main() {
   const uint i = this_receiver();
   if (i >= lookup.receiver_count) return;
   const Receiver receiver = receivers[lookup.first_receiver + i];
   const uint lane = gl_LocalInvocationIndex;
-  for (uint word = lane; word < kMaskWords; word += 64) hidden_bits[word] = 0;
+  for (uint word = lane; word < kMaskWords; word += gl_WorkGroupSize.x) hidden_bits[word] = 0;
   if (lane == 0) hidden_count = 0;
   barrier();
 
@@ -27,17 +42,13 @@ void main() {
   if (reached) {
     for (uint number = 0; number < asked.side.face_count; ++number) {
       const MapFace face = face_of(asked.side, 0, lookup.size, number);
-      const Kernel kernel = kernel_of(face);
-      const int last_row = min(kernel.last.y, int(lookup.last_row));
-      for (int y = first_row_of(kernel) + stride * int(gl_LocalInvocationID.y); y <= last_row; y += 8 * stride) {
-        for (int x = kernel.first.x + stride * int(gl_LocalInvocationID.x); x <= kernel.last.x; x += 8 * stride) hide(face, uvec2(x, y));
-      }
+      look_at_kernel(face, kernel_of(face));
     }
   }
   barrier();
 
   const uint samples = light_sample_count();
-  for (uint word = lane; word < lookup.words_per_pixel; word += 64) {
+  for (uint word = lane; word < lookup.words_per_pixel; word += gl_WorkGroupSize.x) {
     const uint used = min(samples - 32 * word, 32u);
     uint visible = used == 32 ? 0xffffffffu : (1u << used) - 1;
     if (receives) {

@@ -3,6 +3,12 @@
 //   float share_above()                         the share of the light above the receiver's horizon
 // Parts are added as integers: their order, and how many rows of the map are looked at at a time, change nothing.
 shared uint sum_low, sum_high;  // sum_low + 2^15 sum_high
+uint sum = 0;                   // of this invocation
+
+void before_tiles() {}
+void look_at(MapFace face, uvec2 cell) { sum = min(sum + hidden_by(face, cell), kWholeLight); }
+
+#include "maps/host/group_tiles.glsl"
 
 void main() {
   const uint i = this_receiver();
@@ -14,16 +20,9 @@ void main() {
   const bool receives = receiver.n != vec3(0.0);
   const bool reached = receives && ask(receiver);
   if (reached) {
-    uint sum = 0;
     for (uint number = 0; number < asked.side.face_count; ++number) {
       const MapFace face = face_of(asked.side, 0, lookup.size, number);
-      const Kernel kernel = kernel_of(face);
-      const int last_row = min(kernel.last.y, int(lookup.last_row));
-      for (int y = first_row_of(kernel) + stride * int(gl_LocalInvocationID.y); y <= last_row; y += 8 * stride) {
-        for (int x = kernel.first.x + stride * int(gl_LocalInvocationID.x); x <= kernel.last.x; x += 8 * stride) {
-          sum = min(sum + hidden_by(face, uvec2(x, y)), kWholeLight);
-        }
-      }
+      look_at_kernel(face, kernel_of(face));
     }
     if (all_hidden) sum = kWholeLight;
     atomicAdd(sum_low, sum & 32767u);

@@ -9,10 +9,8 @@
 // pixels it defines GROUP_A_PACKET, and brings its own main.
 #include "maps/host/map_view.shared.h"
 
-#ifdef GROUP_A_PACKET
-layout(local_size_x_id = 0) in;  // a subgroup
-#elif defined(GROUP_A_RECEIVER)
-layout(local_size_x = 8, local_size_y = 8) in;
+#if defined(GROUP_A_PACKET) || defined(GROUP_A_RECEIVER)
+layout(local_size_x_id = 0) in;  // a subgroup: what is the same for a receiver is not worked out by several
 #else
 layout(local_size_x = kLookupGroup) in;
 #endif
