@@ -76,10 +76,11 @@ float lit_share(LightView view, Box box, float t, uint s, out float blocker) {
     } else if (i == count - 1) {
       blockers += 0.5 * found;
     } else {
-      // Annen et al. 2007 (Eisemann et al. 2009, equation 4.6): lit = 1/2 + 2 sum of sin(c_k (t_q - t)) / c_k, and the
-      // sum of (1 - lit) t_q by the same series (Annen et al. 2008). Stored are sin, cos, t sin and t cos.
-      const float c = (2.0 * float(i / 4) + 1.0) * 3.14159265358979;
-      const float term = 2.0 / c * (2.0 * found - 1.0) * (i % 2 == 0 ? cos(c * t) : -sin(c * t));
+      // Annen et al. 2007 (Eisemann et al. 2009, equation 4.6): lit = 1/2 + 2 sum of sin(c_k (t_q - t)) / c_k, with heights
+      // that span less than half the period, and the sum of (1 - lit) t_q by the same series (Annen et al. 2008). Stored
+      // are sin, cos, t sin and t cos.
+      const float c = (2.0 * float(i / 4) + 1.0) * 3.14159265358979, at = c * fourier_span(own.count) * t;
+      const float term = 2.0 / c * (2.0 * found - 1.0) * (i % 2 == 0 ? cos(at) : -sin(at));
       if (i % 4 < 2) {
         lit += term;
       } else {

@@ -105,11 +105,11 @@ std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, f
       break;
     case Moments::csm:
       for (std::uint32_t k = 0; k < count; ++k) {
+        const auto step = static_cast<float>((2 * k + 1) * std::numbers::pi * gpu::fourier_span(count));
         for (const std::uint32_t power : {gpu::kPlain, gpu::kTimesHeight}) {
           for (const std::uint32_t kind : {gpu::kSine, gpu::kCosine}) {
             // 12 digits: one table each at 1024 texels a side; the series is cut off at 1 / (2 · 16 · π) anyway.
-            functions.push_back(
-                {.kind = kind, .power = power, .a = static_cast<float>((2 * k + 1) * std::numbers::pi), .digits = 12});
+            functions.push_back({.kind = kind, .power = power, .a = step, .digits = 12});
           }
         }
       }

@@ -3,6 +3,16 @@
 #ifdef __cplusplus
 #pragma once
 namespace penumbra::maps::gpu {
+/// csm: how much of half the period of its series heights span. The sum of n sines of a step has its last maximum 1 /
+/// 2n of that before it jumps back: there, and not on the jump, is the shadow of the nearest caster on the deepest
+/// receiver.
+constexpr float fourier_span(uint terms) {
+  return 1.0F - 0.5F / static_cast<float>(terms);
+}
+#else
+float fourier_span(uint terms) {
+  return 1.0 - 0.5 / float(terms);
+}
 #endif
 
 // What stands for the distribution of heights in a window: specialization constant 1.

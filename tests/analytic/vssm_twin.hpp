@@ -139,9 +139,9 @@ class VssmTwin {
       result.share = 0.5;
       result.blockers = 0.5 * mean(box, [](double q) { return q; });
       for (std::uint32_t k = 0; k < settings_.count; ++k) {
-        const double c = (2 * k + 1) * std::numbers::pi;
-        result.share += 2 / c * mean(box, [&](double q) { return std::sin(c * (q - t)); });
-        result.blockers -= 2 / c * mean(box, [&](double q) { return q * std::sin(c * (q - t)); });
+        const double c = (2 * k + 1) * std::numbers::pi, step = c * (1 - 0.5 / settings_.count);
+        result.share += 2 / c * mean(box, [&](double q) { return std::sin(step * (q - t)); });
+        result.blockers -= 2 / c * mean(box, [&](double q) { return q * std::sin(step * (q - t)); });
       }
       result.blockers /= 1 - result.share;
       return result;
