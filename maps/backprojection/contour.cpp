@@ -18,9 +18,9 @@ constexpr visibility::ChoiceOption<Search, 4> kSearch = search_option(Search::hs
 constexpr visibility::ChoiceOption kTraversal{
     "traversal",
     {{"flat", Traversal::flat}, {"hierarchy", Traversal::hierarchy}, {"minmax", Traversal::minmax}},
-    Traversal::flat,
-    "how contours are found, always the same ones: in every cell of a kernel, below a node of a multi-scale pyramid "
-    "over it, or below a min-max pyramid's root"};
+    Traversal::hierarchy,
+    "how contours are found, always the same ones: in every cell of a kernel, below a node of the searched pyramid (or "
+    "of an MSSM) over it, or below a min-max pyramid's root"};
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return judge_for_maps("outlines of what the light's centre sees, each closed and by itself", mesh);

@@ -46,7 +46,7 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   } else {
     add_pyramid(pyramid_of(search));
   }
-  const Search walked = traversal == Traversal::minmax ? Search::hsm : Search::mssm;
+  const Search walked = traversal == Traversal::minmax ? Search::hsm : search == Search::none ? Search::mssm : search;
   if (traversal == Traversal::flat) {
     add_same(kUnread);
   } else if (search == walked) {

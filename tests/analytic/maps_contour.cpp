@@ -132,7 +132,9 @@ TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
 /// All ways to look for the same contours.
 std::vector<std::pair<Factory, MethodOptions>> all_ways() {
   std::vector<std::pair<Factory, MethodOptions>> ways;
-  for (const char* search : {"none", "hsm", "mssm", "ysm"}) ways.push_back({maps::make_contour, {{"search", search}}});
+  for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
+    ways.push_back({maps::make_contour, {{"search", search}, {"traversal", "flat"}}});
+  }
   for (const char* traversal : {"hierarchy", "minmax"}) {
     for (const char* search : {"none", "hsm", "ysm"}) {
       ways.push_back({maps::make_contour, {{"search", search}, {"traversal", traversal}}});
@@ -149,7 +151,7 @@ std::vector<std::pair<Factory, MethodOptions>> all_ways() {
 class MapsContourWays : public ContourTest {
  protected:
   static void expect_one_image(const Stage& stage, const char* size, const std::string& what) {
-    const Masks first = run(maps::make_contour, stage, {{"size", size}, {"search", "none"}});
+    const Masks first = run(maps::make_contour, stage, {{"size", size}, {"search", "none"}, {"traversal", "flat"}});
     std::set<float> values(first.visibility.begin(), first.visibility.end());
     for (const float v : values) EXPECT_TRUE(v >= 0 && v <= 1) << what << ": " << v;
     for (auto [factory, options] : all_ways()) {
@@ -263,7 +265,7 @@ TEST_F(MapsContour, TighterRangesFindSmallerKernels) {
   std::array<Counted, 4> runs;
   std::size_t at = 0;
   for (const char* search : {"none", "hsm", "ysm", "mssm"}) {
-    runs[at++] = counted(maps::make_contour, stage, {{"size", "128"}, {"search", search}});
+    runs[at++] = counted(maps::make_contour, stage, {{"size", "128"}, {"search", search}, {"traversal", "flat"}});
   }
   for (std::size_t i = 1; i < runs.size(); ++i) {
     EXPECT_LE(runs[i].count("kernelCells"), runs[i - 1].count("kernelCells"));

@@ -151,8 +151,9 @@ TEST_F(MapsContourClaims, HierarchiesLookAtFewerCells) {
   record("C6 cells and nodes, minmax", looked_minmax);
   record("C6 cells and nodes, hierarchy", looked);
   record("C4 edges", flat.count("edges"));
-  EXPECT_EQ(flat.count("edges"), hierarchy.count("edges"));
   EXPECT_EQ(flat.count("edges"), minmax.count("edges"));
+  // Ours leaves out what is beside the light, too.
+  EXPECT_LT(hierarchy.count("edges"), flat.count("edges"));
   EXPECT_LT(looked, 0.8 * looked_minmax);
   EXPECT_LT(looked_minmax, 0.8 * looked_flat);
   EXPECT_LT(flat.count("edges"), 0.1 * looked_flat);

@@ -6,7 +6,7 @@ from drawing import DARK, INK, Drawing
 from experiment import ball, bunny, measures, picture, rounded, scene, square
 
 FLAT, MINMAX, HIERARCHY, PACKET = 0, 1, 2, 3
-WAYS = [("every cell", "contour:size={}:search=mssm"), ("min-max quadtree (Dmitriev and Uralsky)", "contour:size={}:search=mssm:traversal=minmax"),
+WAYS = [("every cell", "contour:size={}:search=mssm:traversal=flat"), ("min-max quadtree (Dmitriev and Uralsky)", "contour:size={}:search=mssm:traversal=minmax"),
         ("hierarchy of contours", "contour:size={}:search=mssm:traversal=hierarchy"), ("hierarchy and packets of 3 × 3", "packet:size={}")]
 
 
@@ -125,7 +125,7 @@ def draw_views(data):
 
 def measure_speed(runner):
     rows = []
-    ways = ["contour:size=192:search=mssm", "packet:size=192:hierarchy=off", "packet:size=192"]
+    ways = ["contour:size=192:search=mssm:traversal=flat", "packet:size=192:hierarchy=off", "packet:size=192"]
     for half in (0.25, 0.5, 1.0, 2.0):
         found = runner.compare(scene([bunny()], half=half), ways, size=48, runs=1)
         rows.append([half] + [rounded(found[ways[0]]["evaluate"] / found[way]["evaluate"]) for way in ways[1:]] +

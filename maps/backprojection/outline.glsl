@@ -1,0 +1,98 @@
+// Contours of what shades a receiver, and how much of the light they hide. Included by contour.comp, after what it knows of
+// its packet.
+//
+// The texels of a map that shade a receiver are parted from the others by marching squares on the dual grid, between
+// texels' centres; a vertex lies midway, at the depth of the texel that shades. Seen from the receiver it falls onto the
+// light, along the ray from the light's centre that leads away from the receiver's own direction. So what the receiver's
+// own direction is in (1 or 0, `inside`) less the signed areas beyond the edges (radial.glsl) is what the contours hide:
+//   hidden = inside - sum turn * beyond
+// Texels beyond a face are empty, so contours close on every face: where a shape goes on across two faces of a hemicube
+// its parts share the border, up to what two texels' depths differ there.
+//
+// `inside` and `turn` of the edges in the receiver's own cell come from one predicate on one set of numbers: neither
+// texels' answers nor a second formula will do, for the light's whole area depends on them.
+
+// A cell's corners, counted x + 2 y, and its sides: bottom, right, top, left. For each set of shading corners two edges
+// from side to side, the shading ones to their left: from | to << 2, and 16 if there is one. Corners that shade across a
+// diagonal are apart.
+const uint kEdges[16] = uint[16](0x0000, 0x001c, 0x0011, 0x001d, 0x001b, 0x0018, 0x1b11, 0x0019, 0x0016, 0x161c, 0x0012,
+                                 0x001e, 0x0017, 0x0014, 0x0013, 0x0000);
+const vec2 kSide[4] = vec2[4](vec2(0.5, 0.0), vec2(1.0, 0.5), vec2(0.5, 1.0), vec2(0.0, 0.5));
+
+bool on_map(ivec2 texel) { return all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, ivec2(lookup.size))); }
+
+bool shades(uint pixel, ivec2 texel) {
+  Tap tap = tap_of(view, lookup.size, face, uvec2(texel));
+  tap.along = pixel_e[pixel].z / tap.direction.z;
+  return tap.depth < view.far && blocks_light(tap, pixel_e[pixel], pixel_m[pixel], lookup.bias);
+}
+
+// A receiver's own face of a side with so many.
+uint own_face(uint faces, vec3 e) {
+  const vec2 across = abs(e.xy);
+  if (faces == 1 || max(across.x, across.y) <= e.z) return 0;
+  return across.x >= across.y ? (e.x > 0.0 ? 1 : 2) : (e.y > 0.0 ? 3 : 4);
+}
+
+// A vertex from where a face sees the light's centre, in texels.
+vec2 from_own(uint pixel, ivec2 base, uint side) { return vec2(base - pixel_own[pixel]) + kSide[side] - pixel_at[pixel]; }
+
+// Where a receiver sees a vertex on the light.
+vec2 vertex_on_light(uint pixel, bool own_here, ivec2 base, uint side, float depth) {
+  const vec3 e = pixel_e[pixel];
+  if (face.axis == 2 && own_here) return from_own(pixel, base, side) * face.texel * (depth * e.z / (e.z - depth));
+  const vec2 at = face.lower + (vec2(base) + kSide[side] + 0.5) * face.texel;
+  const vec3 s = onto_light(e, depth * from_face(face, vec3(at, 1.0)));
+  // Sideways, a texel's far end may be beyond the receiver's height: then it is seen as far away as can be.
+  return s.xy / max(s.z, kSlack * e.z);
+}
+
+void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_to) {
+  const uint from = edge & 3, to = edge >> 2 & 3;
+  const bool own_here = own_face(view.side[side_number].face_count, pixel_e[pixel]) == face_number;
+  const vec2 a = vertex_on_light(pixel, own_here, base, from, depth_from);
+  const vec2 b = vertex_on_light(pixel, own_here, base, to, depth_to);
+  const float turned = own_here ? cross2(from_own(pixel, base, from), from_own(pixel, base, to)) : face_turn * cross2(a, b);
+  const float turn = turned >= 0.0 ? 1.0 : -1.0;
+  const float area = beyond_edge(to_unit(a), to_unit(b), turn * face_turn);
+  atomicAdd(pixel_edges[pixel], int(turn) * int(area * float(kContourWhole) + 0.5));
+}
+
+// The edges of a cell, for all members from first on.
+void look_at_cell(ivec2 cell, uint first, uint members_asked) {
+  ++done.cells;
+  const ivec2 base = cell - 1;
+  const vec2 limits = thresholds(group, face, max(base, ivec2(0)), min(cell, ivec2(lookup.size) - 1), view.far);
+  uint corners = 0;
+  vec4 depths;
+  bool differs = false;
+  for (int k = 0; k < 4; ++k) {
+    const ivec2 texel = base + ivec2(k & 1, k >> 1);
+    depths[k] = view.far;
+    if (!on_map(texel)) continue;
+    depths[k] = view.far * maps[(face.map * lookup.size + uint(texel.y)) * lookup.size + uint(texel.x)];
+    if (depths[k] >= limits.y) continue;
+    uint shaded = members_asked;
+    if (depths[k] >= limits.x) {  // near some receiver's own depth
+      shaded = 0;
+      for (uint i = 0; i < members_asked; ++i) shaded += shades(members[first + i], texel) ? 1 : 0;
+    }
+    if (shaded == members_asked) corners |= 1u << k;
+    differs = differs || (shaded > 0 && shaded < members_asked);
+  }
+  if (differs) {
+    diverged = 1;
+    return;
+  }
+  for (uint edges = kEdges[corners]; edges != 0; edges >>= 8) {
+    ++done.edges;
+    // On each side the corner that shades, and its depth.
+    vec2 depth;
+    for (int end = 0; end < 2; ++end) {
+      const uint side = edges >> (2 * end) & 3;
+      const uint one = side == 1 ? 1 : side == 2 ? 2 : 0, other = side == 0 ? 1 : side == 3 ? 2 : 3;
+      depth[end] = (corners >> one & 1) != 0 ? depths[one] : depths[other];
+    }
+    for (uint i = 0; i < members_asked; ++i) add_edge(members[first + i], base, edges, depth.x, depth.y);
+  }
+}

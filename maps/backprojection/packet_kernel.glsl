@@ -1,0 +1,94 @@
+// Kernels of a packet's pixels, in cells, and which pixels look for contours together. Included by contour.comp.
+
+bool no_cells(ivec4 cells) { return cells.z < cells.x || cells.w < cells.y; }
+
+// The cells that a kernel's texels touch: between any texels of it, and one more before and behind.
+ivec4 cells_of(Kernel kernel) {
+  return all(lessThanEqual(kernel.first, kernel.last)) ? ivec4(kernel.first, kernel.last + 1) : ivec4(0, 0, -1, -1);
+}
+
+// Guennebaud 2006: what the nearest depth in the kernel cannot hide is out of it, and so on; with nothing before the
+// receiver, or nothing but what shades it, there is no contour.
+void find_kernel(uint pixel) {
+  const vec3 e = pixel_e[pixel];
+  ivec4 cells = cells_of(kernel_on(face, lookup.size, e, light.lower, light.upper, nearest[side_number], 0));
+  const Bounds alone = bounds_of(face, e, pixel_m[pixel]);
+  for (uint round = 0; round < 4 && own.search != kNoSearch && !no_cells(cells); ++round) {
+    const vec2 range = view.far * depth_range_of_cells(face.map, uvec2(cells.xy), uvec2(cells.zw));
+    const vec2 limits = thresholds(alone, face, max(cells.xy - 1, 0), min(cells.zw, ivec2(lookup.size) - 1), view.far);
+    if (range.x >= limits.y || range.y < limits.x) {
+      cells = ivec4(0, 0, -1, -1);
+    } else if (face.axis == 2) {
+      const ivec4 narrow = cells_of(kernel_on(face, lookup.size, e, light.lower, light.upper, range.x, 0));
+      if (no_cells(narrow)) {
+        cells = narrow;
+        break;
+      }
+      const ivec4 within = ivec4(max(narrow.xy, cells.xy), min(narrow.zw, cells.zw));
+      if (within == cells) break;
+      cells = within;
+    }
+  }
+  pixel_cells[pixel] = cells;
+
+  if (own_face(view.side[side_number].face_count, e) != face_number) return;
+  const vec3 f = to_face(face, e);
+  const vec2 g = (f.xy / f.z - face.lower) / face.texel - 0.5;
+  const vec2 first = clamp(floor(g), vec2(-1.0), vec2(float(lookup.size) - 1.0));
+  pixel_own[pixel] = ivec2(first);
+  pixel_at[pixel] = g - first;
+  uint corners = 0;
+  for (int k = 0; k < 4; ++k) {
+    const ivec2 texel = ivec2(first) + ivec2(k & 1, k >> 1);
+    if (on_map(texel) && shades(pixel, texel)) corners |= 1u << k;
+  }
+  bool inside = corners == 15;
+  for (uint edges = kEdges[corners]; edges != 0; edges >>= 8) {
+    const vec2 a = from_own(pixel, ivec2(first), edges & 3), b = from_own(pixel, ivec2(first), edges >> 2 & 3);
+    inside = inside || cross2(a, b) >= 0.0;
+  }
+  if (inside && lookup.first_row == 0) pixel_sum[pixel] += kContourWhole;
+}
+
+// Yang 2009, equations 4 to 6, for members with kernels that lie in `cells` together: will they have the same contours,
+// and is it cheaper to look for them once? Costs of a node, an edge and an area, as measured (docs/packet.md).
+const float kNodeCost = 1.0, kEdgeCost = 1.0, kAreaCost = 1.0;
+
+bool is_coherent(ivec4 cells) {
+  const vec2 extent = vec2(cells.zw - cells.xy + 1);
+  float apart = 0.0;
+  float own_cost = 0.0;
+  vec2 heights = vec2(1e30, 0.0);
+  for (uint i = 0; i < member_count; ++i) {
+    const ivec4 mine = pixel_cells[members[i]];
+    const float width = sqrt(float(mine.z - mine.x + 1) * float(mine.w - mine.y + 1));
+    own_cost += (kNodeCost * log2(width) + kEdgeCost + kAreaCost) * width;
+    const float z = pixel_e[members[i]].z;
+    heights = vec2(min(heights.x, z), max(heights.y, z));
+  }
+  const float width = sqrt(extent.x * extent.y);
+  const float cost = (kNodeCost * log2(width) + kEdgeCost + kAreaCost * float(member_count)) * width;
+  if (own.search != kNoSearch) {
+    const vec2 range = view.far * depth_range_of_cells(face.map, uvec2(cells.xy), uvec2(cells.zw));
+    const float shared_range = max(0.0, min(heights.y, range.y) - max(heights.x, range.x));
+    const float null_share = range.y > range.x ? shared_range / (range.y - range.x) : 0.0;
+    apart = 1.0 - pow(max(0.0, 1.0 - null_share), extent.x * extent.y);
+  }
+  return apart <= own.divergence && cost <= own_cost;
+}
+
+// Of the pixels on this side those with cells to look at on this face.
+void choose_members(uint pixels) {
+  member_count = 0;
+  ivec4 cells = ivec4(1 << 20, 1 << 20, -1, -1);
+  for (uint i = 0; i < pixels; ++i) {
+    if (pixel_state[i] != side_number || no_cells(pixel_cells[i])) continue;
+    members[member_count++] = i;
+    done.kernel_cells += uint(pixel_cells[i].z - pixel_cells[i].x + 1) * uint(pixel_cells[i].w - pixel_cells[i].y + 1);
+    cells = ivec4(min(cells.xy, pixel_cells[i].xy), max(cells.zw, pixel_cells[i].zw));
+  }
+  together = 0;
+  if (member_count < 2) return;
+  if (view.side[side_number].face_count == 1 && is_coherent(cells)) together = 1;
+  if (together == 0) ++done.parted;
+}
