@@ -42,7 +42,6 @@ visibility::MethodDescription describe() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
-      .on_request = true,
       .options = single_map_option_descriptions(),
       .verdict_on = verdict_on,
       .repairs = backproject_repairs};

@@ -42,7 +42,6 @@ visibility::MethodDescription describe() {
           "nothing; in the limit of large maps and all samples, where all that shades lies in one plane "
           "parallel to the light",
       .lights = planar_lights(),
-      .on_request = true,
       .options = single_map_option_descriptions(DepthUse::midpoint),
       .verdict_on = verdict_on,
       .repairs = peel_repairs};

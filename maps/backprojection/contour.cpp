@@ -35,7 +35,6 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
       .textures = false,
-      .on_request = true,
       .options = single_map_option_descriptions(),
       .verdict_on = verdict_on,
       .repairs = contour_repairs};
