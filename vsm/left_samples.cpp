@@ -1,5 +1,8 @@
 #include "vsm/left_samples.hpp"
 
+#include "base/memory.hpp"
+
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
@@ -7,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 
 namespace penumbra::vsm {
 namespace {
@@ -24,6 +28,9 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
   for (const glm::vec3& l : light.points) places.push_back(box.sample(l) - center_);
   for (const glm::dvec2& place : places) radius_ = std::max(radius_, glm::length(place));
   const std::size_t texels = std::size_t{angles} * distances;
+  require_memory(3 * (texels + 3) * words_ * sizeof(std::uint32_t),
+                 fmt::format("left-sample maps of {} x {} for {} light samples", angles, distances, places.size()),
+                 "take a smaller map, or fewer light samples");
   for (auto* map : {&all_, &any_, &middle_}) map->assign((texels + 3) * words_, 0);
   const auto fill = [&](std::size_t number, std::vector<std::uint32_t>& map) {
     for (std::size_t j = 0; j < places.size(); ++j) map[number * words_ + j / 32] |= 1U << j % 32;
@@ -45,14 +52,21 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
         if (at < from || at > to) continue;
         (turn % 2 == 0 ? most : least) = (turn % 2 == 0 ? 1 : -1) * glm::length(x);
       }
-      for (std::uint32_t k = 0; k < distances; ++k) {
-        const double r = k * width - radius_;
-        const std::size_t word = (std::size_t{i} * distances + k) * words_ + j / 32;
-        const std::uint32_t bit = 1U << j % 32;
-        if (least - 4 * kMargin * radius_ > r + width) all_[word] |= bit;
-        if (most + 4 * kMargin * radius_ > r) any_[word] |= bit;
-        if (along(middle, x) >= r + 0.5 * width) middle_[word] |= bit;
-      }
+      // Left of the lines of all distances below some: it is put into the last of these, and runs down from there.
+      const auto put = [&](std::vector<std::uint32_t>& map, const auto& is_left) {
+        const auto distances_left = std::views::iota(0U, distances);
+        const auto end =
+            std::ranges::partition_point(distances_left, [&](std::uint32_t k) { return is_left(k * width - radius_); });
+        if (end == distances_left.begin()) return;
+        map[(std::size_t{i} * distances + *(end - 1)) * words_ + j / 32] |= 1U << j % 32;
+      };
+      put(all_, [&](double r) { return least - 4 * kMargin * radius_ > r + width; });
+      put(any_, [&](double r) { return most + 4 * kMargin * radius_ > r; });
+      put(middle_, [&](double r) { return along(middle, x) >= r + 0.5 * width; });
+    }
+    for (auto* map : {&all_, &any_, &middle_}) {
+      const auto row = std::span(*map).subspan(std::size_t{i} * distances * words_, distances * words_);
+      for (std::size_t word = row.size() - words_; word-- > 0;) row[word] |= row[word + words_];
     }
   });
 }
