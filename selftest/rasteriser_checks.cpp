@@ -1,6 +1,7 @@
 #include "selftest/rasteriser_checks.hpp"
 
 #include "maps/host/map_fit.hpp"
+#include "engines/vectors/scan_conversion.hpp"
 #include "render/proposed_view_samples.hpp"
 #include "render/visibility_buffer.hpp"
 #include "selftest/centre_maps.hpp"
@@ -37,6 +38,32 @@ std::vector<glm::vec3> casters_of(const Stage& stage) {
 }
 
 /// Every texel of every face, with the surfaces that it may have.
+const char* name_of(ViewSampler sampler) {
+  switch (sampler) {
+    case ViewSampler::vulkan:
+      return "Vulkan";
+    case ViewSampler::opengl:
+      return "OpenGL";
+    case ViewSampler::vectors:
+      return "processor";
+  }
+  return "";
+}
+
+visibility::ViewSamples view_samples_by(ViewSampler sampler, const render::Device& device,
+                                        const visibility::SceneFloats& floats,
+                                        const visibility::PinholeCamera& camera) {
+  switch (sampler) {
+    case ViewSampler::vulkan:
+      return render::VisibilityBuffer(device, floats).render(camera);
+    case ViewSampler::opengl:
+      return render::proposed_view_samples(device.opengl(), floats, camera);
+    case ViewSampler::vectors:
+      return native::scan_view_samples(floats, camera);
+  }
+  return {};
+}
+
 template <typename Visit>
 void for_each_texel(const Stage& stage, const CentreMaps& maps, double step, const Visit& visit) {
   const std::vector<glm::vec3> corners = casters_of(stage);
@@ -56,15 +83,13 @@ void for_each_texel(const Stage& stage, const CentreMaps& maps, double step, con
 }  // namespace
 
 Check check_view_samples(const render::Device& device, const visibility::SceneFloats& floats,
-                         const visibility::PinholeCamera& camera, maps::Rasteriser rasteriser) {
+                         const visibility::ViewSamples& expected, ViewSampler sampler) {
   Check check;
-  check.pass = fmt::format("view samples ({})", name_of(rasteriser));
+  check.pass = fmt::format("view samples ({})", name_of(sampler));
   check.against = "every triangle at every pixel";
   check.rule = "the same triangle, point and normal, bit by bit";
-  const visibility::ViewSamples expected = visibility::brute_force_view_samples(floats, camera);
-  const visibility::ViewSamples found = rasteriser == maps::Rasteriser::opengl
-                                            ? render::proposed_view_samples(device.opengl(), floats, camera)
-                                            : render::VisibilityBuffer(device, floats).render(camera);
+  const visibility::PinholeCamera& camera = expected.camera;
+  const visibility::ViewSamples found = view_samples_by(sampler, device, floats, camera);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const bool same = expected.triangle[i] == found.triangle[i] && expected.p[i] == found.p[i] &&
                       expected.n[i] == found.n[i] && expected.depth[i] == found.depth[i] &&

@@ -9,10 +9,12 @@
 
 namespace penumbra::selftest {
 
-/// Every pixel's carrying triangle and point against visibility::brute_force_view_samples, bit by bit: the device's
-/// visibility buffer, or what OpenGL proposes.
+/// Who finds view samples: the device's visibility buffer, what OpenGL proposes, or the processor's scan conversion.
+enum class ViewSampler : std::uint8_t { vulkan, opengl, vectors };
+
+/// Every pixel's carrying triangle and point, bit by bit against `expected` (visibility::brute_force_view_samples).
 Check check_view_samples(const render::Device& device, const visibility::SceneFloats& floats,
-                         const visibility::PinholeCamera& camera, maps::Rasteriser rasteriser);
+                         const visibility::ViewSamples& expected, ViewSampler sampler);
 
 /// Maps from the light's centre, `size` texels a side: the nearest surface, three more behind it, and the farthest,
 /// against RasterTwin with the rasteriser's own step.

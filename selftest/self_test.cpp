@@ -75,11 +75,16 @@ class SelfTest {
 
   std::vector<Check> run() {
     std::vector<Check> checks;
+    for (const auto& [name, sampler] :
+         {std::pair("Vulkan", ViewSampler::vulkan), std::pair("OpenGL", ViewSampler::opengl),
+          std::pair("processor", ViewSampler::vectors)}) {
+      checks.push_back(each_stage(fmt::format("view samples ({})", name), [&](const Stage& stage) {
+        return check_view_samples(device_, stage.floats,
+                                  visibility::brute_force_view_samples(stage.floats, stage.pinhole), sampler);
+      }));
+    }
     for (const Rasteriser rasteriser : {Rasteriser::vulkan, Rasteriser::opengl}) {
       const char* name = rasteriser == Rasteriser::vulkan ? "Vulkan" : "OpenGL";
-      checks.push_back(each_stage(fmt::format("view samples ({})", name), [&](const Stage& stage) {
-        return check_view_samples(device_, stage.floats, stage.pinhole, rasteriser);
-      }));
       checks.push_back(each_stage(fmt::format("depth maps ({})", name),
                                   [&](const Stage& stage) { return check_maps(device_, stage, kTexels, rasteriser); }));
       checks.push_back(each_stage(fmt::format("slices ({})", name), [&](const Stage& stage) {

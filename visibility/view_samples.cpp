@@ -111,10 +111,17 @@ void for_each_pixel(const ViewSamples& samples, const Body& body) {
 
 }  // namespace
 
-glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
+double PinholeCamera::across(std::uint32_t x) const {
   const double aspect = static_cast<double>(width) / height;
-  const double across = (2 * (x + 0.5) / width - 1) * aspect, upward = 1 - 2 * (y + 0.5) / height;
-  return forward + (across * right + upward * up) * tan_half_fov;
+  return (2 * (x + 0.5) / width - 1) * aspect;
+}
+
+double PinholeCamera::upward(std::uint32_t y) const {
+  return 1 - 2 * (y + 0.5) / height;
+}
+
+glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
+  return forward + (across(x) * right + upward(y) * up) * tan_half_fov;
 }
 
 PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width,

@@ -21,6 +21,9 @@ struct PinholeCamera {
   double tan_half_fov = 1;
   std::uint32_t width = 0, height = 0;
 
+  /// The factors of `right` and `up` in a ray, before the one of the field of view.
+  [[nodiscard]] double across(std::uint32_t x) const;
+  [[nodiscard]] double upward(std::uint32_t y) const;
   [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
 };
 

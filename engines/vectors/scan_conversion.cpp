@@ -1,0 +1,313 @@
+// Which triangles may cover which pixels, tile by tile. scan_tile.cpp decides, in double, as visibility::cover does;
+// here is only what must not lose a pixel that it would give to a triangle.
+//
+// Where can a pixel beside a triangle's projection be covered? cover() takes the signs of s₁ = d·(a×b), s₂ = d·(b×c),
+// s₃ = −d·(a×c), where a, b, c are the corners seen from the eye and d is the ray. Exactly, d = (s₂a + s₃b + s₁c) / D
+// with D = det(a, b, c), so that the ray's place on the screen is the mean of the corners' with weights s z / D.
+// Rounding moves each s by at most E = 8 · 2⁻⁵³ |d| R², R the largest |corner| (sums of absolute components
+// throughout): a pixel that is covered although it lies m pixels beside the box of the projection has at least one
+// weight below zero, none below −E R / |D|, and so m ≤ 3 E R extent / |D|. If |D| is large enough (`is_certain`), a
+// margin of 1/32 pixel is therefore safe, and t is between the corners' depths but for a part in 2⁸. Triangles seen as
+// good as edge-on get the margin of one pixel that proposals of the visibility buffer have
+// (render/visibility_buffer.vert), and are never left out as hidden.
+
+#include "engines/vectors/scan_conversion.hpp"
+
+#include "engines/vectors/scan_tile.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace penumbra::native {
+namespace {
+
+using visibility::PinholeCamera;
+using visibility::SceneFloats;
+
+constexpr double kMargin = 1.0 / 32;                   // pixels, beside a triangle that is certain
+constexpr double kNoise = 0x1p-38;                     // of |D| in units of |d| R³: see above, and t's 2⁻⁸
+constexpr std::size_t kBatch = std::size_t{1} << 16U;  // triangles between two looks at what is hidden
+constexpr std::size_t kChunk = std::size_t{1} << 11U;  // of them, what one core sorts at a time
+constexpr std::uint32_t kFewTiles = 4;                 // up to here a triangle's box is its tiles
+
+double size1(const glm::dvec3& v) {
+  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+/// Pixel centres that a triangle may cover, both ends included, and what no t of it is below (0: nothing known).
+struct PixelBox {
+  std::uint32_t left, right, top, bottom;
+  float nearest;
+};
+
+/// A triangle in the list of one tile.
+struct Sorted {
+  std::uint32_t tile;
+  TileEntry entry;
+};
+
+/// What one core found among its triangles: by tile, in ascending order of triangles.
+class Chunk {
+ public:
+  void clear() { found_.clear(); }
+  void add(std::uint32_t tile, const TileEntry& entry) { found_.push_back({tile, entry}); }
+  void sort(std::size_t tiles) {
+    end_.assign(tiles + 1, 0);
+    for (const Sorted& one : found_) ++end_[one.tile + 1];
+    for (std::size_t tile = 0; tile < tiles; ++tile) end_[tile + 1] += end_[tile];
+    entries_.resize(found_.size());
+    for (const Sorted& one : found_) entries_[end_[one.tile]++] = one.entry;  // from a tile's beginning to its end
+  }
+  [[nodiscard]] std::span<const TileEntry> of(std::uint32_t tile) const {
+    const std::uint32_t begin = tile == 0 ? 0 : end_[tile - 1];
+    return std::span(entries_).subspan(begin, end_[tile] - begin);
+  }
+
+ private:
+  std::vector<Sorted> found_;
+  std::vector<TileEntry> entries_;
+  std::vector<std::uint32_t> end_;
+};
+
+/// On which tiles a large triangle leaves nothing: all rays through the tile pass one of its edges on the wrong side.
+class Outline {
+ public:
+  Outline(const PinholeCamera& view, const std::array<glm::vec3, 3>& corners, double longest_ray) {
+    const glm::dvec3 a = glm::dvec3(corners[0]) - view.eye, b = glm::dvec3(corners[1]) - view.eye,
+                     c = glm::dvec3(corners[2]) - view.eye;
+    const double reach = std::max({size1(a), size1(b), size1(c)}), det = glm::dot(a, glm::cross(b, c));
+    if (!(std::abs(det) > kNoise * longest_ray * reach * reach * reach)) return;  // nothing is left out
+    const double side = det > 0 ? 1 : -1;
+    edges_ = {side * glm::cross(a, b), side * glm::cross(b, c), side * glm::cross(c, a)};
+    error_ = 0x1p-48 * longest_ray * reach * reach;  // twice E, once for cover() and once for here
+  }
+  [[nodiscard]] bool misses(const std::array<glm::dvec3, 4>& rays) const {
+    return std::ranges::any_of(edges_, [&](const glm::dvec3& edge) {
+      return std::ranges::all_of(rays, [&](const glm::dvec3& ray) { return glm::dot(edge, ray) < -error_; });
+    });
+  }
+
+ private:
+  std::array<glm::dvec3, 3> edges_{};
+  double error_ = 0;
+};
+
+class Scan {
+ public:
+  Scan(const SceneFloats& scene, const PinholeCamera& camera);
+  std::vector<std::int32_t> run();
+
+ private:
+  void project();
+  [[nodiscard]] std::optional<PixelBox> box_of(std::uint32_t triangle) const;
+  [[nodiscard]] std::optional<PixelBox> careful_box(std::uint32_t triangle) const;
+  [[nodiscard]] std::optional<PixelBox> pixels_in(glm::dvec2 lower, glm::dvec2 upper, double margin,
+                                                  double nearest) const;
+  void sort(std::size_t begin, std::size_t end, Chunk& chunk) const;
+  void sort(std::uint32_t triangle, const PixelBox& box, Chunk& chunk) const;
+  void paint(std::span<const Chunk> chunks);
+  [[nodiscard]] std::array<glm::dvec3, 4> rays_around(std::uint32_t tile_x, std::uint32_t tile_y) const;
+
+  const SceneFloats& scene_;
+  const ScanCamera camera_;
+  const PinholeCamera& view_;
+  glm::dvec2 size_, scale_;  // pixels; pixels a unit of slope, y down
+  double longest_ray_;
+  std::uint32_t tiles_x_, tiles_y_;
+  /// x, y in pixels, z, and |corner| / z: what a float can say. The last is infinite where that is too little.
+  std::vector<glm::vec4> projected_;
+  std::vector<double> nearest_;
+  std::vector<std::int64_t> carrier_;
+  std::vector<double> farthest_;  // of each tile: the largest of its pixels' smallest t
+};
+
+Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
+    : scene_(scene),
+      camera_(camera),
+      view_(camera_.view),
+      size_(camera.width, camera.height),
+      scale_(size_.y / 2 / camera.tan_half_fov),
+      longest_ray_(size1(camera.forward) +
+                   (size_.x / size_.y * size1(camera.right) + size1(camera.up)) * camera.tan_half_fov),
+      tiles_x_((camera.width + kScanTile - 1) / kScanTile),
+      tiles_y_((camera.height + kScanTile - 1) / kScanTile) {
+  const std::size_t tiles = std::size_t{tiles_x_} * tiles_y_;
+  nearest_.assign(tiles * kScanSlots, -std::numeric_limits<double>::infinity());
+  carrier_.assign(tiles * kScanSlots, visibility::ViewSamples::kBackground);
+  farthest_.assign(tiles, std::numeric_limits<double>::infinity());
+  for (std::uint32_t y = 0; y < camera.height; ++y) {
+    for (std::uint32_t x = 0; x < camera.width; ++x) {
+      const std::size_t tile = std::size_t{y / kScanTile} * tiles_x_ + x / kScanTile;
+      nearest_[tile * kScanSlots + std::size_t{y % kScanTile} * kScanTile + x % kScanTile] =
+          std::numeric_limits<double>::infinity();
+    }
+  }
+}
+
+void Scan::project() {
+  constexpr double kSteepest = 1024;  // |corner| / z up to which pixels in float are as good as needed
+  projected_.resize(scene_.positions.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, projected_.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const glm::dvec3 d = glm::dvec3(scene_.positions[i]) - view_.eye;
+      const double z = glm::dot(d, view_.forward), reach = size1(d);
+      projected_[i] = z * kSteepest > reach
+                          ? glm::vec4(0.5 * size_.x + glm::dot(d, view_.right) / z * scale_.x,
+                                      0.5 * size_.y - glm::dot(d, view_.up) / z * scale_.y, z, reach / z)
+                          : glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity());
+    }
+  });
+}
+
+std::optional<PixelBox> Scan::pixels_in(glm::dvec2 lower, glm::dvec2 upper, double margin, double nearest) const {
+  lower = glm::max(lower - margin - 0.5, glm::dvec2(0));
+  upper = glm::min(upper + margin - 0.5, size_ - 1.0);
+  const double left = std::ceil(lower.x), right = std::floor(upper.x), top = std::ceil(lower.y),
+               bottom = std::floor(upper.y);
+  if (!(left <= right && top <= bottom)) return std::nullopt;
+  const auto whole = [](double x) { return static_cast<std::uint32_t>(x); };
+  return PixelBox{whole(left), whole(right), whole(top), whole(bottom), static_cast<float>(nearest * (1 - 0x1p-7))};
+}
+
+std::optional<PixelBox> Scan::box_of(std::uint32_t triangle) const {
+  const visibility::Triangle& corners = scene_.triangles[triangle];
+  const glm::vec4 &a = projected_[corners[0]], &b = projected_[corners[1]], &c = projected_[corners[2]];
+  const glm::vec4 lower = glm::min(glm::min(a, b), c), upper = glm::max(glm::max(a, b), c);
+  const auto width = static_cast<float>(size_.x), height = static_cast<float>(size_.y);
+  if (!std::isfinite(upper.w)) return careful_box(triangle);
+  if (upper.x < -1 || lower.x > width + 1 || upper.y < -1 || lower.y > height + 1) return std::nullopt;
+  const float extent = std::max(upper.x - lower.x, upper.y - lower.y);
+  const float area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));  // twice the triangle's
+  // |D| = area z z z / scale², and R³ / (z z z) is at most this ratio's cube.
+  const float ratio = upper.w * upper.z / lower.z;
+  const auto noise = static_cast<float>(kNoise * longest_ray_ * scale_.x * scale_.x);
+  // Each coordinate is rounded by 2⁻²⁴ of itself, at most four screens; the area by that times two extents, twice.
+  const float rounding = 0x1p-19F * std::max(width, height) * extent;
+  if (!(upper.x < 4 * width && lower.x > -3 * width && upper.y < 4 * height && lower.y > -3 * height &&
+        area > rounding && area > noise * (1 + extent / 32) * ratio * ratio * ratio)) {
+    return careful_box(triangle);
+  }
+  return pixels_in({lower.x, lower.y}, {upper.x, upper.y}, kMargin, static_cast<double>(lower.z));
+}
+
+std::optional<PixelBox> Scan::careful_box(std::uint32_t triangle) const {
+  std::array<glm::dvec3, 3> corners;
+  glm::dvec2 lower = size_, upper(0);
+  double reach = 0, nearest = std::numeric_limits<double>::infinity();
+  bool in_front = false, behind = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    corners[i] = glm::dvec3(scene_.positions[scene_.triangles[triangle][i]]) - view_.eye;
+    const double z = glm::dot(corners[i], view_.forward), here = size1(corners[i]);
+    reach = std::max(reach, here);
+    nearest = std::min(nearest, z);
+    in_front = in_front || z > 0;
+    if (z <= here * 1e-9) {  // a projection could be off by a pixel
+      behind = true;
+      continue;
+    }
+    const glm::dvec2 at(0.5 * size_.x + glm::dot(corners[i], view_.right) / z * scale_.x,
+                        0.5 * size_.y - glm::dot(corners[i], view_.up) / z * scale_.y);
+    lower = glm::min(lower, at);
+    upper = glm::max(upper, at);
+  }
+  if (!in_front) return std::nullopt;
+  if (behind) return pixels_in(glm::dvec2(0), size_, 1, 0);
+  const double extent = std::max(upper.x - lower.x, upper.y - lower.y);
+  const double det = std::abs(glm::dot(corners[0], glm::cross(corners[1], corners[2])));
+  const bool certain = det > kNoise * (1 + extent / 32) * longest_ray_ * reach * reach * reach;
+  return pixels_in(lower, upper, certain ? kMargin : 1, certain ? nearest : 0);
+}
+
+std::array<glm::dvec3, 4> Scan::rays_around(std::uint32_t tile_x, std::uint32_t tile_y) const {
+  const std::uint32_t left = tile_x * kScanTile, top = tile_y * kScanTile,
+                      right = std::min(left + kScanTile, view_.width) - 1,
+                      bottom = std::min(top + kScanTile, view_.height) - 1;
+  return {view_.direction(left, top), view_.direction(right, top), view_.direction(left, bottom),
+          view_.direction(right, bottom)};
+}
+
+void Scan::sort(std::uint32_t triangle, const PixelBox& box, Chunk& chunk) const {
+  const std::uint32_t left = box.left / kScanTile, right = box.right / kScanTile, top = box.top / kScanTile,
+                      bottom = box.bottom / kScanTile;
+  std::optional<Outline> outline;
+  if ((right - left + 1) * (bottom - top + 1) > kFewTiles)
+    outline.emplace(view_, scene_.corners(triangle), longest_ray_);
+  for (std::uint32_t y = top; y <= bottom; ++y) {
+    for (std::uint32_t x = left; x <= right; ++x) {
+      const std::uint32_t tile = y * tiles_x_ + x;
+      if (static_cast<double>(box.nearest) > farthest_[tile]) continue;
+      if (outline && outline->misses(rays_around(x, y))) continue;
+      const auto within = [](std::uint32_t pixel, std::uint32_t of) {
+        const std::uint32_t first = of * kScanTile;
+        return static_cast<std::uint8_t>(std::clamp(pixel, first, first + kScanTile - 1) - first);
+      };
+      chunk.add(tile, {triangle, within(box.left, x), within(box.right, x), within(box.top, y), within(box.bottom, y)});
+    }
+  }
+}
+
+void Scan::sort(std::size_t begin, std::size_t end, Chunk& chunk) const {
+  chunk.clear();
+  for (std::size_t i = begin; i < end; ++i) {
+    if (scene_.plane[i] == SceneFloats::kNoPlane) continue;
+    const auto triangle = static_cast<std::uint32_t>(i);
+    if (const std::optional<PixelBox> box = box_of(triangle)) sort(triangle, *box, chunk);
+  }
+  chunk.sort(farthest_.size());
+}
+
+void Scan::paint(std::span<const Chunk> chunks) {
+  tbb::parallel_for(std::size_t{0}, farthest_.size(), [&](std::size_t i) {
+    const auto tile = static_cast<std::uint32_t>(i);
+    std::vector<TileEntry> entries;
+    for (const Chunk& chunk : chunks) entries.insert(entries.end(), chunk.of(tile).begin(), chunk.of(tile).end());
+    if (entries.empty()) return;
+    farthest_[i] = scan_tile(scene_, camera_, entries,
+                             {.first_x = tile % tiles_x_ * kScanTile,
+                              .first_y = tile / tiles_x_ * kScanTile,
+                              .nearest = std::span(nearest_).subspan(i * kScanSlots, kScanSlots),
+                              .carrier = std::span(carrier_).subspan(i * kScanSlots, kScanSlots)});
+  });
+}
+
+std::vector<std::int32_t> Scan::run() {
+  project();
+  const std::size_t count = scene_.triangles.size();
+  std::vector<Chunk> chunks;
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    const std::size_t here = std::min(kBatch, count - first);
+    chunks.resize((here + kChunk - 1) / kChunk);
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t chunk) {
+      const std::size_t begin = first + chunk * kChunk;
+      sort(begin, std::min(begin + kChunk, first + here), chunks[chunk]);
+    });
+    paint(chunks);
+  }
+  std::vector<std::int32_t> triangles(std::size_t{view_.width} * view_.height);
+  tbb::parallel_for(std::uint32_t{0}, view_.height, [&](std::uint32_t y) {
+    for (std::uint32_t x = 0; x < view_.width; ++x) {
+      const std::size_t tile = std::size_t{y / kScanTile} * tiles_x_ + x / kScanTile;
+      triangles[std::size_t{y} * view_.width + x] = static_cast<std::int32_t>(
+          carrier_[tile * kScanSlots + std::size_t{y % kScanTile} * kScanTile + x % kScanTile]);
+    }
+  });
+  return triangles;
+}
+
+}  // namespace
+
+visibility::ViewSamples scan_view_samples(const SceneFloats& scene, const PinholeCamera& camera) {
+  return visibility::complete_view_samples(scene, camera, Scan(scene, camera).run());
+}
+
+}  // namespace penumbra::native

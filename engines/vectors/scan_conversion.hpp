@@ -1,0 +1,14 @@
+#pragma once
+
+#include "visibility/view_samples.hpp"
+
+namespace penumbra::native {
+
+/// View samples by scan conversion on the processor, in double: the bits of visibility::brute_force_view_samples and of
+/// render::VisibilityBuffer. All cores; triangles are sorted into tiles of pixels, each tile keeps its smallest t.
+///
+/// Time grows with triangles plus covered pixels; memory beside the scene: 16 bytes a position, 16 a pixel.
+visibility::ViewSamples scan_view_samples(const visibility::SceneFloats& scene,
+                                          const visibility::PinholeCamera& camera);
+
+}  // namespace penumbra::native
