@@ -149,8 +149,8 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   session_.device_seconds = start_up.seconds();
   load.restart();
   if (changed) {
-    buffer_.reset();
-    buffer_.emplace(device, session_.floats);
+    sampler_.reset();
+    sampler_.emplace(device, session_.floats);
   }
   session_.load_seconds += load.seconds();
 
@@ -159,7 +159,7 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   for (std::uint32_t run = 0; run <= runs; ++run) {
     const MayExitAtOnce at_once;
     const Stopwatch view;
-    session_.samples = buffer_->render(session_.camera);
+    session_.samples = sampler_->find(session_.camera);
     view_seconds.push_back(view.seconds());
     progress.advance();
   }

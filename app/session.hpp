@@ -3,7 +3,7 @@
 #include "app/device_source.hpp"
 #include "app/options.hpp"
 #include "app/process/progress.hpp"
-#include "render/visibility_buffer.hpp"
+#include "engines/view_sampler.hpp"
 #include "scenes/scene.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
@@ -68,13 +68,13 @@ class SessionMaker {
   visibility::SampleRequest request_;
   std::optional<std::pair<std::uint32_t, std::uint32_t>> size_;
   Session session_;
-  std::optional<render::VisibilityBuffer> buffer_;
+  std::optional<engines::ViewSampler> sampler_;
 };
 
 /// The scene at a time of its animation; at rest without one.
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time);
 
-/// Reads the scene and finds its view samples on the device; once if `runs` is 0, else `runs` times after a
+/// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a
 /// discarded one.
 /// Throws UsageError, InputError or ResourceError.
 Session open_session(const RunOptions& options, DeviceSource& devices, std::uint32_t runs, Progress& progress);

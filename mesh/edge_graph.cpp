@@ -1,6 +1,7 @@
 #include "mesh/edge_graph.hpp"
 
 #include "base/assert.hpp"
+#include "base/buckets.hpp"
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
 #include "mesh/union_find.hpp"
@@ -8,40 +9,47 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <compare>
+#include <tuple>
+#include <utility>
 
 namespace penumbra::mesh {
 namespace {
 
 constexpr std::uint32_t kMostTriangles = 0xffffffffu / 3;  // a half-edge's number is 32 bits
 
-struct Place {
-  double x, y, z;
-  std::uint32_t position;
-
-  [[nodiscard]] bool same_point(const Place& other) const { return x == other.x && y == other.y && z == other.z; }
-  bool operator<(const Place& other) const {
-    if (x != other.x) return x < other.x;
-    if (y != other.y) return y < other.y;
-    if (z != other.z) return z < other.z;
-    return position < other.position;
+/// Equal for equal points, and for few others. (Multiplying and folding as in splitmix64.)
+std::uint64_t hash_of(const glm::dvec3& point) {
+  std::uint64_t hash = 0x9e3779b97f4a7c15u;
+  for (int axis = 0; axis < 3; ++axis) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(point[axis] + 0.0)) * 0xbf58476d1ce4e5b9u;  // + 0 turns −0 into +0
+    hash ^= hash >> 31U;
   }
-};
+  return hash;
+}
 
 /// For each position, the first one with the same coordinates.
 std::vector<std::uint32_t> merge_equal(std::span<const glm::dvec3> positions) {
-  std::vector<Place> places(positions.size());
-  for_each_index(places.size(), [&](std::size_t i) {
-    const glm::dvec3& p = positions[i];
-    places[i] = {p.x, p.y, p.z, static_cast<std::uint32_t>(i)};
-  });
-  tbb::parallel_sort(places.begin(), places.end());
+  const std::size_t places = std::bit_ceil(std::max<std::size_t>(positions.size(), 1));
+  Buckets alike =
+      into_buckets(positions.size(), places, [&](std::size_t i) { return hash_of(positions[i]) & (places - 1); });
   std::vector<std::uint32_t> vertex(positions.size());
-  std::uint32_t first = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (i == 0 || !places[i].same_point(places[i - 1])) first = places[i].position;
-    vertex[places[i].position] = first;
-  }
+  for_each_index(alike.size(), [&](std::size_t bucket) {
+    const std::span<std::uint32_t> here = alike[bucket];
+    // By place, then by number, of which each place has the first. One point in a million copies is no reason to be
+    // slow.
+    const auto key = [&](std::uint32_t i) {
+      const glm::dvec3& p = positions[i];
+      return std::tuple(p.x, p.y, p.z, i);
+    };
+    if (here.size() > 1) std::ranges::sort(here, {}, key);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const bool again = i > 0 && positions[here[i]] == positions[here[i - 1]];
+      vertex[here[i]] = again ? vertex[here[i - 1]] : here[i];
+    }
+  });
   return vertex;
 }
 
@@ -73,14 +81,13 @@ TriangleKind kind_of(std::span<const glm::dvec3> positions, const Triangle& corn
   return collinear(positions[a], positions[b], positions[c]) ? TriangleKind::collinear : TriangleKind::proper;
 }
 
+/// A side of a triangle among those that leave one vertex for a later one.
 struct HalfEdge {
-  Edge edge;
-  std::uint32_t number;  // 3 · triangle + corner; kNoEdge's place at the end for triangles that repeat a vertex
+  std::uint32_t other;   // the later vertex
+  std::uint32_t number;  // 3 · triangle + corner
 
-  bool operator<(const HalfEdge& other) const { return edge != other.edge ? edge < other.edge : number < other.number; }
+  auto operator<=>(const HalfEdge&) const = default;
 };
-
-constexpr Edge kNowhere = {0xffffffffu, 0xffffffffu};
 
 }  // namespace
 
@@ -93,33 +100,50 @@ EdgeGraph build_edge_graph(const MeshView& mesh, double weld) {
 
   const std::size_t triangle_count = mesh.triangles.size();
   graph.kind.resize(triangle_count);
-  std::vector<HalfEdge> half_edges(3 * triangle_count);
-  for_each_index(triangle_count, [&](std::size_t t) {
-    const Triangle corners = graph.corners(mesh.triangles[t]);
-    graph.kind[t] = kind_of(mesh.positions, corners);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = std::minmax(corners[i], corners[(i + 1) % 3]);
-      half_edges[3 * t + i] = {graph.kind[t] == TriangleKind::repeated ? kNowhere : Edge{a, b},
-                               static_cast<std::uint32_t>(3 * t + i)};
-    }
-  });
-  tbb::parallel_sort(half_edges.begin(), half_edges.end());
-  while (!half_edges.empty() && half_edges.back().edge == kNowhere) half_edges.pop_back();
+  for_each_index(triangle_count,
+                 [&](std::size_t t) { graph.kind[t] = kind_of(mesh.positions, graph.corners(mesh.triangles[t])); });
 
+  // Sides by their first vertex; a bucket more for those of triangles that repeat a vertex, which are no edges.
+  const auto ends = [&](std::size_t side) {
+    const Triangle corners = graph.corners(mesh.triangles[side / 3]);
+    return std::minmax({corners[side % 3], corners[(side % 3 + 1) % 3]});
+  };
+  const std::size_t vertices = mesh.positions.size();
+  Buckets sides = into_buckets(3 * triangle_count, vertices + 1, [&](std::size_t side) {
+    return graph.kind[side / 3] == TriangleKind::repeated ? vertices : std::size_t{ends(side).first};
+  });
+  // Within a bucket by the second vertex, then by number; `begun` counts the edges that begin at each vertex.
+  std::vector<HalfEdge> half_edges(sides.first[vertices]);
+  std::vector<std::uint32_t> begun(vertices + 1, 0);
+  for_each_index(vertices, [&](std::size_t vertex) {
+    const std::span<HalfEdge> here = std::span(half_edges).subspan(sides.first[vertex], sides[vertex].size());
+    std::ranges::transform(sides[vertex], here.begin(), [&](std::uint32_t side) {
+      return HalfEdge{ends(side).second, side};
+    });
+    std::ranges::sort(here);
+    for (std::size_t i = 0; i < here.size(); ++i) begun[vertex] += i == 0 || here[i].other != here[i - 1].other ? 1 : 0;
+  });
+  std::uint32_t edges = 0;
+  for (std::uint32_t& number : begun) edges += std::exchange(number, edges);
+
+  graph.edges.resize(edges);
+  graph.first.assign(edges + std::size_t{1}, static_cast<std::uint32_t>(half_edges.size()));
   graph.incidences.resize(half_edges.size());
   graph.triangle_edges.assign(triangle_count, {EdgeGraph::kNoEdge, EdgeGraph::kNoEdge, EdgeGraph::kNoEdge});
-  for (std::size_t i = 0; i < half_edges.size(); ++i) {
-    const auto& [edge, number] = half_edges[i];
-    if (i == 0 || edge != half_edges[i - 1].edge) {
-      graph.edges.push_back(edge);
-      graph.first.push_back(static_cast<std::uint32_t>(i));
+  for_each_index(vertices, [&](std::size_t vertex) {
+    std::uint32_t next = begun[vertex];
+    for (std::uint32_t i = sides.first[vertex]; i < sides.first[vertex + 1]; ++i) {
+      const auto& [other, number] = half_edges[i];
+      if (i == sides.first[vertex] || other != half_edges[i - 1].other) {
+        graph.edges[next] = {static_cast<std::uint32_t>(vertex), other};
+        graph.first[next++] = i;
+      }
+      const std::uint32_t t = number / 3, corner = number % 3;
+      graph.triangle_edges[t][corner] = next - 1;
+      const Triangle corners = graph.corners(mesh.triangles[t]);
+      graph.incidences[i] = {t, corners[(corner + 2) % 3], corners[corner] != vertex};
     }
-    const std::uint32_t t = number / 3, corner = number % 3;
-    graph.triangle_edges[t][corner] = static_cast<std::uint32_t>(graph.edges.size() - 1);
-    const Triangle corners = graph.corners(mesh.triangles[t]);
-    graph.incidences[i] = {t, corners[(corner + 2) % 3], corners[corner] != edge.a};
-  }
-  graph.first.push_back(static_cast<std::uint32_t>(half_edges.size()));
+  });
   return graph;
 }
 

@@ -65,7 +65,7 @@ struct EdgeGraph {
 };
 
 /// `weld` > 0 (the scene's unit) also makes one vertex of positions at most that far apart, and of chains of such; the
-/// vertex lies where the first of them does. Sorts, in parallel: O(n log n) time with a small constant, linear memory.
+/// vertex lies where the first of them does. In parallel, in time and memory linear in the soup (`weld`: O(n log n)).
 EdgeGraph build_edge_graph(const MeshView& mesh, double weld = 0);
 
 /// Float coordinates converted to double, which the graph takes: float meshes (SceneFloats) are given to it through

@@ -101,6 +101,7 @@ visibility::ViewSamples proposed_view_samples(const opengl::Context& context, co
   }
   constexpr std::size_t kCornerBytes = 3 * sizeof(glm::vec3);
   const auto most = static_cast<std::size_t>(context.info().max_storage_block / kCornerBytes);
+  const std::vector<std::uint32_t> ranks = visibility::ranks(scene);
   Proposals proposals(context);
   std::vector<Winner> winners(std::size_t{camera.width} * camera.height);
   std::vector<std::uint32_t> pairs;
@@ -128,7 +129,7 @@ visibility::ViewSamples proposed_view_samples(const opengl::Context& context, co
         const auto t = visibility::cover(camera, camera.direction(x, y), scene.corners(triangle));
         if (!t) continue;
         Winner& best = winners[std::size_t{y} * camera.width + x];
-        const std::uint32_t rank = scene.rank[triangle];
+        const std::uint32_t rank = ranks[triangle];
         const Winner candidate{*t, rank, static_cast<std::int32_t>(triangle)};
         if (candidate < best) best = candidate;
       }

@@ -34,7 +34,8 @@ struct Batch {
   std::uint32_t count;
 };
 
-std::vector<Batch> upload(const Device& device, const visibility::SceneFloats& scene) {
+std::vector<Batch> upload(const Device& device, const visibility::SceneFloats& scene,
+                          std::span<const std::uint32_t> ranks) {
   constexpr std::size_t kCornerBytes = 3 * sizeof(glm::vec3);
   const std::size_t most = device.limits().max_storage_buffer_range / kCornerBytes;
   std::vector<Batch> batches;
@@ -45,18 +46,17 @@ std::vector<Batch> upload(const Device& device, const visibility::SceneFloats& s
     for (std::size_t i = first; i < first + count; ++i) {
       for (const glm::vec3& corner : scene.corners(static_cast<std::uint32_t>(i))) corners.push_back(corner);
     }
-    batches.push_back(
-        {make_buffer<glm::vec3>(device, "visibility buffer corners", corners),
-         make_buffer<std::uint32_t>(device, "visibility buffer ranks", std::span(scene.rank).subspan(first, count)),
-         static_cast<std::uint32_t>(count)});
+    batches.push_back({make_buffer<glm::vec3>(device, "visibility buffer corners", corners),
+                       make_buffer<std::uint32_t>(device, "visibility buffer ranks", ranks.subspan(first, count)),
+                       static_cast<std::uint32_t>(count)});
   }
   return batches;
 }
 
 /// For each rank the first triangle that has it.
-std::vector<std::int32_t> triangles_by_rank(const visibility::SceneFloats& scene) {
-  std::vector<std::int32_t> by_rank(scene.triangles.size(), visibility::ViewSamples::kBackground);
-  for (std::size_t i = scene.triangles.size(); i-- > 0;) by_rank[scene.rank[i]] = static_cast<std::int32_t>(i);
+std::vector<std::int32_t> triangles_by_rank(std::span<const std::uint32_t> ranks) {
+  std::vector<std::int32_t> by_rank(ranks.size(), visibility::ViewSamples::kBackground);
+  for (std::size_t i = ranks.size(); i-- > 0;) by_rank[ranks[i]] = static_cast<std::int32_t>(i);
   return by_rank;
 }
 
@@ -70,9 +70,12 @@ struct VisibilityBuffer::State {
   std::vector<std::int32_t> by_rank;
 };
 
-VisibilityBuffer::VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene)
-    : state_(new State{&device, &scene, make_pass(device, "view samples: nearest", 0),
-                       make_pass(device, "view samples: rank", 1), upload(device, scene), triangles_by_rank(scene)}) {}
+VisibilityBuffer::VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene) {
+  const std::vector<std::uint32_t> ranks = visibility::ranks(scene);
+  state_.reset(new State{&device, &scene, make_pass(device, "view samples: nearest", 0),
+                         make_pass(device, "view samples: rank", 1), upload(device, scene, ranks),
+                         triangles_by_rank(ranks)});
+}
 
 VisibilityBuffer::~VisibilityBuffer() = default;
 VisibilityBuffer::VisibilityBuffer(VisibilityBuffer&&) noexcept = default;

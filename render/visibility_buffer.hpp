@@ -12,7 +12,7 @@ namespace penumbra::render {
 
 /// Finds the carrying triangle of each pixel on the device. The rasteriser only proposes (each triangle's padded box on
 /// the screen); coverage and order are decided per fragment in double: `visibility::cover`, then the smallest t, then
-/// the smallest rank. Bit-identical to visibility::brute_force_view_samples.
+/// the smallest rank (visibility::ranks). Bit-identical to visibility::brute_force_view_samples.
 class VisibilityBuffer {
  public:
   VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene);

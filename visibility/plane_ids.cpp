@@ -9,15 +9,17 @@
 
 #include "visibility/plane_ids.hpp"
 
+#include "base/buckets.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/concurrent_vector.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 namespace penumbra::visibility {
 namespace {
@@ -81,8 +83,10 @@ std::uint64_t residue(float value) {
   return d.mantissa < 0 && magnitude != 0 ? kPrime - magnitude : magnitude;
 }
 
-/// Equal for exactly coplanar triangles; 0 if the plane has no ratio modulo p.
-std::uint64_t plane_key(const std::array<glm::vec3, 3>& corners) {
+/// n and n·a modulo p. All zero: no ratio.
+using Plane = std::array<std::uint64_t, 4>;
+
+Plane plane_of(const std::array<glm::vec3, 3>& corners) {
   std::uint64_t q[3][3];
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) q[i][axis] = residue(corners[static_cast<std::size_t>(i)][axis]);
@@ -92,15 +96,44 @@ std::uint64_t plane_key(const std::array<glm::vec3, 3>& corners) {
     u[axis] = sub(q[1][axis], q[0][axis]);
     v[axis] = sub(q[2][axis], q[0][axis]);
   }
-  std::uint64_t plane[4] = {sub(mul(u[1], v[2]), mul(u[2], v[1])), sub(mul(u[2], v[0]), mul(u[0], v[2])),
-                            sub(mul(u[0], v[1]), mul(u[1], v[0])), 0};
+  Plane plane = {sub(mul(u[1], v[2]), mul(u[2], v[1])), sub(mul(u[2], v[0]), mul(u[0], v[2])),
+                 sub(mul(u[0], v[1]), mul(u[1], v[0])), 0};
   plane[3] = add(add(mul(plane[0], q[0][0]), mul(plane[1], q[0][1])), mul(plane[2], q[0][2]));
-  const std::uint64_t* pivot = std::find_if(plane, plane + 4, [](std::uint64_t x) { return x != 0; });
-  if (pivot == plane + 4) return 0;
-  const std::uint64_t scale = inverse(*pivot);
+  return plane;
+}
+
+/// The first number that is not zero, or 1.
+std::uint64_t pivot_of(const Plane& plane) {
+  const auto found = std::ranges::find_if(plane, [](std::uint64_t x) { return x != 0; });
+  return found == plane.end() ? 1 : *found;
+}
+
+constexpr std::uint64_t kFlat = 0, kNoRatio = 1;  // no keys of planes
+
+/// Equal for exactly coplanar triangles; kNoRatio if the plane has none modulo p. `scale`: pivot⁻¹.
+std::uint64_t key_of(const Plane& plane, std::uint64_t scale) {
+  if (plane == Plane{}) return kNoRatio;
   std::uint64_t key = 0x9e3779b97f4a7c15ull;
   for (const std::uint64_t x : plane) key = (key ^ (key >> 29) ^ mul(x, scale)) * 0xbf58476d1ce4e5b9ull;
-  return key == 0 ? 1 : key;
+  return std::max(key, kNoRatio + 1);
+}
+
+/// The keys of some triangles. One inverse for all: that of their pivots' product (Montgomery).
+void find_keys(const SceneFloats& scene, std::uint32_t first, std::span<std::uint64_t> keys) {
+  std::vector<Plane> planes(keys.size());
+  std::vector<std::uint64_t> before(keys.size());  // the product of the pivots of all planes before
+  std::uint64_t product = 1;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::array<glm::vec3, 3> corners = scene.corners(first + static_cast<std::uint32_t>(i));
+    planes[i] = plane_of(corners);
+    before[i] = product;
+    product = mul(product, pivot_of(planes[i]));
+  }
+  std::uint64_t rest = inverse(product);
+  for (std::size_t i = keys.size(); i-- > 0;) {
+    keys[i] = key_of(planes[i], mul(rest, before[i]));
+    rest = mul(rest, pivot_of(planes[i]));
+  }
 }
 
 // ---- Verification.
@@ -160,59 +193,53 @@ bool has_zero_area(const std::array<glm::vec3, 3>& corners) {
   return collinear(corners[0], corners[1], corners[2]);
 }
 
-struct Candidate {
-  std::uint64_t key;
-  std::uint32_t triangle;
-  bool operator<(const Candidate& other) const {
-    return key != other.key ? key < other.key : triangle < other.triangle;
-  }
-};
-
 }  // namespace
 
 std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
   const std::size_t count = scene.triangles.size();
-  const tbb::blocked_range<std::size_t> all(0, count, 1024);
   std::vector<std::uint32_t> plane(count, SceneFloats::kNoPlane);
-  std::vector<Candidate> order(count);
-  tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
+  std::vector<std::uint64_t> keys(count);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+    find_keys(scene, static_cast<std::uint32_t>(range.begin()), std::span(keys).subspan(range.begin(), range.size()));
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const std::array<glm::vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(i));
-      order[i] = {has_zero_area(corners) ? 0 : plane_key(corners), static_cast<std::uint32_t>(i)};
-      if (order[i].key == 0) plane[i] = has_zero_area(corners) ? SceneFloats::kNoPlane : static_cast<std::uint32_t>(i);
-    }
-  });
-  tbb::parallel_sort(order.begin(), order.end());
-
-  // Each triangle against the first one of its key.
-  tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& range) {
-    const auto by_key = [](const Candidate& a, const Candidate& b) { return a.key < b.key; };
-    auto head = std::lower_bound(order.begin(), order.end(), order[range.begin()], by_key);
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      if (order[i].key == 0) continue;
-      if (order[i].key != head->key) head = order.begin() + static_cast<std::ptrdiff_t>(i);
-      const std::uint32_t first = head->triangle, triangle = order[i].triangle;
-      if (first == triangle || coplanar_quickly(scene.corners(first), scene.corners(triangle))) plane[triangle] = first;
+      if (has_zero_area(scene.corners(static_cast<std::uint32_t>(i)))) keys[i] = kFlat;
     }
   });
 
-  // What is left are keys that collided (about one pair in 2⁶⁴) and planes without a key (contrived): each against
-  // every plane that could be its own, in order of triangles.
-  std::vector<std::uint32_t> collided, keyless;
-  for (const Candidate& candidate : order) {
-    if (candidate.key == 0 && plane[candidate.triangle] != SceneFloats::kNoPlane) keyless.push_back(candidate.triangle);
-    if (candidate.key != 0 && plane[candidate.triangle] == SceneFloats::kNoPlane)
-      collided.push_back(candidate.triangle);
-  }
+  // Each triangle against the first one of its key. Left are keys that collided (about one pair in 2⁶⁴) and planes
+  // without a key (contrived): each against every plane that could be its own, in order of triangles.
+  const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(count, 1));
+  Buckets alike = into_buckets(count, buckets, [&](std::size_t i) { return keys[i] & (buckets - 1); });
+  std::vector<std::uint32_t> first(count);  // triangle of the same key
+  mesh::for_each_index(buckets, [&](std::size_t bucket) {
+    const std::span<std::uint32_t> here = alike[bucket];
+    std::ranges::stable_sort(here, {}, [&](std::uint32_t i) { return keys[i]; });
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const bool again = i > 0 && keys[here[i]] == keys[here[i - 1]];
+      first[here[i]] = again ? first[here[i - 1]] : here[i];
+    }
+  });
+  tbb::concurrent_vector<std::uint32_t> collided, keyless;
+  mesh::for_each_index(count, [&](std::size_t i) {
+    const auto triangle = static_cast<std::uint32_t>(i);
+    if (keys[i] == kFlat) return;
+    if (keys[i] == kNoRatio) {
+      keyless.push_back(triangle);
+    } else if (first[i] == triangle || coplanar_quickly(scene.corners(first[i]), scene.corners(triangle))) {
+      plane[i] = first[i];
+    } else {
+      collided.push_back(triangle);
+    }
+  });
+  std::sort(keyless.begin(), keyless.end());
   std::sort(collided.begin(), collided.end());
-  for (const std::vector<std::uint32_t>* leftovers : {&collided, &keyless}) {
-    for (const std::uint32_t triangle : *leftovers) plane[triangle] = SceneFloats::kNoPlane;
+  for (const auto* leftovers : {&collided, &keyless}) {
     for (const std::uint32_t triangle : *leftovers) {
-      std::uint32_t first = 0;  // plane[i] == i: i gives its plane the number
-      while (first < count && (plane[first] != first || !coplanar(scene.corners(first), scene.corners(triangle)))) {
-        ++first;
+      std::uint32_t giver = 0;  // plane[i] == i: i gives its plane the number
+      while (giver < count && (plane[giver] != giver || !coplanar(scene.corners(giver), scene.corners(triangle)))) {
+        ++giver;
       }
-      plane[triangle] = first < count ? first : triangle;
+      plane[triangle] = giver < count ? giver : triangle;
     }
   }
   return plane;

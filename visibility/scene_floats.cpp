@@ -69,7 +69,16 @@ struct Ranked {
   bool operator<(const Ranked& other) const { return vertices < other.vertices; }
 };
 
-/// Each triangle's place among the distinct sorted vertex triples in lexicographic order.
+}  // namespace
+
+bool SceneFloats::comes_before(std::uint32_t triangle, std::uint32_t other) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::vec3 &mine = positions[triangles[triangle][i]], &theirs = positions[triangles[other][i]];
+    if (mine != theirs) return lexicographically_less(mine, theirs);
+  }
+  return false;
+}
+
 std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
   std::vector<Ranked> order(scene.triangles.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size()),
@@ -89,10 +98,8 @@ std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
   return rank;
 }
 
-}  // namespace
-
 SceneFloats make_scene_floats(const scenes::Scene& scene) {
-  constexpr std::uint64_t kTriangle = sizeof(Triangle) + 4 * sizeof(std::uint32_t) + 2;  // see SceneFloats
+  constexpr std::uint64_t kTriangle = sizeof(Triangle) + 3 * sizeof(std::uint32_t) + 2;  // see SceneFloats
   constexpr std::uint64_t kSorting = 3 * sizeof(std::uint32_t);
   const std::uint64_t count_of_triangles = scene.soup.triangles.size();
   require_memory(count_of_triangles * (kTriangle + kSorting) + scene.soup.positions.size() * sizeof(glm::vec3),
@@ -117,14 +124,15 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
   }
 
   floats.triangles = scene.soup.triangles;
-  for (Triangle& triangle : floats.triangles) {
-    // Vertices at the same place are told apart by nothing that is computed from places, so their order is free.
-    std::sort(triangle.begin(), triangle.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return lexicographically_less(floats.positions[a], floats.positions[b]);
-    });
-  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, floats.triangles.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      // Vertices at the same place are told apart by nothing that is computed from places, so their order is free.
+      std::sort(floats.triangles[i].begin(), floats.triangles[i].end(), [&](std::uint32_t a, std::uint32_t b) {
+        return lexicographically_less(floats.positions[a], floats.positions[b]);
+      });
+    }
+  });
   floats.object = scene.soup.object;
-  floats.rank = ranks(floats);
   floats.plane = plane_ids(floats);
 
   const std::size_t count = floats.triangles.size();

@@ -22,8 +22,6 @@ struct SceneFloats {
                                       ///< +0), so that nothing computed from them depends on winding or first vertex
   std::vector<std::uint32_t> object;  ///< for each triangle
   std::vector<std::uint32_t> plane;   ///< for each triangle: equal numbers ⇔ exactly coplanar (kNoPlane: zero area)
-  std::vector<std::uint32_t> rank;    ///< for each triangle: its place in the lexicographic order of sorted vertices;
-                                      ///< triangles with the same three vertices share a rank
   std::vector<std::uint8_t>
       casts_shadow;  ///< for each triangle: false for objects that cast none and for zero-area triangles
   std::vector<std::uint8_t> receives_shadow;  ///< for each triangle
@@ -36,11 +34,17 @@ struct SceneFloats {
     const Triangle& t = triangles[triangle];
     return {positions[t[0]], positions[t[1]], positions[t[2]]};
   }
+  /// Are the sorted vertices of the first strictly before the other's in lexicographic order? At equal t, the triangle
+  /// that comes first in this order carries a view sample.
+  [[nodiscard]] bool comes_before(std::uint32_t triangle, std::uint32_t other) const;
 };
 
 /// Throws InputError when a position, taken relative to the origin, is not finite in float32, or when the whole scene
 /// is so small that float32 loses digits.
 SceneFloats make_scene_floats(const scenes::Scene& scene);
+
+/// For each triangle its place in the order of comes_before(); triangles with the same three vertices share one.
+std::vector<std::uint32_t> ranks(const SceneFloats& scene);
 
 struct Light;
 /// The scene in which nothing casts but what casts shadows of this light (Light::unshaded_by).

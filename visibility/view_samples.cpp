@@ -210,22 +210,26 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
   return samples;
 }
 
+std::int32_t carrier_of(const SceneFloats& scene, const PinholeCamera& camera, std::uint32_t x, std::uint32_t y) {
+  const glm::dvec3 direction = camera.direction(x, y);
+  double nearest = std::numeric_limits<double>::infinity();
+  std::int32_t carrier = ViewSamples::kBackground;
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (scene.plane[i] == SceneFloats::kNoPlane) continue;
+    const std::optional<double> t = cover(camera, direction, scene.corners(i));
+    if (!t || *t > nearest) continue;
+    if (*t == nearest && !scene.comes_before(i, static_cast<std::uint32_t>(carrier))) continue;
+    nearest = *t;
+    carrier = static_cast<std::int32_t>(i);
+  }
+  return carrier;
+}
+
 ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCamera& camera) {
   std::vector<std::int32_t> carriers(static_cast<std::size_t>(camera.width) * camera.height, ViewSamples::kBackground);
   tbb::parallel_for(std::uint32_t{0}, camera.height, [&](std::uint32_t y) {
-    for (std::uint32_t x = 0; x < camera.width; ++x) {
-      const glm::dvec3 direction = camera.direction(x, y);
-      double nearest = std::numeric_limits<double>::infinity();
-      std::int32_t& carrier = carriers[static_cast<std::size_t>(y) * camera.width + x];
-      for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-        if (scene.plane[i] == SceneFloats::kNoPlane) continue;
-        const std::optional<double> t = cover(camera, direction, scene.corners(i));
-        if (!t || *t > nearest) continue;
-        if (*t == nearest && scene.rank[i] >= scene.rank[static_cast<std::size_t>(carrier)]) continue;
-        nearest = *t;
-        carrier = static_cast<std::int32_t>(i);
-      }
-    }
+    for (std::uint32_t x = 0; x < camera.width; ++x)
+      carriers[static_cast<std::size_t>(y) * camera.width + x] = carrier_of(scene, camera, x, y);
   });
   return complete_view_samples(scene, camera, std::move(carriers));
 }

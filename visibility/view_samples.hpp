@@ -59,6 +59,9 @@ std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direc
 ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera& camera,
                                   std::vector<std::int32_t> triangles);
 
+/// The triangle that carries a pixel's view sample, by definition: tries all. kBackground where there is none.
+std::int32_t carrier_of(const SceneFloats& scene, const PinholeCamera& camera, std::uint32_t x, std::uint32_t y);
+
 /// The C++ twin of the visibility buffer: tries every triangle at every pixel. Slow; the truth in tests.
 ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCamera& camera);
 

@@ -97,13 +97,13 @@ class Painter {
     if (!hn::AllFalse(d, equal)) settle(triangle, slot, equal);
   }
 
-  /// Of triangles that meet a ray at one t the one of the smallest rank.
+  /// Of triangles that meet a ray at one t the one whose sorted vertices come first.
   void settle(std::uint32_t triangle, std::size_t slot, hn::Mask<Pixels> equal) const {
     std::uint8_t lanes[8] = {};
     hn::StoreMaskBits(Pixels(), equal, lanes);
     for (std::uint32_t left = lanes[0]; left != 0; left &= left - 1) {
       std::int64_t& carrier = tile_.carrier[slot + static_cast<std::size_t>(std::countr_zero(left))];
-      if (scene_.rank[triangle] < scene_.rank[static_cast<std::size_t>(carrier)]) carrier = triangle;
+      if (scene_.comes_before(triangle, static_cast<std::uint32_t>(carrier))) carrier = triangle;
     }
   }
 

@@ -32,7 +32,7 @@ struct ScanCamera {
 struct ScanTile {
   std::uint32_t first_x = 0, first_y = 0;
   std::span<double> nearest;        ///< smallest t; infinity where there is none, −infinity beside the picture
-  std::span<std::int64_t> carrier;  ///< its triangle: of those at equal t one of the smallest rank, of these the first
+  std::span<std::int64_t> carrier;  ///< its triangle; at equal t the first by SceneFloats::comes_before, then by number
 };
 
 /// Lets the triangles of a tile, in ascending order, take the pixels that they cover (visibility::cover, the same

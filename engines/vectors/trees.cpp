@@ -1,5 +1,7 @@
 #include "engines/vectors/trees.hpp"
 
+#include "base/parallel.hpp"
+
 #include <bit>
 
 namespace penumbra::native {
@@ -15,18 +17,19 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
 /// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine).
 std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stride) {
   std::vector<WideNode> nodes(texels.size() / stride / kWide);
-  for (std::size_t child = 0; child < nodes.size() * kWide; ++child) {
-    WideNode& node = nodes[child / kWide];
-    const std::size_t lane = child % kWide;
-    const auto at = texels.subspan(child * stride, stride);
-    store(node.middle, lane, at[0].value);
-    store(node.half, lane, at[1].value);
-    node.reference[lane] = at[0].number;
-    if (at[0].number != TriangleTree::kNoChild) node.used |= 1U << lane;
-    if (stride < 3) continue;
-    for (int i = 0; i < 3; ++i) node.cone[static_cast<std::size_t>(i)][lane] = at[2].value[i];
-    node.cone[3][lane] = std::bit_cast<float>(at[2].number);
-  }
+  mesh::for_each_index(nodes.size(), [&](std::size_t n) {
+    WideNode& node = nodes[n];
+    for (std::size_t lane = 0; lane < kWide; ++lane) {
+      const auto at = texels.subspan((n * kWide + lane) * stride, stride);
+      store(node.middle, lane, at[0].value);
+      store(node.half, lane, at[1].value);
+      node.reference[lane] = at[0].number;
+      if (at[0].number != TriangleTree::kNoChild) node.used |= 1U << lane;
+      if (stride < 3) continue;
+      for (int i = 0; i < 3; ++i) node.cone[static_cast<std::size_t>(i)][lane] = at[2].value[i];
+      node.cone[3][lane] = std::bit_cast<float>(at[2].number);
+    }
+  });
   return nodes;
 }
 
@@ -38,19 +41,21 @@ WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::
   tree.roots = {0};
   tree.nodes = wide_nodes(nodes, 3);
   tree.leaves.resize(slots[0].size() / kWide);
-  for (std::size_t slot = 0; slot < tree.leaves.size() * kWide; ++slot) {
-    WideEdges& leaf = tree.leaves[slot / kWide];
-    const std::size_t lane = slot % kWide;
-    store(leaf.a, lane, slots[0][slot].value);
-    store(leaf.b, lane, slots[1][slot].value);
-    for (std::size_t side = 0; side < 2; ++side) {
-      leaf.plane[side][lane] = slots[side][slot].number;
-      store(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
-      store(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
+  mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
+    WideEdges& leaf = tree.leaves[number];
+    for (std::size_t lane = 0; lane < kWide; ++lane) {
+      const std::size_t slot = number * kWide + lane;
+      store(leaf.a, lane, slots[0][slot].value);
+      store(leaf.b, lane, slots[1][slot].value);
+      for (std::size_t side = 0; side < 2; ++side) {
+        leaf.plane[side][lane] = slots[side][slot].number;
+        store(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
+        store(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
+      }
+      leaf.cut[lane] = slots[5][slot].number == 0 ? 0 : slots[5][slot].number - 1;
+      if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
     }
-    leaf.cut[lane] = slots[5][slot].number == 0 ? 0 : slots[5][slot].number - 1;
-    if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
-  }
+  });
   return tree;
 }
 
@@ -74,7 +79,7 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
   wide.nodes = wide_nodes(texels, 2);
   if (!wide.nodes.empty()) wide.roots = {0};
   wide.leaves.resize(tree.leaves.size());
-  for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
+  mesh::for_each_index(tree.leaves.size(), [&](std::size_t i) {
     WideTriangles& leaf = wide.leaves[i];
     for (std::size_t lane = 0; lane < kWide; ++lane) {
       const std::uint32_t triangle = tree.leaves[i][lane];
@@ -85,7 +90,7 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
       leaf.emits[lane] = static_cast<std::uint32_t>(scene.emits[triangle]);
       leaf.used |= 1U << lane;
     }
-  }
+  });
   return wide;
 }
 

@@ -176,7 +176,6 @@ TEST_F(ExactRows, OrderOfTriangles) {
   permuted(turned.triangles);
   permuted(turned.object);
   permuted(turned.plane);
-  permuted(turned.rank);
   permuted(turned.casts_shadow);
   permuted(turned.receives_shadow);
   permuted(turned.emits);

@@ -8,6 +8,11 @@
 
 #include <glm/geometric.hpp>
 
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
 namespace penumbra::volumes {
 namespace {
 
@@ -148,6 +153,53 @@ TEST_F(SoftVolumeMeasures, TexturedLightsAgreeWithTheExactArea) {
 TEST_F(SoftVolumeMeasures, ATextureIsRefusedWhereItIsTooWide) {
   visibility::LightTexture texture{0x10000, 1, {}, std::vector<double>(0x10000, 1.0), 1};
   EXPECT_THROW(TextureWeights{texture}, ResourceError);
+}
+
+/// The light's outline, and where the table's 1024 points are on it: rows of 32 from corner to corner; 16 circles
+/// of 64.
+struct TablePoints {
+  LightOutline outline;
+  glm::dvec2 (*at)(int index);
+};
+const TablePoints kRectanglePoints{{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4}, [](int index) {
+                                     return glm::dvec2(2 * (index % 32) - 31, 2 * (index / 32) - 31) / 31.0;
+                                   }};
+const TablePoints kDiskPoints{{{}, std::numbers::pi}, [](int index) {
+                                const double angle = (index % 64 + 0.5) * std::numbers::pi / 32;
+                                return (2 * (index / 64) + 1) / 31.0 * glm::dvec2(std::cos(angle), std::sin(angle));
+                              }};
+
+TEST(CoverageTable, ALoopLeavesItsAreaOut) {
+  // What lies beyond the three sides is the light but for the triangle, and the whole light counts 0 in a closed loop.
+  for (const TablePoints& points : {kRectanglePoints, kDiskPoints}) {
+    const std::vector<double> table = coverage_table(points.outline, nullptr);
+    std::mt19937 random(5);
+    for (int i = 0; i < 10'000; ++i) {
+      std::array<int, 3> corner{};
+      for (int& c : corner) c = static_cast<int>(random() % 1024);
+      double sum = 0, twice = 0;
+      for (std::size_t side = 0; side < 3; ++side) {
+        const int from = corner[side], to = corner[(side + 1) % 3];
+        sum += table[static_cast<std::size_t>(from) * 1024 + static_cast<std::size_t>(to)];
+        const glm::dvec2 a = points.at(from), b = points.at(to);
+        twice += a.x * b.y - a.y * b.x;
+      }
+      // Some twenty roundings of numbers below 4.
+      ASSERT_NEAR(sum, -0.5 * twice / points.outline.area, 1e-14) << corner[0] << " " << corner[1] << " " << corner[2];
+    }
+  }
+}
+
+TEST(CoverageTable, NothingIsBeyondASideAndASegmentBeyondAChord) {
+  const std::vector<double> square = coverage_table(kRectanglePoints.outline, nullptr);
+  constexpr std::array kCorners = {31, 1023, 992, 0};  // from right below, counter-clockwise
+  for (std::size_t i = 0; i < 3; ++i)                  // the last side goes past the direction where fans begin
+    EXPECT_NEAR(square[static_cast<std::size_t>(kCorners[i] * 1024 + kCorners[i + 1])], 0, 1e-15) << i;
+  const std::vector<double> disk = coverage_table(kDiskPoints.outline, nullptr);
+  for (const int step : {1, 7, 31}) {
+    const double angle = step * std::numbers::pi / 32, segment = 0.5 * (angle - std::sin(angle)) / std::numbers::pi;
+    EXPECT_NEAR(disk[static_cast<std::size_t>(960 * 1024 + 960 + step)], segment, 1e-15) << step;
+  }
 }
 
 }  // namespace

@@ -104,10 +104,12 @@ TEST_P(Planes, RanksAreTheOrderOfTheSortedVertices) {
     for (std::size_t k = 0; k < 9; ++k) result[k] = corners[k / 3][static_cast<int>(k % 3)];
     return result;
   };
+  const std::vector<std::uint32_t> rank = ranks(floats);
   for (std::uint32_t i = 0; i < 80; ++i) {
     for (std::uint32_t j = 0; j < 80; ++j) {
-      ASSERT_EQ(floats.rank[i] < floats.rank[j], key(i) < key(j));
-      ASSERT_EQ(floats.rank[i] == floats.rank[j], key(i) == key(j));
+      ASSERT_EQ(rank[i] < rank[j], key(i) < key(j));
+      ASSERT_EQ(rank[i] == rank[j], key(i) == key(j));
+      ASSERT_EQ(floats.comes_before(i, j), key(i) < key(j));
     }
   }
 }

@@ -44,7 +44,7 @@ TEST(SceneFloats, RanksFollowTheSortedVerticesAndTwinsShareOne) {
   tests::add_object(scene, "a", {{b, c, d}, {c, a, b}, {a, b, c}, {d, a, b}});
   const SceneFloats floats = make_scene_floats(scene);
   // Sorted: (a, b, c) twice, (a, d, b), (d, b, c): d = (0, −1, 2) comes before b = (0, 1, 0).
-  EXPECT_EQ(floats.rank, (std::vector<std::uint32_t>{2, 1, 1, 0}));
+  EXPECT_EQ(ranks(floats), (std::vector<std::uint32_t>{2, 1, 1, 0}));
 }
 
 TEST(SceneFloats, FlagsComeFromObjectsAndZeroAreaCastsNothing) {

@@ -1,5 +1,7 @@
 #include "visibility/tree/tree_texels.hpp"
 
+#include "base/parallel.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -28,19 +30,17 @@ bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
 constexpr float kThinnest = 0x1p-40F;
 
 std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
-  std::vector<Texel> texels;
-  texels.reserve(tree.nodes.size() * 2 * TriangleTree::kWidth);
-  for (const TriangleTree::Node& node : tree.nodes) {
-    for (const TriangleTree::Child& child : node) {
-      const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
-      const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
-      glm::vec3 half = glm::max(upper - middle, middle - lower);
-      for (int axis = 0; axis < 3; ++axis)
-        half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
-      texels.push_back({middle, child.reference});
-      texels.push_back({half, 0});
-    }
-  }
+  std::vector<Texel> texels(tree.nodes.size() * 2 * TriangleTree::kWidth);
+  mesh::for_each_index(tree.nodes.size() * TriangleTree::kWidth, [&](std::size_t i) {
+    const TriangleTree::Child& child = tree.nodes[i / TriangleTree::kWidth][i % TriangleTree::kWidth];
+    const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
+    const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
+    glm::vec3 half = glm::max(upper - middle, middle - lower);
+    for (int axis = 0; axis < 3; ++axis)
+      half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
+    texels[2 * i] = {middle, child.reference};
+    texels[2 * i + 1] = {half, 0};
+  });
   return texels;
 }
 

@@ -1,5 +1,6 @@
 #include "volumes/edges/edge_set.hpp"
 
+#include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
 #include "volumes/edges/plane_normal.hpp"
 
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 namespace penumbra::volumes {
 namespace {
@@ -90,21 +93,41 @@ EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uin
   return {turned_alike(scene, triangle, chosen) ? n : -n, corners[0], plane};
 }
 
-std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters) {
-  std::vector<EdgeRecord> records;
-  records.reserve(casters.graph.edges.size());
-  for (std::uint32_t e = 0; e < casters.graph.edges.size(); ++e) {
-    const mesh::Edge& edge = casters.graph.edges[e];
-    const glm::vec3 a(casters.positions[edge.a]), b(casters.positions[edge.b]);
-    const auto around = casters.graph.around(e);
-    for (std::size_t i = 0; i < around.size(); i += 2) {
-      EdgeRecord record{a, b, {}};
-      for (std::size_t j = i; j < std::min(i + 2, around.size()); ++j) {
-        record.sides[j - i] = side_of(scene, casters, casters.triangle[around[j].triangle], a, b);
-      }
-      if (!is_flat(record)) records.push_back(record);
+namespace {
+
+/// Those of one edge: a record for each two of its triangles.
+void add_records(const SceneFloats& scene, const EdgeCasters& casters, std::uint32_t e,
+                 std::vector<EdgeRecord>& records) {
+  const mesh::Edge& edge = casters.graph.edges[e];
+  const glm::vec3 a(casters.positions[edge.a]), b(casters.positions[edge.b]);
+  const auto around = casters.graph.around(e);
+  for (std::size_t i = 0; i < around.size(); i += 2) {
+    EdgeRecord record{a, b, {}};
+    for (std::size_t j = i; j < std::min(i + 2, around.size()); ++j) {
+      record.sides[j - i] = side_of(scene, casters, casters.triangle[around[j].triangle], a, b);
     }
+    if (!is_flat(record)) records.push_back(record);
   }
+}
+
+}  // namespace
+
+std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters) {
+  constexpr std::size_t kChunk = 4096;
+  const std::size_t edges = casters.graph.edges.size();
+  std::vector<std::vector<EdgeRecord>> chunks((edges + kChunk - 1) / kChunk);
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+    chunks[i].reserve(kChunk);
+    for (std::size_t e = i * kChunk; e < std::min((i + 1) * kChunk, edges); ++e)
+      add_records(scene, casters, static_cast<std::uint32_t>(e), chunks[i]);
+  });
+  std::vector<std::size_t> first(chunks.size());
+  std::transform_exclusive_scan(chunks.begin(), chunks.end(), first.begin(), std::size_t{0}, std::plus{},
+                                [](const auto& chunk) { return chunk.size(); });
+  std::vector<EdgeRecord> records(chunks.empty() ? 0 : first.back() + chunks.back().size());
+  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+    std::ranges::copy(chunks[i], records.begin() + static_cast<std::ptrdiff_t>(first[i]));
+  });
   return records;
 }
 
@@ -156,6 +179,8 @@ class Cones {
  public:
   Cones(const TriangleTree& tree, std::span<const EdgeRecord> records) : tree_(tree), records_(records) {
     of_child_.resize(tree.nodes.size() * TriangleTree::kWidth);
+    of_leaf_.resize(tree.leaves.size());
+    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) { of_leaf_[i] = of_leaf(tree.leaves[i]); });
     if (!tree.nodes.empty()) of_node(0);
   }
   [[nodiscard]] const Cone& of_child(std::size_t node, std::size_t child) const {
@@ -169,7 +194,7 @@ class Cones {
       const std::uint32_t reference = tree_.nodes[node][i].reference;
       if (reference == TriangleTree::kNoChild) continue;
       const bool leaf = (reference & TriangleTree::kLeafBit) != 0;
-      const Cone cone = leaf ? of_leaf(tree_.leaves[reference & ~TriangleTree::kLeafBit]) : of_node(reference);
+      const Cone cone = leaf ? of_leaf_[reference & ~TriangleTree::kLeafBit] : of_node(reference);
       of_child_[node * TriangleTree::kWidth + i] = cone;
       all = all ? joined(*all, cone) : cone;
     }
@@ -187,16 +212,16 @@ class Cones {
 
   const TriangleTree& tree_;
   std::span<const EdgeRecord> records_;
-  std::vector<Cone> of_child_;
+  std::vector<Cone> of_child_, of_leaf_;
 };
 
 }  // namespace
 
 EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
-  std::vector<visibility::Bounds> boxes;
-  boxes.reserve(records.size());
-  for (const EdgeRecord& record : records)
-    boxes.push_back({glm::min(record.a, record.b), glm::max(record.a, record.b)});
+  std::vector<visibility::Bounds> boxes(records.size());
+  mesh::for_each_index(boxes.size(), [&](std::size_t i) {
+    boxes[i] = {glm::min(records[i].a, records[i].b), glm::max(records[i].a, records[i].b)};
+  });
   const TriangleTree tree = visibility::make_tree_over(boxes);
   const Cones cones(tree, records);
   const std::vector<visibility::Texel> boxed = visibility::node_texels(tree, scale);
@@ -204,30 +229,29 @@ EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
   EdgeTexels texels;
   texels.depth = tree.depth;
   texels.records = static_cast<std::uint32_t>(records.size());
-  texels.nodes.reserve(boxed.size() / 2 * 3);
-  for (std::size_t child = 0; child < boxed.size() / 2; ++child) {
+  texels.nodes.resize(boxed.size() / 2 * 3);
+  mesh::for_each_index(boxed.size() / 2, [&](std::size_t child) {
     const Cone& cone = cones.of_child(child / TriangleTree::kWidth, child % TriangleTree::kWidth);
     // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
     // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a tenth of this in 20 levels.
     const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
-    texels.nodes.push_back(boxed[2 * child]);
-    texels.nodes.push_back(boxed[2 * child + 1]);
-    texels.nodes.push_back({glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)});
-  }
-  for (auto& list : texels.slots) list.reserve(tree.leaves.size() * TriangleTree::kWidth);
-  for (const TriangleTree::Leaf& leaf : tree.leaves) {
-    for (const std::uint32_t number : leaf) {
-      const bool used = number != TriangleTree::kNoTriangle;
-      const EdgeRecord record = used ? records[number] : EdgeRecord{};
-      const auto& [s, t] = record.sides;
-      texels.slots[0].push_back({record.a * scale, s.plane});
-      texels.slots[1].push_back({record.b * scale, t.plane});
-      texels.slots[2].push_back({s.n, used ? 1U : 0U});
-      texels.slots[3].push_back({s.anchor * scale, used ? 1U : 0U});
-      texels.slots[4].push_back({t.n, used ? 1U : 0U});
-      texels.slots[5].push_back({t.anchor * scale, used ? 1 + record.cut : 0U});
-    }
-  }
+    texels.nodes[3 * child] = boxed[2 * child];
+    texels.nodes[3 * child + 1] = boxed[2 * child + 1];
+    texels.nodes[3 * child + 2] = {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)};
+  });
+  for (auto& list : texels.slots) list.resize(tree.leaves.size() * TriangleTree::kWidth);
+  mesh::for_each_index(tree.leaves.size() * TriangleTree::kWidth, [&](std::size_t i) {
+    const std::uint32_t number = tree.leaves[i / TriangleTree::kWidth][i % TriangleTree::kWidth];
+    const bool used = number != TriangleTree::kNoTriangle;
+    const EdgeRecord record = used ? records[number] : EdgeRecord{};
+    const auto& [s, t] = record.sides;
+    texels.slots[0][i] = {record.a * scale, s.plane};
+    texels.slots[1][i] = {record.b * scale, t.plane};
+    texels.slots[2][i] = {s.n, used ? 1U : 0U};
+    texels.slots[3][i] = {s.anchor * scale, used ? 1U : 0U};
+    texels.slots[4][i] = {t.n, used ? 1U : 0U};
+    texels.slots[5][i] = {t.anchor * scale, used ? 1 + record.cut : 0U};
+  });
   if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty
   for (auto& list : texels.slots) {
     if (list.empty()) list.emplace_back();

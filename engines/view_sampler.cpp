@@ -1,0 +1,16 @@
+#include "engines/view_sampler.hpp"
+
+#include "engines/engine_choice.hpp"
+#include "engines/vectors/scan_conversion.hpp"
+
+namespace penumbra::engines {
+
+ViewSampler::ViewSampler(const render::Device& device, const visibility::SceneFloats& scene) : scene_(scene) {
+  if (!runs_on_vectors(device, Engine::automatic)) buffer_.emplace(device, scene);
+}
+
+visibility::ViewSamples ViewSampler::find(const visibility::PinholeCamera& camera) {
+  return buffer_ ? buffer_->render(camera) : native::scan_view_samples(scene_, camera);
+}
+
+}  // namespace penumbra::engines
