@@ -1,22 +1,33 @@
-# penumbra_shaders(target file.comp [file.frag …] [DEFINES A=1 …])
-# Compiles GLSL to SPIR-V with glslang (true dependencies through a depfile), validates it with spirv-val and embeds
-# it as "<folder>/<name>.<stage>.spv.hpp" with `inline constexpr std::uint32_t k<Name><Stage>[]`, on the target's include path.
 find_program(GLSLANG glslangValidator REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
+# penumbra_shader_output(file ending path output): the file's path from the root, and where what is made of it goes.
+function(penumbra_shader_output source ending path output)
+  file(RELATIVE_PATH from_root ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+  set(made ${PROJECT_BINARY_DIR}/shaders/${from_root}.${ending})
+  get_filename_component(folder ${made} DIRECTORY)
+  file(MAKE_DIRECTORY ${folder})
+  set(${path} ${from_root} PARENT_SCOPE)
+  set(${output} ${made} PARENT_SCOPE)
+endfunction()
+
+# penumbra_embedded(target header…): the target is built with these, and finds them.
+function(penumbra_embedded target)
+  target_sources(${target} PRIVATE ${ARGN})
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+endfunction()
+
+# penumbra_shaders(target file.comp [file.frag …])
+# Compiles GLSL to SPIR-V with glslang (true dependencies through a depfile), validates it with spirv-val and embeds
+# it as "<folder>/<name>.<stage>.spv.hpp" with `inline constexpr std::uint32_t k<Name><Stage>[]`, on the target's include path.
 function(penumbra_shaders target)
-  cmake_parse_arguments(ARG "" "" "DEFINES" ${ARGN})
   set(headers)
-  foreach(source ${ARG_UNPARSED_ARGUMENTS})
-    file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${source})
-    set(spirv ${PROJECT_BINARY_DIR}/shaders/${path}.spv)
+  foreach(source ${ARGN})
+    penumbra_shader_output(${source} spv path spirv)
     set(header ${spirv}.hpp)
-    get_filename_component(folder ${spirv} DIRECTORY)
-    file(MAKE_DIRECTORY ${folder})
-    list(TRANSFORM ARG_DEFINES PREPEND -D OUTPUT_VARIABLE defines)
     add_custom_command(
       OUTPUT ${spirv} ${header}  # the depfile names the SPIR-V: it must come first, or ninja rebuilds every time
-      COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR} ${defines} --depfile ${spirv}.d
+      COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${PROJECT_SOURCE_DIR} --depfile ${spirv}.d
               -o ${spirv} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
       COMMAND ${SPIRV_VAL} --target-env vulkan1.3 --scalar-block-layout ${spirv}
       COMMAND ${CMAKE_COMMAND} -DSPIRV=${spirv} -DHEADER=${header} -DNAME=${source} -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
@@ -26,8 +37,7 @@ function(penumbra_shaders target)
       VERBATIM)
     list(APPEND headers ${header})
   endforeach()
-  target_sources(${target} PRIVATE ${headers})
-  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+  penumbra_embedded(${target} ${headers})
 endfunction()
 
 # penumbra_opengl_shaders(target file.vert …)
@@ -36,10 +46,7 @@ endfunction()
 function(penumbra_opengl_shaders target)
   set(headers)
   foreach(source ${ARGN})
-    file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${source})
-    set(header ${PROJECT_BINARY_DIR}/shaders/${path}.glsl.hpp)
-    get_filename_component(folder ${header} DIRECTORY)
-    file(MAKE_DIRECTORY ${folder})
+    penumbra_shader_output(${source} glsl.hpp path header)
     add_custom_command(
       OUTPUT ${header}
       COMMAND ${CMAKE_COMMAND} -DGLSLANG=${GLSLANG} -DROOT=${PROJECT_SOURCE_DIR} -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR}/${source}
@@ -50,6 +57,5 @@ function(penumbra_opengl_shaders target)
       VERBATIM)
     list(APPEND headers ${header})
   endforeach()
-  target_sources(${target} PRIVATE ${headers})
-  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+  penumbra_embedded(${target} ${headers})
 endfunction()

@@ -2,7 +2,7 @@
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
-#include "visibility/masks/bits_file.hpp"
+#include "tests/unit/bits_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -44,8 +44,8 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
   EXPECT_TRUE(method.at("seconds").at("warmup").is_number());
 
   // The counts again, computed from the files.
-  const auto mine = visibility::read_bits(path("dir/view-sample.bits")),
-             other = visibility::read_bits(path("dir/reference.bits"));
+  const auto mine = tests::read_bits(path("dir/view-sample.bits")),
+             other = tests::read_bits(path("dir/reference.bits"));
   std::uint64_t all = 0, penumbra = 0, differing = 0;
   for (std::size_t i = 0; i < mine.p.size(); ++i) {
     if (mine.triangle[i] < 0) continue;

@@ -44,7 +44,7 @@ TEST_F(Inspect, TheTableSaysWhatIsWrongAndWhatMethodsMakeOfIt) {
   EXPECT_TRUE(outcome.err.empty()) << outcome.err;
 }
 
-TEST_F(Inspect, JsonHasTheKeysOfTheContract) {
+TEST_F(Inspect, JsonHasItsKeys) {
   const json file = report({cube()});
   const std::map<std::string, json> known = {{"triangles", 11},
                                              {"vertices", 8},

@@ -2,7 +2,7 @@
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
-#include "visibility/masks/bits_file.hpp"
+#include "tests/unit/bits_reader.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -83,7 +83,7 @@ TEST_F(LightKinds, BitsOfASunHoldDirections) {
   scene_with(fmt::format(R"({{"name": "key", {}}})", kSun));
   const Outcome outcome = render({"--method", "raytrace", "--bits", path("out.bits"), "--light-samples", "5x5"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const visibility::BitsFile bits = visibility::read_bits(path("out.bits"));
+  const tests::BitsFile bits = tests::read_bits(path("out.bits"));
   ASSERT_EQ(bits.light_points.size(), 25u);
   const glm::dvec3 middle = -glm::normalize(glm::dvec3(0.2, -1, 0.1));
   for (const glm::vec3& d : bits.light_points) {

@@ -3,7 +3,7 @@
 #include "base/exr.hpp"
 #include "base/image.hpp"
 #include "base/png.hpp"
-#include "visibility/masks/bits_file.hpp"
+#include "tests/unit/bits_reader.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -201,7 +201,7 @@ void expect_whole_png(const std::string& path) {
 }
 
 void expect_whole_bits(const std::string& path) {
-  const visibility::BitsFile bits = visibility::read_bits(path);
+  const tests::BitsFile bits = tests::read_bits(path);
   EXPECT_EQ(bits.light_points.size(), bits.sample_count);
   EXPECT_EQ(bits.masks.size(), std::size_t{bits.width} * bits.height * bits.words_per_mask());
   const std::uint32_t rest = bits.sample_count % 32;

@@ -2,7 +2,8 @@
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
-#include "visibility/masks/bits_file.hpp"
+#include "compare/machine.hpp"
+#include "tests/unit/bits_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -31,7 +32,7 @@ class Render : public ProgramTest, public testing::WithParamInterface<const char
   }
 };
 
-TEST_P(Render, WritesTheChannelsOfTheContract) {
+TEST_P(Render, WritesItsChannels) {
   tiny_scene();
   const Outcome outcome = render("out.exr", {"--light-samples", "64"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -117,7 +118,7 @@ TEST_P(Render, BitsAgreeWithTheImage) {
       render("out.exr", {"--bits", path("out.bits"), "--light-samples", "7x9", "--sample-pattern", "grid"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const ExrFile image = read_exr(path("out.exr"));
-  const visibility::BitsFile bits = visibility::read_bits(path("out.bits"));
+  const tests::BitsFile bits = tests::read_bits(path("out.bits"));
   EXPECT_EQ(bits.width, 48u);
   EXPECT_EQ(bits.height, 32u);
   ASSERT_EQ(bits.sample_count, 63u);
@@ -309,6 +310,30 @@ TEST_F(ExactByDefault, LightByLight) {
     EXPECT_EQ(v.at(channel), sun_first.image.floats.at(channel)) << channel;
 }
 
+/// Picture and stats name what computed the shadow: the processor where its vector units did, else the Vulkan device.
+TEST_F(RenderOnce, SaysWhatItRanOn) {
+  tiny_scene();
+  const auto ran_on = [&](const std::string& method, std::vector<std::string> options) {
+    std::vector<std::string> arguments = {"render", path("scene.json"), "-o", path("out.exr"), "--method",
+                                          method,   "--light-samples",  "16", "--stats",       path("stats.json")};
+    for (const std::string& option : options) arguments.insert(arguments.end(), {"--method-option", option});
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const auto device = json::parse(read("stats.json")).at("device").get<std::string>();
+    EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.device"), device);
+    return device;
+  };
+  const std::string processor = compare::this_machine().processor;
+  const json devices = json::parse(run({"devices", "--json"}).out).at("devices");
+  for (const char* method : {"edge-scatter", "view-sample"}) {
+    EXPECT_EQ(ran_on(method, {"engine=native"}), processor) << method;
+    const std::string device = ran_on(method, {"engine=vulkan"});
+    EXPECT_TRUE(std::ranges::any_of(devices, [&](const json& one) { return one.at("name") == device; })) << device;
+  }
+  EXPECT_EQ(ran_on("edge-scatter", {"rows=exact"}), processor);
+  EXPECT_EQ(ran_on("raytrace", {}), processor);
+}
+
 TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
   const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "sobol"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -326,7 +351,7 @@ TEST_F(RenderOnce, MeshesOutsideTheRuleAreAlwaysLit) {
       run({"render", path("scene.json"), "-o", path("out.exr"), "--method", "raytrace", "--bits", path("out.bits")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const ExrFile image = read_exr(path("out.exr"));
-  const visibility::BitsFile bits = visibility::read_bits(path("out.bits"));
+  const tests::BitsFile bits = tests::read_bits(path("out.bits"));
   for (std::size_t i = 0; i < bits.p.size(); ++i) {
     if (image.integers.at("id")[i] == 2 || image.integers.at("id")[i] == 3) continue;  // not floor, not background
     EXPECT_EQ(image.floats.at("V")[i], 1);

@@ -1,5 +1,7 @@
-#include "base/error.hpp"
 #include "visibility/masks/bits_file.hpp"
+
+#include "base/error.hpp"
+#include "tests/unit/bits_reader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +15,15 @@ namespace penumbra::visibility {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::BitsFile, tests::read_bits;
+
+/// The whole file at once.
+void write_bits(const fs::path& path, const glm::dvec3& origin, const ViewSamples& samples, const Light& light,
+                std::span<const std::uint32_t> masks) {
+  BitsWriter writer(path, origin, samples, light);
+  writer.append(masks);
+  writer.commit();
+}
 
 /// 2 × 2 pixels, 33 light samples: two words a pixel, of which the second has one bit.
 struct Sample {

@@ -5,11 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <string>
 #include <type_traits>
 
 namespace penumbra::visibility {
@@ -24,21 +19,6 @@ void put(std::vector<std::byte>& bytes, const Value& value) {
   const auto* first = reinterpret_cast<const std::byte*>(&value);
   bytes.insert(bytes.end(), first, first + sizeof(Value));
 }
-
-/// Takes value after value from the front; the caller has checked that they are there.
-class Reader {
- public:
-  explicit Reader(std::span<const char> bytes) : bytes_(bytes) {}
-  template <typename Value>
-  void take(Value& value) {
-    PENUMBRA_ASSERT(bytes_.size() >= sizeof(Value), "{} bytes left", bytes_.size());
-    std::memcpy(&value, bytes_.data(), sizeof(Value));
-    bytes_ = bytes_.subspan(sizeof(Value));
-  }
-
- private:
-  std::span<const char> bytes_;
-};
 
 const std::filesystem::path& refuse_sphere(const std::filesystem::path& path, const Light& light) {
   if (light.kind == LightKind::sphere) {
@@ -85,47 +65,6 @@ void BitsWriter::append(std::span<const std::uint32_t> masks) {
 void BitsWriter::commit() {
   PENUMBRA_ASSERT(next_pixel_ == samples_.size(), "masks of {} pixels, but there are {}", next_pixel_, samples_.size());
   file_.commit();
-}
-
-void write_bits(const std::filesystem::path& path, const glm::dvec3& origin, const ViewSamples& samples,
-                const Light& light, std::span<const std::uint32_t> masks) {
-  BitsWriter writer(path, origin, samples, light);
-  writer.append(masks);
-  writer.commit();
-}
-
-BitsFile read_bits(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError("cannot read \"{}\"", path.string());
-  const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  BitsFile file;
-  const std::string line = bytes.substr(0, std::min(bytes.find('\n'), std::size_t{100}));
-  char rest = 0;
-  const int found =
-      std::sscanf(line.c_str(), "penumbra-bits/1 %9u %9u %4u%c", &file.width, &file.height, &file.sample_count, &rest);
-  if (found != 3 || file.sample_count == 0) {
-    throw InputError("\"{}\" does not begin with a line \"penumbra-bits/1 W H N\"", path.string());
-  }
-  const std::size_t pixel_count = std::size_t{file.width} * file.height;
-  const std::size_t pixel_bytes = 16 + 4 * std::size_t{file.words_per_mask()};
-  const std::size_t expected = line.size() + 1 + 24 + 12 * std::size_t{file.sample_count} + pixel_count * pixel_bytes;
-  if (bytes.size() != expected) {
-    throw InputError("\"{}\" has {} bytes, but {}x{} pixels and {} light samples take {}", path.string(), bytes.size(),
-                     file.width, file.height, file.sample_count, expected);
-  }
-  Reader reader(std::span<const char>(bytes).subspan(line.size() + 1));
-  reader.take(file.origin);
-  file.light_points.resize(file.sample_count);
-  for (glm::vec3& point : file.light_points) reader.take(point);
-  file.p.resize(pixel_count);
-  file.triangle.resize(pixel_count);
-  file.masks.resize(pixel_count * file.words_per_mask());
-  for (std::size_t i = 0; i < pixel_count; ++i) {
-    reader.take(file.p[i]);
-    reader.take(file.triangle[i]);
-    for (std::size_t w = 0; w < file.words_per_mask(); ++w) reader.take(file.masks[i * file.words_per_mask() + w]);
-  }
-  return file;
 }
 
 }  // namespace penumbra::visibility

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <vector>
 
 namespace penumbra::visibility {
 
@@ -43,23 +42,5 @@ class BitsWriter {
   std::size_t next_pixel_ = 0;
   AtomicFile file_;
 };
-
-/// The whole file at once.
-void write_bits(const std::filesystem::path& path, const glm::dvec3& origin, const ViewSamples& samples,
-                const Light& light, std::span<const std::uint32_t> masks);
-
-struct BitsFile {
-  std::uint32_t width = 0, height = 0, sample_count = 0;
-  glm::dvec3 origin{0};
-  std::vector<glm::vec3> light_points;
-  std::vector<glm::vec3> p;  ///< one a pixel, like the next
-  std::vector<std::int32_t> triangle;
-  std::vector<std::uint32_t> masks;  ///< words_per_mask() a pixel
-
-  [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count + 31) / 32; }
-};
-
-/// Throws InputError for what is no such file, or one that is too short or too long.
-BitsFile read_bits(const std::filesystem::path& path);
 
 }  // namespace penumbra::visibility
