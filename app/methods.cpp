@@ -57,11 +57,15 @@ using visibility::Method;
 using visibility::MethodDescription;
 using visibility::MethodOptions;
 
+/// Of a method with two engines: does it run on the processor?
+using OnVectors = bool (*)(const render::Device&, const MethodOptions&, const Light&);
+
 struct TableRow {
   const MethodDescription& (*describe)();
   MethodDescription (*describe_with)(const MethodOptions&);  ///< what these options make of it
   std::unique_ptr<Method> (*make)(DeviceSource&, const MethodOptions&);
   bool on_device = false;
+  OnVectors on_vectors = nullptr;  ///< none: a method with one engine
 };
 
 template <auto kDescribe>
@@ -75,15 +79,16 @@ MethodDescription describe_with(const MethodOptions& options) {
   }
 }
 
-/// A method that runs on the Vulkan device.
+/// A method that runs on the Vulkan device, or on one of two engines.
 template <auto kDescribe, auto kMake>
-[[maybe_unused]] TableRow on_device() {
+[[maybe_unused]] TableRow on_device(OnVectors on_vectors = nullptr) {
   return {[]() -> const MethodDescription& {
             static const MethodDescription description = describe_with<kDescribe>({});
             return description;
           },
           describe_with<kDescribe>,
-          [](DeviceSource& devices, const MethodOptions& options) { return kMake(devices.device(), options); }, true};
+          [](DeviceSource& devices, const MethodOptions& options) { return kMake(devices.device(), options); }, true,
+          on_vectors};
 }
 
 /// A method that runs on the processor, on a machine without Vulkan too: an instance can be asked what it is.
@@ -101,10 +106,10 @@ template <auto kMake>
 const std::vector<TableRow>& table() {
   static const std::vector<TableRow> rows = {
 #ifdef PENUMBRA_HAS_VOLUMES
-      on_device<volumes::edge_scatter_description, volumes::make_edge_scatter>(),
+      on_device<volumes::edge_scatter_description, volumes::make_edge_scatter>(volumes::edge_scatter_on_vectors),
 #endif
 #ifdef PENUMBRA_HAS_VSM
-      on_device<vsm::view_sample_description, vsm::make_view_sample>(),
+      on_device<vsm::view_sample_description, vsm::make_view_sample>(vsm::view_sample_on_vectors),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
       on_device<volumes::depth_complexity_description, volumes::make_depth_complexity>(),
@@ -212,8 +217,9 @@ std::unique_ptr<Method> make_method(std::string_view name, const MethodOptions& 
   return find_row(name).make(devices, options);
 }
 
-bool runs_on_device(std::string_view name) {
-  return find_row(name).on_device;
+bool runs_on_device(std::string_view name, const MethodOptions& options, const Light& light, DeviceSource& devices) {
+  const TableRow& row = find_row(name);
+  return row.on_device && (row.on_vectors == nullptr || !row.on_vectors(devices.device(), options, light));
 }
 
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {

@@ -25,8 +25,10 @@ const visibility::MethodDescription& describe_method(std::string_view name);
 /// UsageError for options that it does not have, values that they cannot have, and options that exclude each other.
 visibility::MethodDescription describe_method(std::string_view name, const visibility::MethodOptions& options);
 
-/// Does it run on the Vulkan device? (Otherwise: on the processor.)
-bool runs_on_device(std::string_view name);
+/// Does it run on the Vulkan device, with these options and for this light? (Otherwise: on the processor.) Asks
+/// `devices` for one only for a method that may run on either.
+bool runs_on_device(std::string_view name, const visibility::MethodOptions& options, const visibility::Light& light,
+                    DeviceSource& devices);
 
 /// Checks the options, then builds the method. Only methods that run on a device ask `devices` for one.
 std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,

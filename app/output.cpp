@@ -130,9 +130,9 @@ void BitsOutput::commit() {
   open_.reset();
 }
 
-std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device) {
-  const bool vulkan = runs_on_device(description.name) && !description.gives_area();
-  return vulkan ? vulkan_device : compare::this_machine().processor;
+std::string device_of(const std::string& method, const visibility::MethodOptions& options,
+                      const visibility::Light& light, DeviceSource& devices) {
+  return runs_on_device(method, options, light, devices) ? devices.name() : compare::this_machine().processor;
 }
 
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run) {

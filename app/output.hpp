@@ -69,9 +69,9 @@ struct MethodLabel {
   std::string device;  ///< where it ran
 };
 
-/// Which device a method runs on: the Vulkan device (also for engine=native of a method that may run there, where that
-/// device is the processor), or the processor's name.
-std::string device_of(const visibility::MethodDescription& description, const std::string& vulkan_device);
+/// What a method runs on with these options, for this light: the Vulkan device, or the processor's name.
+std::string device_of(const std::string& method, const visibility::MethodOptions& options,
+                      const visibility::Light& light, DeviceSource& devices);
 
 /// Lights with what each was done with: one label a light, or one for all of them.
 struct LabelledLights {

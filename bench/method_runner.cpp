@@ -60,16 +60,17 @@ double Runner::spent() const {
 }
 
 MethodRunner::MethodRunner(const app::MethodEntry& entry, const Ground& ground, const std::string& device)
-    : name_(entry.label), devices_(device), method_(app::make_method(entry.name, entry.options, devices_)) {
-  const compare::Machine machine = compare::this_machine();
-  where_ = app::runs_on_device(entry.name) ? devices_.name()
-                                           : fmt::format("{}, {} threads", machine.processor, machine.threads);
+    : entry_(entry), devices_(device), method_(app::make_method(entry.name, entry.options, devices_)) {
   const app::Stopwatch watch;
   method_->prepare_mesh(ground.floats);
   mesh_ = watch.seconds();
 }
 
-void MethodRunner::prepare(const Question& /*question*/) {
+void MethodRunner::prepare(const Question& question) {
+  const compare::Machine machine = compare::this_machine();
+  where_ = app::runs_on_device(entry_.name, entry_.options, question.light, devices_)
+               ? devices_.name()
+               : fmt::format("{}, {} threads", machine.processor, machine.threads);
   passes_.clear();
   pairs_.reset();
 }
@@ -112,7 +113,7 @@ Runner::Seconds MethodRunner::run_once(const Question& question, std::vector<flo
 Contestant MethodRunner::result() const {
   devices_.check_validation();
   Contestant contestant;
-  contestant.name = name_;
+  contestant.name = entry_.label;
   contestant.device = where_;
   contestant.mesh = mesh_;
   contestant.times = times();

@@ -60,7 +60,8 @@ class MethodRunner final : public Runner {
   void prepare(const Question& question) override;
   void take_masks(const Question& question, const visibility::Tile& tile);
 
-  std::string name_, where_;
+  app::MethodEntry entry_;
+  std::string where_;
   app::DeviceSource devices_;
   std::unique_ptr<visibility::Method> method_;
   double mesh_ = 0;

@@ -63,4 +63,11 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Device& devic
                                         [&device] { return make_vulkan_view_sample(device); }, visibility::has_rows});
 }
 
+bool view_sample_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
+                            const visibility::Light& light) {
+  const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
+  return options[kVariant] == Variant::sintorn ||
+         (engines::runs_on_vectors(device, options[engines::kEngine]) && visibility::has_rows(light));
+}
+
 }  // namespace penumbra::vsm

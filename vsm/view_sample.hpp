@@ -14,6 +14,10 @@ namespace penumbra::vsm {
 std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
                                                      const visibility::MethodOptions& options);
 
+/// Are this light's shadows computed on the processor, though the method is given a device?
+bool view_sample_on_vectors(const render::Device& device, const visibility::MethodOptions& options,
+                            const visibility::Light& light);
+
 /// What it is; needs no device.
 const visibility::MethodDescription& view_sample_description();
 

@@ -262,22 +262,28 @@ class Comparison {
     done.masks = masks.finish();
     devices_.check_validation();
     progress_.clear();
-    const MethodLabel label = label_of(entry);
+    const std::vector<MethodLabel> labels = labels_of(entry, lights);
     write_picture(files_.of(entry.label, ".exr"),
-                  {session_, {lights, {&label, 1}}, done.run.visibility, beauty.parts(), done.beauty});
+                  {session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty});
     if (bits) bits->commit();
     return done;
   }
 
   [[nodiscard]] bool wants_bits(const Entry& entry) const { return app::wants_bits(entry, options_); }
 
-  [[nodiscard]] compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) const {
-    const MethodLabel label = label_of(entry);
-    return make_stats(session_, {lights, {&label, 1}}, run);
+  compare::Stats stats_of(const Entry& entry, std::span<const Light> lights, const MethodRun& run) {
+    const std::vector<MethodLabel> labels = labels_of(entry, lights);
+    return make_stats(session_, {lights, labels}, run);
   }
 
-  [[nodiscard]] MethodLabel label_of(const Entry& entry) const {
-    return {entry.description, entry.options, device_of(entry.description, devices_.name())};
+  /// One a light: where a method runs may depend on it.
+  std::vector<MethodLabel> labels_of(const Entry& entry, std::span<const Light> lights) {
+    std::vector<MethodLabel> labels;
+    for (const Light& light : lights) {
+      labels.push_back(
+          {entry.description, entry.options, device_of(entry.description.name, entry.options, light, devices_)});
+    }
+    return labels;
   }
 
   compare::ReportEntry pictures_of(const Entry& entry, Finished& done) {

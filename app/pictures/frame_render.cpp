@@ -155,8 +155,10 @@ void FrameRenderer::choose_methods() {
   chosen_ = choose_light_methods(lit().lights, wish_);
   labels_.clear();
   notes_.clear();
-  for (const LightMethod& one : chosen_) {
-    labels_.push_back({one.description, one.options, device_of(one.description, devices_.name())});
+  for (std::size_t light = 0; light < chosen_.size(); ++light) {
+    const LightMethod& one = chosen_[light];
+    labels_.push_back({one.description, one.options,
+                       device_of(one.description.name, one.options, session().lights[light], devices_)});
     if (one.note.empty()) continue;
     notes_.push_back(one.note);
     if (std::ranges::find(said_, one.note) != said_.end()) continue;

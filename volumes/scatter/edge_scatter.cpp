@@ -203,4 +203,12 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
        [description] { return make_native_edge_scatter(description, false); }, visibility::has_rows});
 }
 
+bool edge_scatter_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
+                             const visibility::Light& light) {
+  const visibility::ParsedOptions options = visibility::parse_options(describe(), given);
+  const engines::Engine engine = options[engines::kEngine];
+  return options[kExactRows] || engines::runs_on_vectors(device, engine) ||
+         (engine == engines::Engine::automatic && !visibility::has_rows(light));
+}
+
 }  // namespace penumbra::volumes

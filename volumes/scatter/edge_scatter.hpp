@@ -14,6 +14,10 @@ namespace penumbra::volumes {
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
                                                       const visibility::MethodOptions& options);
 
+/// Are this light's shadows computed on the processor's vector units, though the method is given a device?
+bool edge_scatter_on_vectors(const render::Device& device, const visibility::MethodOptions& options,
+                             const visibility::Light& light);
+
 /// What it is; needs no device.
 /// With these options, which must be among its own: rows=exact has no masks. Throws UsageError for options that exclude
 /// each other.
