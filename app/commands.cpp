@@ -1,8 +1,82 @@
 #include "app/commands.hpp"
 
+#include "app/process/process.hpp"
+#include "app/unknown_arguments.hpp"
+#include "base/error.hpp"
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <vector>
 
 namespace penumbra::app {
+namespace {
+
+constexpr const char* kDescription =
+    "Penumbra: soft shadows from area lights, geometry-based, image-based and ray-traced, on the same view samples.\n"
+    "Results go to stdout, messages to stderr.";
+
+constexpr const char* kFooter =
+    "Exit codes: 0 done; 1 the job ran and the answer is no; 2 wrong usage; 3 bad input; 4 device or resource;\n"
+    "130 interrupted. An output file appears whole or not at all; results that stdout does not take (a full disk, a\n"
+    "closed pipe) are 4.\n"
+    "`penumbra COMMAND --help` explains a command.";
+
+void start_log(const GlobalOptions& global) {
+  auto logger = spdlog::stderr_logger_st("penumbra");
+  logger->set_pattern("penumbra: %l: %v");
+  logger->set_level(global.quiet ? spdlog::level::err : global.verbose ? spdlog::level::debug : spdlog::level::info);
+  spdlog::set_default_logger(logger);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app(kDescription, "penumbra");
+  app.footer(kFooter);
+  app.set_version_flag("--version", "penumbra " PENUMBRA_VERSION);
+  app.require_subcommand(0, 1);  // none is refused below: CLI11 would not name a word that it does not know
+  app.fallthrough();             // --quiet and --verbose stand before or after the command's name
+  app.get_formatter()->column_width(34);
+
+  GlobalOptions global;
+  global.arguments.assign(argv + 1, argv + argc);
+  auto* quiet = app.add_flag("-q,--quiet", global.quiet, "only errors on stderr, no progress bar");
+  app.add_flag("-v,--verbose", global.verbose, "say what is being done")->excludes(quiet);
+
+  std::vector<std::unique_ptr<Command>> commands;
+  commands.push_back(make_render_command(app));
+  commands.push_back(make_compare_command(app));
+  commands.push_back(make_inspect_command(app));
+  commands.push_back(make_methods_command(app));
+  commands.push_back(make_devices_command(app));
+  commands.push_back(make_convert_command(app));
+  commands.push_back(make_wedges_command(app));
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // --help, --version: on stdout
+      app.exit(error);
+      check_stdout();
+      return 0;
+    }
+    const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    say(fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n",
+                    unknown ? explain_unknown_arguments(app) : error.what(),
+                    app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " "));
+    return static_cast<int>(ExitCode::usage);
+  }
+  start_log(global);
+  const auto chosen = std::ranges::find_if(commands, [](const auto& command) { return command->chosen(); });
+  if (chosen == commands.end()) throw UsageError("no command; `penumbra --help` lists what there is");
+  const int code = (*chosen)->run(global);
+  check_stdout();
+  return code;
+}
 
 Command::Command(CLI::App& app, const std::string& name, const std::string& help)
     : cli_(*app.add_subcommand(name, help)) {}

@@ -29,6 +29,9 @@ class Command {
   CLI::App& cli_;
 };
 
+/// Parses the command line, and runs the command that it names. Returns the exit code, or throws Error.
+int run_command_line(int argc, char** argv);
+
 std::unique_ptr<Command> make_render_command(CLI::App& app);
 std::unique_ptr<Command> make_compare_command(CLI::App& app);
 std::unique_ptr<Command> make_inspect_command(CLI::App& app);

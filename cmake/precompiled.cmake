@@ -33,8 +33,8 @@ function(penumbra_seldom)
   endforeach()
 endfunction()
 
-# penumbra_join(target [APART file…]): files are compiled ten at a time, as one. Not for rooms whose files have the same
-# names inside (methods, tests), and not for those in APART: what is compiled once a vector target, what owns a hidden type.
+# penumbra_join(target [APART file…]): files are compiled ten at a time, as one. Not those in APART: what is compiled once a
+# vector target, what owns a hidden type, what has a name inside that another file has, too.
 function(penumbra_join target)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)

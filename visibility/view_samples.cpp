@@ -7,7 +7,6 @@
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/MP_Float.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -21,8 +20,6 @@
 
 namespace penumbra::visibility {
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// Where the pixel's ray meets the triangle's plane, computed from the sorted vertices.
 struct PlaneHit {
@@ -47,10 +44,8 @@ std::optional<PlaneHit> meet_plane(const PinholeCamera& camera, const glm::dvec3
 /// Which side of the sorted triangle's plane the eye is on: exact; if the eye is exactly on the plane (seen edge-on,
 /// covered by rounding alone), the side that rounding saw it on.
 std::int8_t facing_of(const PinholeCamera& camera, const std::array<glm::vec3, 3>& corners, double eye_height) {
-  const auto point = [](const auto& v) { return Kernel::Point_3(v.x, v.y, v.z); };
-  const auto side =
-      static_cast<int>(CGAL::orientation(point(corners[0]), point(corners[1]), point(corners[2]), point(camera.eye)));
-  if (side != 0) return static_cast<std::int8_t>(side);
+  const Side side = side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), camera.eye);
+  if (side != Side::on) return static_cast<std::int8_t>(side);
   return eye_height > 0 ? std::int8_t{1} : std::int8_t{-1};
 }
 
@@ -64,21 +59,21 @@ bool sphere_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, c
 /// The cone of a sun as a whole strictly above the carrier's plane: n · c > tan |(n · u, n · v)|, exactly, for what is
 /// stored.
 bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Light& light) {
-  using Exact = CGAL::MP_Float;
+  using Number = CGAL::MP_Float;
   const auto along = [&](const glm::vec3& d) {  // det(b − a, c − a, d)
     const auto edge = [&](std::size_t corner, int axis) {
-      return Exact(carrier[corner][axis]) - Exact(carrier[0][axis]);
+      return Number(carrier[corner][axis]) - Number(carrier[0][axis]);
     };
-    Exact sum(0);
+    Number sum(0);
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
-      sum += Exact(d[i]) * (edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j));
+      sum += Number(d[i]) * (edge(1, j) * edge(2, k) - edge(1, k) * edge(2, j));
     }
     return sum;
   };
-  const Exact middle = along(light.center) * Exact(static_cast<double>(facing));
+  const Number middle = along(light.center) * Number(static_cast<double>(facing));
   if (CGAL::sign(middle) != CGAL::POSITIVE) return false;
-  const Exact u = along(light.sun->axis_u), v = along(light.sun->axis_v), tangent(light.sun->tangent);
+  const Number u = along(light.sun->axis_u), v = along(light.sun->axis_v), tangent(light.sun->tangent);
   return CGAL::sign(middle * middle - tangent * tangent * (u * u + v * v)) == CGAL::POSITIVE;
 }
 
