@@ -15,8 +15,9 @@ void negate(Integers& a) {
 IntegerFrame integer_frame(const visibility::Light& light, const glm::vec3& p) {
   IntegerFrame frame;
   frame.c = light.center;
-  if (light.kind == visibility::LightKind::sphere) {
+  if (!visibility::is_planar(light.kind)) {
     const visibility::LightFrame facing = light_frame_from(light, p);
+    frame.endless = light.sun.has_value();
     frame.c = facing.center;
     frame.u_end = facing.u;
     frame.v_end = facing.v;
@@ -32,11 +33,11 @@ IntegerFrame integer_frame(const visibility::Light& light, const glm::vec3& p) {
 }
 
 BackProjection::BackProjection(const IntegerFrame& frame, const IntegerGrid& grid, const glm::vec3& p)
-    : grid_(grid), p_(grid.integers(p)), c_(grid.integers(frame.c)) {
+    : grid_(grid), p_(grid.integers(p)), c_(grid.integers(frame.c)), endless_(frame.endless) {
   const Integers origin = grid.integers(frame.origin);
   u_ = difference(grid.integers(frame.u_end), origin);
   v_ = difference(grid.integers(frame.v_end), origin);
-  const Integers r = difference(p_, c_);
+  const Integers r = difference(endless_ ? Integers{} : p_, c_);
   // det(a, b, d) = (a × b) · d
   to_s_ = cross(v_, r);
   to_t_ = cross(r, u_);
@@ -56,7 +57,7 @@ ProjectivePoint BackProjection::project(const glm::vec3& q) const {
 mpz_class BackProjection::height(ClipPlane plane, const ProjectivePoint& q) const {
   switch (plane) {
     case ClipPlane::light:
-      return reach_ * q.m - q.w;
+      return endless_ ? q.m : reach_ * q.m - q.w;
     case ClipPlane::left:
       return q.s * GridBox::kGrid - box_.s0 * q.w;
     case ClipPlane::right:
@@ -112,7 +113,7 @@ HalfPlane BackProjection::above_plane(const std::array<glm::vec3, 3>& corners, i
   const Integers a = grid_.integers(corners[0]);
   Integers normal = cross(difference(grid_.integers(corners[1]), a), difference(grid_.integers(corners[2]), a));
   if (sign < 0) negate(normal);
-  return {dot(normal, difference(c_, a)), dot(normal, u_), dot(normal, v_)};
+  return {dot(normal, endless_ ? c_ : difference(c_, a)), dot(normal, u_), dot(normal, v_)};
 }
 
 }  // namespace penumbra::areas

@@ -38,11 +38,13 @@ constexpr unsigned bit_of(ClipPlane plane) {
 constexpr unsigned kAllClipPlanes = (1u << kClipPlanes) - 1;
 
 /// A light's stored points, whose differences integers hold exactly (visibility::LightFrame rounds them), and the grid
-/// that has them all: what view samples share. Only a sphere's depends on p.
+/// that has them all: what view samples share. Only a sphere's depends on p. Of a sun c is the way from any p to its
+/// middle: r = −c, and whatever has W > 0 can hide something.
 struct IntegerFrame {
   glm::dvec3 c{0}, u_end{0}, v_end{0};  ///< u = u_end − origin: c, as stored, or for a sphere, whose axes are given, 0
   glm::dvec3 origin{0};
-  IntegerGrid grid;  ///< of all these
+  IntegerGrid grid;      ///< of all these
+  bool endless = false;  ///< a sun
 };
 IntegerFrame integer_frame(const visibility::Light& light, const glm::vec3& p);
 
@@ -73,10 +75,10 @@ class BackProjection {
   using Integers = std::array<mpz_class, 3>;
 
   IntegerGrid grid_;
-  Integers p_, c_, u_, v_;
+  Integers p_, c_, u_, v_;       ///< c: of a sun a way
   Integers to_s_, to_t_, to_w_;  ///< S, T, W are their products with q − p
   mpz_class reach_;              ///< K, made positive
-  bool mirrored_ = false;
+  bool mirrored_ = false, endless_ = false;
   GridBox box_;
 };
 

@@ -354,12 +354,28 @@ ExactView ExactArea::view(const Receiver& receiver, SweepArithmetic arithmetic) 
   return view;
 }
 
+/// Of a sun of one direction: all or nothing.
+bool ExactArea::sees_direction(const Receiver& receiver) const {
+  const Light& light = *data_->light;
+  const SceneFloats& scene = *data_->scene;
+  return above_horizon(light, scene.corners(receiver.carrier), receiver.facing, light.center) &&
+         !data_->tree->any_along_ray(glm::dvec3(receiver.p), glm::dvec3(light.center), [&](std::uint32_t triangle) {
+           return may_occlude(scene, light, receiver.carrier, triangle) &&
+                  segment_meets_triangle(receiver.p, light.center, scene.corners(triangle), light).meets;
+         });
+}
+
 double ExactArea::visible_share(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work,
                                 FormFactorSum* form_factor) const {
   PENUMBRA_ASSERT(data_->light != nullptr, "set_light comes first");
   const Light& light = *data_->light;
   work = {};
   if (!in_front_of_light(light, receiver.p)) return 0;
+  if (light.sun && light.sun->tangent == 0) {
+    const bool sees = sees_direction(receiver);
+    if (sees && form_factor != nullptr) form_factor->add_whole();
+    return sees ? 1 : 0;
+  }
   const IntegerFrame frame = light.kind == LightKind::sphere ? integer_frame(light, receiver.p) : data_->frame;
   IntegerGrid grid = data_->grid;
   grid.include(frame.grid);

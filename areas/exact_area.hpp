@@ -67,6 +67,7 @@ class ExactArea {
   [[nodiscard]] std::uint64_t memory_bytes() const;
 
  private:
+  [[nodiscard]] bool sees_direction(const Receiver& receiver) const;
   double visible_share(const Receiver& receiver, SweepArithmetic arithmetic, AreaWork& work,
                        FormFactorSum* form_factor) const;
 

@@ -23,7 +23,8 @@ Cross cross_of(const glm::dvec3& a, const glm::dvec3& b) {
 }  // namespace
 
 LightShaft::LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box) : p_(p) {
-  const glm::dvec3 u = frame.u_end - frame.origin, v = frame.v_end - frame.origin, r = p_ - frame.c;
+  const glm::dvec3 u = frame.u_end - frame.origin, v = frame.v_end - frame.origin,
+                   r = frame.endless ? -frame.c : p_ - frame.c;
   const Cross s = cross_of(v, r), t = cross_of(r, u), w = cross_of(v, u);
   const double reach = -glm::dot(w.value, r);
   const double sign = mirrored ? -1 : 1;
@@ -31,8 +32,9 @@ LightShaft::LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3
     const double at = limit.get_d() / static_cast<double>(GridBox::kGrid);
     return Plane{sign * direction * (along.value - at * w.value), along.size + glm::abs(at) * w.size, 0, 0};
   };
-  planes_[static_cast<std::size_t>(ClipPlane::light)] = {-sign * w.value, w.size, sign * reach,
-                                                         glm::dot(w.size, glm::abs(r))};
+  Plane& end = planes_[static_cast<std::size_t>(ClipPlane::light)];
+  end = {-sign * w.value, w.size, sign * reach, glm::dot(w.size, glm::abs(r))};
+  if (frame.endless) end = {glm::dvec3(0), glm::dvec3(0), 1, 0};
   planes_[static_cast<std::size_t>(ClipPlane::left)] = side(s, box.s0, 1);
   planes_[static_cast<std::size_t>(ClipPlane::right)] = side(s, box.s1, -1);
   planes_[static_cast<std::size_t>(ClipPlane::bottom)] = side(t, box.t0, 1);

@@ -5,12 +5,15 @@
 #include "scenes/formats/reader.hpp"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -65,10 +68,10 @@ Subject find_subject(const std::string& scene) {
 
 visibility::LightKind parse_kind(const std::string& text) {
   using enum visibility::LightKind;
-  for (const auto kind : {disk, ellipse, polygon}) {
+  for (const auto kind : {disk, ellipse, polygon, sphere, sun}) {
     if (text == visibility::name_of(kind)) return kind;
   }
-  throw UsageError("--light {}: expected disk, ellipse or polygon", text);
+  throw UsageError("--light {}: expected disk, ellipse, polygon, sphere or sun", text);
 }
 
 visibility::SamplePattern parse_pattern(const std::string& text) {
@@ -107,13 +110,28 @@ void resize_first_light(scenes::Scene& scene, double half) {
 }
 
 /// A disk, an ellipse along the rectangle's sides, one axis twice the other, or a hexagon, affinely regular; with the
-/// rectangle's area.
+/// rectangle's area; a sphere as wide as that disk; a sun that shines from there to the middle of the meshes, and looks
+/// as wide from there as that disk would, faced.
 void reshape_first_light(scenes::Scene& scene, visibility::LightKind kind) {
   const scenes::Rectangle from = first_rectangle(scene, "--light");
   const glm::dvec3 normal = glm::cross(from.half_u, from.half_v);
+  const double round = std::sqrt(4 * glm::length(normal) / std::numbers::pi);
+  if (kind == visibility::LightKind::sphere) {
+    scene.lights.front().shape = scenes::Sphere{from.center, round, std::nullopt};
+    return;
+  }
+  if (kind == visibility::LightKind::sun) {
+    glm::dvec3 low(scene.soup.positions.front()), high(low);
+    for (const glm::dvec3& x : scene.soup.positions) {
+      low = glm::min(low, x);
+      high = glm::max(high, x);
+    }
+    const glm::dvec3 travels = 0.5 * (low + high) - from.center;
+    scene.lights.front().shape = scenes::Sun{travels, glm::degrees(2 * std::atan(round / glm::length(travels)))};
+    return;
+  }
   if (kind == visibility::LightKind::disk) {
-    const double radius = std::sqrt(4 * glm::length(normal) / std::numbers::pi);
-    scene.lights.front().shape = scenes::Disk{from.center, glm::normalize(normal), radius};
+    scene.lights.front().shape = scenes::Disk{from.center, glm::normalize(normal), round};
     return;
   }
   if (kind == visibility::LightKind::ellipse) {

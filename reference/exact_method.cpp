@@ -86,8 +86,8 @@ Exact::Exact(const visibility::MethodOptions& options) {
   description_.exact_for =
       "any light, textured or not, and any triangle soup, up to float32 of V, and for the beauty under constant "
       "radiance and textures of up to 64 x 64 texels";
-  description_.lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon,
-                         LightKind::sphere};
+  description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
+                         LightKind::polygon,   LightKind::sphere, LightKind::sun};
   description_.exact_area = visibility::ExactArea{description_.lights};
   description_.verdict_on = verdict_on;
   description_.options = {kSweep.description()};

@@ -220,7 +220,9 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
   for (const std::uint32_t word : work.above) above_count += static_cast<std::uint64_t>(std::popcount(word));
   counts_.horizon_pairs.fetch_add(points.size() - above_count, std::memory_order_relaxed);
   if (above_count == 0 || !in_front_of_light(*light_, p)) return;
-  counts_.rays.fetch_add(above_count, std::memory_order_relaxed);
+  const bool one_ray = light_->sun && light_->sun->tangent == 0;  // all light samples are the same direction
+  const std::size_t count = one_ray ? 1 : points.size();
+  counts_.rays.fetch_add(one_ray ? 1 : above_count, std::memory_order_relaxed);
   if (!light_->sun) {  // whose rays are long enough
     const glm::vec3 nearest =
         glm::max(glm::max(range.scaled(bounds_.lower) - origin, origin - range.scaled(bounds_.upper)), 0.0f);
@@ -246,11 +248,11 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
     lanes(rays.org_z)[lane] = origin.z;
     lanes(rays.mask)[lane] = 0xffffffffu;
   }
-  for (std::size_t first = 0; first < points.size(); first += kWidth) {
+  for (std::size_t first = 0; first < count; first += kWidth) {
     int alive = 0;
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      const std::uint32_t sample = order_[std::min(first + lane, points.size() - 1)];
-      const bool traced = first + lane < points.size() && ((work.above[sample / 32] >> (sample % 32)) & 1u) != 0;
+      const std::uint32_t sample = order_[std::min(first + lane, count - 1)];
+      const bool traced = first + lane < count && ((work.above[sample / 32] >> (sample % 32)) & 1u) != 0;
       valid[lane] = traced ? -1 : 0;
       alive |= valid[lane];
       const glm::vec3 direction = scaled_points[sample] - start;
@@ -265,6 +267,7 @@ void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::u
       if (valid[lane] == 0 || lanes(rays.tfar)[lane] == kOccluded) continue;
       const std::uint32_t sample = order_[first + lane];
       visible[sample / 32] |= 1u << (sample % 32);
+      if (one_ray) std::ranges::copy(full_mask_, visible.begin());
     }
   }
 }

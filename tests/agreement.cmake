@@ -15,6 +15,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   cli/corpus_sweep.cpp  # every mesh of two packages through inspect and compare; prints a table
   cli/program.cpp
   property/adversarial_soups.cpp
+  property/mask_cones.cpp
   property/mask_lamps.cpp
   property/mask_lattice.cpp
   property/point_lights.cpp

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/sample_patterns.hpp"
+#include "visibility/sphere_point.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -390,7 +391,7 @@ void light_points_for(const Light& light, const glm::vec3& p, glm::vec3* out) {
   }
   const LightFrame frame = light_frame_from(light, p);
   for (const glm::dvec2& st : light.coordinates) {
-    *out++ = glm::vec3(frame.center + st.x * frame.u + st.y * frame.v) + 0.0f;
+    *out++ = sphere_point(frame, st);
   }
 }
 

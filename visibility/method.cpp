@@ -45,7 +45,8 @@ void check_light(const MethodDescription& description, const Light& light) {
   const std::vector<LightKind>& can = description.lights;
   if (light.texture && !description.textures) {
     throw InputError(
-        "light \"{}\" has a texture; method {} knows none. Take another light (--light) or method (--method; raytrace "
+        "light \"{}\" has a texture; method {} knows none. Take another light (--light) or method (--method; "
+        "edge-scatter and raytrace "
         "does textures)",
         light.name, description.name);
   }
@@ -59,8 +60,9 @@ void check_light(const MethodDescription& description, const Light& light) {
   std::string kinds;
   for (const LightKind kind : can) kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
   throw InputError(
-      "light \"{}\" is a {}; method {} can do: {}. Take another light (--light) or method (--method; raytrace "
-      "does every kind)",
+      "light \"{}\" is a {}; method {} can do: {}. Take another light (--light) or method (--method; edge-scatter and "
+      "raytrace "
+      "do every kind)",
       light.name, name_of(light.kind), description.name, kinds);
 }
 

@@ -1,62 +1,16 @@
-// First stage of methods on a processor: the walk of find_edges.comp, eight children, edges or triangles at a time.
+// First stage of methods on a processor: what is in the leaves that a walk finds, eight edges or triangles at a time.
 
 #include "engines/vectors/find.hpp"
-
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
-#include <bit>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engines/vectors/find.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+
+#include "engines/vectors/walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::native::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, kWide>;
-using V = hn::Vec<D>;
-constexpr std::uint32_t kLeafBit = visibility::TriangleTree::kLeafBit;
-
-struct Point {
-  V x, y, z;
-};
-/// What a walk tests boxes against: a cluster of view samples and the light.
-struct WalkInput {
-  const LightGrid& grid;
-  const Cluster& cluster;
-};
-
-Point load(const WidePoints& points, std::size_t lane) {
-  const D d;
-  return {hn::Load(d, &points[0][lane]), hn::Load(d, &points[1][lane]), hn::Load(d, &points[2][lane])};
-}
-Point minus(const Point& p, const glm::vec3& q) {
-  const D d;
-  return {hn::Sub(p.x, hn::Set(d, q.x)), hn::Sub(p.y, hn::Set(d, q.y)), hn::Sub(p.z, hn::Set(d, q.z))};
-}
-/// In one fixed order, without fused multiplications: later stages compute it again from equal floats, and must get
-/// equal results.
-V dot(const Point& p, const glm::vec3& q) {
-  const D d;
-  return hn::Add(hn::Add(hn::Mul(p.x, hn::Set(d, q.x)), hn::Mul(p.y, hn::Set(d, q.y))), hn::Mul(p.z, hn::Set(d, q.z)));
-}
-V dot(const Point& p, const Point& q) {
-  return hn::Add(hn::Add(hn::Mul(p.x, q.x), hn::Mul(p.y, q.y)), hn::Mul(p.z, q.z));
-}
-Point absolute(const Point& p) {
-  return {hn::Abs(p.x), hn::Abs(p.y), hn::Abs(p.z)};
-}
-V length(const Point& p) {
-  return hn::Sqrt(dot(p, p));
-}
-V scaled(V v, float factor) {
-  return hn::Mul(v, hn::Set(D(), factor));
-}
 
 /// first, first + 1, … as the bits of floats (numbers_from of vectors-inl.hpp)
 V numbers_from(std::size_t first) {
@@ -64,11 +18,6 @@ V numbers_from(std::size_t first) {
   return hn::BitCast(D(), hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first))));
 }
 
-std::uint32_t bits_of(hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(D(), mask, bytes);
-  return bytes[0];
-}
 hn::Mask<D> used_lanes(std::uint32_t used, std::size_t lane) {
   const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(used >> lane)};
   return hn::LoadMaskBits(D(), bytes);
@@ -89,101 +38,6 @@ struct ShaftTest {
     return met;
   }
 };
-
-/// The least and the largest n · x of a box's points x. Multiplications and additions may be fused here: boxes are only
-/// tested against shafts, whose bounds have room for either rounding.
-struct Extent {
-  V low, high;
-};
-HWY_INLINE Extent extent(const Point& middle, const Point& half, const glm::vec3& n, const glm::vec3& size) {
-  const D d;
-  const V at =
-      hn::MulAdd(middle.x, hn::Set(d, n.x), hn::MulAdd(middle.y, hn::Set(d, n.y), hn::Mul(middle.z, hn::Set(d, n.z))));
-  const V spread = hn::MulAdd(half.x, hn::Set(d, size.x),
-                              hn::MulAdd(half.y, hn::Set(d, size.y), hn::Mul(half.z, hn::Set(d, size.z))));
-  return {hn::Sub(at, spread), hn::Add(at, spread)};
-}
-
-HWY_INLINE hn::Mask<D> box_meets(const WalkInput& in, const Shaft& shaft, const Point& middle, const Point& half) {
-  const D d;
-  const Extent level = extent(middle, half, in.grid.axis, in.grid.axis_size);
-  hn::Mask<D> met = hn::And(hn::Le(level.low, hn::Set(d, shaft.highest)), hn::Ge(level.high, hn::Set(d, shaft.lowest)));
-  for (std::size_t i = 0; i < 4; ++i) {
-    met = hn::And(met, hn::Le(extent(middle, half, shaft.n[i], shaft.size[i]).low, hn::Set(d, shaft.beyond[i])));
-  }
-  return met;
-}
-
-/// (bound cone)
-hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lane, const Point& middle,
-                      const Point& half) {
-  const D d;
-  const glm::vec3& box = in.cluster.half_size;
-  const Point axis{hn::Load(d, &node.cone[0][lane]), hn::Load(d, &node.cone[1][lane]),
-                   hn::Load(d, &node.cone[2][lane])};
-  const V cosine = hn::Load(d, &node.cone[3][lane]);
-  const Point to = minus(middle, in.cluster.middle);
-  const Point e{hn::Add(half.x, hn::Set(d, box.x)), hn::Add(half.y, hn::Set(d, box.y)),
-                hn::Add(half.z, hn::Set(d, box.z))};
-  const V straight = hn::Abs(dot(axis, to)), squared = dot(to, to), zero = hn::Zero(d);
-  const V aside = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(straight, straight)), zero));
-  const V sine = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Mul(cosine, cosine)), zero));
-  const V spread = hn::Add(hn::Mul(dot(absolute(axis), e), cosine), hn::Mul(length(e), sine));
-  const V least = hn::Sub(hn::Mul(straight, cosine), hn::Mul(aside, sine));
-  const V slack = hn::Add(scaled(hn::Sqrt(squared), 0.0001F), hn::Set(d, 64 * kRound * in.grid.reach));
-  return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
-}
-
-/// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
-template <bool kCones>
-std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNode& node) {
-  const D d;
-  std::uint32_t hits = 0;
-  for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
-    const Point middle = load(node.middle, lane), half = load(node.half, lane);
-    hn::Mask<D> met = box_meets(in, shaft, middle, half);
-    if (kCones && !hn::AllFalse(d, met)) met = hn::AndNot(same_side(in, node, lane, middle, half), met);
-    hits |= bits_of(met) << lane;
-  }
-  return hits & node.used;
-}
-
-/// Calls `leaf` for each leaf whose box meets the shaft.
-template <bool kCones, typename Leaf>
-void walk(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
-          const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
-  stack = roots;
-  while (!stack.empty()) {
-    const std::uint32_t next = stack.back();
-    stack.pop_back();
-    if ((next & kLeafBit) != 0) {
-      leaf(next & ~kLeafBit);
-      continue;
-    }
-    const WideNode& node = nodes[next];
-    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
-      stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
-    }
-  }
-}
-
-/// Goes down level by level until there are enough.
-template <bool kCones, typename Tree>
-void descend(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
-  constexpr std::size_t kEnough = 24;
-  roots = tree.roots;
-  for (std::size_t i = 0; i < roots.size() && roots.size() < kEnough;) {
-    if ((roots[i] & kLeafBit) != 0) {
-      ++i;
-      continue;
-    }
-    const WideNode& node = tree.nodes[roots[i]];
-    roots.erase(roots.begin() + static_cast<std::ptrdiff_t>(i));
-    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
-      roots.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
-    }
-  }
-}
 
 /// One of an edge's triangles, relative to the cluster: n · p − at > error in front of it, < −error behind.
 struct EdgeSideWide {

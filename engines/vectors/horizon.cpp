@@ -89,7 +89,7 @@ void cut_at_horizon(const LightGrid& grid, const GridSample& at, Open& open, Sam
 }
 
 void fill(const LightGrid& grid, bool visible, SampleMask& mask) {
-  mask.visible = visible ? static_cast<std::uint32_t>(grid.points.size()) : 0;
+  mask.visible = visible ? grid.sample_count : 0;
   if (grid.tiles) {
     for (std::size_t i = 0; i < mask_words(grid); ++i) mask.bits[i] = visible ? grid.tiles->used[i] : std::uint16_t{0};
     return;
@@ -103,7 +103,7 @@ void fill(const LightGrid& grid, bool visible, SampleMask& mask) {
 }
 
 void see_all(const LightGrid& grid, const GridSample& at, Open& open, OpenJudge& judge, SampleMask& mask) {
-  mask.visible = static_cast<std::uint32_t>(grid.points.size());
+  mask.visible = grid.sample_count;
   if (!at.straddles && !open.any()) return;
   fill(grid, true, mask);
   if (at.straddles) cut_at_horizon(grid, at, open, mask);

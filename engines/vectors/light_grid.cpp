@@ -1,5 +1,7 @@
 #include "engines/vectors/light_grid.hpp"
 
+#include "engines/vectors/cone_light.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -93,6 +95,8 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.cut_reach = input.cut_reach;
   grid.side = input.side;
   grid.light = input.light_index;
+  grid.sample_count = static_cast<std::uint32_t>(input.points.size());
+  grid.corners = {-grid.half_cells, -grid.half_cells};
   for (const glm::vec3& point : input.points) grid.points.push_back(point * input.scale);
   if (!in_rows) {
     grid.tiles = tiles_of(grid, input.light);
@@ -161,12 +165,13 @@ Cluster make_cluster(const LightGrid& grid, std::span<const GridSample> samples)
   cluster.middle = 0.5F * lower + 0.5F * upper;
   cluster.half_size = glm::max(upper - cluster.middle, cluster.middle - lower) * (1 + 8 * kRound);
   cluster.whole = make_shaft(grid, samples, -grid.half_cells, grid.half_cells);
-  cluster.corner = make_shaft(grid, samples, -grid.half_cells, -grid.half_cells);
+  cluster.corner = make_shaft(grid, samples, grid.corners.low, grid.corners.high);
   return cluster;
 }
 
 ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const GridSample& placed) {
-  ClusterSample at{placed, {}, {}, 0, 0, 0, 0, 0, {}, 0, 0};
+  ClusterSample at;
+  static_cast<GridSample&>(at) = placed;
   at.local = at.p - cluster.middle;
   // As dot() of find.cpp: one order, nothing fused.
   const auto dot = [&](const glm::vec3& n) { return (at.local.x * n.x + at.local.y * n.y) + at.local.z * n.z; };
@@ -176,16 +181,25 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   constexpr float kMore = 1.05F;  // for what is of second order
   const float cells = 16 * kRound * grid.skew * (grid.half_cells.x + grid.half_cells.y);
   const float lengths = at.away / at.height;
-  at.per_way = kMore * (8 * kRound * grid.per_length * at.height + cells);
-  at.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
-  at.fixed =
+  Placing& place = at.on_grid;
+  place.foot = at.foot;
+  place.height = at.height;
+  place.per_way = kMore * (8 * kRound * grid.per_length * at.height + cells);
+  place.per_reach = 8 * kRound;
+  place.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
+  place.fixed =
       kMore * (kRound * grid.per_length * (4 * at.away + grid.cut_reach) + cells + grid.per_length * grid.deviation);
   // A way is off by 8 ε of its lengths, and aside by as many cells: seen from a small light's height, that is more.
   const glm::vec2 off = glm::abs(at.foot - grid.first_cell), window = 2.0F * grid.half_cells + 2.0F;
-  at.per_lift = 64 * kRound *
-                (1 + 0.125F * (std::max(off.x, off.y) + grid.per_length * at.height) / std::min(window.x, window.y));
+  place.per_lift = 64 * kRound *
+                   (1 + 0.125F * (std::max(off.x, off.y) + grid.per_length * at.height) / std::min(window.x, window.y));
+  place.through_p = 64 * kRound;
+  at.on_light = place;
+  at.window = {glm::vec2(-0.5F), 2.0F * grid.half_cells - 0.5F};
   at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
+  at.end = at.height;
   at.per_lean = kRound * (8 * grid.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
+  if (grid.cones) see_cone(grid, at);
   return at;
 }
 

@@ -3,6 +3,7 @@
 #include "engines/vectors/light_tiles.hpp"
 #include "visibility/lights/device_light.hpp"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -19,10 +20,21 @@ namespace penumbra::native {
 
 constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 
+/// A sphere or a sun as one view sample sees it: the ways to its light points are middle + s u + t v over the unit
+/// disk, scaled; middle, u and v are at right angles, u × v against middle. Of a sun middle is of unit length, and
+/// every longer way is one to the same light point.
+struct LightCone {
+  glm::dvec3 middle{0}, u{0}, v{0};
+
+  /// The way to the lower left corner of the square around it.
+  [[nodiscard]] glm::dvec3 corner() const { return middle - u - v; }
+};
+
 /// The light, or a rectangle around it, as a grid of cells, for one of its two sides. A point x of its plane has the
 /// grid coordinates (X, Y) = (across, along) · (x − center) + first_cell: where samples are in rows, column and row of
 /// the light sample there, before the row's shift; else there are about as many cells as light samples, which are in
-/// tiles. Made from a DeviceLight and the light's stored points.
+/// tiles. Made from a DeviceLight and the light's stored points. Of a sphere or sun: a rectangle that all of a few view
+/// samples see it through (cone_light.hpp), which only says what may matter to them.
 struct LightGrid {
   glm::vec3 center{0}, axis{0}, axis_size{0}, across{0}, along{0};
   glm::vec2 half_cells{0}, first_cell{0};
@@ -34,9 +46,23 @@ struct LightGrid {
   float side = 1;
   std::uint32_t rows = 0, columns = 0, light = 0;  ///< cells; the light's number
   std::uint32_t padded_rows = 0;                   ///< to a multiple of 16
-  std::vector<float> shift;                        ///< of each (padded) row, in cells
-  std::vector<glm::vec3> points;                   ///< the light samples as stored, scaled
-  std::optional<LightTiles> tiles;                 ///< where they form no rows
+  std::uint32_t sample_count = 0;
+  std::vector<float> shift;         ///< of each (padded) row, in cells
+  std::vector<glm::vec3> points;    ///< the light samples as stored, scaled; of a sphere or sun none
+  std::optional<LightTiles> tiles;  ///< where they form no rows
+  /// What the view samples to the light's corner go through, in cells from the middle.
+  struct Range {
+    glm::vec2 low{0}, high{0};
+  };
+  Range corners{};
+  /// Of a sphere or sun.
+  struct Cones {
+    std::span<const LightCone> of;  ///< view samples (GridSample::cone)
+    bool end = false;               ///< at the light, so that what is behind it hides nothing: not a sun's
+    float deviation = 0;            ///< a stored light point from its place, as LightCone::u
+    float lowest_end = 0;           ///< nothing higher over the grid's plane is behind the light
+  };
+  std::optional<Cones> cones = {};
 };
 struct LightGridInput {
   const visibility::DeviceLight& light;
@@ -59,7 +85,8 @@ LightGrid make_light_grid(const LightGridInput& input);
 struct GridSample {
   glm::vec3 p{0};  ///< scaled
   std::uint32_t pixel = 0, plane = 0;
-  float height = 0;  ///< over the light's plane
+  std::uint32_t cone = 0;  ///< LightGrid::Cones
+  float height = 0;        ///< over the light's plane
   glm::vec2 foot{0};
   /// Light samples with above · (s, t, 1) > above_error are above the carrier's plane; < −above_error: below it.
   /// (bound horizon)
@@ -68,21 +95,34 @@ struct GridSample {
   bool straddles = false;  ///< not all of the light is certainly above it
 };
 
+/// Where points appear on the light as p sees it: a way (x, y, w), w upward, at foot + height / w (x, y).
+struct Placing {
+  glm::vec2 foot{0};
+  float height = 0;
+  /// The error of a point at height w over p, `far_x` from the cluster's middle, that appears F from the foot:
+  /// (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
+  float per_way = 0, per_reach = 0, per_foot = 0, fixed = 0;
+  /// An edge within (far_x + far) · per_lift of p's height may pass through p within rounding. (bound window)
+  float per_lift = 0;
+  float through_p = 0;  ///< and one of which (far_x + far) times this is left does
+};
+
 /// A GridSample of a cluster that has casters: p relative to the cluster's middle, in world axes (`local`) and in the
 /// grid's (`in_grid`: across, along, axis), and error bounds.
 struct ClusterSample : GridSample {
   glm::vec3 local{0}, in_grid{0};
   float away = 0;  ///< bounds |p − the light's centre|
   float far = 0;   ///< bounds |local|
-  /// The error of a projected point at height w over p, `far_x` from the cluster's middle, that appears F from the
-  /// foot: (far_x + far) / w · (per_way + per_reach F) + per_foot F + fixed. (bound X)
-  float per_way = 0, per_foot = 0, fixed = 0;
-  glm::vec2 lean{0};  ///< the way to the light's corner, in cells for a unit of height
-  /// An edge within (far_x + far) · per_lift of p's height may pass through p within rounding. (bound window)
-  float per_lift = 0;
+  Placing on_grid;
+  glm::vec2 lean{0};   ///< the way to the light's corner, in the grid's cells for a unit of height
+  float end = 0;       ///< the height over p at which it ends
   float per_lean = 0;  ///< the error of a corner's place beside that way is (far_x + far) per_lean (bound corner)
+  /// On the light, which of a sphere or sun is not the grid: there `turn` takes a way in the grid's coordinates to one
+  /// in those of the light as p sees it.
+  Placing on_light;
+  glm::mat3 turn{1};
+  LightGrid::Range window{};  ///< of the grid's cells, that p sees the light through
 };
-constexpr float kPerReach = 8 * kRound;
 
 /// The hull of view samples and a rectangle of the light's plane. (bound shaft)
 struct Shaft {

@@ -8,6 +8,8 @@
 namespace penumbra::native {
 namespace {
 
+constexpr float kNowhere = 0x1p24F;  // more than layers
+
 std::uint32_t divided_up(std::uint32_t x, std::uint32_t by) {
   return (x + by - 1) / by;
 }
@@ -35,6 +37,7 @@ void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std
     for (std::size_t lane = 0; lane < LightTiles::kWide; ++lane) {
       const bool is_sample = lane < its.size();
       if (is_sample) tiles.slot_of[its[lane]] = static_cast<std::uint32_t>(tiles.sample_of.size());
+      tiles.start.push_back(is_sample ? 0 : kNowhere);
       tiles.sample_of.push_back(is_sample ? its[lane] : LightTiles::kNone);
       tiles.x.push_back(is_sample ? places[its[lane]].x : std::numeric_limits<float>::quiet_NaN());
       tiles.y.push_back(is_sample ? places[its[lane]].y : std::numeric_limits<float>::quiet_NaN());
@@ -56,6 +59,12 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
     const std::size_t begin = std::size_t{count} * row / rows * LightTiles::kWide,
                       end = std::min(std::size_t{count} * (row + 1) / rows * LightTiles::kWide, places.size());
     add_row(tiles, places, std::span(by_y).subspan(begin, end - begin));
+  }
+  tiles.most_sum = -std::numeric_limits<float>::infinity();
+  tiles.most_difference = 0;  // the corner is left of what is beyond
+  for (const glm::vec2& place : places) {
+    tiles.most_sum = std::max(tiles.most_sum, place.x + place.y);
+    tiles.most_difference = std::max(tiles.most_difference, place.x - place.y);
   }
   std::int32_t row = 0;
   for (float step = 0; step <= LightTiles::kStepsPerCell * (tiles.rows.back().high + 0.5F) + 1; ++step) {

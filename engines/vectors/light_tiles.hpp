@@ -27,8 +27,11 @@ struct LightTiles {
   std::vector<float> x, y;             ///< of each slot, in cells; NaN where there is no sample
   std::vector<float> tile_low, tile_high;  ///< the least and the largest X of each tile
   std::vector<std::uint16_t> used;         ///< of each tile: a bit a slot with a sample
-  std::vector<std::uint32_t> sample_of;    ///< of each slot; kNone
-  std::vector<std::uint32_t> slot_of;      ///< of each light sample
+  std::vector<float> start;  ///< of each slot: 0, and where there is no sample what no depth adds up to 0 with
+  std::vector<std::uint32_t> sample_of;  ///< of each slot; kNone
+  std::vector<std::uint32_t> slot_of;    ///< of each light sample
+  float most_sum = 0;                    ///< of X + Y of all samples
+  float most_difference = 0;             ///< of X − Y, and of the light's corner
 
   [[nodiscard]] std::size_t tile_count() const { return used.size(); }
 };

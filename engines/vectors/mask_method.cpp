@@ -41,6 +41,9 @@ constexpr auto kSpots = [] {
 struct Buffers {
   std::vector<GridSample> samples;
   std::vector<SampleMask> masks;
+  std::vector<LightCone> cones;  // of the region's view samples
+  LightGrid turned;              // to a region's or a cluster's
+  std::uint64_t turned_for = 0;  // the light
 };
 Buffers& buffers() {
   static tbb::enumerable_thread_specific<Buffers> all;
@@ -68,13 +71,22 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
   light_ = &light;
   counters_.clear();
+  static std::atomic<std::uint64_t> prepared = 0;
+  light_number_ = ++prepared;
+  grids_.clear();
+  cone_.reset();
+  if (!visibility::is_planar(light.kind)) {
+    cone_.emplace(light, *scene_, tree_, ConeOptions{description_.name, asks_for_light_samples()});
+    static_cast<void>(prepare_casters());
+    grids_.push_back(cone_->make_grid());
+    return;
+  }
   const GridShape shape = grid_shape();
   device_light_ = shape.frame;
   visibility::check_size(light, device_light_, description_.name);
   const bool cut = prepare_casters();
   const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale_); };
   const float reach = shape.reach * visibility::reach_of(*scene_, device_light_, scale_);
-  grids_.clear();
   for (const float side : {1.0F, -1.0F}) {
     if (side < 0 && !light.two_sided) continue;
     grids_.push_back(make_light_grid({device_light_,
@@ -137,6 +149,12 @@ void MaskMethod::do_tile() {
   });
 }
 
+LightGrid& MaskMethod::turned_grid() const {
+  Buffers& own = buffers();
+  if (std::exchange(own.turned_for, light_number_) != light_number_) own.turned = grids_[0];
+  return own.turned;
+}
+
 void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top) {
   const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
   ExactOpenJudge judge(pairs, grid);
@@ -144,13 +162,17 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   std::vector<GridSample>& samples = buffers().samples;
   std::array<std::size_t, kRegion * kRegion / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
   samples.resize(kRegion * kRegion);
+  std::vector<LightCone>& cones = buffers().cones;
+  cones.resize(cone_ ? kRegion * kRegion : 0);
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
     const std::uint32_t x = left + kSpots[i].x, y = top + kSpots[i].y;
     if (x < samples_->width && y < tile_.row_count) {
       const std::size_t pixel = std::size_t{y} * samples_->width + x;
       GridSample& at = samples[count];
-      const SampleClass kind = classify(view, static_cast<std::uint32_t>(first_pixel() + pixel), at);
+      at.cone = static_cast<std::uint32_t>(count);
+      const auto number = static_cast<std::uint32_t>(first_pixel() + pixel);
+      const SampleClass kind = cone_ ? cone_->classify(view, number, at, cones[count]) : classify(view, number, at);
       if (kind == SampleClass::in_front) ++count;
       if (kind == SampleClass::all_visible) visible_[pixel] = light_->sample_count();
       if (kind == SampleClass::open && grid.side > 0 && !decide_open(at))
@@ -160,7 +182,7 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   }
   samples.resize(count);
   if (count > 0) {
-    const Blocks blocks = begin_region(grid, make_cluster(grid, samples));
+    const Blocks blocks = enter_region(grid, samples);
     const std::size_t step = blocks == Blocks::small ? 1 : kBlock * kBlock / (kSmallBlock * kSmallBlock);
     std::size_t begin = 0;
     for (std::size_t i = step; i <= ends.size(); i += step) {
@@ -172,6 +194,13 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   open_pairs_ += judge.pairs();
 }
 
+Blocks MaskMethod::enter_region(const LightGrid& grid, std::span<GridSample> samples) {
+  if (!cone_) return begin_region(grid, make_cluster(grid, samples));
+  LightGrid& turned = turned_grid();
+  turned.cones->of = buffers().cones;
+  return begin_region(turned, cone_->turn(turned, samples) ? make_cluster(turned, samples) : everything(samples));
+}
+
 void MaskMethod::do_block(const LightGrid& grid, std::span<GridSample> block, OpenJudge& judge) {
   if (block.empty()) return;
   std::vector<SampleMask>& masks = buffers().masks;
@@ -180,7 +209,17 @@ void MaskMethod::do_block(const LightGrid& grid, std::span<GridSample> block, Op
     const auto cluster = block.subspan(begin, end - begin);
     masks.clear();
     for (const GridSample& at : cluster) masks.push_back({mask_of(at), 0});
-    do_cluster(grid, cluster, judge, masks);
+    if (!cone_) {
+      do_cluster(grid, cluster, judge, masks);
+    } else if (cone_->turn(turned_grid(), cluster)) {
+      do_cluster(turned_grid(), cluster, judge, masks);
+    } else {
+      for (std::size_t i = 0; i < cluster.size(); ++i) {
+        const bool sees_it = cone_->turn(turned_grid(), cluster.subspan(i, 1));
+        PENUMBRA_ASSERT(sees_it, "light {}: no rectangle for pixel {}", light_->name, cluster[i].pixel);
+        do_cluster(turned_grid(), cluster.subspan(i, 1), judge, std::span(masks).subspan(i, 1));
+      }
+    }
     for (std::size_t i = 0; i < cluster.size(); ++i) visible_[tile_pixel(cluster[i])] = masks[i].visible;
     begin = end;
   }

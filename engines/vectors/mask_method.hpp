@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engines/vectors/clusters.hpp"
+#include "engines/vectors/cone_light.hpp"
 #include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/masks.hpp"
 #include "engines/vectors/trees.hpp"
@@ -67,6 +68,8 @@ class MaskMethod : public visibility::Method {
   };
   /// A cell a light sample where these are in rows; else tiles of them.
   [[nodiscard]] virtual GridShape grid_shape() const;
+  /// Of a sphere or sun.
+  [[nodiscard]] virtual bool asks_for_light_samples() const { return true; }
   /// Runs do_cluster again for the tile last evaluated, for a result that was not asked for the first time. Counters
   /// stay.
   void repeat();
@@ -91,7 +94,10 @@ class MaskMethod : public visibility::Method {
 
  private:
   void do_tile();
+  /// What this thread turns to view samples of a sphere or sun.
+  [[nodiscard]] LightGrid& turned_grid() const;
   void do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top);
+  Blocks enter_region(const LightGrid& grid, std::span<GridSample> samples);
   void do_block(const LightGrid& grid, std::span<GridSample> block, OpenJudge& judge);
   void decide_all(const GridSample& sample, OpenJudge& judge);
   [[nodiscard]] std::uint16_t* mask_of(const GridSample& at) { return &masks_[tile_pixel(at) * mask_words(grids_[0])]; }
@@ -105,7 +111,9 @@ class MaskMethod : public visibility::Method {
   std::vector<std::uint8_t> normal_is_known_;  // of each triangle
   const visibility::Light* light_ = nullptr;
   visibility::DeviceLight device_light_;
-  std::vector<LightGrid> grids_;  // one a side that it emits to
+  std::vector<LightGrid> grids_;    // one a side that it emits to
+  std::optional<ConeLight> cone_;   // of a sphere or sun
+  std::uint64_t light_number_ = 0;  // of all that methods of this process have prepared
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::Tile tile_;
   std::vector<std::uint16_t> masks_;  // of the tile

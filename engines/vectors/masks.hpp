@@ -55,6 +55,8 @@ class OpenJudge {
   /// How many triangles are strictly between the view sample and the point centre + s u + t v of the light's plane,
   /// taken exactly. Nothing: in double it is not certain which triangles to test.
   virtual std::optional<std::uint32_t> depth_in_plane(const GridSample& sample, const glm::dvec2& st) = 0;
+  /// From p to a light sample, in scene floats, not scaled; of a sun a way to it, of no particular length.
+  virtual glm::dvec3 way_to(const GridSample& sample, std::uint32_t light_sample) = 0;
   virtual HorizonLine horizon(const GridSample& sample) = 0;
   /// The triangle's normal, of any length, turned to the side that p is on; 0: p is in its plane, or the triangle is so
   /// thin that its normal is not certain in double.

@@ -1,5 +1,7 @@
 #include "engines/vectors/open_judge.hpp"
 
+#include "visibility/sphere_point.hpp"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -9,7 +11,18 @@ namespace penumbra::native {
 
 std::uint32_t ExactOpenJudge::depth(const GridSample& sample, std::uint32_t light_sample) {
   ++pairs_;
-  return judge_.depth(sample.pixel, judge_.light.points[light_sample]);
+  return judge_.depth(sample.pixel, light_point(sample, light_sample));
+}
+
+glm::vec3 ExactOpenJudge::light_point(const GridSample& sample, std::uint32_t light_sample) {
+  if (judge_.light.kind != visibility::LightKind::sphere) return judge_.light.points[light_sample];
+  if (!seen_ || seen_->pixel != sample.pixel)
+    seen_ = {sample.pixel, visibility::light_frame_from(judge_.light, judge_.samples.p[sample.pixel])};
+  return visibility::sphere_point(seen_->disk, judge_.light.coordinates[light_sample]);
+}
+
+glm::dvec3 ExactOpenJudge::way_to(const GridSample& sample, std::uint32_t light_sample) {
+  return visibility::way_to(judge_.light, judge_.samples.p[sample.pixel], light_point(sample, light_sample));
 }
 
 std::optional<std::uint32_t> ExactOpenJudge::depth_in_plane(const GridSample& sample, const glm::dvec2& st) {
@@ -21,10 +34,10 @@ HorizonLine ExactOpenJudge::horizon(const GridSample& sample) {
   const auto carrier = static_cast<std::uint32_t>(judge_.samples.triangle[sample.pixel]);
   const auto corners = judge_.scene.corners(carrier);
   const glm::dvec3 a(corners[0]);
-  const auto [center, u, v] = visibility::light_frame(judge_.light);
+  const auto [center, u, v] = visibility::light_frame_from(judge_.light, judge_.samples.p[sample.pixel]);
   const glm::dvec3 e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
   const glm::dvec3 n = glm::cross(e1, e2) * static_cast<double>(judge_.samples.facing[sample.pixel]);
-  const glm::dvec3 from = center - a;
+  const glm::dvec3 from = judge_.light.sun ? center : center - a;
   // A determinant of three differences (certain_meeting.cpp): fewer than 2⁻⁴⁶ of the product of their lengths.
   const double lengths = 0x1p-46 * glm::length(e1) * glm::length(e2);
   return {{glm::dot(n, u), glm::dot(n, v), glm::dot(n, from)},
@@ -49,7 +62,7 @@ void ExactOpenJudge::decide(const GridSample& sample, const Open& open, SampleMa
     for (const std::uint32_t number : numbers_) visit(number);
   };
   if (open.pixel) {
-    for (std::uint32_t one = 0; one < grid_.points.size(); ++one) decide_one(sample, one, mask);
+    for (std::uint32_t one = 0; one < grid_.sample_count; ++one) decide_one(sample, one, mask);
   } else {
     each(open.rows, [&](std::uint32_t row) { decide_row(sample, row, mask); });
     each(open.samples, [&](std::uint32_t one) { decide_one(sample, one, mask); });
@@ -69,7 +82,7 @@ void ExactOpenJudge::decide_one(const GridSample& sample, std::uint32_t light_sa
   const std::size_t at = mask_bit(grid_, light_sample);
   std::uint16_t& word = mask.bits[at / 16];
   const std::uint32_t bit = 1U << at % 16;
-  const bool visible = judge_.is_visible(sample.pixel, judge_.light.points[light_sample]);
+  const bool visible = judge_.is_visible(sample.pixel, light_point(sample, light_sample));
   word = static_cast<std::uint16_t>(visible ? word | bit : word & ~bit);
 }
 

@@ -16,6 +16,7 @@ class ExactOpenJudge final : public OpenJudge {
 
   std::uint32_t depth(const GridSample& sample, std::uint32_t light_sample) override;
   std::optional<std::uint32_t> depth_in_plane(const GridSample& sample, const glm::dvec2& st) override;
+  glm::dvec3 way_to(const GridSample& sample, std::uint32_t light_sample) override;
   HorizonLine horizon(const GridSample& sample) override;
   glm::dvec3 normal_towards(const GridSample& sample, std::uint32_t triangle) override;
   void decide(const GridSample& sample, const Open& open, SampleMask& mask) override;
@@ -24,12 +25,18 @@ class ExactOpenJudge final : public OpenJudge {
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
 
  private:
+  [[nodiscard]] glm::vec3 light_point(const GridSample& sample, std::uint32_t light_sample);
   void decide_row(const GridSample& sample, std::uint32_t row, SampleMask& mask);
   void decide_one(const GridSample& sample, std::uint32_t light_sample, SampleMask& mask);
 
   const visibility::PairJudge& judge_;
   const LightGrid& grid_;
   std::vector<std::uint32_t> numbers_;
+  struct Seen {
+    std::uint32_t pixel;
+    visibility::LightFrame disk;
+  };
+  std::optional<Seen> seen_;  // of a sphere
   std::uint64_t pixels_ = 0, pairs_ = 0;
 };
 

@@ -58,6 +58,11 @@ class ExactRows : public DeviceTest {
   /// The form factor of as much of the light as V may be off by, seen from no nearer than the light is, and the
   /// rounding of some hundred doubles.
   static double form_factor_tolerance(const visibility::Light& light, const glm::vec3& p) {
+    if (!visibility::is_planar(light.kind)) {
+      const visibility::LightFrame seen = visibility::light_frame_from(light, p);
+      const double away = glm::length(light.sun ? seen.center : seen.center - glm::dvec3(p));
+      return kExactRowsTolerance * glm::dot(seen.u, seen.u) / (away * away) + 1e-13;
+    }
     const volumes::WindowAxes axes = volumes::axes_of(light, volumes::window_of(light));
     const glm::dvec3 d = glm::dvec3(p) - axes.corner;
     const double s = std::clamp(glm::dot(d, axes.u) / glm::dot(axes.u, axes.u), 0.0, 1.0),

@@ -1,5 +1,5 @@
-// edge-scatter with rows=exact against the exact areas, for lights of every planar shape: disks, ellipses, polygons,
-// textures.
+// edge-scatter with rows=exact against the exact areas, for lights of every shape: disks, ellipses, polygons, textures,
+// spheres, suns.
 
 #include "base/error.hpp"
 #include "tests/agreement/exact_rows.hpp"
@@ -18,14 +18,18 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-enum class Shape : std::uint8_t { disk, ellipse, polygon, thin_polygon, textured };
-constexpr std::array kShapes{Shape::disk, Shape::ellipse, Shape::polygon, Shape::thin_polygon, Shape::textured};
+enum class Shape : std::uint8_t { disk, ellipse, polygon, thin_polygon, textured, sphere, sun, thin_sun };
+constexpr std::array kShapes{Shape::disk,     Shape::ellipse, Shape::polygon, Shape::thin_polygon,
+                             Shape::textured, Shape::sphere,  Shape::sun,     Shape::thin_sun};
 std::string name_of(Shape shape) {
   return shape == Shape::disk           ? "disk"
          : shape == Shape::ellipse      ? "ellipse"
          : shape == Shape::polygon      ? "polygon"
          : shape == Shape::thin_polygon ? "thinpolygon"
-                                        : "textured";
+         : shape == Shape::textured     ? "textured"
+         : shape == Shape::sphere       ? "sphere"
+         : shape == Shape::sun          ? "sun"
+                                        : "thinsun";
 }
 
 std::uint32_t below(std::mt19937& random, std::uint32_t end) {
@@ -47,7 +51,7 @@ scenes::Polygon polygon_in(const scenes::Rectangle& r, bool many, std::mt19937& 
   return polygon;
 }
 
-/// The scene's first light, a rectangle, in another shape: in its plane and about as large.
+/// The scene's first light, a rectangle, in another shape: in its plane and about as large. (A sun: shining its way.)
 void reshape(scenes::Scene& scene, Shape shape, std::mt19937& random) {
   scenes::AreaLight& light = scene.lights[0];
   const auto r = std::get<scenes::Rectangle>(light.shape);
@@ -62,6 +66,15 @@ void reshape(scenes::Scene& scene, Shape shape, std::mt19937& random) {
     case Shape::polygon:
     case Shape::thin_polygon:
       light.shape = polygon_in(r, shape == Shape::thin_polygon, random);
+      break;
+    case Shape::sphere:
+      light.shape = scenes::Sphere{r.center, 0.5 * std::min(glm::length(r.half_u), glm::length(r.half_v))};
+      break;
+    case Shape::sun:
+    case Shape::thin_sun:
+      light.shape = scenes::Sun{glm::cross(r.half_u, r.half_v), shape == Shape::thin_sun ? 0x1p-10
+                                                                : below(random, 2) == 0  ? 100.0
+                                                                                         : 10.0};
       break;
     case Shape::textured: {
       scenes::Texture texture{"made by hand", 1 + below(random, 7), 1 + below(random, 5), {}};
@@ -89,7 +102,7 @@ TEST_P(ExactRowsOfShapes, AreTheExactAreas) {
   fmt::print("{} {}: {} pixels, {} partly lit, {} unproven, off by {:.1e} at most, form factors by {:.1e}\n", name,
              name_of(shape), found.pixels, found.partly, found.unproven, found.largest, found.largest_form_factor);
   EXPECT_EQ(found.wrong, 0U);
-  EXPECT_GT(found.partly, 15U);
+  EXPECT_TRUE(found.partly > 15U || shape == Shape::thin_sun) << found.partly;  // a thousandth of a degree
   EXPECT_LE(found.unproven, found.pixels / 200);
   EXPECT_EQ(found.wrong_form_factors, 0U);
 }
@@ -157,7 +170,8 @@ class LooksAtHostileShapes : public ExactRows {
         found.largest);
     EXPECT_EQ(found.wrong, 0U);
     EXPECT_GT(found.partly, found.pixels / 50);
-    EXPECT_LT(found.unproven, found.pixels / 2);
+    // A panel in a lamp's plane is in its sphere: exact areas then answer for all that see it there.
+    EXPECT_TRUE(found.unproven < found.pixels / 2 || shape == Shape::sphere) << found.unproven;
   }
 };
 

@@ -35,7 +35,7 @@ scenes::Scene soup_over_floor(std::uint32_t seed) {
   if (seed % 8 == 5) scene.lights[0].shape = scenes::Ellipse{center, {0.6, 0.1, 0.03}, {0.05, 0.1, 0.3}};
   if (seed % 4 == 2) scene.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.5}, {0.7, 3, -0.4}, {0.1, 3, 0.8}}};
   if (seed % 8 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.6};
-  if (seed % 8 == 7) scene.lights[0].shape = scenes::Sun{-center, 25};
+  if (seed % 8 == 7) scene.lights[0].shape = scenes::Sun{-center, seed % 16 == 7 ? 25.0 : 0.0};
   scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));
   return scene;
 }

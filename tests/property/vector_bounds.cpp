@@ -107,7 +107,8 @@ class BoundX {
       const auto i = static_cast<std::size_t>(axis);
       const long double place = exact_dot(grid.axes[i], to_p) + height / over * exact_dot(grid.axes[i], way) - 0.5L;
       const float from_foot = glm::length(place_on_light - at.foot);
-      const double bound = far / w * (at.per_way + kPerReach * from_foot) + at.per_foot * from_foot + at.fixed;
+      const double bound = far / w * (at.on_grid.per_way + at.on_grid.per_reach * from_foot) +
+                           at.on_grid.per_foot * from_foot + at.on_grid.fixed;
       const auto error = static_cast<double>(std::abs(static_cast<long double>(place_on_light[axis]) - place));
       if (error / bound > worst.of_bound) worst = {error / bound, error, bound};
     }

@@ -34,7 +34,6 @@ void EdgeSides::prepare_mesh(const visibility::SceneFloats& scene) {
 }
 
 LightEdges EdgeSides::prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale) {
-  visibility::check_size(light, frame, method_);
   LightEdges edges;
   edges.has_body = std::find(scene_->emits.begin(), scene_->emits.end(), light.index) != scene_->emits.end();
   const std::int32_t without = edges.has_body ? light.index : -1;
@@ -42,6 +41,8 @@ LightEdges EdgeSides::prepare_light(const visibility::Light& light, const visibi
     casters_ = edge_casters(*scene_, without);
     casters_without_ = without;
   }
+  if (!visibility::is_planar(light.kind)) return edges;
+  visibility::check_size(light, frame, method_);
   const LightSide front = front_of_light(light, frame, scale);
   if (!reaches_behind(*scene_, front)) return edges;
   edges.front = front;

@@ -27,7 +27,8 @@ class EdgeSides {
   explicit EdgeSides(std::string method) : method_(std::move(method)) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene);
-  /// `frame`: make_device_light(light, scale). Throws InputError where float32 cannot span light and scene together.
+  /// `frame`: make_device_light(light, scale); a sphere or sun needs none, and cuts nothing. Throws InputError where
+  /// float32 cannot span light and scene together.
   LightEdges prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame, float scale);
 
   /// Of all that casts shadow of the light last prepared; of everything before there is one.

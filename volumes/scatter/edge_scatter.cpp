@@ -23,8 +23,9 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::array kPlanar{visibility::LightKind::rectangle, visibility::LightKind::disk,
-                             visibility::LightKind::ellipse, visibility::LightKind::polygon};
+constexpr std::array kLights{visibility::LightKind::rectangle, visibility::LightKind::disk,
+                             visibility::LightKind::ellipse,   visibility::LightKind::polygon,
+                             visibility::LightKind::sphere,    visibility::LightKind::sun};
 constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
 constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: what a question can name
 
@@ -47,10 +48,10 @@ class EdgeScatter final : public EdgeMethod {
       : EdgeMethod(device, std::move(given), sizeof(gpu::RowQuestion)) {}
 
   void prepare_light(const visibility::Light& light) override {
-    if (!visibility::has_rows(light) && std::ranges::find(kPlanar, light.kind) != kPlanar.end()) {
+    if (!visibility::has_rows(light)) {
       throw InputError(
           "light \"{}\": edge-scatter with engine=vulkan takes light samples in rows of a rectangle (--sample-pattern "
-          "rows or grid); without engine=vulkan it takes every planar light and pattern",
+          "rows or grid); without engine=vulkan it takes every light and pattern",
           light.name);
     }
     EdgeMethod::prepare_light(light);
@@ -166,9 +167,9 @@ visibility::MethodDescription describe() {
           .paper = "ours; after Laine et al. 2005 and Bergeron 1986",
           .output = visibility::Output::mask,
           .exact_for = "every pair of view sample and light sample, for any triangle soup",
-          .lights = {kPlanar.begin(), kPlanar.end()},
+          .lights = {kLights.begin(), kLights.end()},
           .options = {engines::kEngine.description(), kExactRows.description()},
-          .exact_area = visibility::ExactArea{{kPlanar.begin(), kPlanar.end()}, {{"rows", "exact"}}},
+          .exact_area = visibility::ExactArea{{kLights.begin(), kLights.end()}, {{"rows", "exact"}}},
           .verdict_on = verdict_on};
 }
 
@@ -185,7 +186,7 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   if (!options[kExactRows]) return description;
   description.output = visibility::Output::radiance;
   description.exact_for =
-      "the visible share of any planar light, textured or not, to float32, for any triangle soup; the beauty under "
+      "the visible share of any light, textured or not, to float32, for any triangle soup; the beauty under "
       "constant radiance and textures of up to 64 x 64 texels";
   return description;
 }

@@ -137,8 +137,8 @@ class SampleTest {
     const V from_foot = hn::Add(hn::Max(hn::Sub(high_x, foot_x), hn::Sub(foot_x, low_x)),
                                 hn::Max(hn::Sub(high_y, foot_y), hn::Sub(foot_y, low_y)));
     const V way = hn::Mul(far, hn::Mul(hn::Max(qa, hn::Max(qb, qc)), set(1.0001F / at_.height)));
-    const V error = hn::MulAdd(way, hn::MulAdd(set(kPerReach), from_foot, set(at_.per_way)),
-                               hn::MulAdd(set(at_.per_foot), from_foot, set(at_.fixed)));
+    const V error = hn::MulAdd(way, hn::MulAdd(set(at_.on_grid.per_reach), from_foot, set(at_.on_grid.per_way)),
+                               hn::MulAdd(set(at_.on_grid.per_foot), from_foot, set(at_.on_grid.fixed)));
     const V last_row = set(static_cast<float>(grid.rows) - 1), right = set(static_cast<float>(grid.columns) - 0.5F);
     const V first = hn::Max(hn::Ceil(hn::Sub(low_y, error)), set(0)),
             last = hn::Min(hn::Floor(hn::Add(high_y, error)), last_row);

@@ -23,7 +23,6 @@ using native::Cluster;
 using native::ClusterSample;
 using native::GridSample;
 using native::Hull;
-using native::kPerReach;
 using native::kRound;
 using native::kWide;
 using native::LightGrid;

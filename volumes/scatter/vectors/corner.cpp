@@ -21,6 +21,14 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace native::HWY_NAMESPACE;
 
+std::optional<bool> certainly_meets(const CornerInput& in, const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 p(in.at.p);
+  if (!in.grid.cones) return visibility::certainly_meets(p, in.grid.corner, corners, in.grid.corner_off);
+  const glm::dvec3 way = in.grid.cones->of[in.at.cone].corner();
+  if (!in.grid.cones->end) return visibility::ray_certainly_meets(p, way, corners);
+  return visibility::certainly_meets(p, p + way, corners, 0x1p-51 * static_cast<double>(in.grid.reach));
+}
+
 /// Of the triangles that float arithmetic leaves open.
 std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Open& open) {
   std::uint32_t met = 0;
@@ -33,8 +41,7 @@ std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Ope
       const WidePoints& x = leaf.corner[corner];
       corners[corner] = {x[0][slot % kWide], x[1][slot % kWide], x[2][slot % kWide]};
     }
-    const std::optional<bool> meets =
-        visibility::certainly_meets(glm::dvec3(in.at.p), in.grid.corner, corners, in.grid.corner_off);
+    const std::optional<bool> meets = certainly_meets(in, corners);
     if (!meets) open.corner = true;
     met += meets.value_or(false) ? 1 : 0;
   });
@@ -83,7 +90,7 @@ std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
             near_light = hn::Mul(set(16 * kRound), hn::Add(far, set(in.grid.reach)));
     const V error_w =
         hn::Add(near_light, hn::Div(hn::Mul(set(6), hn::Mul(error, far)), hn::Max(hn::Abs(total), set(1e-30F))));
-    const V height = set(at.height);
+    const V height = set(at.end);
     const M within = hn::Or(hn::And(hn::Gt(meeting, error_w), hn::Lt(meeting, hn::Sub(height, error_w))),
                             hn::And(hn::Gt(w_least, near_p), hn::Lt(w_most, hn::Sub(height, near_light))));
     const M outside =

@@ -59,7 +59,8 @@ class NativeEdges : public native::MaskMethod {
     }
     if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_});
     if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_});
-    touch_ = exact_area_ ? visibility::LightTouch() : visibility::find_touch(scene(), tree(), light());
+    touch_ = exact_area_ || !visibility::is_planar(light().kind) ? visibility::LightTouch()
+                                                                 : visibility::find_touch(scene(), tree(), light());
     return edges.front.has_value() && !exact_area_;  // whose edges stay whole
   }
   native::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
@@ -187,6 +188,9 @@ class NativeEdgeRows final : public NativeEdges {
   }
 
  private:
+  [[nodiscard]] bool asks_for_light_samples() const override { return false; }
+  /// A sun of one direction has no area.
+  [[nodiscard]] bool is_hard() const { return light().sun && light().sun->tangent == 0; }
   /// Cells that have nothing to do with light samples.
   [[nodiscard]] GridShape grid_shape() const override {
     constexpr std::uint32_t kCells = 16;  // of a side
@@ -223,7 +227,9 @@ class NativeEdgeRows final : public NativeEdges {
     RowSum rows(grid, *region_, scene(), scale());
     for (const GridSample& at : view_samples) {
       std::optional<double> share = 1;
-      if (at.straddles) {
+      if (is_hard() && at.straddles) {
+        share = std::nullopt;
+      } else if (at.straddles) {
         rows.set_view_sample(at);
         rows.add_horizon(judge.horizon(at));
         share = rows.visible_share(0, nullptr);
@@ -241,12 +247,16 @@ class NativeEdgeRows final : public NativeEdges {
     return true;
   }
   void use_exact_area(const GridSample& at) {
-    ++scratch_.local().unproven;
+    scratch_.local().unproven += is_hard() ? 0 : 1;
     const areas::ExactView exact = areas_.view(samples(), at.pixel);
     shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
     if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor;
   }
   void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask>) override {
+    if (is_hard()) {
+      for (const GridSample& at : input.samples) use_exact_area(at);
+      return;
+    }
     std::vector<float> shares(input.samples.size());
     std::vector<glm::dvec3> radiance(radiance_.empty() ? 0 : input.samples.size());
     integrate({input, *region_, blocks_, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge,

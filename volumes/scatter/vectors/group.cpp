@@ -32,7 +32,9 @@ struct GroupBounds {
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
-  float height_low = 0, height_high = 0, far = 0, per_way = 0, per_foot = 0, fixed = 0, per_lean = 0;
+  float height_low = 0, height_high = 0, far = 0, per_way = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
+  LightGrid::Range window;
+  glm::vec3 turned{0};  // least and largest shares of a way's coordinates in how high it is over p on the light
 };
 
 GroupBounds bounds_of(std::span<const ClusterSample> samples) {
@@ -43,6 +45,8 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
   g.foot_low = g.foot_high = one.foot;
   g.height_low = g.height_high = one.height;
   g.lean_low = g.lean_high = one.lean;
+  g.window = one.window;
+  g.turned = {0, 0, 1};
   for (const ClusterSample& at : samples) {
     g.in_grid = {glm::min(g.in_grid.low, at.in_grid), glm::max(g.in_grid.high, at.in_grid)};
     local = {glm::min(local.low, at.local), glm::max(local.high, at.local)};
@@ -51,9 +55,13 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
     g.height_low = std::min(g.height_low, at.height);
     g.height_high = std::max(g.height_high, at.height);
     g.far = std::max(g.far, at.far);
-    g.per_way = std::max(g.per_way, at.per_way);
-    g.per_foot = std::max(g.per_foot, at.per_foot);
-    g.fixed = std::max(g.fixed, at.fixed);
+    g.per_way = std::max(g.per_way, at.on_grid.per_way);
+    g.per_reach = std::max(g.per_reach, at.on_grid.per_reach);
+    g.per_foot = std::max(g.per_foot, at.on_grid.per_foot);
+    g.fixed = std::max(g.fixed, at.on_grid.fixed);
+    g.window = {glm::min(g.window.low, at.window.low), glm::max(g.window.high, at.window.high)};
+    const glm::vec3 turned(at.turn[0].z, at.turn[1].z, at.turn[2].z);
+    g.turned = glm::vec3(glm::max(glm::vec2(g.turned), glm::abs(glm::vec2(turned))), std::min(g.turned.z, turned.z));
     g.lean_low = glm::min(g.lean_low, at.lean);
     g.lean_high = glm::max(g.lean_high, at.lean);
     g.per_lean = std::max(g.per_lean, at.per_lean);
@@ -83,21 +91,23 @@ class GroupFilter {
     settled.reserve(in_.edges.count);
     unsettled.reserve(in_.edges.count);
     const LightGrid& grid = in_.grid;
-    const float columns = static_cast<float>(grid.columns) - 0.5F, rows = static_cast<float>(grid.rows) - 0.5F;
+    const auto& [low, high] = g_.window;
     for (std::size_t i = 0; i < in_.edges.count; i += hn::Lanes(D())) {
       M kept = hn::And(first_lanes(in_.edges.count - i), may_be_silhouette(i));
       if (hn::AllFalse(D(), kept)) continue;
       const Range a = range_of(kAx, i), b = range_of(kBx, i);
-      const M bounded = hn::And(a.bounded, b.bounded);
+      M bounded = hn::And(a.bounded, b.bounded);
+      if (grid.cones) bounded = hn::And(bounded, hn::Gt(hn::Min(a.level, b.level), set(grid.cones->lowest_end)));
       const V low_x = hn::Min(a.low_x, b.low_x), high_x = hn::Max(a.high_x, b.high_x);
       const V low_y = hn::Min(a.low_y, b.low_y), high_y = hn::Max(a.high_y, b.high_y);
-      const M before = hn::And(hn::And(hn::Le(low_x, set(columns)), hn::Ge(high_x, set(-0.5F))),
-                               hn::And(hn::Le(low_y, set(rows)), hn::Ge(high_y, set(-0.5F))));
+      const M before = hn::And(hn::And(hn::Le(low_x, set(high.x)), hn::Ge(high_x, set(low.x))),
+                               hn::And(hn::Le(low_y, set(high.y)), hn::Ge(high_y, set(low.y))));
       const M crosses = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Ge(hn::Floor(high_y), hn::Ceil(low_y)));
       const M matters = in_.between_rows() ? before : hn::And(before, crosses);
       const M behind = hn::Gt(hn::Min(a.level, b.level), set(g_.height_high + 128 * kRound * grid.reach));
       kept = hn::AndNot(behind, kept);
-      store(settled, i, hn::And(kept, hn::And(bounded, matters)), hn::Max(a.error, b.error));
+      store(settled, i, hn::And(kept, hn::And(bounded, matters)),
+            grid.cones ? column(kFar, i) : hn::Max(a.error, b.error));
       kept = hn::AndNot(bounded, kept);
       if (!hn::AllFalse(D(), kept)) store(unsettled, i, hn::And(kept, in_hull(i)), set(0));
     }
@@ -182,6 +192,17 @@ class GroupFilter {
     r.level = hn::Add(column(first + 2, i), set(height_));
     const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.grid.reach)));
+    if (in_.grid.cones) {
+      // Whoever sees the light from aside has a height of its own.
+      const auto aside = [&](std::size_t axis) {
+        const auto j = static_cast<glm::length_t>(axis);
+        const V at = column(first + axis, i);
+        return hn::Max(hn::Abs(hn::Sub(at, set(g_.in_grid.low[j]))), hn::Abs(hn::Sub(at, set(g_.in_grid.high[j]))));
+      };
+      const V own = hn::Sub(hn::Mul(w_low, set(g_.turned.z)),
+                            hn::MulAdd(aside(0), set(g_.turned.x), hn::Mul(aside(1), set(g_.turned.y))));
+      r.bounded = hn::And(r.bounded, hn::Gt(own, hn::Mul(set(0.25F), w_high)));
+    }
     const V inverse = hn::Div(set(1), w_low), at_low = hn::Mul(r.level, inverse), at_high = hn::Div(r.level, w_high);
     const auto span = [&](V from, float low, float high) {
       const V e0 = hn::Sub(from, set(high)), e1 = hn::Sub(from, set(low));
@@ -199,7 +220,7 @@ class GroupFilter {
         hn::Add(away(low_x, high_x, g_.foot_low.x, g_.foot_high.x), away(low_y, high_y, g_.foot_low.y, g_.foot_high.y));
     const V way = hn::Mul(hn::Add(column(kFar, i), set(g_.far)), inverse);
     // (bound X), a tenth more: the differences of height are not computed like the view samples'
-    r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(kPerReach), foot, set(g_.per_way)),
+    r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(g_.per_reach), foot, set(g_.per_way)),
                                             hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));
     const V around = hn::Mul(set(4), r.error);
     r.low_x = hn::Sub(low_x, around);

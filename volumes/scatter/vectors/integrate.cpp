@@ -39,6 +39,23 @@ std::optional<std::int32_t> depth_by_other_place(const ScatterInput& in, const L
   return std::nullopt;
 }
 
+/// The same for a sphere or sun, at one of the view sample's light samples.
+std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const RowSum& rows, const GridSample& at,
+                                                  OpenJudge& judge) {
+  constexpr std::size_t kTries = 64;
+  const LightGrid& grid = in.scatter.grid;
+  const glm::dvec2 half(grid.half_cells);
+  const double off = 2 * std::max(half.x, half.y) * static_cast<double>(grid.cones->deviation) /
+                     glm::length(grid.cones->of[at.cone].u);
+  const std::vector<glm::dvec2>& places = in.light.coordinates;
+  const std::size_t step = std::max<std::size_t>(1, places.size() / kTries);
+  for (std::size_t i = step / 2; i < places.size(); i += step) {
+    const std::optional<std::int32_t> relative = rows.relative_depth((places[i] + 1.0) * half, off);
+    if (relative) return static_cast<std::int32_t>(judge.depth(at, static_cast<std::uint32_t>(i))) - *relative;
+  }
+  return std::nullopt;
+}
+
 /// `parts`: what is visible, if it is asked for and neither all nor nothing.
 struct Rows {
   RowSum sum;
@@ -48,8 +65,9 @@ struct Rows {
 };
 
 /// Nothing: double cannot prove it.
-std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, Rows& all,
+std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, const ClusterSample& at, Rows& all,
                                OpenJudge& judge) {
+  const ScatterInput& in = input.scatter;
   RowSum& rows = all.sum;
   all.parts.clear();
   Open& open = scratch.open;
@@ -76,7 +94,8 @@ std::optional<double> share_of(const ScatterInput& in, Scratch& scratch, const C
     if (rows.is_open()) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {
-    const std::optional<std::int32_t> found = depth_by_other_place(in, all.window, rows, at, judge);
+    const std::optional<std::int32_t> found = in.grid.cones ? depth_by_light_sample(input, rows, at, judge)
+                                                            : depth_by_other_place(in, all.window, rows, at, judge);
     if (!found) return std::nullopt;
     depth = *found;
   }
@@ -112,7 +131,7 @@ void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& jud
   Rows rows{RowSum(in.grid, input.region, input.scene, input.scale), input.region.window, {}, !out.radiance.empty()};
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
-    const std::optional<double> share = share_of(in, scratch, at, rows, judge);
+    const std::optional<double> share = share_of(input, scratch, at, rows, judge);
     if (!share) {
       ++scratch.unproven;
       const areas::ExactView exact = input.areas.view(input.samples, at.pixel);

@@ -290,7 +290,7 @@ class PointScatter {
     // Where an end may be on either side of it, so may be what goes on from there.
     const bool at_end = std::abs(s.near.y - y) < 2 * s.error_near || std::abs(s.far.y - y) < 2 * s.error_far;
     const bool has_y = e[kLowY] <= y && y < e[kHighY];
-    const int exact = at_end || s.may_be_cut || !has_y ? 0 : side_of_sample(precise_of(e), sample);
+    const int exact = at_end || s.may_be_cut || !has_y ? 0 : side_of_way(precise_of(e), judge_.way_to(*at_, sample));
     if (exact == 0 && (at_end || s.may_be_cut || has_y)) s_.open.samples.push_back(sample);
     const bool is_right = (exact < 0) == (s_.crossing[kY0][e.crossing()] < s_.crossing[kY1][e.crossing()]);
     if (exact != 0 && is_right != (side > 0)) changes_.slots[slot] += is_right ? e[kJump] : -e[kJump];
@@ -324,15 +324,16 @@ void sum_up(const LightTiles& tiles, const PointChanges& changes, std::int32_t d
   const Tile d;
   std::uint32_t visible = 0;
   for_each_tile(tiles, changes, [&](std::uint32_t tile, float change) {
-    const auto none = hn::Set(d, -(static_cast<float>(depth_at_corner) + change));
+    const auto zero = hn::Set(d, -(static_cast<float>(depth_at_corner) + change));
     std::uint32_t bits = 0;
     for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
       std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, hn::Eq(hn::LoadU(d, changes.slots + tile * LightTiles::kWide + lane), none), bytes);
+      const auto none = hn::Eq(hn::LoadU(d, changes.slots + tile * LightTiles::kWide + lane), zero);
+      visible += static_cast<std::uint32_t>(hn::CountTrue(d, none));
+      hn::StoreMaskBits(d, none, bytes);
       bits |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << lane;
     }
-    mask.bits[tile] = static_cast<std::uint16_t>(bits & tiles.used[tile]);
-    visible += static_cast<std::uint32_t>(std::popcount(mask.bits[tile]));
+    mask.bits[tile] = static_cast<std::uint16_t>(bits);
   });
   mask.visible = visible;
 }
@@ -366,7 +367,7 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSampl
     depth = static_cast<std::int32_t>(
         count_to_corner({in.grid, in.tree, scratch.lists.triangles, at, some == 0, in.light_plane}, scratch.open));
   }
-  scratch.depths.assign(tiles.tile_count() * LightTiles::kWide, 0);
+  scratch.depths.assign(tiles.start.begin(), tiles.start.end());
   scratch.tile_changes.assign(tiles.tile_count(), 0);
   scratch.row_changes.assign(tiles.rows.size() + 1, 0);
   PointChanges changes{scratch.depths.data(), scratch.tile_changes.data(), scratch.row_changes.data()};
@@ -375,7 +376,7 @@ void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSampl
   if (changes_any) {
     sum_up(tiles, changes, depth, mask);
   } else {
-    mask.visible = depth == 0 ? static_cast<std::uint32_t>(in.grid.points.size()) : 0;
+    mask.visible = depth == 0 ? in.grid.sample_count : 0;
     if (at.straddles || scratch.open.any()) fill(in.grid, depth == 0, mask);
   }
   if (at.straddles) cut_at_horizon(in.grid, at, scratch.open, mask);

@@ -13,14 +13,24 @@ namespace {
 /// A way from p: across, along, and up to the light. It appears at foot + height / w (x, y).
 using Way = glm::vec3;
 
-glm::vec2 appears(const ClusterSample& at, const Way& way) {
-  const float q = at.height / way.z;
-  return {at.foot.x + q * way.x, at.foot.y + q * way.y};
+glm::vec2 appears(const Placing& place, const Way& way) {
+  const float q = place.height / way.z;
+  return {place.foot.x + q * way.x, place.foot.y + q * way.y};
+}
+
+/// As the light is seen from p.
+Way turned(const LightGrid& grid, const ClusterSample& at, const Way& way) {
+  if (!grid.cones) return way;
+  const auto along = [&](glm::length_t row) {
+    return (at.turn[0][row] * way.x + at.turn[1][row] * way.y) + at.turn[2][row] * way.z;
+  };
+  return {along(0), along(1), along(2)};
 }
 
 /// (bound X)
 float error_of(const ClusterSample& at, float far, float w, float from_foot) {
-  return (far + at.far) / w * (at.per_way + kPerReach * from_foot) + at.per_foot * from_foot + at.fixed;
+  const Placing& place = at.on_light;
+  return (far + at.far) / w * (place.per_way + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
 }
 
 class Marks {
@@ -79,8 +89,9 @@ float row_at_least(const LightGrid& grid, float y) {
 float first_right_of(const PreciseInput& in, float row, float lowest, float highest, bool runs_up, Marks& marks) {
   float first = lowest;
   for (; first <= highest; ++first) {
-    const int side = side_of_sample(
-        in, static_cast<std::uint32_t>(row) * in.scatter.grid.columns + static_cast<std::uint32_t>(first));
+    const std::uint32_t sample =
+        static_cast<std::uint32_t>(row) * in.scatter.grid.columns + static_cast<std::uint32_t>(first);
+    const int side = side_of_way(in, glm::dvec3(in.scatter.grid.points[sample]) - glm::dvec3(in.at.p));
     if (side == 0) {
       marks.sample(row, first);
     } else if ((side < 0) == runs_up) {  // right of an edge that runs up
@@ -180,19 +191,20 @@ struct WindowPart {
 };
 
 /// Widened by `lift`, so that rounding cannot put an edge at p's own height below the window.
-WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Way& a, const Way& b, float lift) {
-  const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = at.foot - grid.first_cell;
+WindowPart cut_to_window(const LightGrid& grid, const Placing& place, const Way& a, const Way& b, float lift) {
+  const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place.foot - grid.first_cell;
   float from = 0, to = 1;
+  const auto cut = [&](float inside_a, float inside_b) {
+    const float t = inside_a / (inside_a - inside_b);
+    if (inside_a < 0) from = std::max(from, inside_b < 0 ? 2.0F : t);
+    if (inside_a >= 0 && inside_b < 0) to = std::min(to, t);
+  };
   for (int axis = 0; axis < 2; ++axis) {
-    const float xa = a[axis] * at.height + off[axis] * a.z, xb = b[axis] * at.height + off[axis] * b.z;
-    for (const float sign : {-1.0F, 1.0F}) {
-      const float inside_a = window[axis] * (a.z + lift) + sign * xa;
-      const float inside_b = window[axis] * (b.z + lift) + sign * xb;
-      const float t = inside_a / (inside_a - inside_b);
-      if (inside_a < 0) from = std::max(from, inside_b < 0 ? 2.0F : t);
-      if (inside_a >= 0 && inside_b < 0) to = std::min(to, t);
-    }
+    const float xa = a[axis] * place.height + off[axis] * a.z, xb = b[axis] * place.height + off[axis] * b.z;
+    for (const float sign : {-1.0F, 1.0F})
+      cut(window[axis] * (a.z + lift) + sign * xa, window[axis] * (b.z + lift) + sign * xb);
   }
+  if (grid.cones && grid.cones->end) cut(place.height - a.z, place.height - b.z);
   return {.start = from > 0 ? glm::mix(a, b, from) : a, .end = to < 1 ? glm::mix(a, b, to) : b, .is_empty = from > to};
 }
 
@@ -213,14 +225,13 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
   return k;
 }
 
-int side_of_sample(const PreciseInput& in, std::uint32_t light_sample) {
+int side_of_way(const PreciseInput& in, const glm::dvec3& l) {
   const auto slot = std::bit_cast<std::uint32_t>(in.scatter.edges[kEdgeSlot][in.edge]);
   const WideEdges& leaf = in.scatter.edge_tree.leaves[slot / kWide];
   const auto from_p = [&](const WidePoints& end) {
     const std::size_t lane = slot % kWide;
     return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]) - glm::dvec3(in.at.p);
   };
-  const glm::dvec3 l = glm::dvec3(in.scatter.grid.points[light_sample]) - glm::dvec3(in.at.p);
   const glm::dvec3 a = from_p(leaf.a), b = from_p(leaf.b);
   const double side = glm::dot(l, glm::cross(a, b));
   // As in visibility::certainly_meets.
@@ -235,18 +246,23 @@ std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
   const ClusterSample& at = in.at;
   const EdgeTable& edges = in.scatter.edges;
   const std::size_t edge = in.edge;
-  const Way a(edges[kAx][edge] - at.in_grid.x, edges[kAy][edge] - at.in_grid.y, at.in_grid.z - edges[kAh][edge]);
-  const Way b(edges[kBx][edge] - at.in_grid.x, edges[kBy][edge] - at.in_grid.y, at.in_grid.z - edges[kBh][edge]);
-  const float far = edges[kFar][edge], through_p = 64 * kRound * (far + at.far);
-  const WindowPart part = in.settled ? WindowPart{a, b} : cut_to_window(grid, at, a, b, at.per_lift * (far + at.far));
+  const Placing& place = at.on_light;
+  const auto way_to = [&](float x, float y, float h) {
+    return turned(grid, at, {x - at.in_grid.x, y - at.in_grid.y, at.in_grid.z - h});
+  };
+  const Way a = way_to(edges[kAx][edge], edges[kAy][edge], edges[kAh][edge]);
+  const Way b = way_to(edges[kBx][edge], edges[kBy][edge], edges[kBh][edge]);
+  const float far = edges[kFar][edge], through_p = place.through_p * (far + at.far);
+  const WindowPart part =
+      in.settled ? WindowPart{a, b} : cut_to_window(grid, place, a, b, place.per_lift * (far + at.far));
   if (part.is_empty || in.k == 0) return std::nullopt;
   if (!in.settled && std::min(part.start.z, part.end.z) < through_p) {
     open.pixel = true;
     return std::nullopt;
   }
-  const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : appears(at, part.start);
-  const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : appears(at, part.end);
-  const float foot_a = glm::length(projected_a - at.foot), foot_b = glm::length(projected_b - at.foot);
+  const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : appears(place, part.start);
+  const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : appears(place, part.end);
+  const float foot_a = glm::length(projected_a - place.foot), foot_b = glm::length(projected_b - place.foot);
   ProjectedEdge edge_on_light = project_edge(grid, projected_a, projected_b, error_of(at, far, part.start.z, foot_a),
                                              error_of(at, far, part.end.z, foot_b));
   const float lowest_over_light = at.height - std::max(a.z, b.z);

@@ -48,9 +48,9 @@ struct ProjectedEdge {
 };
 /// Nothing: no part of it is near the light, or it passes through p within rounding, which opens the pixel.
 std::optional<ProjectedEdge> place_edge(const PreciseInput& input, Open& open);
-/// On which side of the edge's plane through p a light sample is, exactly: > 0 left of the edge a→b as it appears; 0:
-/// within double rounding.
-int side_of_sample(const PreciseInput& input, std::uint32_t light_sample);
+/// On which side of the edge's plane through p a light point is, exactly, given the way to it (of any length): > 0 left
+/// of the edge a→b as it appears; 0: within double rounding.
+int side_of_way(const PreciseInput& input, const glm::dvec3& way);
 
 /// Adds what the edge changes, and marks what is open because of it. For light samples in rows.
 template <typename Counter>

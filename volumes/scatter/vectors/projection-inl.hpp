@@ -52,7 +52,7 @@ struct SpecialEdges {
 class Projection {
  public:
   Projection(const ScatterInput& in, const ClusterSample& at, const GroupLists& lists, CrossingTable& out)
-      : in_(in), at_(at), lists_(lists), out_(out) {}
+      : in_(in), at_(at), place_(at.on_light), lists_(lists), out_(out) {}
 
   /// `special` gets edges whose multiplicity is open, and those that pass through p within rounding.
   template <typename Special>
@@ -72,15 +72,20 @@ class Projection {
   };
   [[nodiscard]] Ways way_to(const GroupTable& table, std::size_t first, std::size_t i) const {
     const auto column = [&](std::size_t field) { return hn::Load(D(), table[first + field] + i); };
-    return {hn::Sub(column(0), set(at_.in_grid.x)), hn::Sub(column(1), set(at_.in_grid.y)),
-            hn::Sub(set(at_.in_grid.z), column(2))};
+    const Ways way{hn::Sub(column(0), set(at_.in_grid.x)), hn::Sub(column(1), set(at_.in_grid.y)),
+                   hn::Sub(set(at_.in_grid.z), column(2))};
+    return in_.grid.cones ? Ways{turned(way, 0), turned(way, 1), turned(way, 2)} : way;
+  }
+  [[nodiscard]] V turned(const Ways& way, glm::length_t row) const {
+    const auto part = [&](V x, glm::length_t column) { return hn::Mul(set(at_.turn[column][row]), x); };
+    return hn::Add(hn::Add(part(way.x, 0), part(way.y, 1)), part(way.w, 2));
   }
   struct LightPoints {
     V x, y;
   };
   [[nodiscard]] LightPoints appears(const Ways& way) const {
-    const V q = hn::Div(set(at_.height), way.w);
-    return {hn::Add(set(at_.foot.x), hn::Mul(q, way.x)), hn::Add(set(at_.foot.y), hn::Mul(q, way.y))};
+    const V q = hn::Div(set(place_.height), way.w);
+    return {hn::Add(set(place_.foot.x), hn::Mul(q, way.x)), hn::Add(set(place_.foot.y), hn::Mul(q, way.y))};
   }
 
   /// Edges well above p.
@@ -92,10 +97,14 @@ class Projection {
     if (hn::AllFalse(D(), live)) return;
     const M open = hn::And(live, open_ones(m));
     if (!hn::AllFalse(D(), open)) special({table, i, open, m, true});
-    const V error = hn::Load(D(), table[kGroupError] + i);
-    keep_crossing({appears(way_to(table, kAx, i)), appears(way_to(table, kBx, i)), m.k, error,
-                   hn::Load(D(), table[kGroupEdge] + i)},
-                  hn::AndNot(open, live));
+    const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
+    const LightPoints place_a = appears(a), place_b = appears(b);
+    V error = hn::Load(D(), table[kGroupError] + i);
+    if (in_.grid.cones) {
+      const V far = hn::Add(error, set(at_.far));
+      error = hn::Mul(set(1.01F), hn::Max(error_of(place_a, a.w, far), error_of(place_b, b.w, far)));
+    }
+    keep_crossing({place_a, place_b, m.k, error, hn::Load(D(), table[kGroupEdge] + i)}, hn::AndNot(open, live));
   }
 
   /// Edges that may come near p's height, or go below: as scatter_precisely cuts them. (bound window)
@@ -108,26 +117,28 @@ class Projection {
     M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
     if (hn::AllFalse(d, live)) return;
     const Ways a = way_to(table, kAx, i), b = way_to(table, kBx, i);
-    const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = at_.foot - grid.first_cell;
+    const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place_.foot - grid.first_cell;
     // Beyond the table's end there is anything.
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
-    const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(64 * kRound), far);
-    const V lift = hn::Mul(set(at_.per_lift), far);
+    const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(place_.through_p), far);
+    const V lift = hn::Mul(set(place_.per_lift), far);
     V from = set(0), to = set(1);
+    const auto keep_inside = [&](V inside_a, V inside_b) {
+      const V t = hn::Div(inside_a, hn::Sub(inside_a, inside_b));
+      const M out_a = hn::Lt(inside_a, set(0)), out_b = hn::Lt(inside_b, set(0));
+      from = hn::IfThenElse(out_a, hn::Max(from, hn::IfThenElse(out_b, set(2), t)), from);
+      to = hn::IfThenElse(hn::AndNot(out_a, out_b), hn::Min(to, t), to);
+    };
     for (int axis = 0; axis < 2; ++axis) {
-      const V xa = hn::Add(hn::Mul(axis == 0 ? a.x : a.y, set(at_.height)), hn::Mul(set(off[axis]), a.w));
-      const V xb = hn::Add(hn::Mul(axis == 0 ? b.x : b.y, set(at_.height)), hn::Mul(set(off[axis]), b.w));
+      const V xa = hn::Add(hn::Mul(axis == 0 ? a.x : a.y, set(place_.height)), hn::Mul(set(off[axis]), a.w));
+      const V xb = hn::Add(hn::Mul(axis == 0 ? b.x : b.y, set(place_.height)), hn::Mul(set(off[axis]), b.w));
       const V wide_a = hn::Mul(set(window[axis]), hn::Add(a.w, lift));
       const V wide_b = hn::Mul(set(window[axis]), hn::Add(b.w, lift));
-      for (const bool upper : {false, true}) {
-        const V inside_a = upper ? hn::Add(wide_a, xa) : hn::Sub(wide_a, xa);
-        const V inside_b = upper ? hn::Add(wide_b, xb) : hn::Sub(wide_b, xb);
-        const V t = hn::Div(inside_a, hn::Sub(inside_a, inside_b));
-        const M out_a = hn::Lt(inside_a, set(0)), out_b = hn::Lt(inside_b, set(0));
-        from = hn::IfThenElse(out_a, hn::Max(from, hn::IfThenElse(out_b, set(2), t)), from);
-        to = hn::IfThenElse(hn::AndNot(out_a, out_b), hn::Min(to, t), to);
-      }
+      keep_inside(hn::Sub(wide_a, xa), hn::Sub(wide_b, xb));
+      keep_inside(hn::Add(wide_a, xa), hn::Add(wide_b, xb));
     }
+    // What is behind a sphere's disk. (bound ends)
+    if (grid.cones && grid.cones->end) keep_inside(hn::Sub(set(place_.height), a.w), hn::Sub(set(place_.height), b.w));
     live = hn::And(live, hn::Le(from, to));
     if (hn::AllFalse(d, live)) return;
     const auto at = [&](V t, M cut, V x, V y, V uncut) {
@@ -147,9 +158,18 @@ class Projection {
   [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
   /// (bound X)
   [[nodiscard]] V error_of(const LightPoints& place, V w, V far) const {
-    const V foot = hn::Add(hn::Abs(hn::Sub(place.x, set(at_.foot.x))), hn::Abs(hn::Sub(place.y, set(at_.foot.y))));
-    return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(kPerReach), foot, set(at_.per_way)),
-                      hn::MulAdd(set(at_.per_foot), foot, set(at_.fixed)));
+    const V foot =
+        hn::Add(hn::Abs(hn::Sub(place.x, set(place_.foot.x))), hn::Abs(hn::Sub(place.y, set(place_.foot.y))));
+    return hn::MulAdd(hn::Div(far, w), hn::MulAdd(set(place_.per_reach), foot, set(place_.per_way)),
+                      hn::MulAdd(set(place_.per_foot), foot, set(place_.fixed)));
+  }
+
+  /// Not all of it in a corner of the grid to the right of all light samples, which are in no such corner of a disk.
+  [[nodiscard]] M left_of_a_sample(V low_x, V low_y, V high_y) const {
+    const float rounding = 8 * kRound * (in_.grid.half_cells.x + in_.grid.half_cells.y);
+    const M before = hn::And(hn::Le(hn::Add(low_x, low_y), set(in_.grid.tiles->most_sum + rounding)),
+                             hn::Le(hn::Sub(low_x, high_y), set(in_.grid.tiles->most_difference + rounding)));
+    return hn::Or(before, hn::Lt(low_x, set(-0.5F)));
   }
 
   struct ProjectedEdges {
@@ -167,7 +187,8 @@ class Projection {
     const M before = hn::And(hn::Le(low_x, columns), hn::Ge(high_x, set(-0.5F)));
     const M on_light = hn::And(hn::Ge(high_y, set(-0.5F)), hn::Le(low_y, rows));
     const M matters = in_.between_rows() ? on_light : hn::Or(left, hn::Le(first, last));
-    const M kept = hn::And(live, hn::And(before, matters));
+    M kept = hn::And(live, hn::And(before, matters));
+    if (in_.grid.tiles && !in_.exact_area) kept = hn::And(kept, left_of_a_sample(low_x, low_y, high_y));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
     const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out_[field] + out_.count); };
@@ -183,6 +204,7 @@ class Projection {
 
   const ScatterInput& in_;
   const ClusterSample& at_;
+  const Placing& place_;
   const GroupLists& lists_;
   CrossingTable& out_;
 };

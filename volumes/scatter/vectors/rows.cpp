@@ -69,6 +69,7 @@ RowSum::RowSum(const LightGrid& grid, const LightRegion& region, const visibilit
       region_(region),
       scene_(scene),
       scale_(scale),
+      axes_(grid.axes),
       per_length_(std::max(glm::length(grid.axes[0]), glm::length(grid.axes[1]))),
       skew_(grid.skew) {}
 
@@ -81,6 +82,7 @@ void RowSum::set_view_sample(const GridSample& at) {
   corner_is_open_ = is_open_ = false;
   p_ = glm::dvec3(at.p);
   plane_ = at.plane;
+  if (grid_.cones) return see_cone(grid_.cones->of[at.cone]);
   const glm::dvec3 from = p_ - grid_.corner;
   foot_ = {glm::dot(grid_.axes[0], from), glm::dot(grid_.axes[1], from)};
   height_ = glm::dot(grid_.axes[2], from);
@@ -88,6 +90,25 @@ void RowSum::set_view_sample(const GridSample& at) {
   error_foot_ = per_length_ * (32 * kUnit * skew_ * away + off);
   error_height_ = 16 * kUnit * skew_ * away + off;
   steepness_ = height_ / (away + 2 * static_cast<double>(grid_.radius));
+  is_open_ = !(height_ > 8 * error_height_);
+}
+
+/// A way is λ (middle + s u + t v): λ, s and t by determinants, since a sun's axes are floats and not quite at right
+/// angles. What middle is off by moves places as a foot does. (bound foot)
+void RowSum::see_cone(const LightCone& cone) {
+  const auto& [m, u, v] = cone;
+  const glm::dvec3 n = glm::cross(u, v);
+  const double volume = glm::dot(m, n);
+  height_ = glm::length(m);
+  axes_ = {static_cast<double>(grid_.half_cells.x) / volume * glm::cross(v, m),
+           static_cast<double>(grid_.half_cells.y) / volume * glm::cross(m, u), -height_ / volume * n};
+  per_length_ = std::max(glm::length(axes_[0]), glm::length(axes_[1]));
+  skew_ = 4;
+  foot_ = glm::dvec2(grid_.half_cells);
+  const double off = grid_.cones->end ? 8 * kUnit * static_cast<double>(grid_.reach) : 8 * kUnit;
+  error_foot_ = per_length_ * off;
+  error_height_ = off;
+  steepness_ = height_ / glm::length(cone.corner());
   is_open_ = !(height_ > 8 * error_height_);
 }
 
@@ -121,7 +142,7 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
 RowSum::Way RowSum::way_to(const glm::dvec3& point) const {
   const glm::dvec3 d = point - p_;
   const double length = std::abs(d.x) + std::abs(d.y) + std::abs(d.z), error = kUnit * skew_ * length;
-  return {{glm::dot(grid_.axes[0], d), glm::dot(grid_.axes[1], d), -glm::dot(grid_.axes[2], d)},
+  return {{glm::dot(axes_[0], d), glm::dot(axes_[1], d), -glm::dot(axes_[2], d)},
           64 * error * per_length_,
           32 * error,
           length};
@@ -174,6 +195,11 @@ bool RowSum::cut_to_window(Ways& ways) {
   auto& [a, b] = ways;
   const glm::dvec2 middle(grid_.half_cells), window = 2.0 * middle + 2.0;
   double from = 0, to = 1;
+  const auto cut = [&](double inside_a, double inside_b) {
+    const double t = inside_a / (inside_a - inside_b);
+    if (inside_a < 0) from = std::max(from, t);
+    if (inside_b < 0) to = std::min(to, t);
+  };
   for (int axis = 0; axis < 2; ++axis) {
     const double off = foot_[axis] - middle[axis];
     const double xa = a.to[axis] * height_ + off * a.to.z, xb = b.to[axis] * height_ + off * b.to.z;
@@ -183,10 +209,12 @@ bool RowSum::cut_to_window(Ways& ways) {
         is_open_ = is_open_ || inside_a > -error_inside(a, axis) || inside_b > -error_inside(b, axis);
         return false;
       }
-      const double t = inside_a / (inside_a - inside_b);
-      if (inside_a < 0) from = std::max(from, t);
-      if (inside_b < 0) to = std::min(to, t);
+      cut(inside_a, inside_b);
     }
+  }
+  if (grid_.cones && grid_.cones->end) {  // (bound ends)
+    if (a.to.z > height_ && b.to.z > height_) return false;
+    cut(height_ - a.to.z, height_ - b.to.z);
   }
   if (from > to) {
     is_open_ = is_open_ || may_pass_p(ways);
@@ -261,10 +289,10 @@ void RowSum::add(RowEdge edge, double error) {
   if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
 }
 
-std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place) const {
+std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place, double off) const {
   const auto [x, y] = std::pair(place.x, place.y);
   // No true edge is nearer than half of this, nor is the rounding of what follows as large.
-  const double near = 4 * largest_error_ + 64 * kUnit * region_.rounding * (grid_.columns + grid_.rows);
+  const double near = off + 4 * largest_error_ + 64 * kUnit * region_.rounding * (grid_.columns + grid_.rows);
   std::int32_t depth = 0;
   for (const RowStep& step : left_) {
     if (std::abs(step.y - y) < near) return std::nullopt;

@@ -6,6 +6,7 @@
 
 #include "volumes/scatter/vectors/scatter.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -44,8 +45,9 @@ class RowSum {
   void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
   /// Rounding hides on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
-  /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near.
-  [[nodiscard]] std::optional<std::int32_t> relative_depth(const glm::dvec2& place) const;
+  /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near,
+  /// or within `off` of that.
+  [[nodiscard]] std::optional<std::int32_t> relative_depth(const glm::dvec2& place, double off = 0) const;
   /// What lies below the carrier's plane counts as one layer more. After relative_depth.
   void add_horizon(const HorizonLine& line);
   /// The share that is visible; nothing if it is not proven. `parts`: gets what is visible, if given.
@@ -62,6 +64,7 @@ class RowSum {
   struct Ways {
     Way a, b;
   };
+  void see_cone(const LightCone& cone);
   [[nodiscard]] Way way_to(const glm::dvec3& point) const;
   [[nodiscard]] Way way_to(const CutEnd& end) const;
   [[nodiscard]] Ways ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const;
@@ -78,7 +81,8 @@ class RowSum {
   const LightRegion& region_;
   const visibility::SceneFloats& scene_;
   float scale_;
-  double per_length_, skew_;  // the axes: cells a length, and what makes them ill-conditioned
+  std::array<glm::dvec3, 3> axes_;  // as LightGrid::axes; of a sphere or sun the view sample's
+  double per_length_, skew_;        // of these: cells a length, and what makes them ill-conditioned
   // Of the view sample: p over the light's plane, and what that is off by.
   glm::dvec3 p_{0};
   std::uint32_t plane_ = 0;

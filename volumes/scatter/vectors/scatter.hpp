@@ -33,13 +33,14 @@ using native::EdgeTable;
 using native::GridSample;
 using native::HorizonLine;
 using native::Hull;
-using native::kPerReach;
 using native::kRound;
 using native::kWide;
+using native::LightCone;
 using native::LightGrid;
 using native::LightTiles;
 using native::Open;
 using native::OpenJudge;
+using native::Placing;
 using native::SampleMask;
 using native::Table;
 using native::TriangleTable;
@@ -52,7 +53,7 @@ using enum native::EdgeField;
 using enum native::TriangleField;
 
 /// Of an edge that matters to a group of view samples: the first 18 of EdgeField, then a bound of the error of where
-/// its ends appear, and its row in the EdgeTable (bits).
+/// its ends appear (of a sphere or sun: kFar), and its row in the EdgeTable (bits).
 enum GroupField : std::size_t { kGroupError = kPlane2 + 1, kGroupEdge, kGroupFields };
 using GroupTable = Table<kGroupFields>;
 

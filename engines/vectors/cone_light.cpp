@@ -1,0 +1,286 @@
+#include "engines/vectors/cone_light.hpp"
+
+#include "base/error.hpp"
+#include "visibility/lights/device_light.hpp"
+#include "visibility/pair_truth.hpp"
+#include "visibility/receivers.hpp"
+#include "visibility/tree/tree_texels.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::native {
+namespace {
+
+using visibility::LightKind;
+
+/// A thinner sun's light points are float32's rounding away from one another.
+constexpr double kThinnest = 0x1p-12;
+constexpr std::uint32_t kCells = 16;  ///< of a side, without light samples
+constexpr double kFlattest = 0x1p8;   ///< tan of half a cone's angle; from a flatter one, exact predicates decide
+constexpr double kRoundingOf = 0x1p-24;
+
+double size1(const glm::dvec3& x) {
+  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
+}
+double largest(const glm::dvec3& x) {
+  return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+}
+
+/// Ways to the corners of the square around a cone.
+std::array<glm::dvec3, 4> corners_of(const LightCone& cone) {
+  const auto& [m, u, v] = cone;
+  return {m - u - v, m + u - v, m + u + v, m - u + v};
+}
+
+/// A rectangle across an axis.
+struct Rectangle {
+  glm::dvec2 low{INFINITY}, high{-INFINITY};
+
+  void add(const glm::dvec2& x) {
+    low = glm::min(low, x);
+    high = glm::max(high, x);
+  }
+};
+
+/// Of a triangle given by (s, t, height), the part within ±`most` of height 0: does its box meet ±`around`?
+bool meets_slab(const std::array<glm::dvec3, 3>& corners, double most, double around) {
+  Rectangle box;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
+    if (std::abs(a.z) <= most) box.add(glm::dvec2(a));
+    for (const double level : {-most, most}) {
+      if ((a.z < level) == (b.z < level)) continue;
+      box.add(glm::dvec2(a + (level - a.z) / (b.z - a.z) * (b - a)));
+    }
+  }
+  return box.low.x <= around && box.low.y <= around && box.high.x >= -around && box.high.y >= -around;
+}
+
+}  // namespace
+
+ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloats& scene,
+                     const visibility::TriangleTree& tree, const ConeOptions& options)
+    : light_(light),
+      light_samples_(options.light_samples),
+      scale_(static_cast<double>(visibility::device_scale(scene))) {
+  for (int i = 0; i < 3; ++i) reach_ = std::max({reach_, std::abs(scene.lower[i]), std::abs(scene.upper[i])});
+  reach_ *= static_cast<float>(scale_);
+  if (light.sun) {
+    const bool as_it_is = !light_samples_ && light.sun->tangent > 0;
+    tangent_ = as_it_is ? light.sun->tangent : std::max(light.sun->tangent, kThinnest);
+    const double farthest = 1 + 2 * tangent_;
+    // A light point, the middle and two axes rounded to float, which then are not quite at right angles.
+    deviation_ = 8 * kRoundingOf * farthest;
+    // Heights are along −center: the least of the scene's box, and a bit more, so that no view sample is near it.
+    const glm::dvec3 toward = glm::normalize(glm::dvec3(light.center));
+    const glm::dvec3 low = scale_ * glm::dvec3(scene.lower), high = scale_ * glm::dvec3(scene.upper);
+    beyond_ = -(glm::dot(glm::max(toward, 0.0), high) + glm::dot(glm::min(toward, 0.0), low)) -
+              0.0625 * glm::length(high - low) - 0x1p-10 * static_cast<double>(reach_);
+    return;
+  }
+  const double r = light.radius, reach = largest(glm::dvec3(light.center)) + r;
+  const auto scaled_radius = static_cast<float>(r * scale_);
+  visibility::DeviceLight around;
+  around.center = light.center * static_cast<float>(scale_);
+  around.u = {scaled_radius, 0, 0};
+  around.v = {0, scaled_radius, 0};
+  visibility::check_size(light, around, options.method);
+  deviation_ = scale_ * (2 * kRoundingOf * reach + 0x1p-147);  // √3 / 2 units in the last place, at most
+  reach_ = std::max(reach_, static_cast<float>(scale_ * reach * 1.0001));
+  const glm::vec3 box(static_cast<float>(2.25 * r) + 0x1p-12F * reach_ / static_cast<float>(scale_));
+  tree.for_each_near(light.center - box, light.center + box, [&](std::uint32_t triangle) {
+    if (scene.casts_shadow[triangle] == 0 || scene.emits[triangle] == light.index) return;
+    const auto corners = scene.corners(triangle);
+    near_.push_back(
+        {scale_ * glm::dvec3(corners[0]), scale_ * glm::dvec3(corners[1]), scale_ * glm::dvec3(corners[2])});
+  });
+}
+
+LightGrid ConeLight::make_grid() const {
+  LightGrid grid;
+  grid.sample_count = light_.sample_count();
+  grid.rows = grid.columns =
+      light_samples_ ? static_cast<std::uint32_t>(std::lround(std::sqrt(grid.sample_count))) : kCells;
+  grid.half_cells = 0.5F * glm::vec2(static_cast<float>(grid.columns), static_cast<float>(grid.rows));
+  grid.first_cell = grid.half_cells - 0.5F;
+  grid.light = static_cast<std::uint32_t>(light_.index);
+  std::vector<glm::vec2> places;
+  const double share = light_.sun ? light_.sun->tangent / tangent_ : 1;
+  for (const glm::dvec2& st : light_.coordinates)
+    places.push_back(glm::vec2(glm::dvec2(grid.first_cell) + share * glm::dvec2(grid.half_cells) * st));
+  grid.tiles = make_light_tiles(places);
+  grid.reach = reach_;
+  grid.cones.emplace();
+  grid.cones->end = !light_.sun;
+  grid.cones->deviation = static_cast<float>(deviation_ * 1.0001);
+  return grid;
+}
+
+SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, GridSample& at, LightCone& cone) const {
+  if (!visibility::is_receiver(view.scene, view.samples, pixel)) return SampleClass::all_visible;
+  const auto triangle = static_cast<std::uint32_t>(view.samples.triangle[pixel]);
+  const glm::vec3& p = view.samples.p[pixel];
+  at.p = p * view.scale;
+  at.pixel = pixel;
+  at.plane = view.scene.plane[triangle];
+  if (light_.sun) {
+    cone = {glm::dvec3(light_.center), tangent_ * glm::dvec3(light_.sun->axis_u),
+            tangent_ * glm::dvec3(light_.sun->axis_v)};
+  } else {
+    if (!visibility::in_front_of_light(light_, p)) return SampleClass::other_side;
+    const visibility::LightFrame seen = visibility::light_frame_from(light_, p);
+    cone = {scale_ * (seen.center - glm::dvec3(p)), scale_ * seen.u, scale_ * seen.v};
+    if (!(glm::length(cone.u) > 0 && kFlattest * glm::length(cone.middle) > glm::length(cone.u)))
+      return SampleClass::open;
+  }
+  // (bound horizon)
+  const glm::dvec3 n = view.normal_is_known[triangle] != 0 ? glm::dvec3(view.samples.n[pixel]) : glm::dvec3(0);
+  const glm::dvec3 above(glm::dot(n, cone.u), glm::dot(n, cone.v), glm::dot(n, cone.middle));
+  const double from_p = light_.sun ? 0 : size1(glm::dvec3(at.p));
+  const double error = 16 * kRoundingOf * (size1(cone.middle) + size1(cone.u) + size1(cone.v) + from_p) + deviation_;
+  const double span = std::hypot(above.x, above.y) * (1 + 0x1p-20);
+  at.above = glm::vec3(above);
+  at.above_error = static_cast<float>(error);
+  if (above.z + span < -error) return SampleClass::none_visible;
+  if (!near_.empty() && touches(cone, glm::dvec3(at.p))) return SampleClass::open;
+  at.straddles = above.z - span <= error;
+  return SampleClass::in_front;
+}
+
+/// May a caster meet the square around the disk, or its plane so near to it that floats do not know on which side?
+/// (bound ends)
+bool ConeLight::touches(const LightCone& cone, const glm::dvec3& p) const {
+  const double height = glm::length(cone.middle), radius = glm::length(cone.u), reach = static_cast<double>(reach_);
+  const double slab = 4 * deviation_ + 512 * kRoundingOf * reach;
+  const double off = 8 * reach / height * 24 * kRoundingOf * (height / radius + 1) + 12 * kRoundingOf +
+                     deviation_ / height + deviation_ / radius;
+  const double around = 1 + 0x1p-6 + 8 * off + 4 * slab / height;
+  if (!(around < 1.5)) return true;
+  return std::ranges::any_of(near_, [&](const std::array<glm::dvec3, 3>& triangle) {
+    std::array<glm::dvec3, 3> placed;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec3 way = triangle[i] - p;
+      placed[i] = {glm::dot(way, cone.u) / (radius * radius), glm::dot(way, cone.v) / (radius * radius),
+                   glm::dot(way, cone.middle) / height - height};
+    }
+    return meets_slab(placed, slab, around);
+  });
+}
+
+bool ConeLight::turn(LightGrid& grid, std::span<GridSample> samples) const {
+  const std::span<const LightCone> cones = grid.cones->of;
+  glm::dvec3 toward{0};
+  for (const GridSample& at : samples) toward += glm::normalize(cones[at.cone].middle);
+  const glm::dvec3 axis = -glm::normalize(toward);
+  const glm::dvec3 first_u = cones[samples.front().cone].u;
+  const glm::dvec3 x_axis = glm::normalize(first_u - glm::dot(first_u, axis) * axis), y_axis = glm::cross(axis, x_axis);
+  const double flattest = samples.size() == 1 ? 0x1p-12 : 0x1p-4;
+  double lowest = light_.sun ? beyond_ : INFINITY, highest = -INFINITY;
+  for (const GridSample& at : samples) {
+    for (const glm::dvec3& way : corners_of(cones[at.cone])) {
+      const double down = glm::dot(axis, way);
+      if (!(-down > flattest * glm::length(way))) return false;
+      if (light_.sun) continue;
+      const double level = glm::dot(axis, glm::dvec3(at.p)) + down;
+      lowest = std::min(lowest, level);
+      highest = std::max(highest, level);
+    }
+  }
+  Rectangle all, corners;
+  for (const GridSample& at : samples) {
+    const glm::dvec3 p(at.p);
+    const double height = glm::dot(axis, p) - lowest;
+    const std::array ways = corners_of(cones[at.cone]);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const glm::dvec3 there = p + height / -glm::dot(axis, ways[i]) * ways[i];
+      const glm::dvec2 place(glm::dot(x_axis, there), glm::dot(y_axis, there));
+      all.add(place);
+      if (i == 0) corners.add(place);
+    }
+  }
+  const glm::dvec2 middle = 0.5 * (all.low + all.high);
+  const glm::dvec2 half = 0.5001 * (all.high - all.low) + 0x1p-20 * static_cast<double>(reach_);
+  const glm::dvec2 per_length = glm::dvec2(grid.half_cells) / half;
+  const glm::dvec3 center = middle.x * x_axis + middle.y * y_axis + lowest * axis;
+  grid.center = glm::vec3(center);
+  grid.axis = glm::vec3(axis);
+  grid.axis_size = glm::abs(grid.axis);
+  grid.across = glm::vec3(per_length.x * x_axis);
+  grid.along = glm::vec3(per_length.y * y_axis);
+  grid.per_length = static_cast<float>(std::max(per_length.x, per_length.y) * 1.00001);
+  grid.skew = 1.0001F;
+  grid.reach = std::max(reach_, static_cast<float>(largest(center) + half.x + half.y));
+  grid.deviation = 0x1p-21F * grid.reach;
+  const glm::vec2 around(0x1p-10F);
+  grid.corners = {glm::vec2((corners.low - middle) * per_length) - around,
+                  glm::vec2((corners.high - middle) * per_length) + around};
+  grid.cones->lowest_end =
+      light_.sun ? -1e30F : static_cast<float>(highest - lowest) + 128 * kRound * grid.reach + grid.deviation;
+  for (GridSample& at : samples) {
+    const glm::dvec3 p(at.p);
+    at.height = static_cast<float>(glm::dot(axis, p) - lowest);
+    at.foot = grid.first_cell + glm::vec2((glm::dvec2(glm::dot(x_axis, p), glm::dot(y_axis, p)) - middle) * per_length);
+  }
+  return true;
+}
+
+Cluster everything(std::span<const GridSample> samples) {
+  glm::vec3 lower(samples.front().p), upper(lower);
+  for (const GridSample& at : samples) {
+    lower = glm::min(lower, at.p);
+    upper = glm::max(upper, at.p);
+  }
+  Cluster cluster;
+  cluster.middle = 0.5F * lower + 0.5F * upper;
+  cluster.half_size = glm::max(upper - cluster.middle, cluster.middle - lower) * (1 + 8 * kRound);
+  cluster.whole.lowest = -1e30F;
+  cluster.whole.highest = 1e30F;
+  cluster.whole.beyond.fill(1);
+  cluster.corner = cluster.whole;
+  return cluster;
+}
+
+void see_cone(const LightGrid& grid, ClusterSample& at) {
+  const LightCone& cone = grid.cones->of[at.cone];
+  const double height = glm::length(cone.middle), radius = glm::length(cone.u);
+  const glm::dvec3 across(grid.across), along(grid.along), axis(grid.axis);
+  // From the grid's coordinates to a way, and from that to those of the light.
+  const glm::dmat3 way_of(across / glm::dot(across, across), along / glm::dot(along, along), -axis);
+  const glm::dvec2 half(grid.half_cells);
+  const glm::dvec3 x = half.x / glm::dot(cone.u, cone.u) * cone.u, y = half.y / glm::dot(cone.v, cone.v) * cone.v,
+                   w = cone.middle / height;
+  for (int i = 0; i < 3; ++i)
+    at.turn[i] = glm::vec3(glm::dot(x, way_of[i]), glm::dot(y, way_of[i]), glm::dot(w, way_of[i]));
+
+  constexpr double kMore = 1.05;  // for what is of second order
+  const double cells = std::max(half.x, half.y), deviation = static_cast<double>(grid.cones->deviation);
+  const double per_tangent = cells * height / radius;
+  const auto rounded = [](double bound) { return static_cast<float>(kMore * bound); };
+  Placing& place = at.on_light;
+  place.foot = grid.first_cell;
+  place.height = static_cast<float>(height);
+  place.per_way = rounded(24 * kRoundingOf * per_tangent);
+  place.per_reach = rounded(24 * kRoundingOf);
+  place.per_foot = rounded(12 * kRoundingOf + deviation / height);
+  place.fixed = rounded(16 * kRoundingOf * (half.x + half.y) + cells / radius * deviation);
+  place.per_lift = rounded(kRoundingOf * (128 + 64 * per_tangent / (2 * std::min(half.x, half.y) + 2)));
+  place.through_p = 192 * kRound;
+
+  Rectangle window;
+  const auto place_of = [&](const glm::dvec3& way) {
+    return glm::dvec2(glm::dot(across, way), glm::dot(along, way)) / -glm::dot(axis, way);
+  };
+  for (const glm::dvec3& way : corners_of(cone)) window.add(place_of(way));
+  const auto over = static_cast<double>(at.height);
+  const glm::vec2 around(0x1p-10F);
+  at.window = {at.foot + glm::vec2(over * window.low) - around, at.foot + glm::vec2(over * window.high) + around};
+  at.lean = glm::vec2(place_of(cone.corner()));
+  at.end = grid.cones->end ? static_cast<float>(-glm::dot(axis, cone.corner())) : 1e30F;
+  at.per_lean = kRound * (16 * grid.per_length + 24 * glm::length(at.lean));
+}
+
+}  // namespace penumbra::native

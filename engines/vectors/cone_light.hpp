@@ -1,0 +1,58 @@
+#pragma once
+
+#include "engines/vectors/clusters.hpp"
+#include "engines/vectors/light_grid.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
+#include "visibility/tree/triangle_tree.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Spheres and suns: each view sample sees a round cone of its own. Where its light samples are in the square around
+/// the cone is the same for all, so they share tiles; what may matter to a few view samples is found through a
+/// rectangle of a plane behind all of their light points. docs/edge-scatter.md, "Spheres and suns".
+namespace penumbra::native {
+
+struct ConeOptions {
+  std::string method;         ///< names errors
+  bool light_samples = true;  ///< else the light itself: cells have nothing to do with light samples
+};
+
+/// `tree` is that of the scene; `light` must outlive it.
+class ConeLight {
+ public:
+  /// Throws InputError where float32 cannot span light and scene together.
+  ConeLight(const visibility::Light& light, const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
+            const ConeOptions& options);
+
+  /// Tiles and masks; not yet turned to any view samples.
+  [[nodiscard]] LightGrid make_grid() const;
+  /// As native::classify; an answer in_front comes with how p sees the light.
+  SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at, LightCone& cone) const;
+  /// Turns the grid to view samples that have cones, and places them over it. False: they see the light from such
+  /// different sides that no rectangle will do. One alone always sees it through one.
+  [[nodiscard]] bool turn(LightGrid& grid, std::span<GridSample> samples) const;
+
+ private:
+  [[nodiscard]] bool touches(const LightCone& cone, const glm::dvec3& p) const;
+
+  const visibility::Light& light_;
+  bool light_samples_;
+  double scale_;
+  double tangent_ = 0;    // of a sun: of half the angle of the cone that the square is around
+  double deviation_ = 0;  // of a stored light point (of a sun: at distance 1), scaled
+  double beyond_ = 0;     // of a sun: all casters are nearer to it than this height, scaled
+  float reach_ = 0;
+  std::vector<std::array<glm::dvec3, 3>> near_;  // a sphere: casters that may touch a disk, scaled
+};
+
+/// A cluster of which everything may matter to a method.
+Cluster everything(std::span<const GridSample> samples);
+/// What `complete` adds for a sphere or sun.
+void see_cone(const LightGrid& grid, ClusterSample& at);
+
+}  // namespace penumbra::native
