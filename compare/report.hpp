@@ -22,16 +22,7 @@ struct ReportFact {
   std::string name, value;
 };
 
-/// What the report shows of one method under one light. The pictures are for eyes without script; what the page's
-/// script draws and reads out is packed (compare/report_data.hpp), empty if it was not kept.
-struct ReportLightView {
-  std::optional<Image8> visibility = {};
-  std::optional<Image8> error = {};  ///< none for the reference
-  std::string packed_visibility = {};
-  std::string packed_masks = {};
-};
-
-/// Where a repair of a method's error changes V, and by how much: MethodResult::error_budget has the numbers.
+/// Where a repair of a method's error changes V, and by how much: LightResult::error_budget has the numbers.
 struct BudgetPicture {
   std::string repaired;  ///< "resolution", "layers" …, kAllButView or kAllAtOnce
   Image8 picture;
@@ -39,13 +30,22 @@ struct BudgetPicture {
 
 inline constexpr const char *kAllButView = "all but the view", *kAllAtOnce = "all at once";
 
+/// What the report shows of one method under one light. The pictures are for eyes without script; what the page's
+/// script draws and reads out is packed (compare/report_data.hpp), empty if it was not kept.
+struct ReportLightView {
+  std::optional<Image8> visibility = {};
+  std::optional<Image8> error = {};  ///< none for the reference
+  std::string packed_visibility = {};
+  std::string packed_masks = {};
+  std::vector<BudgetPicture> budget_pictures = {};
+};
+
 /// What the report shows of one method beside its numbers; what was not made is left out.
 struct ReportEntry {
   visibility::MethodDescription description;
   std::optional<Image8> beauty;
   std::string packed_beauty;
-  std::vector<ReportLightView> lights;         ///< as ReportInput::lights
-  std::vector<BudgetPicture> budget_pictures;  ///< of the first light
+  std::vector<ReportLightView> lights;  ///< as ReportInput::lights
 };
 
 /// A light as the report tells of it, with what its read-out needs.

@@ -32,33 +32,52 @@ std::string bar_of_error(double rmse, double largest) {
       largest > 0 ? 78 * rmse / largest : 0);
 }
 
-ReportTable changes_table(const ReportInput& in) {
-  double largest = 0, largest_error = 0;
+/// A method's budget under a light; null if it has none.
+const ErrorBudget* budget_of(const MethodResult& result, std::size_t light) {
+  if (light >= result.lights.size() || !result.lights[light].error_budget) return nullptr;
+  return &*result.lights[light].error_budget;
+}
+
+/// What bars of this length stand for; of all lights, so that tables can be compared.
+struct Largest {
+  double change = 0, error = 0;
+};
+Largest largest_of(const ReportInput& in) {
+  Largest largest;
   for (const MethodResult& result : in.metrics.methods) {
-    if (!result.error_budget) continue;
-    for (const BudgetPart& part : result.error_budget->parts)
-      largest = std::max(largest, std::abs(result.error_budget->change(part).value_or(0)));
-    largest_error =
-        std::max({largest_error, result.error_budget->rmse, result.error_budget->together.rmse.value_or(0)});
+    for (std::size_t light = 0; light < in.lights.size(); ++light) {
+      const ErrorBudget* budget = budget_of(result, light);
+      if (budget == nullptr) continue;
+      for (const BudgetPart& part : budget->parts)
+        largest.change = std::max(largest.change, std::abs(budget->change(part).value_or(0)));
+      largest.error = std::max({largest.error, budget->rmse, budget->together.rmse.value_or(0)});
+    }
   }
+  return largest;
+}
+
+ReportTable changes_table(const ReportInput& in, std::size_t light) {
+  const Largest largest = largest_of(in);
   ReportTable table{
-      "Why each method is wrong: by how much its RMSE of V changes when one cause alone is repaired (negative: the "
-      "error shrinks), and what is left of it when all are.",
+      fmt::format(
+          "Why each method is wrong under light “{}”: by how much its RMSE of V changes when one cause alone is "
+          "repaired (negative: the error shrinks), and what is left of it when all are.",
+          escape_html(in.lights[light].name)),
       {"Method", "RMSE as it is"},
       {}};
   for (const visibility::ErrorCause cause : visibility::kErrorCauses) table.headers.emplace_back(name_of(cause));
   table.headers.emplace_back("remainder");
   for (const MethodResult& result : in.metrics.methods) {
-    if (!result.error_budget) continue;
-    const ErrorBudget& budget = *result.error_budget;
+    const ErrorBudget* budget = budget_of(result, light);
+    if (budget == nullptr) continue;
     std::vector<ReportCell> row{escape_html(result.entry)};
-    row.emplace_back(error_text(budget.rmse) + bar_of_error(budget.rmse, largest_error), budget.rmse);
-    for (const BudgetPart& part : budget.parts) {
-      const auto change = budget.change(part);
-      row.push_back(change ? ReportCell(signed_text(*change) + bar_of_change(*change, largest), change) : "–");
+    row.emplace_back(error_text(budget->rmse) + bar_of_error(budget->rmse, largest.error), budget->rmse);
+    for (const BudgetPart& part : budget->parts) {
+      const auto change = budget->change(part);
+      row.push_back(change ? ReportCell(signed_text(*change) + bar_of_change(*change, largest.change), change) : "–");
     }
-    const auto& left = budget.together.rmse;
-    row.push_back(left ? ReportCell(error_text(*left) + bar_of_error(*left, largest_error), left) : "–");
+    const auto& left = budget->together.rmse;
+    row.push_back(left ? ReportCell(error_text(*left) + bar_of_error(*left, largest.error), left) : "–");
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -82,9 +101,8 @@ std::string runs_html(const std::vector<BudgetRun>& runs) {
   return html.empty() ? "none" : html;
 }
 
-ReportTable runs_table(const MethodResult& result) {
-  const ErrorBudget& budget = *result.error_budget;
-  ReportTable table{"What was run for " + escape_html(result.entry),
+ReportTable runs_table(const std::string& entry, const ErrorBudget& budget) {
+  ReportTable table{"What was run for " + escape_html(entry),
                     {"Repaired", "How, or why not", "RMSE without it", "Pixels that it changes", "Runs"},
                     {}};
   const auto share = [](const std::vector<BudgetRun>& runs) {
@@ -108,51 +126,57 @@ ReportTable runs_table(const MethodResult& result) {
   return table;
 }
 
-std::string pictures_html(const ReportEntry& entry, const MethodResult& result) {
-  const ErrorBudget& budget = *result.error_budget;
+std::string pictures_html(const ReportLightView& view, const std::string& entry, const ErrorBudget& budget) {
   std::string html;
-  for (const BudgetPicture& shown : entry.budget_pictures) {
+  for (const BudgetPicture& shown : view.budget_pictures) {
     std::string caption;
     for (const BudgetPart& part : budget.parts) {
       if (shown.repaired == name_of(part.cause) && part.rmse) caption = "RMSE " + signed_text(*budget.change(part));
     }
     const BudgetRun& at_once = shown.repaired == kAllButView && budget.one_view ? *budget.one_view : budget.together;
     if (caption.empty() && at_once.rmse) caption = "RMSE " + signed_text(*at_once.rmse - budget.rmse);
-    html += figure_html(
-        shown.picture,
-        fmt::format("By how much V of {} changes with {} repaired: {}", result.entry, shown.repaired, caption),
-        "<b>" + escape_html(shown.repaired) + "</b><span>" + escape_html(caption) + "</span>");
+    html += figure_html(shown.picture,
+                        fmt::format("By how much V of {} changes with {} repaired: {}", entry, shown.repaired, caption),
+                        "<b>" + escape_html(shown.repaired) + "</b><span>" + escape_html(caption) + "</span>");
   }
   return html;
+}
+
+/// Of one light: the table with its bars, then method by method the pictures and the runs. Empty if no method has a
+/// budget there.
+std::string budget_of_light_html(const ReportInput& in, std::size_t light) {
+  std::string html;
+  for (std::size_t i = 0; i < in.methods.size(); ++i) {
+    const MethodResult& result = in.metrics.methods[i];
+    const ErrorBudget* budget = budget_of(result, light);
+    if (budget == nullptr) continue;
+    const std::string under = in.lights.size() > 1 ? fmt::format(" under light “{}”", in.lights[light].name) : "";
+    const std::string pictures = pictures_html(in.methods[i].lights[light], result.entry + under, *budget);
+    if (!pictures.empty()) {
+      html += fmt::format(
+          "<h4>Where repairs change V of {}</h4>\n<p class=\"note\">Blue becomes brighter, red darker, in the scale of "
+          "the errors; white stays.</p>\n<div class=\"gallery\">{}</div>\n",
+          escape_html(result.entry + under), pictures);
+    }
+    html += fmt::format(
+        "<details><summary>How the budget of {} was found out</summary>\n{}<p class=\"note\">If causes added up, {} "
+        "would be left.</p></details>\n",
+        escape_html(result.entry + under), table_html(runs_table(result.entry + under, *budget)),
+        signed_text(budget->if_causes_added_up()));
+  }
+  return html.empty() ? html : table_html(changes_table(in, light)) + html;
 }
 
 }  // namespace
 
 std::string error_budget_html(const ReportInput& in) {
   std::string html;
-  for (std::size_t i = 0; i < in.methods.size(); ++i) {
-    const MethodResult& result = in.metrics.methods[i];
-    if (!result.error_budget) continue;
-    const std::string pictures = pictures_html(in.methods[i], result);
-    if (!pictures.empty()) {
-      html += fmt::format(
-          "<h4>Where repairs change V of {}</h4>\n<p class=\"note\">Blue becomes brighter, red darker, in the scale of "
-          "the errors; white stays.</p>\n<div class=\"gallery\">{}</div>\n",
-          escape_html(result.entry), pictures);
-    }
-    html += fmt::format(
-        "<details><summary>How the budget of {} was found out</summary>\n{}<p class=\"note\">If causes added up, {} "
-        "would be left.</p></details>\n",
-        escape_html(result.entry), table_html(runs_table(result)),
-        signed_text(result.error_budget->if_causes_added_up()));
-  }
+  for (std::size_t light = 0; light < in.lights.size(); ++light) html += budget_of_light_html(in, light);
   if (html.empty()) return {};
-  return "<h3 id=\"error-budget\">Error budget</h3>\n" + table_html(changes_table(in)) +
-         fmt::format(
-             "<p class=\"note\">Over the judged pixels of light “{}”. A dash: nothing separates this cause for "
-             "that method. The changes need not add up, since causes hide and feed one another; the remainder "
-             "is what is left when all that can be combined is repaired at once.</p>\n",
-             escape_html(in.lights.front().name)) +
+  return "<h3 id=\"error-budget\">Error budget</h3>\n"
+         "<p class=\"note\">Over each light’s judged pixels. A dash: nothing separates this cause for that method. The "
+         "changes need not add up, since causes hide and feed one another; the remainder is what is left when all that "
+         "can be combined is repaired at once.</p>\n" +
          html;
 }
 

@@ -47,6 +47,12 @@ void add_pairs(Json& json, const std::optional<PairCounts>& pairs, const std::op
   json["pairsReferenceRight"] = verdicts ? Json(verdicts->reference_right) : Json();
 }
 
+void add_budget(Json& json, const LightResult* light) {
+  const ErrorBudget* budget = light != nullptr && light->error_budget ? &*light->error_budget : nullptr;
+  json["errorBudget"] = budget != nullptr ? to_json(*budget) : Json();
+  json["errorBudgetRuns"] = budget != nullptr ? runs_json(*budget) : Json();
+}
+
 /// Each light as it was asked, if that is known, and what became of it.
 Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightResult>& lights) {
   Json json = Json::array();
@@ -63,6 +69,7 @@ Json lights_json(const std::vector<LightStats>& asked, const std::vector<LightRe
     row["error"] = to_json(light.error);
     row["horizonError"] = to_json(light.horizon_error);
     row["sameSamples"] = same;
+    add_budget(row, &light);
     json.push_back(std::move(row));
   }
   return json;
@@ -79,9 +86,7 @@ Json to_json(const MethodResult& result) {
   json["beautyError"] =
       beauty ? Json{{"relativeRmse", beauty->relative_rmse}, {"relativeBias", beauty->relative_bias}} : Json();
   add_pairs(json, result.pairs, result.verdicts);
-  const auto& budget = result.error_budget;
-  json["errorBudget"] = budget ? to_json(*budget) : Json();
-  json["errorBudgetRuns"] = budget ? runs_json(*budget) : Json();
+  add_budget(json, result.lights.empty() ? nullptr : &result.lights.front());
   const auto& failure = result.failure;
   json["failure"] = failure ? Json{{"exitCode", failure->exit_code}, {"message", failure->message}} : Json();
   return json;

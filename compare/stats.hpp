@@ -78,6 +78,8 @@ struct LightResult {
   std::uint64_t judged_pixels = 0, horizon_pixels = 0;
   std::optional<VisibilityError> error, horizon_error;
   std::optional<SameSamples> same_samples;  ///< none for a method without masks
+  std::optional<ErrorBudget> error_budget =
+      {};  ///< of an image-based method, if it was asked for and pixels are judged
 };
 
 /// One line of metrics.json. What does not apply stays empty and becomes null.
@@ -92,7 +94,6 @@ struct MethodResult {
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, of all lights
   std::optional<PairCounts> pairs;               ///< two sample-based methods on the same samples
   std::optional<PairVerdicts> verdicts;          ///< of all differing pairs, or of an evenly spaced sample of them
-  std::optional<ErrorBudget> error_budget;       ///< of an image-based method, if it was asked for
   std::optional<MethodFailure> failure;          ///< then there are no seconds, errors and pairs
 };
 

@@ -47,19 +47,25 @@ void print_table(const compare::Metrics& metrics) {
 
 /// By how much each method's RMSE changes when one cause alone is repaired, and what is left without all of them.
 void print_budgets(const compare::Metrics& metrics) {
-  bool first = true;
-  for (const compare::MethodResult& result : metrics.methods) {
-    if (!result.error_budget) continue;
-    const compare::ErrorBudget& budget = *result.error_budget;
-    if (first) {
-      fmt::print("\n{:<28} {:>9}", "RMSE, and its change without", "rmse");
-      for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", name_of(part.cause));
-      fmt::print(" {:>10}\n", "remainder");
-      first = false;
+  std::size_t lights = 0;
+  for (const compare::MethodResult& result : metrics.methods) lights = std::max(lights, result.lights.size());
+  for (std::size_t light = 0; light < lights; ++light) {
+    bool first = true;
+    for (const compare::MethodResult& result : metrics.methods) {
+      if (light >= result.lights.size() || !result.lights[light].error_budget) continue;
+      const compare::ErrorBudget& budget = *result.lights[light].error_budget;
+      if (first) {
+        if (lights > 1) fmt::print("\nLight {}:", result.lights[light].name);
+        fmt::print("\n{:<28} {:>9}", "RMSE, and its change without", "rmse");
+        for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", name_of(part.cause));
+        fmt::print(" {:>10}\n", "remainder");
+        first = false;
+      }
+      fmt::print("{:<28} {:>9.6f}", result.entry, budget.rmse);
+      for (const compare::BudgetPart& part : budget.parts)
+        fmt::print(" {:>10}", number(budget.change(part), "{:+.6f}"));
+      fmt::print(" {:>10}\n", number(budget.together.rmse, "{:.6f}"));
     }
-    fmt::print("{:<28} {:>9.6f}", result.entry, budget.rmse);
-    for (const compare::BudgetPart& part : budget.parts) fmt::print(" {:>10}", number(budget.change(part), "{:+.6f}"));
-    fmt::print(" {:>10}\n", number(budget.together.rmse, "{:.6f}"));
   }
 }
 

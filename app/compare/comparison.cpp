@@ -317,14 +317,16 @@ class Comparison {
   /// The errors' scale is known: pictures of what repairs change have the same.
   void explain_errors() {
     for (std::size_t i = 0; i < entries_.size() && !hang_; ++i) {
-      if (entries_[i].description.repairs == nullptr || visibility_[i].empty() || truths_.front().judged.empty())
-        continue;
+      if (entries_[i].description.repairs == nullptr || visibility_[i].empty()) continue;
       try {
-        BudgetAnswer answer =
-            measure_error_budget({session_, truths_.front(), reference_request_, entries_[i], visibility_[i].front()},
-                                 report_.error_limit, devices_, progress_);
-        report_.metrics.methods[i].error_budget = std::move(answer.budget);
-        report_.methods[i].budget_pictures = std::move(answer.pictures);
+        for (std::size_t light = 0; light < truths_.size(); ++light) {
+          if (truths_[light].judged.empty()) continue;
+          BudgetAnswer answer = measure_error_budget({session_, session_.lights[light], truths_[light],
+                                                      reference_request_, entries_[i], visibility_[i][light]},
+                                                     report_.error_limit, devices_, progress_);
+          report_.metrics.methods[i].lights[light].error_budget = std::move(answer.budget);
+          report_.methods[i].lights[light].budget_pictures = std::move(answer.pictures);
+        }
       } catch (const render::DeviceDoesNotAnswer&) {
         hang_ = std::current_exception();
         warn(fmt::format("{}: no error budget, since the device does not answer any more", entries_[i].label));

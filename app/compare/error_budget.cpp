@@ -29,10 +29,10 @@ using visibility::Light;
 using visibility::RepairEnd;
 using visibility::RepairRun;
 
-/// Why the first light cannot be looked at part by part; empty if it can.
+/// Why a light cannot be looked at part by part; empty if it can.
 std::string why_whole(const Light& light) {
-  if (light.kind != visibility::LightKind::rectangle)
-    return fmt::format("the light is a {}: only rectangles are cut in parts", visibility::name_of(light.kind));
+  if (!visibility::is_planar(light.kind))
+    return fmt::format("the light is a {}: only what has a plane is cut in parts", visibility::name_of(light.kind));
   if (light.texture) return "the light has a texture: its parts would have none";
   return {};
 }
@@ -84,7 +84,7 @@ class BudgetRuns {
   }
 
   [[nodiscard]] Light light_for(const RepairRun& run) const {
-    const Light& light = question_.session.lights.front();
+    const Light& light = question_.light;
     if (run.light_samples == 0) return light;
     visibility::SampleRequest request = question_.samples;
     request.rows = request.columns = 0;
@@ -112,7 +112,7 @@ Image8 picture_of(const BudgetQuestion& question, const std::vector<float>& repa
 BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, DeviceSource& devices,
                                   Progress& progress) {
   const Entry& entry = question.entry;
-  const std::string whole = why_whole(question.session.lights.front());
+  const std::string whole = why_whole(question.light);
   const visibility::ErrorRepairs repairs = entry.description.repairs(entry.description, entry.options);
   BudgetRuns runs(question, devices, progress);
   BudgetAnswer answer;

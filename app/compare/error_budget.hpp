@@ -14,10 +14,11 @@
 
 namespace penumbra::app {
 
-/// What is explained: a method's V under the session's first light, over that light's judged pixels.
+/// What is explained: a method's V under one of the session's lights, over that light's judged pixels.
 struct BudgetQuestion {
   const Session& session;
-  const LightTruth& truth;                   ///< of the first light; it has judged pixels
+  const visibility::Light& light;            ///< of the session's lights
+  const LightTruth& truth;                   ///< of that light; it has judged pixels
   const visibility::SampleRequest& samples;  ///< pattern and seed for runs with a number of light samples of their own
   const Entry& entry;                        ///< its description has repairs
   std::span<const float> visibility;         ///< as asked, of each pixel

@@ -1,5 +1,7 @@
 // `compare --error-budget` on scenes where one cause of error is there alone: the budget must name it, with its sign. A
 // floor that casts nothing under casters that receive nothing, the light at height 5; exact areas judge.
+#include "base/image.hpp"
+#include "base/png.hpp"
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -174,21 +176,59 @@ TEST_F(ErrorBudget, IsRefusedWhereNoMethodIsImageBased) {
   EXPECT_FALSE(std::filesystem::exists(path("dir")));
 }
 
-/// A disk is not cut in parts, and texels that are left out have no other form: both are said.
+/// Parts of a light with a texture would have none, and texels that are left out have no other form: both are said.
 TEST_F(ErrorBudget, SaysWhatCannotBeDone) {
-  write("disk.json", scene_text_with("/lights/0", R"({"name": "disk", "disk": {"center": [0, 4, 0],
-      "normal": [0, -1, 0], "radius": 0.6}})"));
+  Image8 image{2, 1, {{255, 255, 255}, {0, 0, 0}}};
+  write_png(path("window.png"), image);
+  write("textured.json", scene_text_with("/lights/0", R"({"name": "window", "texture": "window.png",
+      "rectangle": {"center": [0, 4, 0], "halfU": [0.6, 0, 0], "halfV": [0, 0, 0.6]}})"));
   const Outcome outcome =
-      compare(path("disk.json"), "vssm:size=16,backproject-peel:size=16", {"--sample-pixels", "20"});
+      compare(path("textured.json"), "vssm:size=16,backproject-peel:size=16", {"--sample-pixels", "20"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json methods = json::parse(read("dir/metrics.json")).at("methods");
   const json &vssm = methods.at(0), &peel = methods.at(1);
   EXPECT_TRUE(vssm.at("errorBudget").at("view").is_null());
-  EXPECT_THAT(vssm.at("errorBudgetRuns").at("view").at("words").get<std::string>(), HasSubstr("disk"));
+  EXPECT_THAT(vssm.at("errorBudgetRuns").at("view").at("words").get<std::string>(), HasSubstr("texture"));
   EXPECT_EQ(vssm["errorBudgetRuns"].at("together").at("lightParts"), 1);
   EXPECT_TRUE(peel.at("errorBudget").at("fusion").is_null());
   EXPECT_THAT(peel.at("errorBudgetRuns").at("fusion").at("words").get<std::string>(), HasSubstr("samples=0"));
   for (const char* part : {"view", "remainder"}) EXPECT_TRUE(peel["errorBudget"].at(part).is_number()) << part;
+}
+
+/// Every light has its own, over its own judged pixels; the first light's stands again beside the method.
+TEST_F(ErrorBudget, EachLightIsExplained) {
+  const std::filesystem::path one_light = scene_with(plate("0, 2.5, 0", "0.4, 0, 0", "0, 0, -0.4"));
+  json scene = json::parse(read(one_light.filename()));
+  scene["lights"].push_back(json::parse(R"({"name": "round", "disk": {"center": [0.4, 5, 0],
+      "normal": [0, -1, 0], "radius": 0.5}})"));
+  const std::string both = write("both.json", scene.dump()).string();
+  const Outcome outcome = compare(both, "pcss:size=32,vssm:size=32", {"--sample-pixels", "40"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("Light key:"), HasSubstr("Light round:")));
+  const json methods = json::parse(read("dir/metrics.json")).at("methods");
+  for (const json& method : methods) {
+    const json& lights = method.at("lights");
+    ASSERT_EQ(lights.size(), 2U);
+    EXPECT_EQ(lights[0].at("errorBudget"), method.at("errorBudget"));
+    EXPECT_NE(lights[1].at("errorBudget"), method.at("errorBudget"));
+    for (const json& light : lights) {
+      EXPECT_EQ(light.at("errorBudgetRuns").at("rmse"), light.at("error").at("rmse"));
+      for (const char* part : {"resolution", "view", "bias", "remainder"}) {
+        EXPECT_TRUE(light.at("errorBudget").at(part).is_number()) << part << " of " << light.at("name");
+      }
+    }
+  }
+  EXPECT_THAT(read("dir/report.html"),
+              testing::AllOf(HasSubstr("under light “key”"), HasSubstr("under light “round”"),
+                             HasSubstr("How the budget of vssm:size=32 under light “round” was found out")));
+  // Whichever comes first is explained as it is among others.
+  const Outcome first = run({"compare", both, "-o", path("first"), "--runs", "1", "--reference", "exact", "--methods",
+                             "pcss:size=32", "--error-budget", "--sample-pixels", "all", "--light", "round"});
+  const Outcome among = run({"compare", both, "-o", path("among"), "--runs", "1", "--reference", "exact", "--methods",
+                             "pcss:size=32", "--error-budget", "--sample-pixels", "all"});
+  ASSERT_EQ(first.code + among.code, 0) << first.err << among.err;
+  EXPECT_EQ(json::parse(read("first/metrics.json")).at("methods").at(0).at("errorBudget"),
+            json::parse(read("among/metrics.json")).at("methods").at(0).at("lights").at(1).at("errorBudget"));
 }
 
 }  // namespace

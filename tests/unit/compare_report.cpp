@@ -39,7 +39,7 @@ MethodResult result_of(const std::string& entry) {
   result.stats.counters = {{"candidates", 1234567}};
   result.error = VisibilityError{0.0012, 0.0034, 0.05, 0.5, 0.001, -0.0002};
   result.all_lights_error = result.error;
-  result.lights = {{"key", 200000, 0, result.error, {}, {}}};
+  result.lights = {{"key", 200000, 0, result.error, {}, {}, {}}};
   return result;
 }
 
@@ -214,14 +214,14 @@ TEST(Report, DrawsErrorAgainstTimeAndTheBudget) {
   EXPECT_NE(report_html(in).find("Error against time"), std::string::npos);
   EXPECT_EQ(report_html(in).find("Error budget"), std::string::npos) << "nobody asked for it";
   in.metrics.methods[1].all_lights_error->rmse = 0;
-  ErrorBudget& budget = in.metrics.methods[0].error_budget.emplace();
+  ErrorBudget& budget = in.metrics.methods[0].lights[0].error_budget.emplace();
   budget.rmse = 0.01;
   for (const visibility::ErrorCause cause : visibility::kErrorCauses) budget.parts.push_back({.cause = cause});
   budget.parts[1].rmse = 0.01125;
   budget.parts[2].rmse = 0.0075;
   budget.parts[3].words = "added & not joined";
   budget.together.rmse = 0.005;
-  in.methods[0].budget_pictures.push_back({"layers", *in.reference.beauty});
+  in.methods[0].lights[0].budget_pictures.push_back({"layers", *in.reference.beauty});
   const std::string html = report_html(in);
   EXPECT_EQ(unbalanced_tag(html), "");
   // Half as long as the longest, to the right of the line in the middle.
@@ -360,7 +360,7 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
   in.metrics.methods[0].lights[0].horizon_pixels = 1;
   in.metrics.methods[0].lights[0].same_samples = SameSamples{.pairs = {1, 1, 1}, .verdicts = {1, 1, 0, 0}};
   in.metrics.methods[1].failure = MethodFailure{4, evil};
-  in.metrics.methods[0].error_budget.emplace().parts.push_back(
+  in.metrics.methods[0].lights[0].error_budget.emplace().parts.push_back(
       {.words = evil, .runs = {{{evil, {{evil, evil}}}, std::nullopt, evil}}});
   in.methods[0].description.paper = in.methods[0].description.exact_for = evil;
   const std::string html = report_html(in);
