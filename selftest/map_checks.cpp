@@ -160,7 +160,7 @@ Check check_slices(const render::Device& device, const Stage& stage, std::uint32
   const double step = std::ldexp(1.0, -static_cast<int>(bits));
   check.rule = fmt::format("marked as covered, but where an edge is within {:g} texel of the centre", step);
   const CentreMaps maps(device, stage, size);
-  maps::Slices product(device, maps::SliceRule::equal, count, rasteriser);
+  maps::Slices product(device, {.count = count, .rasteriser = rasteriser});
   render::Commands commands(device);
   product.record(commands, maps.set(stage));
   commands.submit();

@@ -12,6 +12,7 @@
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/backprojection/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
@@ -49,6 +50,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kForm.description());
   description.options.push_back(kLayers.description());
   description.options.push_back(kSearch.description());
+  description.options.push_back(kSubsample.description());
   return description;
 }
 
@@ -75,7 +77,7 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   const gpu::BackprojectPush push{parsed[kFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kLayers]};
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
-  return make_map_method(device, std::move(recipe), options);
+  return subsampled(make_map_method(device, std::move(recipe), options), parsed[kSubsample]);
 }
 
 }  // namespace penumbra::maps

@@ -10,6 +10,7 @@
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/backprojection/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
@@ -48,6 +49,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kLayers.description());
   description.options.push_back(kSamples.description());
   description.options.push_back(kSelect.description());
+  description.options.push_back(kSubsample.description());
   return description;
 }
 
@@ -72,7 +74,7 @@ std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& 
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
-  return make_map_method(device, std::move(recipe), options);
+  return subsampled(make_map_method(device, std::move(recipe), options), parsed[kSubsample]);
 }
 
 }  // namespace penumbra::maps

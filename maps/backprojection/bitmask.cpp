@@ -34,6 +34,11 @@ constexpr visibility::ChoiceOption kOccluder{"occluder",
 constexpr auto kFill = fill_option(gpu::kFillNone);
 constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 1, "layers of surfaces that are asked"};
 constexpr visibility::IntegerOption kLevel{"level", 0, 6, 0, "blocks of 2^level texels a side are one texel"};
+constexpr visibility::IntegerOption kBudget{
+    "budget", 0, 1u << 28, 0,
+    "texels of a face that a receiver may look at; where there are more, coarser levels stand for them; 0: no limit"};
+constexpr auto kBlend =
+    visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
 constexpr auto kSearch = search_option(Search::mssm);
 
 visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
@@ -55,7 +60,7 @@ visibility::MethodDescription describe() {
       .verdict_on = verdict_on,
       .repairs = bitmask_repairs};
   for (const auto& option : {kOccluder.description(), kFill.description(), kLayers.description(), kLevel.description(),
-                             kSearch.description()}) {
+                             kBudget.description(), kBlend.description(), kSearch.description()}) {
     description.options.push_back(option);
   }
   return description;
@@ -72,8 +77,9 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
   MapRecipe recipe{.description = describe(), .look_up_name = "bitmask look-up", .look_up = shaders::kBitmaskComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const Search search = parsed[kSearch];
-  const gpu::BitmaskPush push{parsed[kOccluder], parsed[kFill], parsed[kLayers], parsed[kLevel],
-                              search == Search::none ? 0u : 1u};
+  const gpu::BitmaskPush push{
+      parsed[kOccluder], parsed[kFill],           parsed[kLayers], parsed[kLevel], search == Search::none ? 0u : 1u,
+      parsed[kBudget],   parsed[kBlend] ? 1u : 0u};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
   recipe.constants = {device.limits().subgroup_size};
@@ -83,7 +89,8 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
   recipe.products.push_back(std::make_unique<LightSampleBands>(device));
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
-  recipe.products.push_back(std::make_unique<LevelMaps>(device, push.level));
+  recipe.products.push_back(std::make_unique<LevelMaps>(device, push.budget > 0 ? 1 : push.level,
+                                                        push.budget > 0 ? gpu::kCoarsestLevel : push.level));
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
   return make_map_method(device, std::move(recipe), options);

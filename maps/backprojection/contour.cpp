@@ -8,6 +8,7 @@
 #include "maps/backprojection/contour_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/backprojection/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
 
 #include <utility>
 
@@ -40,6 +41,7 @@ visibility::MethodDescription describe() {
       .repairs = contour_repairs};
   description.options.push_back(kSearch.description());
   description.options.push_back(kTraversal.description());
+  description.options.push_back(kSubsample.description());
   return description;
 }
 
@@ -53,7 +55,8 @@ std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
                                                  const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
   const ContourChoices choices{.search = parsed[kSearch], .traversal = parsed[kTraversal]};
-  return make_map_method(device, contour_recipe(device, describe(), choices, parsed), options);
+  return subsampled(make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+                    parsed[kSubsample]);
 }
 
 }  // namespace penumbra::maps

@@ -29,5 +29,5 @@ void main() {
       upper = max(upper, uvec2(x, y) - first);
     }
   }
-  levels[i] = uvec2(floatBitsToUint(nearest), lower.x | upper.x << 8 | lower.y << 16 | upper.y << 24);
+  levels[push.start + i] = uvec2(floatBitsToUint(nearest), lower.x | upper.x << 8 | lower.y << 16 | upper.y << 24);
 }

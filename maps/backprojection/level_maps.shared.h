@@ -11,6 +11,7 @@ struct LevelPush {
   uint size;   // of the maps
   uint level;  // a texel of the level is 2^level of theirs wide
   uint maps;   // faces of all layers
+  uint start;  // where the level begins in the buffer
 };
 
 #ifdef __cplusplus

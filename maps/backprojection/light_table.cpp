@@ -1,6 +1,7 @@
 #include "maps/backprojection/light_table.hpp"
 
 #include "base/assert.hpp"
+#include "visibility/lights/convex_polygon.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -37,28 +38,6 @@ double disk_share(double x, double y) {
   return area / std::numbers::pi;
 }
 
-/// What of a convex polygon has coordinate `axis` at most `limit` (Sutherland and Hodgman 1974).
-std::vector<glm::dvec2> clipped(const std::vector<glm::dvec2>& polygon, int axis, double limit) {
-  std::vector<glm::dvec2> inside;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if (a[axis] <= limit) inside.push_back(a);
-    if ((a[axis] <= limit) != (b[axis] <= limit)) {
-      inside.push_back(glm::mix(a, b, (limit - a[axis]) / (b[axis] - a[axis])));
-    }
-  }
-  return inside;
-}
-
-double area_of(const std::vector<glm::dvec2>& polygon) {
-  double twice = 0;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const glm::dvec2 b = polygon[i] - polygon[0], c = polygon[i + 1] - polygon[0];
-    twice += b.x * c.y - b.y * c.x;
-  }
-  return std::abs(twice) / 2;
-}
-
 std::vector<float> shares_of_texture(const visibility::LightTexture& texture) {
   // The texture's rows run from the top downward.
   const std::size_t width = texture.width, height = texture.height;
@@ -89,15 +68,15 @@ std::vector<float> shares_at_nodes(const ShareOf& share_of) {
 }
 
 std::vector<float> shares_of_polygon(const std::vector<glm::dvec2>& outline, const LightBounds& bounds) {
-  const double whole = area_of(outline);
+  const double whole = visibility::area_of(outline);
   std::vector<float> shares;
   shares.reserve((kCells + 1) * (kCells + 1));
   for (std::uint32_t y = 0; y <= kCells; ++y) {
     const double top = glm::mix(bounds.lower.y, bounds.upper.y, y / static_cast<double>(kCells));
-    const std::vector<glm::dvec2> below = clipped(outline, 1, top);
+    const std::vector<glm::dvec2> below = visibility::clipped_above(outline, 1, top);
     for (std::uint32_t x = 0; x <= kCells; ++x) {
       const double right = glm::mix(bounds.lower.x, bounds.upper.x, x / static_cast<double>(kCells));
-      shares.push_back(static_cast<float>(area_of(clipped(below, 0, right)) / whole));
+      shares.push_back(static_cast<float>(visibility::area_of(visibility::clipped_above(below, 0, right)) / whole));
     }
   }
   return shares;
@@ -120,8 +99,9 @@ LightTableData light_table(const visibility::Light& light, const LightBasis& bas
   }
   data.head.corners = static_cast<std::uint32_t>(outline.size());
   const glm::dvec2 extent = bounds.upper - bounds.lower;
-  const bool upright = light.kind == visibility::LightKind::rectangle &&
-                       std::abs(area_of(outline) - extent.x * extent.y) <= kPerpendicular * extent.x * extent.y;
+  const bool upright =
+      light.kind == visibility::LightKind::rectangle &&
+      std::abs(visibility::area_of(outline) - extent.x * extent.y) <= kPerpendicular * extent.x * extent.y;
   if (!upright) {
     data.shares = shares_of_polygon(outline, bounds);
     return data;
@@ -133,7 +113,10 @@ LightTableData light_table(const visibility::Light& light, const LightBasis& bas
 }
 
 void LightTable::record(render::Commands& /*commands*/, const MapSet& maps) {
-  const LightTableData data = light_table(maps.light, maps.basis);
+  write(light_table(maps.light, maps.basis));
+}
+
+void LightTable::write(const LightTableData& data) {
   const std::uint64_t head = sizeof(data.head), outline = data.outline.size() * sizeof(float);
   render::grow(*device_, table_, "light table", head + outline + data.shares.size() * sizeof(float));
   table_->write<gpu::LightTableHead>(std::span(&data.head, 1));

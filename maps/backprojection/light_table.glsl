@@ -10,14 +10,14 @@ layout(scalar, binding = LIGHT_TABLE) readonly buffer Table {
 // The share of the light left of and below `unit`, in [0, 1]^2 of its bounding rectangle, in parts of kWholeLight. Rounded
 // here, so that differences of neighbouring rectangles add up to exactly the difference of their union.
 int light_up_to(vec2 unit) {
-  float share = unit.x * unit.y;
+  precise float share = unit.x * unit.y;
   if (light.width * light.height > 1) {
     const vec2 at = unit * vec2(light.width, light.height);
     const vec2 cell = min(floor(at), vec2(light.width, light.height) - 1.0);
     const vec2 t = at - cell;
     const uint k = 2 * light.corners + uint(cell.y) * (light.width + 1) + uint(cell.x);
-    const float below = mix(light_data[k], light_data[k + 1], t.x);
-    const float above = mix(light_data[k + light.width + 1], light_data[k + light.width + 2], t.x);
+    precise const float below = mix(light_data[k], light_data[k + 1], t.x);
+    precise const float above = mix(light_data[k + light.width + 1], light_data[k + light.width + 2], t.x);
     share = mix(below, above, t.y);
   }
   return int(share * float(kWholeLight) + 0.5);
@@ -26,8 +26,8 @@ int light_up_to(vec2 unit) {
 // The share of the light between two corners in its plane, in either order.
 uint light_between(vec2 a, vec2 b) {
   const vec2 extent = light.upper - light.lower;
-  const vec2 from = clamp((min(a, b) - light.lower) / extent, 0.0, 1.0);
-  const vec2 to = clamp((max(a, b) - light.lower) / extent, 0.0, 1.0);
+  precise const vec2 from = clamp((min(a, b) - light.lower) / extent, 0.0, 1.0);
+  precise const vec2 to = clamp((max(a, b) - light.lower) / extent, 0.0, 1.0);
   if (from.x >= to.x || from.y >= to.y) return 0;
   const int share = light_up_to(to) - light_up_to(vec2(from.x, to.y)) - light_up_to(vec2(to.x, from.y)) + light_up_to(from);
   return uint(max(share, 0));

@@ -24,6 +24,8 @@ class LightTable final : public MapProduct {
  public:
   explicit LightTable(const render::Device& device) : device_(&device) {}
   void record(render::Commands& commands, const MapSet& maps) override;
+  /// Writes that of a light, at once.
+  void write(const LightTableData& data);
   [[nodiscard]] const render::Buffer& buffer() const override;
 
  private:

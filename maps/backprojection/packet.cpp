@@ -9,6 +9,7 @@
 #include "maps/backprojection/contour_recipe.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/backprojection/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
 
 #include <utility>
 
@@ -33,7 +34,7 @@ constexpr visibility::ChoiceOption kPacket{"packet",
                                            Extent{3, 3},
                                            "pixels that look for contours together"};
 constexpr visibility::IntegerOption kSubLights{
-    "sublights", 1, 16, 1, "parts along each axis of a rectangle light, each with a map of its own; V is their mean"};
+    "sublights", 1, 16, 1, "parts of the light along each axis, each with a map of its own; V is their mean"};
 constexpr auto kHierarchy =
     visibility::flag_option("hierarchy", true, "find contours below nodes of a multi-scale pyramid, not cell by cell");
 constexpr visibility::RealOption kDivergence{
@@ -59,6 +60,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kSubLights.description());
   description.options.push_back(kHierarchy.description());
   description.options.push_back(kDivergence.description());
+  description.options.push_back(kSubsample.description());
   return description;
 }
 
@@ -78,7 +80,8 @@ std::unique_ptr<visibility::Method> make_packet(const render::Device& device,
                                .packet_height = packet.height,
                                .divergence = parsed[kDivergence],
                                .sub_lights = parsed[kSubLights]};
-  return make_map_method(device, contour_recipe(device, describe(), choices, parsed), options);
+  return subsampled(make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+                    parsed[kSubsample]);
 }
 
 }  // namespace penumbra::maps

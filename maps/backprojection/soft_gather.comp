@@ -5,7 +5,7 @@
 
 // Atty et al. 2006 the other way round: each texel of the receivers' map adds up the occluder texels that can hide light
 // from it. What is between it and the light and no nearer to the light's plane than `nearest` is seen from the light's
-// centre within half the light times (1/nearest - 1/z) of its own direction.
+// centre within the light times (1/nearest - 1/z) of its own direction.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Occluders { float occluders[]; };
@@ -13,6 +13,8 @@ layout(scalar, binding = 1) readonly buffer ReceiverMap { float receiver_map[]; 
 layout(scalar, binding = 2) buffer Sums { uvec2 sums[]; };  // low word, high word; of 16-bit floats the bits of their sum
 layout(scalar, binding = 3) buffer Counters { uint counters[]; };  // pairs that cover light: low word, high word
 layout(scalar, push_constant) uniform Push { SoftMapPush push; };
+#define LIGHT_TABLE 4
+#include "maps/backprojection/light_table.glsl"
 #include "maps/backprojection/soft_patch.glsl"
 
 // To the nearest 16-bit float, ties to even; 0 ... 65504.
@@ -31,10 +33,11 @@ void main() {
   if (stored >= 1.0) return;
   const float z = stored * push.receiver_far;
   const vec2 at = receiver_tangents(uvec2(i % push.receiver_size, i / push.receiver_size));
-  const vec2 reach = push.half_light * max(1.0 / push.nearest - 1.0 / z, 0.0);
+  const float reach = max(1.0 / push.nearest - 1.0 / z, 0.0);
+  const vec2 from = at + push.light_lower * reach, to = at + push.light_upper * reach;
   const vec2 end = vec2(float(push.occluder_size));
-  ivec2 first = ivec2(clamp(floor((at - reach - push.occluder_lower) / push.occluder_texel) - 1.0, vec2(0.0), end));
-  ivec2 last = ivec2(clamp(ceil((at + reach - push.occluder_lower) / push.occluder_texel) + 1.0, vec2(0.0), end));
+  ivec2 first = ivec2(clamp(floor((from - push.occluder_lower) / push.occluder_texel) - 1.0, vec2(0.0), end));
+  ivec2 last = ivec2(clamp(ceil((to - push.occluder_lower) / push.occluder_texel) + 1.0, vec2(0.0), end));
   first.y = max(first.y, int(push.first_row));
   last.y = min(last.y, int(push.last_row));
   uvec2 sum = sums[result];

@@ -9,7 +9,7 @@ layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Sums { uvec2 sums[]; };
 layout(scalar, binding = 1) buffer Visible { float visible[]; };
 layout(scalar, push_constant) uniform Push { SoftMapPush push; };
-#include "maps/backprojection/soft_patch.glsl"
+#include "maps/backprojection/soft_units.glsl"
 
 void main() {
   const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;

@@ -4,7 +4,7 @@
 #include "maps/backprojection/soft_shadow_map.shared.h"
 
 // Atty et al. 2006 as published: each occluder texel adds itself to all texels of the receivers' map that its penumbra
-// reaches. At depth z_P it shades directions within half the light times (1/z_P - 1/z) of its own, which grows with the
+// reaches. At depth z_P it shades directions within the light times (1/z_P - 1/z) of its own, which grows with the
 // receiver's depth z: the deepest one bounds it. Sums are integers (soft_patch.glsl), so no order changes them.
 
 layout(local_size_x = kLookupGroup) in;
@@ -13,6 +13,8 @@ layout(scalar, binding = 1) readonly buffer ReceiverMap { float receiver_map[]; 
 layout(scalar, binding = 2) buffer Sums { uvec2 sums[]; };  // of each receiver texel: low word, high word
 layout(scalar, binding = 3) buffer Counters { uint counters[]; };
 layout(scalar, push_constant) uniform Push { SoftMapPush push; };
+#define LIGHT_TABLE 4
+#include "maps/backprojection/light_table.glsl"
 #include "maps/backprojection/soft_patch.glsl"
 
 void main() {
@@ -23,10 +25,10 @@ void main() {
   const float depth = stored * push.occluder_far;
   const uvec2 texel = uvec2(i % push.occluder_size, i / push.occluder_size);
   const vec2 from = push.occluder_lower + vec2(texel) * push.occluder_texel, to = from + push.occluder_texel;
-  const vec2 reach = push.half_light * max(1.0 / depth - 1.0 / push.deepest, 0.0);
+  const float reach = max(1.0 / depth - 1.0 / push.deepest, 0.0);
   const vec2 end = vec2(float(push.receiver_size));
-  ivec2 first = ivec2(clamp(floor((from - reach - push.receiver_lower) / push.receiver_texel) - 1.0, vec2(0.0), end));
-  ivec2 last = ivec2(clamp(ceil((to + reach - push.receiver_lower) / push.receiver_texel) + 1.0, vec2(0.0), end));
+  ivec2 first = ivec2(clamp(floor((from - push.light_upper * reach - push.receiver_lower) / push.receiver_texel) - 1.0, vec2(0.0), end));
+  ivec2 last = ivec2(clamp(ceil((to - push.light_lower * reach - push.receiver_lower) / push.receiver_texel) + 1.0, vec2(0.0), end));
   first.y = max(first.y, int(push.first_row));
   last.y = min(last.y, int(push.last_row));
   uint pairs = 0;

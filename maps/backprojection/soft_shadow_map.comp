@@ -10,24 +10,12 @@
 // that is above their horizon. Texels that hold no receiver are lit, as is what is beside the map.
 
 layout(scalar, binding = 4) readonly buffer Visible { float visible[]; };
+#define LIGHT_TABLE 5
+#include "maps/backprojection/light_table.glsl"
 
 float texel_of(ivec2 at, uint first) {
   const ivec2 within = clamp(at, ivec2(0), ivec2(int(own.size) - 1));
   return visible[first + uint(within.y) * own.size + uint(within.x)];
-}
-
-// The share of the rectangle that is above the receiver's plane: what a half-plane a x + b y < c holds of [-1, 1]^2.
-// By the heights of the corners over the plane, clipped: the area is that of the square less, for each corner, a triangle.
-float share_above(vec3 d, vec3 m) {
-  const float a = abs(m.x) * own.half_light.x, b = abs(m.y) * own.half_light.y, c = dot(m, d);
-  if (c >= a + b) return 1.0;
-  if (c <= -a - b) return 0.0;
-  // Area of {x, y in [0, 1] : 2a x + 2b y < c + a + b}: of the corner's triangle less what is beyond the far sides.
-  const float s = c + a + b, p = 2.0 * a, q = 2.0 * b;
-  if (p < 1e-6 * q) return clamp(s / q, 0.0, 1.0);
-  if (q < 1e-6 * p) return clamp(s / p, 0.0, 1.0);
-  const float beyond_p = max(s - p, 0.0), beyond_q = max(s - q, 0.0);
-  return clamp((s * s - beyond_p * beyond_p - beyond_q * beyond_q) / (2.0 * p * q), 0.0, 1.0);
 }
 
 float soft_shadow(vec3 d, SideView side) {
@@ -55,7 +43,7 @@ void main() {
     if (!on_emitting_side(d)) {
       v = 0.0;
     } else {
-      v = share_above(d, m);
+      v = light_above_horizon(vec3(d.xy, abs(d.z)), d.z < 0.0 ? vec3(m.xy, -m.z) : m);
       if (!on_occluder) v = min(v, soft_shadow(d, views[0].side[d.z < 0.0 ? 1 : 0]));
     }
   }

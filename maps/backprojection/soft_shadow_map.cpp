@@ -16,9 +16,10 @@
 #include "maps/backprojection/soft_shadow_map.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map.shared.h"
 #include "maps/host/caster_maps.hpp"
+#include "maps/backprojection/light_table.hpp"
+#include "maps/backprojection/repairs.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
-#include "maps/backprojection/repairs.hpp"
 #include "maps/host/receivers.hpp"
 #include "render/compute_pass.hpp"
 
@@ -64,14 +65,13 @@ visibility::MethodDescription describe() {
       .exact_for =
           "nothing; in the limit of large maps a receiver below occluders that are flat and parallel to the light "
           "and do not overlap",
-      .lights = {visibility::LightKind::rectangle},
-      .textures = false,
+      .lights = planar_lights(),
       .options = map_option_descriptions(kSize, kNoBias),
       .verdict_on = verdict_on,
       .repairs = soft_shadow_map_repairs};
   for (const visibility::OptionDescription& option :
-       {kReceiverSize.description(), kPasses.description(), kPrecision.description(), kForm.description(),
-        kFilter.description()}) {
+       {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
+        kForm.description(), kFilter.description()}) {
     description.options.push_back(option);
   }
   return description;
@@ -113,8 +113,10 @@ class SoftShadowMap final : public visibility::Method {
     std::uint32_t faces = 0;
     std::vector<float> depths;
   };
-  /// Draws the chosen triangles, the nearest or the farthest of each texel (nothing: 1 or 0).
-  Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, bool farthest,
+  /// What of each texel's surfaces a map holds; nothing: 1, of the farthest 0.
+  enum class Kept : std::uint8_t { nearest, nearest_two, farthest };
+  /// Draws the chosen triangles. Of two layers the second is behind the first in the buffer, and is not read back.
+  Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, Kept kept,
            std::unique_ptr<render::Buffer>& buffer);
   void add_up(const Map& occluders, std::uint32_t pass);
   [[nodiscard]] gpu::SoftMapPush push_for(const Map& occluders, int side, std::uint32_t pass) const;
@@ -132,7 +134,9 @@ class SoftShadowMap final : public visibility::Method {
   const visibility::ViewSamples* samples_ = nullptr;
   const visibility::Light* light_ = nullptr;
   LightBasis basis_;
-  glm::vec2 half_light_{0};
+  LightTable light_table_;
+  gpu::LightTableHead light_shape_{};
+  bool upright_ = false;  ///< a rectangle along its basis, without texture
   SoftScene parts_;
   Map receiver_map_;
   std::uint32_t tile_pixels_ = 0;
@@ -161,22 +165,28 @@ SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map
       look_up_(device, {.name = "soft shadow map look-up",
                         .spirv = shaders::kSoftShadowMapComp,
                         .push_bytes = sizeof(gpu::LookupPush) + sizeof(gpu::SoftLookupPush),
-                        .constants = {}}) {}
+                        .constants = {}}),
+      light_table_(device) {}
 
 SoftShadowMap::Map SoftShadowMap::draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size,
-                                       bool farthest, std::unique_ptr<render::Buffer>& buffer) {
+                                       Kept kept, std::unique_ptr<render::Buffer>& buffer) {
   Map map;
+  const std::uint32_t layers = kept == Kept::nearest_two ? 2 : 1;
   map.view = fit_window(*scene_, basis_, chosen, size, light_->two_sided);
   map.faces = map.view.side[0].face_count + map.view.side[1].face_count;
-  check_faces_fit(*device_, size, std::max(map.faces, 1u));
+  check_faces_fit(*device_, size, layers * std::max(map.faces, 1u));
   map.depths.resize(std::size_t{std::max(map.faces, 1u)} * size * size);
-  render::grow(*device_, buffer, "soft shadow map depths", map.depths.size() * sizeof(float));
+  render::grow(*device_, buffer, "soft shadow map depths", layers * map.depths.size() * sizeof(float));
   if (map.faces == 0) return map;
   render::Commands commands(*device_);
-  if (farthest) {
+  if (kept == Kept::farthest) {
     casters.record_farthest(commands, map.view, basis_, light_->index, *buffer, 0);
   } else {
     casters.record(commands, map.view, basis_, light_->index, *buffer, 0);
+    times_.add(commands.submit());
+    if (kept == Kept::nearest_two) {
+      casters.record_behind(commands, map.view, basis_, light_->index, *buffer, map.faces, 0);
+    }
   }
   times_.add(commands.submit());
   buffer->read<float>(map.depths);
@@ -188,8 +198,10 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", description_.name);
   light_ = &light;
   basis_ = light_basis(light);
-  const visibility::LightFrame frame = visibility::light_frame(light);
-  half_light_ = glm::vec2(glm::length(frame.u), glm::length(frame.v));
+  const LightTableData shape = light_table(light, basis_);
+  light_table_.write(shape);
+  light_shape_ = shape.head;
+  upright_ = shape.head.width * shape.head.height == 1;
   parts_ = part_scene(*scene_, light, basis_);
   counters_ = {{"patches", 0}, {"fragments", 0}, {"pixelsOnOccluders", 0}};
 
@@ -198,11 +210,12 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   receiver_maps_.upload(drawn);
   drawn.casts_shadow = parts_.occluders;
   occluder_maps_.upload(drawn);
-  receiver_map_ = draw(receiver_maps_, parts_.receivers, settings_.receiver_size, false, receiver_depths_);
+  receiver_map_ = draw(receiver_maps_, parts_.receivers, settings_.receiver_size, Kept::nearest, receiver_depths_);
   render::grow(*device_, visible_, "soft shadow map", receiver_map_.depths.size() * sizeof(float));
   render::grow(*device_, counts_, "fragments", 2 * sizeof(std::uint32_t));
   for (std::uint32_t pass = 0; pass < settings_.passes; ++pass) {
-    add_up(draw(occluder_maps_, parts_.occluders, map_.size, pass > 0, occluders_), pass);
+    const Kept nearest = map_.depth == DepthUse::first ? Kept::nearest : Kept::nearest_two;
+    add_up(draw(occluder_maps_, parts_.occluders, map_.size, pass > 0 ? Kept::farthest : nearest, occluders_), pass);
   }
   render::grow(*device_, views_, "map views", sizeof(gpu::LightView));
   views_->write<gpu::LightView>(std::span(&receiver_map_.view, 1));
@@ -227,7 +240,9 @@ gpu::SoftMapPush SoftShadowMap::push_for(const Map& occluders, int side, std::ui
   push.occluder_texel = (from.upper - from.lower) / static_cast<float>(size);
   push.receiver_lower = to.lower;
   push.receiver_texel = (to.upper - to.lower) / static_cast<float>(receiver_size);
-  push.half_light = half_light_;
+  push.light_lower = light_shape_.lower;
+  push.light_upper = light_shape_.upper;
+  push.upright = upright_ ? 1 : 0;
   push.occluder_far = occluders.view.far;
   push.receiver_far = receiver_map_.view.far;
   push.bias = static_cast<float>(map_.bias);
@@ -237,6 +252,9 @@ gpu::SoftMapPush SoftShadowMap::push_for(const Map& occluders, int side, std::ui
   push.receiver_first = to.first_face * receiver_size * receiver_size;
   push.half_floats = settings_.precision == Precision::fp16 ? 1 : 0;
   push.later = pass > 0 ? 1 : 0;
+  // The farthest surfaces have none behind them.
+  push.depth_use = pass > 0 ? gpu::kDepthFirst : static_cast<std::uint32_t>(map_.depth);
+  push.second_first = push.occluder_first + occluders.faces * size * size;
   push.nearest = extremes(std::span(occluders.depths).subspan(push.occluder_first, std::size_t{size} * size)).first *
                  push.occluder_far;
   push.deepest =
@@ -267,7 +285,7 @@ void SoftShadowMap::add_up(const Map& occluders, std::uint32_t pass) {
       push.first_row = row;
       push.last_row = std::min(row + rows, across);
       (gathers ? gather_ : scatter_)
-          .record(commands, push, {*occluders_, *receiver_depths_, *sums_, *counts_},
+          .record(commands, push, {*occluders_, *receiver_depths_, *sums_, *counts_, light_table_.buffer()},
                   groups(gathers ? receiver_texels : occluder_texels));
       if (row / rows % kPassesPerSubmission == kPassesPerSubmission - 1) times_.add(commands.submit());
     }
@@ -298,8 +316,7 @@ void SoftShadowMap::evaluate(const visibility::Tile& tile) {
   counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder, 1u));
   render::grow(*device_, results_, "map visibility", on_occluder.size() * sizeof(std::uint32_t));
   results_->write<std::uint32_t>(on_occluder);
-  const gpu::SoftLookupPush own{.half_light = half_light_,
-                                .size = settings_.receiver_size,
+  const gpu::SoftLookupPush own{.size = settings_.receiver_size,
                                 .linear = settings_.filter == Filter::linear ? 1u : 0u};
   render::Commands commands(*device_);
   for (const Receivers::Part& part : receivers_.parts(tile)) {
@@ -312,8 +329,8 @@ void SoftShadowMap::evaluate(const visibility::Tile& tile) {
     std::vector<std::uint32_t> words = push_words(push);
     const std::vector<std::uint32_t> more = push_words(own);
     words.insert(words.end(), more.begin(), more.end());
-    const std::vector<render::BufferReference> buffers{*part.receivers, *views_, *receiver_depths_, *results_,
-                                                       *visible_};
+    const std::vector<render::BufferReference> buffers{*part.receivers, *views_,   *receiver_depths_,
+                                                       *results_,       *visible_, light_table_.buffer()};
     look_up_.record(commands, std::as_bytes(std::span(words)), buffers, part.groups());
   }
   times_.add(commands.submit());

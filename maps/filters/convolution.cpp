@@ -23,7 +23,7 @@ visibility::MethodDescription describe() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
       .lights = planar_lights(),
-      .options = map_option_descriptions(),
+      .options = single_map_option_descriptions(),
       .verdict_on = verdict_on,
       .repairs = slice_repairs};
   description.options.push_back(kSliceFilter.description());
@@ -39,13 +39,12 @@ visibility::MethodDescription convolution_description() {
 std::unique_ptr<visibility::Method> make_convolution(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
-  return make_map_method(device,
-                         slice_recipe(device, describe(),
-                                      {.rule = SliceRule::one_plane,
-                                       .count = 1,
-                                       .filter = parsed[kSliceFilter],
-                                       .rasteriser = parsed[kRasteriser]}),
-                         options);
+  const SliceOptions slices{.rule = SliceRule::one_plane,
+                            .count = 1,
+                            .rasteriser = parsed[kRasteriser],
+                            .depth = parsed[kDepth],
+                            .bias = parsed[kBias]};
+  return make_map_method(device, slice_recipe(device, describe(), slices, parsed[kSliceFilter]), options);
 }
 
 }  // namespace penumbra::maps

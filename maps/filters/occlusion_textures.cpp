@@ -26,7 +26,7 @@ visibility::MethodDescription describe() {
                                                 "nothing; in the limit of large maps, one flat blocker parallel to a "
                                                 "rectangle light in the far plane of a slice",
                                             .lights = planar_lights(),
-                                            .options = map_option_descriptions(),
+                                            .options = single_map_option_descriptions(),
                                             .verdict_on = verdict_on,
                                             .repairs = slice_repairs};
   description.options.push_back(kSlices.description());
@@ -43,13 +43,12 @@ visibility::MethodDescription occlusion_textures_description() {
 std::unique_ptr<visibility::Method> make_occlusion_textures(const render::Device& device,
                                                             const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
-  return make_map_method(device,
-                         slice_recipe(device, describe(),
-                                      {.rule = SliceRule::equal,
-                                       .count = parsed[kSlices],
-                                       .filter = parsed[kSliceFilter],
-                                       .rasteriser = parsed[kRasteriser]}),
-                         options);
+  const SliceOptions slices{.rule = SliceRule::equal,
+                            .count = parsed[kSlices],
+                            .rasteriser = parsed[kRasteriser],
+                            .depth = parsed[kDepth],
+                            .bias = parsed[kBias]};
+  return make_map_method(device, slice_recipe(device, describe(), slices, parsed[kSliceFilter]), options);
 }
 
 }  // namespace penumbra::maps

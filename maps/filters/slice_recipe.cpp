@@ -17,20 +17,20 @@ constexpr std::uint32_t kHorizonSamples = 64;
 }  // namespace
 
 MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
-                       const SliceChoices& choices) {
+                       const SliceOptions& options, PrefilterKind filter) {
   MapRecipe recipe{.description = std::move(description),
                    .look_up_name = "slices look-up",
                    .look_up = shaders::kOcclusionTexturesComp,
-                   .constants = {static_cast<std::uint32_t>(choices.filter)}};
+                   .constants = {static_cast<std::uint32_t>(filter)}};
   std::vector<PrefilterFunction> bits;
-  for (std::uint32_t k = 0; k < choices.count; ++k) {
+  for (std::uint32_t k = 0; k < options.count; ++k) {
     bits.push_back({.kind = gpu::kBit, .a = static_cast<float>(k), .digits = 0});
   }
   auto nearest = std::make_unique<NearestCaster>(device);
   auto frame = std::make_unique<MapFrame>(device);
-  auto slices = std::make_unique<Slices>(device, choices.rule, choices.count, choices.rasteriser);
+  auto slices = std::make_unique<Slices>(device, options);
   auto prefilter = std::make_unique<Prefilter>(
-      device, PrefilterOptions{.kind = choices.filter, .functions = std::move(bits), .of_bits = true},
+      device, PrefilterOptions{.kind = filter, .functions = std::move(bits), .of_bits = true},
       Prefilter::Sources{.nearest = nearest.get(), .frame = frame.get(), .bits = slices.get()});
   recipe.products.push_back(std::move(nearest));
   recipe.products.push_back(std::move(frame));

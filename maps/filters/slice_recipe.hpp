@@ -13,15 +13,8 @@ inline constexpr visibility::ChoiceOption kSliceFilter{
     PrefilterKind::table,
     "how means over windows are taken: summed areas in integers, mip levels, overlapping squares"};
 
-struct SliceChoices {
-  SliceRule rule = SliceRule::equal;
-  std::uint32_t count = 1;
-  PrefilterKind filter = PrefilterKind::table;
-  Rasteriser rasteriser = Rasteriser::vulkan;
-};
-
 /// Light-space slices, each filtered by the light seen through its plane, and their product (occlusion_textures.comp).
 MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
-                       const SliceChoices& choices);
+                       const SliceOptions& slices, PrefilterKind filter);
 
 }  // namespace penumbra::maps

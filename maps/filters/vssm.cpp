@@ -13,6 +13,7 @@
 #include "maps/products/map_frame.hpp"
 #include "maps/products/nearest_caster.hpp"
 #include "maps/products/prefilter.hpp"
+#include "maps/products/shadow_depths.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -66,7 +67,7 @@ visibility::MethodDescription describe() {
                                                 "plane and what they shade in another, both "
                                                 "parallel to a rectangle light",
                                             .lights = planar_lights(),
-                                            .options = map_option_descriptions(),
+                                            .options = single_map_option_descriptions(),
                                             .verdict_on = verdict_on,
                                             .repairs = vssm_repairs};
   for (const auto& option :
@@ -153,6 +154,9 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
                    .look_up_name = "vssm look-up",
                    .look_up = shaders::kVssmComp,
                    .constants = {static_cast<std::uint32_t>(parsed[kFilter]), model}};
+  // An exponential takes nothing off a receiver's height.
+  recipe.products.push_back(
+      std::make_unique<ShadowDepths>(device, parsed[kDepth], moments == Moments::esm ? 0 : parsed[kBias]));
   auto nearest = std::make_unique<NearestCaster>(device);
   auto frame = std::make_unique<MapFrame>(device);
   auto prefilter = std::make_unique<Prefilter>(

@@ -1,6 +1,8 @@
 // A mask of each receiver, a bit a light sample, from maps of the light's centre, whose texels a workgroup looks at; see
 // group_kernel.glsl. The shader defines, too,
 //   void hide(MapFace face, uvec2 cell)                       calls hide_sample(j) for what a texel hides
+//   bool is_mine(uint j)                                      whether the kernel at hand may hide that sample
+//   Kernel next_kernel(MapFace face, uint turn)               a kernel to look at after the first, on turns 1, 2 …; empty: none
 //   uint light_sample_count(), vec2 light_sample(uint j)      the samples, in the light's basis
 //   void clear_squares(), void mark_sample(uint j)            which of them are looked for: all invocations call these
 const uint kMaskWords = 128;  // 4096 light samples
@@ -8,6 +10,7 @@ shared uint hidden_bits[kMaskWords];
 shared uint hidden_count;
 
 void hide_sample(uint j) {
+  if (!is_mine(j)) return;
   const uint bit = 1u << (j & 31);
   if ((hidden_bits[j / 32] & bit) == 0 && (atomicOr(hidden_bits[j / 32], bit) & bit) == 0) atomicAdd(hidden_count, 1);
 }
@@ -18,7 +21,7 @@ void before_tiles() {
   clear_squares();
   barrier();
   for (uint j = gl_LocalInvocationIndex; j < light_sample_count(); j += gl_WorkGroupSize.x) {
-    if ((hidden_bits[j / 32] & 1u << (j & 31)) == 0) mark_sample(j);
+    if (is_mine(j) && (hidden_bits[j / 32] & 1u << (j & 31)) == 0) mark_sample(j);
   }
 }
 
@@ -42,7 +45,12 @@ void main() {
   if (reached) {
     for (uint number = 0; number < asked.side.face_count; ++number) {
       const MapFace face = face_of(asked.side, 0, lookup.size, number);
-      look_at_kernel(face, kernel_of(face));
+      Kernel kernel = kernel_of(face);
+      look_at_kernel(face, kernel);
+      for (uint turn = 1; !is_empty(kernel); ++turn) {
+        kernel = next_kernel(face, turn);
+        if (!is_empty(kernel)) look_at_kernel(face, kernel);
+      }
     }
   }
   barrier();

@@ -70,6 +70,12 @@ class MapMethod final : public visibility::Method {
   [[nodiscard]] std::uint32_t point_count() const {
     return recipe_.points == MapPoints::centre ? 1 : static_cast<std::uint32_t>(fitted_.views.size());
   }
+  /// Of a part of the light: the whole light's axes, which maps and look-ups have, around the part's centroid.
+  [[nodiscard]] LightBasis basis_of(const visibility::Light& part) const {
+    LightBasis basis = basis_;
+    basis.center = visibility::center_of(part);
+    return basis;
+  }
   [[nodiscard]] std::uint32_t total_layers() const { return recipe_.layers.count + (recipe_.layers.farthest ? 1 : 0); }
 
   /// Workgroups that answer packets of pixels.
@@ -130,12 +136,14 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   basis_ = light_basis(light);
   parts_ = visibility::light_parts(light, recipe_.sub_lights);
   std::vector<glm::vec3> centres;
-  for (const visibility::LightPart& part : parts_) centres.emplace_back(light_basis(part.light).center);
+  for (const visibility::LightPart& part : parts_) centres.emplace_back(visibility::center_of(part.light));
   const bool many = recipe_.points == MapPoints::light_samples;
   FitOptions fit{options_.size, recipe_.beside ? recipe_.beside(light, basis_) : glm::dvec2(0)};
   if (recipe_.whole_light) {
-    const LightBounds bounds = light_bounds(parts_.front().light, light_basis(parts_.front().light));
-    fit.reach = glm::max(-bounds.lower, bounds.upper);
+    for (const visibility::LightPart& part : parts_) {
+      const LightBounds bounds = light_bounds(part.light, basis_of(part.light));
+      fit.reach = glm::max(fit.reach, glm::max(-bounds.lower, bounds.upper));
+    }
   }
   fitted_ =
       fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
@@ -173,7 +181,7 @@ void MapMethod::make_centre_maps(std::uint32_t part) {
   render_maps(commands, part, 1);
   render_layers(commands, part);
   const visibility::Light& light = parts_[part].light;
-  const LightBasis basis = light_basis(light);
+  const LightBasis basis = basis_of(light);
   for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
     product->record(commands,
                     {*views_, *depths_, fitted_.faces, options_.size, light, basis, *scene_, recipe_.layers.count});

@@ -5,6 +5,7 @@
 #include "maps/host/map_fit.hpp"
 #include "maps/products/slices.frag.glsl.hpp"
 #include "maps/products/slices.frag.spv.hpp"
+#include "maps/products/slices_moved.comp.spv.hpp"
 #include "visibility/receivers.hpp"
 
 #include <glm/geometric.hpp>
@@ -108,9 +109,15 @@ gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t 
   return planes;
 }
 
-Slices::Slices(const render::Device& device, SliceRule rule, std::uint32_t count, Rasteriser rasteriser)
-    : device_(&device), rule_(rule), count_(count), planes_(device, "slice planes", sizeof(gpu::SlicePlanes)) {
-  if (rasteriser == Rasteriser::opengl) {
+Slices::Slices(const render::Device& device, const SliceOptions& options)
+    : device_(&device), options_(options), planes_(device, "slice planes", sizeof(gpu::SlicePlanes)) {
+  if (options.depth != DepthUse::first) {
+    moved_.emplace(device, render::ComputePassOptions{.name = "slices of shadows",
+                                                      .spirv = shaders::kSlicesMovedComp,
+                                                      .push_bytes = sizeof(gpu::MovedPush),
+                                                      .constants = {}});
+  }
+  if (options.rasteriser == Rasteriser::opengl) {
     opengl_pass_.emplace(device.opengl(), render::opengl::RasterPassOptions{.name = "slices",
                                                                             .vertex = shaders::kCasterVertText,
                                                                             .fragment = shaders::kSlicesFragText});
@@ -124,7 +131,7 @@ Slices::Slices(const render::Device& device, SliceRule rule, std::uint32_t count
 }
 
 void Slices::upload(const MapSet& maps) {
-  const std::uint32_t ground = rule_ == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  const std::uint32_t ground = options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
   const std::uint64_t room =
       opengl_pass_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
   const std::size_t most = room / (3 * sizeof(glm::vec3)) * 3;
@@ -168,20 +175,45 @@ std::vector<gpu::SlicesPush> Slices::faces_of(const MapSet& maps) const {
 void Slices::record(render::Commands& commands, const MapSet& maps) {
   const std::uint64_t texels = std::uint64_t{maps.size} * maps.size;
   render::grow(*device_, bits_, "slices", std::max(maps.faces, 1U) * texels * sizeof(std::uint32_t));
-  const gpu::SlicePlanes planes = slice_planes(maps, rule_, count_);
+  const gpu::SlicePlanes planes = slice_planes(maps, options_.rule, options_.count);
   planes_.write<gpu::SlicePlanes>(std::span(&planes, 1));
   upload(maps);
   if (opengl_pass_) {
     commands.host_pass("slices (OpenGL)", [&] { draw_by_opengl(maps, planes); });
-    return;
-  }
-  commands.fill(*bits_, 0);
-  for (const gpu::SlicesPush& push : faces_of(maps)) {
-    for (const Casters& casters : casters_) {
-      pass_->record(commands, push, {*casters.corners, planes_, *bits_},
-                    {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+  } else {
+    commands.fill(*bits_, 0);
+    for (const gpu::SlicesPush& push : faces_of(maps)) {
+      for (const Casters& casters : casters_) {
+        pass_->record(commands, push, {*casters.corners, planes_, *bits_},
+                      {.width = maps.size, .height = maps.size, .vertices = casters.vertices});
+      }
     }
   }
+  if (moved_ && maps.faces > 0) move_nearest(commands, maps);
+}
+
+void Slices::move_nearest(render::Commands& commands, const MapSet& maps) {
+  const std::uint32_t ground = options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  const render::Buffer* layers = &maps.depths;
+  if (ground != kNoObject) {
+    visibility::SceneFloats blockers = maps.scene;
+    for (std::uint32_t i = 0; i < blockers.triangles.size(); ++i) {
+      if (blockers.object[i] == ground) blockers.casts_shadow[i] = 0;
+    }
+    if (!blocker_maps_) blocker_maps_.emplace(*device_, maps.size, options_.rasteriser);
+    blocker_maps_->upload(blockers);
+    render::grow(*device_, blocker_depths_, "layers of blockers",
+                 std::uint64_t{2} * maps.faces * maps.size * maps.size * sizeof(float));
+    gpu::LightView view{};
+    maps.views.read<gpu::LightView>(std::span(&view, 1));
+    blocker_maps_->record(commands, view, maps.basis, maps.light.index, *blocker_depths_, 0);
+    blocker_maps_->record_behind(commands, view, maps.basis, maps.light.index, *blocker_depths_, maps.faces, 0);
+    layers = blocker_depths_.get();
+  }
+  const gpu::MovedPush push{maps.size, maps.faces, static_cast<std::uint32_t>(options_.depth),
+                            static_cast<float>(options_.bias)};
+  const std::uint64_t texels = std::uint64_t{maps.faces} * maps.size * maps.size;
+  moved_->record(commands, push, {*layers, maps.views, planes_, *bits_}, (texels + 63) / 64);
 }
 
 void Slices::draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const {
@@ -205,7 +237,9 @@ std::uint64_t Slices::memory_bytes() const {
   const std::uint64_t casters =
       std::accumulate(casters_.begin(), casters_.end(), std::uint64_t{0},
                       [](std::uint64_t sum, const Casters& batch) { return sum + batch.vertices * sizeof(glm::vec3); });
-  return casters + planes_.bytes() + (bits_ ? bits_->bytes() : 0);
+  const std::uint64_t layers =
+      (blocker_maps_ ? blocker_maps_->memory_bytes() : 0) + (blocker_depths_ ? blocker_depths_->bytes() : 0);
+  return casters + layers + planes_.bytes() + (bits_ ? bits_->bytes() : 0);
 }
 
 }  // namespace penumbra::maps

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "maps/host/caster_maps.hpp"
 #include "maps/host/map_method.hpp"
 #include "maps/products/slices.shared.h"
 #include "render/opengl/raster_pass.hpp"
+#include "render/compute_pass.hpp"
 #include "render/raster_pass.hpp"
 
 #include <cstdint>
@@ -30,11 +32,21 @@ std::uint32_t ground_of(const visibility::SceneFloats& scene, const LightBasis& 
 /// The planes of `count` slices (1 … 32; one_plane: 1).
 gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t count);
 
+struct SliceOptions {
+  SliceRule rule = SliceRule::equal;
+  std::uint32_t count = 1;
+  Rasteriser rasteriser = Rasteriser::vulkan;
+  /// The nearest of a texel's surfaces is sorted by where its shadow begins (shadow_depths.glsl); those behind it stay.
+  /// The maps have two layers then.
+  DepthUse depth = DepthUse::first;
+  double bias = 0;  ///< in texels, that the look-up takes off receivers' heights
+};
+
 /// What casts shadow, sorted into slices parallel to the light: for each texel of the maps of a light's centre a word
 /// whose bit k says that a surface in slice k lies in its direction. Surfaces that one hides from the other count both.
 class Slices final : public MapProduct {
  public:
-  Slices(const render::Device& device, SliceRule rule, std::uint32_t count, Rasteriser rasteriser = Rasteriser::vulkan);
+  Slices(const render::Device& device, const SliceOptions& options);
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *bits_; }  ///< the words
   /// A look-up reads the planes alone.
@@ -51,12 +63,16 @@ class Slices final : public MapProduct {
   /// All faces, as push constants of slices.frag, whose texels begin at `first` of the words.
   [[nodiscard]] std::vector<gpu::SlicesPush> faces_of(const MapSet& maps) const;
   void draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const;
+  /// Takes the nearest surfaces to the slices where their shadows begin.
+  void move_nearest(render::Commands& commands, const MapSet& maps);
 
   const render::Device* device_;
-  SliceRule rule_;
-  std::uint32_t count_;
+  SliceOptions options_;
   std::optional<render::RasterPass> pass_;                 // either this
   std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
+  std::optional<render::ComputePass> moved_;
+  std::optional<CasterMaps> blocker_maps_;          ///< of what is no ground,
+  std::unique_ptr<render::Buffer> blocker_depths_;  ///< in two layers
   render::Buffer planes_;
   std::vector<Casters> casters_;
   std::unique_ptr<render::Buffer> bits_;

@@ -26,6 +26,14 @@ struct SlicesPush {
   uint sideways;  // the face's rows run along the light's normal
 };
 
+// slices_moved.comp.
+struct MovedPush {
+  uint size;
+  uint faces;
+  uint depth_use;  // kDepthSecond ...
+  float bias;      // in texels
+};
+
 #ifdef __cplusplus
 }  // namespace penumbra::maps::gpu
 #endif

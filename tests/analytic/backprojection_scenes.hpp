@@ -43,6 +43,27 @@ inline Stage on_floor(const scenes::Scene& scene, std::uint32_t side, const visi
   return {scene, side, side, request, grid};
 }
 
+/// View samples on the floor along x at these places, a little beside the middle.
+inline Stage along_floor(const scenes::Scene& scene, const std::vector<double>& places,
+                         const visibility::SampleRequest& request) {
+  const auto line = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+    const auto corners = floats.corners(0);
+    const bool up = glm::cross(corners[1] - corners[0], corners[2] - corners[0]).y > 0;
+    visibility::ViewSamples samples;
+    samples.width = static_cast<std::uint32_t>(places.size());
+    samples.height = 1;
+    for (const double x : places) {
+      samples.triangle.push_back(0);
+      samples.p.emplace_back(glm::dvec3(x, 0, 0.013) - floats.origin);
+      samples.n.emplace_back(0, 1, 0);
+      samples.depth.push_back(1);
+      samples.facing.push_back(up ? 1 : -1);
+    }
+    return samples;
+  };
+  return {scene, static_cast<std::uint32_t>(places.size()), 1, request, line};
+}
+
 /// A sphere: one closed convex body.
 inline scenes::Scene sphere_over_floor(double light_half = 1, int rings = 16, double scale = 1) {
   scenes::Scene scene = bare_floor(light_half, 3);

@@ -4,6 +4,7 @@
 #include "maps/backprojection/level_maps.hpp"
 #include "tests/analytic/backprojection_scenes.hpp"
 #include "tests/analytic/maps_parallel_square.hpp"
+#include "reference/exact_method.hpp"
 #include "tests/analytic/patch_twin.hpp"
 
 #include <random>
@@ -280,7 +281,7 @@ TEST_F(MapsBitmask, ALevelHasTheNearestOfEachBlockAndTheBoxAroundIt) {
     std::vector<float> depths(std::size_t{size} * size * faces);
     for (float& depth : depths) depth = random() % 4 != 0 ? 1.0F : static_cast<float>(random() % 1000) / 1000;
     const render::Buffer maps = render::make_buffer<float>(device(), "depths", depths);
-    maps::LevelMaps product(device(), level);
+    maps::LevelMaps product(device(), level, level);
     render::Commands commands(device());
     product.record(commands, {views, maps, faces, size, light, basis, scene});
     commands.submit();
@@ -312,6 +313,81 @@ TEST_F(MapsBitmask, ALightWithoutExtentGivesTheShadowMap) {
   const Stage stage = on_floor(scene, 40, light_samples(4));
   const Masks hard = run(maps::make_shadow_map, stage, {{"size", "48"}});
   EXPECT_EQ(bits(stage, {{"occluder", "patch"}}).visibility, hard.visibility);
+}
+
+// B11 (Schwarz and Stamminger 2008): under a budget neighbours look at different levels, and where they do V has a
+// step. Between two levels samples are shared out, and the step is gone.
+TEST_F(MapsBitmask, BlendedLevelsHaveSmallerSteps) {
+  // So close to one another that their own errors hardly differ.
+  std::vector<double> places;
+  for (int i = 0; i < 250; ++i) places.push_back(-2.5 + i / 50.0);
+  const Stage stage = along_floor(sphere_over_floor(1, 16), places, light_samples(256));
+  const Masks truth = tests::run(*reference::make_exact({}), stage);
+  const auto with = [&](MethodOptions options) {
+    options["occluder"] = "patch";  // whose kernels the search makes as wide as each receiver needs
+    return bits(stage, options, "96");
+  };
+  std::vector<Masks> levels;
+  for (const char* level : {"0", "1", "2", "3"}) levels.push_back(with({{"level", level}}));
+  const auto is_level = [&](const Masks& found, std::size_t pixel, const Masks& level) {
+    const auto words = static_cast<std::ptrdiff_t>(found.words_per_pixel),
+               at = static_cast<std::ptrdiff_t>(pixel) * words;
+    return std::equal(found.words.begin() + at, found.words.begin() + at + words, level.words.begin() + at);
+  };
+  const auto error = [&](const Masks& found, std::size_t i) {
+    return static_cast<double>(found.visibility[i]) - static_cast<double>(truth.visibility[i]);
+  };
+  double step = 0, blend = 0;
+  std::size_t changes = 0;
+  for (const char* budget : {"90", "150", "250", "400", "700"}) {
+    const Masks blended = with({{"budget", budget}}), stepped = with({{"budget", budget}, {"blend", "off"}});
+    for (std::size_t i = 0; i + 1 < stage.samples.size(); ++i) {
+      bool one = false, same = false;
+      for (const Masks& level : levels) {
+        one |= is_level(stepped, i, level);
+        same |= is_level(stepped, i, level) && is_level(stepped, i + 1, level);
+      }
+      EXPECT_TRUE(one) << "each pixel looks at one level";
+      if (same) continue;
+      ++changes;
+      step = std::max(step, std::abs(error(stepped, i + 1) - error(stepped, i)));
+      blend = std::max(blend, std::abs(error(blended, i + 1) - error(blended, i)));
+    }
+  }
+  fmt::print("B11: {} changes of level, largest step {:.4f}, blended {:.4f}\n", changes, step, blend);
+  RecordProperty("step", fmt::format("{:.4f}", step));
+  RecordProperty("blended", fmt::format("{:.4f}", blend));
+  EXPECT_GE(changes, 2U);
+  EXPECT_LE(blend, 0.5 * step);
+  // Enough of a budget changes nothing.
+  EXPECT_EQ(with({{"budget", "1000000"}}).words, levels.front().words);
+}
+
+// A kernel of w texels a side under a budget of b asks for level log2(w / sqrt(b)), or the next whole one.
+TEST_F(MapsBitmask, TheBudgetSaysWhichLevel) {
+  scenes::Scene scene = bare_floor(1, 3);
+  add_quad(scene, {0.013, 2, 0.007}, {0.231, 0, 0}, {0, 0, -0.157}).receives_shadow = false;
+  const Stage stage = on_floor(scene, 1, light_samples(1024));  // its middle
+  const auto with = [&](MethodOptions options) {
+    options["occluder"] = "patch";
+    options["search"] = "none";
+    options["blend"] = "off";
+    return bits(stage, options, "200").words;
+  };
+  // The window holds the floor, +-3/5, and nothing beside it in 198 texels; the plate is at depth 3.
+  const double across = 2 * (1.0 / 3 - 1.0 / 5) / (1.2 / 198);
+  const auto budget = [&](double width, double level) {
+    return with({{"budget", fmt::format("{:.0f}", std::pow(width / std::exp2(level), 2))}});
+  };
+  std::vector<std::vector<std::uint32_t>> levels;
+  for (const char* level : {"0", "1", "2", "3"}) levels.push_back(with({{"level", level}}));
+  EXPECT_NE(levels[0], levels[1]);
+  EXPECT_NE(levels[1], levels[2]);
+  for (std::size_t level = 0; level < 3; ++level) {
+    // A kernel is up to two texels wider than what it holds.
+    EXPECT_EQ(budget(1.02 * (across + 2), static_cast<double>(level)), levels[level]) << level;
+    EXPECT_EQ(budget(0.98 * across, static_cast<double>(level)), levels[level + 1]) << level;
+  }
 }
 
 }  // namespace

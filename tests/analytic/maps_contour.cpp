@@ -4,6 +4,8 @@
 #include "base/error.hpp"
 #include "maps/host/map_fit.hpp"
 #include "scenes/formats/reader.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "tests/agreement/differences.hpp"
 #include "tests/analytic/maps_contour_scenes.hpp"
 
 #include <numbers>
@@ -218,6 +220,19 @@ TEST_F(MapsContourWays, OneImageOfSoupsAndWithinBounds) {
   }
 }
 
+// Meshes with every defect that there is a name for, and soups whose corners, edges and planes coincide.
+TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
+  for (const std::uint32_t seed : {1U, 2U}) {
+    const mesh::LatticeSoup soup{.triangles = 40, .cells = 3, .seed = seed, .center = {0, 1, 0}};
+    expect_one_image(Stage(with_a_floor(mesh::make_lattice_soup(soup)), 12, 12, light_samples(1)), "24",
+                     fmt::format("lattice soup {}", seed));
+  }
+  std::vector<std::string> defects;
+  for (const mesh::DefectName& defect : mesh::broken_defects()) defects.emplace_back(defect.name);
+  const Stage broken(with_a_floor(mesh::make_broken_mesh({defects, 1, {0, 1, 0}, 1}).soup), 16, 16, light_samples(1));
+  expect_one_image(broken, "32", "broken mesh");
+}
+
 TEST_F(MapsContour, TilesDoNotChangeIt) {
   const Stage stage(ball_over_floor(1), 31, 40, light_samples(1));
   for (const char* sub_lights : {"1", "2"}) {
@@ -298,6 +313,26 @@ TEST_F(MapsContour, SubLightsAreTheMeanOfContoursOfTheParts) {
   EXPECT_LT(largest, 1e-6);
 }
 
+// Disks, ellipses and polygons are cut in polygons: together they are the light, and looked at from each one's own
+// centroid less is missed, as of a rectangle (MapsContourClaims).
+TEST_F(MapsContour, SubLightsOfAnyShape) {
+  for (const int shape : {1, 2, 4}) {
+    scenes::Scene scene = ball_over_floor(1);
+    scene.lights.front().shape = under_shape(shape).lights.front().shape;
+    const Stage stage(scene, 40, 40, light_samples(1));
+    const Masks truth = exact(stage);
+    std::vector<double> errors;
+    for (const char* sub_lights : {"1", "2", "4"}) {
+      const Masks found = run(maps::make_packet, stage, {{"size", "128"}, {"sublights", sub_lights}});
+      errors.push_back(floor_errors(stage, found, truth).rmse);
+      RecordProperty(fmt::format("shape {} S={}", shape, sub_lights), fmt::format("{:.4f}", errors.back()));
+      fmt::print("shape {}, S={}: RMSE {:.4f}\n", shape, sub_lights, errors.back());
+    }
+    EXPECT_LT(errors[1], 0.6 * errors[0]) << shape;
+    EXPECT_LT(errors[2], 0.7 * errors[1]) << shape;
+  }
+}
+
 // A light whose left half is black is its right half.
 TEST_F(MapsContour, SubLightsWeighByTheTexture) {
   scenes::Scene scene = ball_over_floor(1);
@@ -332,11 +367,11 @@ TEST_F(MapsContour, WhatItCannotDoIsRefused) {
   const auto contour = maps::make_contour(device(), {{"size", "16"}});
   contour->prepare_mesh(plain.floats);
   EXPECT_THROW(contour->prepare_light(textured), InputError);
-  scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
-  const Stage disk(scene, 8, 8, light_samples(4));
+  scene.lights.front().shape = scenes::Sphere{{0, 5, 0}, 0.9};
+  const Stage bulb(scene, 8, 8, light_samples(4));
   const auto packet = maps::make_packet(device(), {{"size", "16"}, {"sublights", "2"}});
-  packet->prepare_mesh(disk.floats);
-  EXPECT_THROW(packet->prepare_light(disk.light), InputError);
+  packet->prepare_mesh(bulb.floats);
+  EXPECT_THROW(packet->prepare_light(bulb.light), InputError);
   EXPECT_THROW(maps::make_packet(device(), {{"packet", "0x3"}}), UsageError);
   EXPECT_THROW(maps::make_contour(device(), {{"traversal", "deep"}}), UsageError);
 }

@@ -28,6 +28,13 @@ std::vector<Filter> all_filters(const std::string& size) {
                           {"pcf off", maps::make_pcf, {{"size", size}, {"receiverPlane", "off"}, {"window", "4"}}},
                           {"pcss", maps::make_pcss, {{"size", size}}},
                           {"convolution", maps::make_convolution, {{"size", size}}}};
+  for (const char* depth : {"second", "midpoint", "dual"}) {
+    all.push_back({fmt::format("vssm {}", depth), maps::make_vssm, {{"size", size}, {"depth", depth}}});
+    all.push_back({fmt::format("occlusion-textures {}", depth),
+                   maps::make_occlusion_textures,
+                   {{"size", size}, {"depth", depth}}});
+    all.push_back({fmt::format("convolution {}", depth), maps::make_convolution, {{"size", size}, {"depth", depth}}});
+  }
   for (const char* filter : {"sat", "mip", "n-buffer"}) {
     for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
       all.push_back({fmt::format("vssm {} {}", moments, filter),

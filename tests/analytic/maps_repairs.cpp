@@ -98,6 +98,42 @@ TEST_F(MapsRepairs, WantedPixelsAreTheSameAndOthersAreLeftOut) {
   }
 }
 
+// Parts of a light that is no rectangle are polygons of its plane that lie in it and are all of it.
+TEST_F(MapsRepairs, PartsOfAnyLightAreAllOfIt) {
+  const std::vector<decltype(scenes::AreaLight::shape)> shapes{
+      scenes::Disk{{0.3, 5, 0}, {0.2, -1, 0.1}, 0.8}, scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.5}},
+      scenes::Polygon{{{-1, 5, -1}, {1, 5, -1}, {0.7, 5, 0.9}, {-0.4, 5, 1}}}};
+  for (const auto& shape : shapes) {
+    scenes::Scene scene = parallel_square();
+    scene.lights.front().shape = shape;
+    const Stage stage(scene, 8, 8, light_samples(16));
+    const glm::dvec3 centroid = visibility::center_of(stage.light);
+    const maps::LightBasis whole = maps::light_basis(stage.light);
+    const auto parts = visibility::light_parts(stage.light, 3);
+    double weights = 0, area = 0;
+    glm::dvec3 moment(0);
+    for (const visibility::LightPart& part : parts) {
+      const glm::dvec3 middle = visibility::center_of(part.light);
+      EXPECT_EQ(part.light.kind, visibility::LightKind::polygon);
+      EXPECT_NEAR(part.weight, part.light.area / stage.light.area, 1e-6);
+      EXPECT_GT(glm::dot(maps::light_basis(part.light).n, whole.n), 1 - 1e-6) << "it emits to the same side";
+      for (const glm::vec3& point : part.light.points) EXPECT_EQ(point, visibility::center_of(part.light));
+      double own = 0;
+      for (std::size_t i = 0; i < part.light.outline.size(); ++i) {
+        const glm::dvec3 a = part.light.outline[i], b = part.light.outline[(i + 1) % part.light.outline.size()];
+        own += glm::dot(glm::cross(a - middle, b - middle), whole.n) / 2;
+      }
+      EXPECT_NEAR(own, part.light.area, 1e-5 * stage.light.area);
+      weights += part.weight;
+      area += part.light.area;
+      moment += part.weight * (middle - centroid);
+    }
+    EXPECT_NEAR(weights, 1, 1e-12);
+    EXPECT_NEAR(area, stage.light.area, 1e-6 * stage.light.area);
+    EXPECT_LT(glm::length(moment), 1e-6);
+  }
+}
+
 // Parts of a light have its samples, as close together as they are small.
 TEST_F(MapsRepairs, PartsOfALightHaveItsSamples) {
   const Stage stage(parallel_square(), 8, 8, light_samples(16));

@@ -46,7 +46,7 @@ TEST_F(SliceProducts, MarkEverySurfaceInItsSlice) {
       expect_passed(selftest::check_slices(device(), stage, kSize, kSlices, rasteriser));
     }
     const CentreMaps maps(device(), stage, kSize);
-    maps::Slices product(device(), maps::SliceRule::equal, kSlices);
+    maps::Slices product(device(), {.count = kSlices});
     render::Commands commands(device());
     product.record(commands, maps.set(stage));
     commands.submit();
@@ -54,6 +54,43 @@ TEST_F(SliceProducts, MarkEverySurfaceInItsSlice) {
     product.buffer().read<std::uint32_t>(found);
     EXPECT_GT(std::ranges::count_if(found, [](std::uint32_t word) { return std::popcount(word) > 1; }), 20);
   }
+}
+
+// Closed, it has a top and a bottom; a sheet has one surface. Slices end at depths 2.25, 2.5, 2.75 and 3.
+TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3}).casts_shadow = false;
+  add_quad(scene, {-1, 2, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  add_quad(scene, {-1, 1, 0}, {0.8, 0, 0}, {0, 0, 0.8});
+  add_quad(scene, {1.5, 1.4, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  scene.lights.push_back(ceiling_light(4, 0.5));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+  const Stage stage(scene, 4, 4, light_samples(1));
+  constexpr std::uint32_t kSize = 64;
+  const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = 2});
+  const auto& side = maps.fitted.views.front().side[0];
+  // The body's middle is seen at x/z = -1/2.5, the sheet's at 1.5/2.6.
+  const auto words_of = [&](maps::DepthUse depth) {
+    maps::Slices product(device(), {.count = 4, .depth = depth, .bias = 0.5});
+    render::Commands commands(device());
+    product.record(commands, maps.set(stage));
+    commands.submit();
+    std::vector<std::uint32_t> found(std::size_t{kSize} * kSize);
+    product.buffer().read<std::uint32_t>(found);
+    const auto at = [&](double tangent) {
+      // Along the basis' first axis, whichever way it runs.
+      const glm::dvec3 d = glm::dvec3(tangent, -1, 0);
+      const glm::dvec2 place =
+          (glm::dvec2(glm::dot(d, maps.basis.u), glm::dot(d, maps.basis.v)) - glm::dvec2(side.lower)) /
+          glm::dvec2(side.upper - side.lower) * static_cast<double>(kSize);
+      return found[static_cast<std::size_t>(place.y) * kSize + static_cast<std::size_t>(place.x)];
+    };
+    return std::pair(at(-0.45), at(1.5 / 2.6));
+  };
+  EXPECT_EQ(words_of(maps::DepthUse::first), std::pair(0b1001U, 0b100U));
+  EXPECT_EQ(words_of(maps::DepthUse::second), std::pair(0b1000U, 0U));
+  EXPECT_EQ(words_of(maps::DepthUse::midpoint), std::pair(0b1010U, 0b100U));
+  EXPECT_EQ(words_of(maps::DepthUse::dual), std::pair(0b1001U, 0b100U));
 }
 
 TEST_F(SliceProducts, OnePlaneIsTheBlockersMeanHeightWithoutTheGround) {

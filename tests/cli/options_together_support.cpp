@@ -161,9 +161,6 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            (!forest && options.contains("counter-bits"));
   }
   if (method == "soft-shadow-map") return is("form", "scatter") && is("precision", "fp16");
-  if (method == "packet" && options.contains("sublights") && !is("sublights", "1")) {
-    return !std::ranges::all_of(scene.lights, is_rectangle);
-  }
   return false;
 }
 

@@ -1,8 +1,14 @@
 #include "visibility/lights/light_parts.hpp"
 
 #include "base/error.hpp"
+#include "visibility/lights/convex_polygon.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace penumbra::visibility {
@@ -26,14 +32,79 @@ double luminance_in(const LightTexture& texture, const glm::dvec2& lower, const 
   return sum;
 }
 
-}  // namespace
-
-std::vector<LightPart> light_parts(const Light& light, std::uint32_t count) {
-  if (count == 1) return {{light, 1}};
-  if (light.kind != LightKind::rectangle) {
-    throw InputError("light \"{}\" is a {}; only rectangles are cut into sub-lights: take sublights=1", light.name,
-                     name_of(light.kind));
+/// The light's outline in its frame's coordinates.
+std::vector<glm::dvec2> outline_of(const Light& light, const LightFrame& frame) {
+  std::vector<glm::dvec2> outline;
+  if (is_round(light.kind)) {
+    constexpr int kSides = 256;
+    constexpr double kStep = 2 * std::numbers::pi / kSides;
+    const double reach = std::sqrt(kStep / std::sin(kStep));  // ½ m reach² sin(2π/m) = π
+    for (int i = 0; i < kSides; ++i) {
+      outline.emplace_back(reach * std::cos(kStep * (i + 0.5)), reach * std::sin(kStep * (i + 0.5)));
+    }
+    return outline;
   }
+  const double uu = glm::dot(frame.u, frame.u), uv = glm::dot(frame.u, frame.v), vv = glm::dot(frame.v, frame.v);
+  const double determinant = uu * vv - uv * uv;
+  for (const glm::vec3& corner : light.outline) {
+    const glm::dvec3 d = glm::dvec3(corner) - frame.center;
+    const double du = glm::dot(d, frame.u), dv = glm::dot(d, frame.v);
+    outline.emplace_back((du * vv - dv * uv) / determinant, (dv * uu - du * uv) / determinant);
+  }
+  return outline;
+}
+
+/// `corners` in frame coordinates, counter-clockwise as seen from where it emits.
+Light polygon_of(const Light& light, const LightFrame& frame, const std::vector<glm::dvec2>& corners) {
+  Light part = light;
+  part.kind = LightKind::polygon;
+  part.radius = 0;
+  part.area = area_of(corners) * glm::length(glm::cross(frame.u, frame.v));
+  part.outline.clear();
+  for (const glm::dvec2& at : corners) part.outline.emplace_back(frame.center + at.x * frame.u + at.y * frame.v);
+  // The frame's three corners: those that span the most.
+  glm::vec3 best{0};
+  double most = -1;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const glm::dvec2 b = corners[i] - corners[0], c = corners[i + 1] - corners[0];
+    const double twice = std::abs(b.x * c.y - b.y * c.x);
+    if (twice <= most) continue;
+    most = twice;
+    part.center_u = part.outline[i];
+    best = part.outline[i + 1];
+  }
+  part.center = part.outline.front();
+  part.center_v = best;
+  std::ranges::fill(part.points, center_of(part));
+  return part;
+}
+
+std::vector<LightPart> polygon_parts(const Light& light, std::uint32_t count) {
+  const LightFrame frame = light_frame(light);
+  const std::vector<glm::dvec2> outline = outline_of(light, frame);
+  glm::dvec2 lower(outline.front()), upper(outline.front());
+  for (const glm::dvec2& corner : outline) {
+    lower = glm::min(lower, corner);
+    upper = glm::max(upper, corner);
+  }
+  const glm::dvec2 cell = (upper - lower) / static_cast<double>(count);
+  std::vector<LightPart> parts;
+  for (std::uint32_t row = 0; row < count; ++row) {
+    for (std::uint32_t column = 0; column < count; ++column) {
+      std::vector<glm::dvec2> corners = outline;
+      for (const int axis : {0, 1}) {
+        const double from = lower[axis] + cell[axis] * (axis == 0 ? column : row);
+        corners = clipped_above(clipped_below(corners, axis, from), axis, from + cell[axis]);
+      }
+      const double area = corners.size() < 3 ? 0 : area_of(corners);
+      if (area <= 0x1p-20 * cell.x * cell.y) continue;
+      parts.push_back({polygon_of(light, frame, corners), area});
+    }
+  }
+  return parts;
+}
+
+std::vector<LightPart> rectangle_parts(const Light& light, std::uint32_t count) {
   const LightFrame frame = light_frame(light);
   const glm::dvec3 u = frame.u / static_cast<double>(count), v = frame.v / static_cast<double>(count);
   std::vector<LightPart> parts;
@@ -58,6 +129,19 @@ std::vector<LightPart> light_parts(const Light& light, std::uint32_t count) {
       }
     }
   }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<LightPart> light_parts(const Light& light, std::uint32_t count) {
+  if (count == 1) return {{light, 1}};
+  if (!is_planar(light.kind)) {
+    throw InputError("light \"{}\" is a {}, which has no plane to be cut in; take sublights=1", light.name,
+                     name_of(light.kind));
+  }
+  std::vector<LightPart> parts =
+      light.kind == LightKind::rectangle ? rectangle_parts(light, count) : polygon_parts(light, count);
   const double sum = std::accumulate(parts.begin(), parts.end(), 0.0,
                                      [](double so_far, const LightPart& part) { return so_far + part.weight; });
   for (LightPart& part : parts) part.weight /= sum;
