@@ -16,6 +16,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps_method.cpp
   analytic/maps_moments.cpp
   analytic/maps_pcf.cpp
+  analytic/maps_predicates.cpp
   analytic/maps_prefilter.cpp
   analytic/maps_peel.cpp
   analytic/maps_products.cpp
@@ -25,6 +26,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps_resolution_table.cpp
   analytic/maps_slices.cpp
   analytic/maps_soft_shadow_map.cpp
+  analytic/maps_subsampled.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")
