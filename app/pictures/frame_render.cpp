@@ -35,6 +35,14 @@ std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std
   return sum;
 }
 
+/// Is any pixel on a side that the light shines to?
+bool lights_anything(std::span<const visibility::PixelClass> classes) {
+  using visibility::PixelClass;
+  return std::ranges::any_of(classes, [](PixelClass one) {
+    return one == PixelClass::judged || one == PixelClass::horizon || one == PixelClass::unshadowed;
+  });
+}
+
 /// What other moments of the same lights cost is added to what this one did.
 void add_times(MethodRun& to, const MethodRun& before) {
   to.times.mesh += before.times.mesh;
@@ -143,7 +151,15 @@ void FrameRenderer::say_warnings() {
   const auto& cameras = session().scene.cameras;
   if (cameras.size() > 1 && options_.camera.empty() && said_.empty())
     spdlog::info("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size());
-  for (const std::string& warning : session().warnings) {
+  std::vector<std::string> warnings = lit().warnings;
+  for (std::size_t light = 0; light < lit().lights.size(); ++light) {
+    const bool shines = lit().lights[light].radiance != glm::dvec3(0);
+    if (!shines || lights_anything(lit().classes[light])) continue;
+    warnings.push_back(fmt::format("no visible point is before light \"{}\": nothing in the picture is lit by it{}",
+                                   lit().lights[light].name,
+                                   lit().lights[light].two_sided ? "" : " (does it shine the other way?)"));
+  }
+  for (const std::string& warning : warnings) {
     if (std::ranges::find(said_, warning) != said_.end()) continue;
     spdlog::warn("{}", warning);
     said_.push_back(warning);

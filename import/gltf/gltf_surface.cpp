@@ -4,6 +4,7 @@
 #include "import/gltf/gltf_surface.hpp"
 
 #include "base/error.hpp"
+#include "base/image.hpp"
 #include "base/png.hpp"
 #include "import/gltf/gltf_accessor.hpp"
 
@@ -164,12 +165,31 @@ void SurfaceReader::read_material(const tinygltf::Primitive& primitive, const st
   look.radiance = checked_factor(material.emissiveFactor, glm::dvec3(0), here + "/emissiveFactor") *
                   number_of(material.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1, here);
   read_picture(primitive, object, look);
+  read_emission(material, here, object, look);
 
   if (number_of(material.extensions, "KHR_materials_transmission", "transmissionFactor", 0, here) > 0)
     losses_.refuse("lets light through (transmission), which is not supported: it would be opaque", object);
   if (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0)
     losses_.mention("has a metallic material; every surface is diffuse here", object);
   if (material.normalTexture.index >= 0) losses_.mention("has a normal map, which is left out", object);
+}
+
+void SurfaceReader::read_emission(const tinygltf::Material& material, const std::string& place,
+                                  const std::string& object, Look& look) {
+  if (material.emissiveTexture.index < 0 || look.radiance == glm::dvec3(0)) return;
+  std::string why_not;
+  const auto picture = picture_of(material.emissiveTexture.index, place + "/emissiveTexture", why_not);
+  if (!picture) {
+    losses_.refuse(fmt::format("would shine without its emissive picture: {}", why_not), object);
+    return;
+  }
+  const auto& texels = pictures_[*picture].texels;
+  glm::dvec3 sum(0);
+  for (const auto& texel : texels) {
+    for (glm::length_t c = 0; c < 3; ++c) sum[c] += linear_of_srgb(texel[static_cast<std::size_t>(c)] / 255.0);
+  }
+  look.radiance *= sum / static_cast<double>(texels.size());
+  losses_.mention("shines evenly, with the mean of its whole emissive picture", object);
 }
 
 void SurfaceReader::read_picture(const tinygltf::Primitive& primitive, const std::string& object, Look& look) {

@@ -50,6 +50,8 @@ class SurfaceReader {
  private:
   void read_material(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
                      Look& look);
+  void read_emission(const tinygltf::Material& material, const std::string& place, const std::string& object,
+                     Look& look);
   void read_picture(const tinygltf::Primitive& primitive, const std::string& object, Look& look);
   std::optional<std::uint32_t> picture_of(int texture, const std::string& place, std::string& why_not);
 

@@ -87,6 +87,17 @@ TEST_F(Layers, EachLightHasItsOwn) {
   EXPECT_THAT(twice.err, HasSubstr("twice"));
 }
 
+TEST_F(Layers, ALightThatLightsNothingIsNamed) {
+  scene_with({"key", "fill"});
+  json scene = json::parse(read("scene.json"));
+  scene["lights"][1]["rectangle"]["halfU"] = {-0.5, 0, 0};  // it shines up
+  write("scene.json", scene.dump());
+  const Outcome outcome = run({"render", path("scene.json"), "-o", path("out.exr")});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("no visible point is before light \"fill\""));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("\"key\"")));
+}
+
 /// World positions times the header's matrices are pixels and depths.
 TEST_F(Layers, MatricesLeadFromTheWorldToThePicture) {
   scene_with({"key"});

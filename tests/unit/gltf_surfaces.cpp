@@ -133,6 +133,18 @@ TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("without its picture")));
 }
 
+/// A light of radiance (20, 10, 0) under a picture of dark red and white: the mean, in linear light.
+TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPicture) {
+  Gltf gltf = textured();
+  gltf.at("/materials/1")["emissiveTexture"] = {{"index", 0}};
+  const Scene scene = read(gltf);
+  const double red = (linear_of_srgb(128 / 255.0) + 1) / 2;
+  EXPECT_LT(glm::distance(scene.lights[0].radiance, glm::dvec3(20 * red, 10 * 0.5, 0)), 1e-12);
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("mean"))));
+  gltf.at("/images/0")["bufferView"] = 0;
+  EXPECT_THAT(refusal(gltf), HasSubstr("'Lamp' would shine without its emissive picture"));
+}
+
 TEST_F(GltfSurfaces, CamerasHaveTheirShape) {
   Gltf gltf;
   EXPECT_EQ(read(gltf).cameras[0].aspect, 1.7777);
