@@ -1,5 +1,6 @@
 #include "engines/vectors/cone_light.hpp"
 
+#include "engines/vectors/size1.hpp"
 #include "base/error.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "visibility/pair_truth.hpp"
@@ -23,9 +24,6 @@ constexpr std::uint32_t kCells = 16;  ///< of a side, without light samples
 constexpr double kFlattest = 0x1p8;   ///< tan of half a cone's angle; from a flatter one, exact predicates decide
 constexpr double kRoundingOf = 0x1p-24;
 
-double size1(const glm::dvec3& x) {
-  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
-}
 double largest(const glm::dvec3& x) {
   return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
 }

@@ -1,6 +1,7 @@
 #include "engines/vectors/light_grid.hpp"
 
 #include "engines/vectors/cone_light.hpp"
+#include "engines/vectors/size1.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -11,8 +12,8 @@
 namespace penumbra::native {
 namespace {
 
-float size1(const glm::dvec3& x) {
-  return static_cast<float>(std::abs(x.x) + std::abs(x.y) + std::abs(x.z));
+float float_size1(const glm::dvec3& x) {
+  return static_cast<float>(size1(x));
 }
 
 /// Of a row in cells, as device passes compute it: (row · step) / 2¹⁶ modulo 1 into [−½, ½).
@@ -88,7 +89,7 @@ LightGrid make_light_grid(const LightGridInput& input) {
   }
   grid.axis_size = glm::abs(grid.axis);
   grid.per_length = std::max(glm::length(grid.across), glm::length(grid.along)) * 1.00001F;
-  grid.skew = size1(u) * size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
+  grid.skew = float_size1(u) * float_size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
   if (input.window) grid.skew += static_cast<float>(input.window->skew);
   grid.deviation = input.light.deviation;
   grid.reach = input.reach;
@@ -138,7 +139,7 @@ Shaft make_shaft(const LightGrid& grid, std::span<const GridSample> samples, con
   for (std::size_t i = 0; i < 4; ++i) {
     const glm::vec3 side = (i < 2 ? grid.across : grid.along) * (i % 2 == 0 ? 1.0F : -1.0F);
     const glm::vec3 n = side - slopes[i] * grid.axis;
-    const float size = size1(n) + size1(side);
+    const float size = float_size1(n) + float_size1(side);
     shaft.n[i] = n;
     shaft.size[i] = glm::abs(n);
     shaft.beyond[i] = glm::dot(n, grid.center) + beyond[i] +
@@ -213,7 +214,7 @@ Hull hull_of(const LightGrid& grid, const Cluster& cluster, std::span<const Clus
   for (std::size_t i = 0; i < 4; ++i) {
     const glm::vec3& side = i < 2 ? grid.across : grid.along;
     const float sign = i % 2 == 0 ? 1.0F : -1.0F, half = i < 2 ? grid.half_cells.x : grid.half_cells.y;
-    const float size = 2 * size1(side) + std::abs(hull.slope[i]) * size1(grid.axis);
+    const float size = 2 * float_size1(side) + std::abs(hull.slope[i]) * float_size1(grid.axis);
     hull.beyond[i] = half - sign * glm::dot(side, to_middle) + hull.slope[i] * height +
                      96 * kRound * (2 * grid.reach * size + grid.skew * widest) + size * grid.deviation;
   }

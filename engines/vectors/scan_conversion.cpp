@@ -14,6 +14,7 @@
 #include "engines/vectors/scan_conversion.hpp"
 
 #include "engines/vectors/scan_tile.hpp"
+#include "engines/vectors/size1.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -39,10 +40,6 @@ constexpr double kNoise = 0x1p-38;                     // of |D| in units of |d|
 constexpr std::size_t kBatch = std::size_t{1} << 16U;  // triangles between two looks at what is hidden
 constexpr std::size_t kChunk = std::size_t{1} << 11U;  // of them, what one core sorts at a time
 constexpr std::uint32_t kFewTiles = 4;                 // up to here a triangle's box is its tiles
-
-double size1(const glm::dvec3& v) {
-  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
 
 /// Pixel centres that a triangle may cover, both ends included, and what no t of it is below (0: nothing known).
 struct PixelBox {
