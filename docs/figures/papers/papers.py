@@ -12,10 +12,11 @@ import atty  # noqa: E402
 import bavoil  # noqa: E402
 import course  # noqa: E402
 import schwaerzler  # noqa: E402
+import times  # noqa: E402
 import yang  # noqa: E402
 
 FIGURES = {}
-for module in (atty, schwaerzler, bavoil, yang, course):
+for module in (atty, schwaerzler, bavoil, yang, course, times):
     FIGURES |= module.FIGURES
 
 
