@@ -67,7 +67,6 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
-  recipe.constants = {device.limits().subgroup_size};
   recipe.layers.count = parsed[kLayers] + (parsed[kDepth] == DepthUse::first ? 0 : 1);
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<LightTable>(device));

@@ -67,7 +67,6 @@ std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& 
   const gpu::PeelLookPush push{parsed[kLayers], parsed[kSamples], parsed[kSelect]};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
-  recipe.constants = {device.limits().subgroup_size};
   recipe.layers.count = push.layers + (parsed[kPeelDepth] == DepthUse::first ? 0 : 1);
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<LightTable>(device));

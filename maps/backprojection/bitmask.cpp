@@ -82,7 +82,6 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
       parsed[kBudget],   parsed[kBlend] ? 1u : 0u};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
-  recipe.constants = {device.limits().subgroup_size};
   recipe.layers.count = push.layers + (parsed[kDepth] == DepthUse::first ? 0 : 1);
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<LightTable>(device));

@@ -45,6 +45,7 @@ bool all_samples_hidden();
 // The light's bounding rectangle in 64 x 64 squares, and which of them hold samples that are looked for: most of what texels
 // hide lies between samples. A row is two words.
 const uint kSquares = 64;
+const uint kMostRows = 8;  // that are asked: what is taller is taken to hold samples
 shared uint square_words[2 * kSquares];
 
 uvec2 square_of(vec2 s) {
@@ -62,6 +63,7 @@ uint squares_between(uint first, uint last, uint word) {
 bool holds_samples(vec2 lower, vec2 upper) {
   if (any(greaterThan(lower, light.upper)) || any(lessThan(upper, light.lower)) || all_samples_hidden()) return false;
   const uvec2 first = square_of(lower), last = square_of(upper);
+  if (last.y - first.y > kMostRows) return true;
   const uvec2 masks = uvec2(squares_between(first.x, last.x, 0), squares_between(first.x, last.x, 1));
   for (uint row = first.y; row <= last.y; ++row) {
     if ((square_words[2 * row] & masks.x) != 0 || (square_words[2 * row + 1] & masks.y) != 0) return true;

@@ -1,4 +1,4 @@
-// A workgroup, one subgroup wide, looks at the texels of a receiver's kernel; see look_up.glsl. The shader defines
+// A workgroup of 64 invocations looks at the texels of a receiver's kernel; see look_up.glsl. The shader defines
 //   Kernel kernel_of(MapFace face)                              which texels of a face to look at
 //   bool nothing_hides(MapFace face, ivec2 first, ivec2 last)   is it known that none of these texels hides any light?
 // and what its main asks for: group_scalar_main.glsl, group_mask_main.glsl, which look by group_tiles.glsl. All of them

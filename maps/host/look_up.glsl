@@ -9,8 +9,10 @@
 // pixels it defines GROUP_A_PACKET, and brings its own main.
 #include "maps/host/map_view.shared.h"
 
-#if defined(GROUP_A_PACKET) || defined(GROUP_A_RECEIVER)
-layout(local_size_x_id = 0) in;  // a subgroup: what is the same for a receiver is not worked out by several
+#ifdef GROUP_A_PACKET
+layout(local_size_x_id = 0) in;  // a subgroup
+#elif defined(GROUP_A_RECEIVER)
+layout(local_size_x = 64) in;  // several subgroups: each may take as many turns of loops as a driver lets it
 #else
 layout(local_size_x = kLookupGroup) in;
 #endif
