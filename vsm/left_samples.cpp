@@ -46,7 +46,7 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
       const glm::dvec2& x = places[j];
       // |x| cos(θ − φ): extreme at the ends, or where θ is φ or φ + π.
       double least = std::min(along(from, x), along(to, x)), most = std::max(along(from, x), along(to, x));
-      const double phi = std::atan2(x.y, x.x);
+      const double phi = std::atan2(x.y, x.x), at_middle = along(middle, x);
       for (int turn = -2; turn <= 2; ++turn) {
         const double at = phi + turn * std::numbers::pi;
         if (at < from || at > to) continue;
@@ -62,7 +62,7 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
       };
       put(all_, [&](double r) { return least - 4 * kMargin * radius_ > r + width; });
       put(any_, [&](double r) { return most + 4 * kMargin * radius_ > r; });
-      put(middle_, [&](double r) { return along(middle, x) >= r + 0.5 * width; });
+      put(middle_, [&](double r) { return at_middle >= r + 0.5 * width; });
     }
     for (auto* map : {&all_, &any_, &middle_}) {
       const auto row = std::span(*map).subspan(std::size_t{i} * distances * words_, distances * words_);
