@@ -37,12 +37,12 @@ set(may_maps/products maps/host render/opengl render ${all_visibility} scenes me
 set(may_maps/filters maps/products maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/sampling maps/products maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/backprojection maps/products maps/host render ${all_visibility} scenes mesh base)
-set(may_selftest maps/products maps/host vsm volumes/scatter volumes/counters volumes/raster volumes/edges volumes/wedges render/opengl render
+set(may_selftest maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster volumes/edges volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas ${all_visibility} scenes mesh base)
 set(may_compare ${all_visibility} scenes mesh base)
 set(may_app/process render base)
-set(may_app app/process selftest compare reference areas maps/filters maps/sampling maps/backprojection vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render/opengl render ${all_visibility}
+set(may_app app/process selftest compare reference areas engines engines/vectors maps/filters maps/sampling maps/backprojection vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
 foreach(room commands compare inspect pictures wedges)
   set(may_app/${room} ${may_app} app)

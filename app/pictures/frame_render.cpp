@@ -295,10 +295,11 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   progress_.clear();
   if (bits_) bits_->commit();
   bits_.reset();
+  // The larger file first: what has no room leaves nothing.
+  write_picture(files.picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
   if (!files.png.empty()) {
     write_png(files.png, to_srgb(session().width, session().height, sum, std::exp2(stops)));
   }
-  write_picture(files.picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
   compare::Stats stats = make_stats(session(), lights, run_);
   stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
   // What stands between the phases is a few milliseconds of choosing and messages.

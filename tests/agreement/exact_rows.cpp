@@ -202,12 +202,6 @@ TEST_F(ExactRows, SaysWhatItCannotDo) {
   EXPECT_THROW(make_edge_scatter(device(), {{"rows", "exact"}, {"engine", "vulkan"}}), UsageError);
   EXPECT_THROW(make_edge_scatter(device(), {{"rows", "fine"}}), UsageError);
   EXPECT_THROW(make_edge_scatter(device(), {{"engine", "abacus"}}), UsageError);
-  scenes::Scene scene = tests::shipped_scene("fusion");
-  scene.lights[0].shape = scenes::Sphere{{0, 4, 0}, 0.5};
-  const SoftStage stage(scene, device(), 8, 8);
-  const auto method = make();
-  method->prepare_mesh(stage.floats);
-  EXPECT_THROW(method->prepare_light(stage.light), InputError);
 }
 
 }  // namespace

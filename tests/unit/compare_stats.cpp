@@ -157,16 +157,18 @@ TEST(MetricsJson, JudgesEachLight) {
   EXPECT_EQ(method["errorAllLights"]["rmse"], 0.5);
   EXPECT_TRUE(method["pairs"].is_null()) << "the reference's alone, which looked at others";
   ASSERT_EQ(method["lights"].size(), 2u);
-  EXPECT_EQ(keys_of(method["lights"][0]), (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error",
-                                                                    "horizonError", "sameSamples"}));
+  EXPECT_EQ(keys_of(method["lights"][0]),
+            (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error", "horizonError", "sameSamples",
+                                      "errorBudget", "errorBudgetRuns"}));
   EXPECT_EQ(method["lights"][0]["horizonError"]["rmse"], 0.75);
   EXPECT_TRUE(method["lights"][0]["sameSamples"].is_null());
   metrics.methods[0].stats.lights = {{.name = "key", .method = "exact", .area = true},
                                      {.name = "rim", .method = "pcss"}};
   const auto asked = to_json(metrics)["methods"][0]["lights"];
-  EXPECT_EQ(keys_of(asked[1]), (std::vector<std::string>{"name", "method", "options", "lightSamples", "samplePattern",
-                                                         "quantity", "seconds", "judgedPixels", "horizonPixels",
-                                                         "error", "horizonError", "sameSamples"}));
+  EXPECT_EQ(keys_of(asked[1]),
+            (std::vector<std::string>{"name", "method", "options", "lightSamples", "samplePattern", "quantity",
+                                      "seconds", "judgedPixels", "horizonPixels", "error", "horizonError",
+                                      "sameSamples", "errorBudget", "errorBudgetRuns"}));
   EXPECT_EQ(asked[0]["quantity"], "area");
   EXPECT_EQ(asked[1]["judgedPixels"], 20);
   const auto& same = method["lights"][1]["sameSamples"];
