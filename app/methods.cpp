@@ -26,12 +26,12 @@
 #include "volumes/soft/wedge_ramp.hpp"
 #endif
 #ifdef PENUMBRA_HAS_MAPS
-#include "maps/backprojection/backproject.hpp"
-#include "maps/backprojection/backproject_peel.hpp"
-#include "maps/backprojection/bitmask.hpp"
-#include "maps/backprojection/contour.hpp"
-#include "maps/backprojection/packet.hpp"
-#include "maps/backprojection/soft_shadow_map.hpp"
+#include "maps/backprojection/patches/backproject.hpp"
+#include "maps/backprojection/patches/backproject_peel.hpp"
+#include "maps/backprojection/patches/bitmask.hpp"
+#include "maps/backprojection/contours/contour.hpp"
+#include "maps/backprojection/contours/packet.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
 #include "maps/sampling/accumulate.hpp"
 #include "maps/sampling/adaptive_light.hpp"
 #include "maps/sampling/deep_penumbra.hpp"

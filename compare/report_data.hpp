@@ -10,7 +10,7 @@
 #include <string>
 
 /// The numbers that the report carries for its script: deflated, as base64. compare/page/data.js unpacks what is packed
-/// here; tests/unit/compare_report_data.cpp unpacks it too.
+/// here; tests/unit/compare/report_data.cpp unpacks it too.
 namespace penumbra::compare {
 
 /// As they are. (Masks are packed by Deflated itself, as they come.)

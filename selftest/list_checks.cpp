@@ -1,7 +1,7 @@
 #include "selftest/list_checks.hpp"
 
 #include "maps/host/map_fit.hpp"
-#include "maps/products/penumbra_events.hpp"
+#include "maps/products/lists/penumbra_events.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "maps/host/map_method.hpp"
-#include "maps/products/sample_maps.hpp"
+#include "maps/products/lists/sample_maps.hpp"
 #include "render/device.hpp"
 #include "selftest/check.hpp"
 #include "selftest/small_scenes.hpp"

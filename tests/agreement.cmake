@@ -5,8 +5,8 @@ penumbra_test(agreement FULL CorpusSweep.*
   SOURCES
   agreement/aimed_pairs.cpp
   agreement/broken_meshes_raytrace.cpp
-  agreement/face_counters_binary.cpp
-  agreement/face_counters_text.cpp
+  agreement/mesh/face_counters_binary.cpp
+  agreement/mesh/face_counters_text.cpp
   agreement/long_walks.cpp
   agreement/masks_raytrace.cpp
   agreement/mesh_verdicts.cpp

@@ -4,13 +4,13 @@ penumbra_test(compare
   agreement/radiance_near_light.cpp
   analytic/form_factor_closed_forms.cpp
   analytic/radiance_exact.cpp
-  unit/compare_beauty.cpp
-  unit/compare_error_budget.cpp
-  unit/compare_metrics.cpp
-  unit/compare_picture.cpp
-  unit/compare_report.cpp
-  unit/compare_report_data.cpp
-  unit/compare_stats.cpp
-  unit/compare_surface.cpp
-  unit/compare_visible_light.cpp
+  unit/compare/beauty.cpp
+  unit/compare/error_budget.cpp
+  unit/compare/metrics.cpp
+  unit/compare/picture.cpp
+  unit/compare/report.cpp
+  unit/compare/report_data.cpp
+  unit/compare/stats.cpp
+  unit/compare/surface.cpp
+  unit/compare/visible_light.cpp
   LIBRARIES penumbra_compare penumbra_reference nlohmann_json::nlohmann_json TBB::tbb ZLIB::ZLIB)

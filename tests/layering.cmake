@@ -34,15 +34,20 @@ set(may_volumes/scatter areas volumes/edges engines engines/device engines/vecto
 set(may_vsm engines engines/device engines/vectors engines/pairs render ${all_visibility} scenes mesh base)
 set(may_maps/host render/opengl render ${all_visibility} scenes mesh base)
 set(may_maps/products maps/host render/opengl render ${all_visibility} scenes mesh base)
+set(may_maps/products/lists ${may_maps/products} maps/products)
 set(may_maps/filters maps/products maps/host render ${all_visibility} scenes mesh base)
-set(may_maps/sampling maps/products maps/host render ${all_visibility} scenes mesh base)
+set(may_maps/sampling maps/products/lists maps/products maps/host render ${all_visibility} scenes mesh base)
 set(may_maps/backprojection maps/products maps/host render ${all_visibility} scenes mesh base)
-set(may_selftest maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster volumes/edges volumes/wedges render/opengl render
+foreach(room patches contours soft_shadow_map)
+  set(may_maps/backprojection/${room} ${may_maps/backprojection} maps/backprojection)
+endforeach()
+set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster volumes/edges volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas ${all_visibility} scenes mesh base)
 set(may_compare ${all_visibility} scenes mesh base)
+set(backprojection maps/backprojection/patches maps/backprojection/contours maps/backprojection/soft_shadow_map)
 set(may_app/process render base)
-set(may_app app/process selftest compare reference areas engines engines/vectors maps/filters maps/sampling maps/backprojection vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render/opengl render ${all_visibility}
+set(may_app app/process selftest compare reference areas engines engines/vectors maps/filters maps/sampling ${backprojection} vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
 foreach(room commands compare inspect pictures wedges)
   set(may_app/${room} ${may_app} app)
@@ -52,8 +57,9 @@ list(APPEND may_app/compare app/pictures)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility visibility/tree visibility/lights
     visibility/masks areas render/opengl render engines/device engines/vectors engines/pairs engines
-    volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products
-    maps/filters maps/sampling maps/backprojection selftest reference compare
+    volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products maps/products/lists
+    maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours
+    maps/backprojection/soft_shadow_map selftest reference compare
     app/process app app/pictures app/commands app/compare app/inspect app/wedges bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)

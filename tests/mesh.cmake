@@ -2,24 +2,24 @@
 find_package(CGAL REQUIRED)
 penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
   SOURCES
-  agreement/face_counters_binary.cpp
-  agreement/face_counters_text.cpp
-  agreement/mesh_face_counts.cpp
-  property/broken_meshes.cpp
-  property/diagnosis_oracle.cpp
-  property/mesh_diagnosis_properties.cpp
-  property/mesh_predicates.cpp
-  property/mesh_silhouettes.cpp
+  agreement/mesh/face_counters_binary.cpp
+  agreement/mesh/face_counters_text.cpp
+  agreement/mesh/face_counts.cpp
+  property/mesh/broken_meshes.cpp
+  property/mesh/diagnosis_oracle.cpp
+  property/mesh/diagnosis_properties.cpp
+  property/mesh/predicates.cpp
+  property/mesh/silhouettes.cpp
   unit/mesh/import_helper.cpp
-  unit/mesh/mesh_corpus.cpp
-  unit/mesh/mesh_diagnosis.cpp
-  unit/mesh/mesh_edge_graph.cpp
-  unit/mesh/mesh_half_edge_view.cpp
-  unit/mesh/mesh_import.cpp
-  unit/mesh/mesh_readers.cpp
-  unit/mesh/mesh_readers_xml.cpp
-  unit/mesh/mesh_repair.cpp
-  unit/mesh/mesh_soup_ply.cpp
+  unit/mesh/corpus.cpp
+  unit/mesh/diagnosis.cpp
+  unit/mesh/edge_graph.cpp
+  unit/mesh/half_edge_view.cpp
+  unit/mesh/import.cpp
+  unit/mesh/readers.cpp
+  unit/mesh/readers_xml.cpp
+  unit/mesh/repair.cpp
+  unit/mesh/soup_ply.cpp
   # GMP's rationals are the judge of the exact predicates: another library, another formula.
   LIBRARIES penumbra_mesh CGAL::CGAL PkgConfig::MINIZIP nlohmann_json::nlohmann_json ${RAPIDCHECK} TBB::tbb gmpxx gmp)
 penumbra_cgal_corpus(mesh_test)
@@ -30,7 +30,7 @@ set_tests_properties(mesh_diagnosis.closed_forms mesh_diagnosis.lattice_soups PR
 if(PENUMBRA_WITH_CGAL_GPL)
   # Polygon_mesh_processing is GPL: the test, never the program without repair, links it.
   target_compile_definitions(mesh_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
-  target_sources(mesh_test PRIVATE agreement/mesh_diagnosis_cgal.cpp)
+  target_sources(mesh_test PRIVATE agreement/mesh/diagnosis_cgal.cpp)
   add_test(NAME mesh_diagnosis_cgal.small COMMAND mesh_test --gtest_filter=CgalMeshes.Small)
   add_test(NAME mesh_diagnosis_cgal.all COMMAND mesh_test --gtest_filter=CgalMeshes.All)
   set_tests_properties(mesh_diagnosis_cgal.small PROPERTIES LABELS quick)

@@ -8,7 +8,7 @@
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/sampling/repairs.hpp"
-#include "maps/products/penumbra_events.hpp"
+#include "maps/products/lists/penumbra_events.hpp"
 #include "maps/sampling/deep_penumbra.comp.spv.hpp"
 #include "maps/sampling/deep_penumbra.shared.h"
 

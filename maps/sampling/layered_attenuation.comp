@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#include "maps/products/layered_depth.shared.h"
+#include "maps/products/lists/layered_depth.shared.h"
 #include "maps/sampling/layered_attenuation.shared.h"
 #define OWN_PUSH AttenuationPush
 #include "maps/host/look_up.glsl"

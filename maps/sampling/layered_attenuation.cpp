@@ -9,7 +9,7 @@
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/sampling/repairs.hpp"
-#include "maps/products/layered_depth.hpp"
+#include "maps/products/lists/layered_depth.hpp"
 #include "maps/sampling/layered_attenuation.comp.spv.hpp"
 #include "maps/sampling/layered_attenuation.shared.h"
 

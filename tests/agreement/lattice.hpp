@@ -4,7 +4,7 @@
 // rounding hides elsewhere (an edge exactly through a light sample, a view sample exactly on another triangle's plane,
 // doubles, coplanar neighbours, triangles without area) happens here all the time.
 
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 namespace penumbra::tests {
 

@@ -3,7 +3,7 @@
 // Lights whose samples form no rows of a rectangle.
 
 #include "tests/unit/textured_lights_support.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <glm/geometric.hpp>
 

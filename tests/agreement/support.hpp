@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "render/device.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/method.hpp"
 #include "visibility/pair_truth.hpp"

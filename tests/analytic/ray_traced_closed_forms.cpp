@@ -2,7 +2,7 @@
 // within rounding of the projected edge, which are counted), and how fast the share approaches the area.
 
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "mesh/import.hpp"
 
 #include "base/error.hpp"
-#include "tests/agreement/face_counters.hpp"
+#include "tests/agreement/mesh/face_counters.hpp"
 #include "tests/cli/program.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
-#include "tests/unit/gltf_file.hpp"
+#include "tests/unit/import/gltf_file.hpp"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "tests/fuzz/soup_methods.hpp"
 
 #include "base/error.hpp"
-#include "tests/agreement/light_span.hpp"
+#include "tests/agreement/volumes/light_span.hpp"
 #include "tests/fuzz/soup_judge.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"

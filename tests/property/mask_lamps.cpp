@@ -2,7 +2,7 @@
 // methods against the exact decision, without tolerance.
 
 #include "tests/agreement/hostile_lamps.hpp"
-#include "tests/agreement/light_span.hpp"
+#include "tests/agreement/volumes/light_span.hpp"
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
 

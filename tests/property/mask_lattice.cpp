@@ -1,6 +1,6 @@
 // The mask methods where nothing is in general position: every pair equals the exact decision, without tolerance.
 
-#include "tests/agreement/light_span.hpp"
+#include "tests/agreement/volumes/light_span.hpp"
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/property/lattice_truth.hpp"
 

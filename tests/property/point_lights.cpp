@@ -3,7 +3,7 @@
 
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/lattice.hpp"
-#include "tests/agreement/light_span.hpp"
+#include "tests/agreement/volumes/light_span.hpp"
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/point_lights.hpp"
 #include "tests/agreement/support.hpp"

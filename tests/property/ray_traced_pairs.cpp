@@ -2,7 +2,7 @@
 // off by rounding alone.
 
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 // box is centred on 0: stored floats are the numbers written here.
 
 #include "areas/exact_area.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>

@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "base/error.hpp"
 #include "reference/plain_rays.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <gtest/gtest.h>
 

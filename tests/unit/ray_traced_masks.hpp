@@ -3,7 +3,7 @@
 // Runs the ray caster over a whole picture and keeps its masks.
 
 #include "reference/ray_traced.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 #include "visibility/method.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "base/exr.hpp"
 #include "scenes/light_texture.hpp"
 #include "scenes/formats/writer.hpp"
-#include "tests/unit/scenes_support.hpp"
+#include "tests/unit/scenes/support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // Pictures made by hand, and scenes under textured lights.
 
 #include "scenes/scene.hpp"
-#include "tests/unit/visibility_scenes.hpp"
+#include "tests/unit/visibility/scenes.hpp"
 
 #include <glm/vec3.hpp>
 #include <zlib.h>

@@ -2,7 +2,7 @@
 // nothing should change.
 
 #include "base/error.hpp"
-#include "tests/unit/scenes_support.hpp"
+#include "tests/unit/scenes/support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/masks/visible_share.hpp"

@@ -1,0 +1,140 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/backprojection/contours/contour.shared.h"
+#define GROUP_A_PACKET
+#define OWN_PUSH ContourPush
+#include "maps/host/look_up.glsl"
+#include "maps/host/group_kernel.glsl"
+#define LIGHT 5
+#include "maps/backprojection/contours/radial.glsl"
+#define PYRAMID_BINDING 6
+#include "maps/products/depth_pyramid.glsl"
+#include "maps/backprojection/thresholds.glsl"
+
+// Occluder contours (Guennebaud, Barthe and Paulin 2007), found below nodes of a pyramid and for packets of pixels (Yang
+// et al. 2009). A workgroup, one subgroup wide, answers a packet of w x h pixels, or a single one. What it knows of them is
+// here; outline.glsl has contours, packet_kernel.glsl which cells are looked at for which pixels together, and
+// outline_walk.glsl how.
+
+layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
+layout(scalar, binding = 7) readonly buffer Tree {  // the pyramid that is walked; that of `Pyramid`, or another
+  PyramidHeader header;
+  vec2 nodes[];
+} tree;
+layout(scalar, binding = 8) buffer Work { uint work[]; };
+
+shared vec3 pixel_e[kMostPacketPixels], pixel_m[kMostPacketPixels];
+shared uint pixel_state[kMostPacketPixels];
+shared int pixel_sum[kMostPacketPixels];   // inside - sum, in parts of kContourWhole
+shared int pixel_edges[kMostPacketPixels];  // the sum that is being added up
+shared ivec4 pixel_cells[kMostPacketPixels];  // first and last cells of its kernel on the face at hand
+shared ivec2 pixel_own[kMostPacketPixels];    // the light's centre is seen between this texel's centre and the next ones
+shared vec2 pixel_at[kMostPacketPixels];      // so far from that centre, in texels
+const uint kLit = 2, kBehind = 3;             // states; 0 and 1: asks, on that side of the light's plane
+
+// ---- pixels that are answered together: all of a packet that have cells to look at, or one of them ----
+shared uint members[kMostPacketPixels];
+shared uint member_count, together;
+shared Bounds group;
+shared ivec4 group_cells;
+
+shared uint stack[gl_WorkGroupSize.x * 48];
+shared uint stack_count, diverged;
+shared uint work_done[kWorkCounts];
+
+LightView view;
+uint side_number;
+MapFace face;
+uint face_number;
+float face_turn;  // -1 where a turn to the left in the face is one to the right on the light
+WorkNumbers done;  // by this invocation
+
+#include "maps/backprojection/contours/outline.glsl"
+#include "maps/backprojection/contours/packet_kernel.glsl"
+#include "maps/backprojection/contours/outline_walk.glsl"
+
+// The receiver of a pixel of this packet; false beyond the picture.
+bool receiver_of(uint pixel, out uint receiver) {
+  const uint group_index = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  const uint across = (lookup.width + own.packet_width - 1) / own.packet_width;
+  const uint x = group_index % across * own.packet_width + pixel % own.packet_width;
+  const uint y = group_index / across * own.packet_height + pixel / own.packet_width;
+  receiver = y * lookup.width + x;
+  return x < lookup.width && receiver < lookup.receiver_count;
+}
+
+void load_pixel(uint pixel) {
+  pixel_state[pixel] = kLit;
+  pixel_sum[pixel] = 0;
+  uint number;
+  if (!receiver_of(pixel, number)) return;
+  const Receiver receiver = receivers[lookup.first_receiver + number];
+  if (receiver.n == vec3(0.0)) return;
+  const vec3 d = to_basis(lookup.basis, receiver.p - view.point), m = -to_basis(lookup.basis, receiver.n);
+  pixel_e[pixel] = vec3(d.xy, abs(d.z));
+  pixel_m[pixel] = d.z < 0.0 ? vec3(m.xy, -m.z) : m;
+  pixel_state[pixel] = !on_emitting_side(d) ? kBehind : d.z < 0.0 ? 1 : 0;
+  if (lookup.first_row > 0) pixel_sum[pixel] = int(results[lookup.first_result + number]);
+}
+
+void store_pixel(uint pixel) {
+  uint number;
+  if (!receiver_of(pixel, number)) return;
+  const uint result = lookup.first_result + number;
+  if (lookup.last_row + 1 < lookup.size) {
+    results[result] = uint(pixel_sum[pixel]);
+    return;
+  }
+  float v = pixel_state[pixel] == kBehind ? 0.0 : 1.0;
+  if (pixel_state[pixel] < kLit) {
+    const float hidden = float(clamp(pixel_sum[pixel], 0, kContourWhole)) / float(kContourWhole);
+    v = min(1.0 - hidden, light_above_horizon(pixel_e[pixel], pixel_m[pixel]));
+  }
+  results[result] = floatBitsToUint(v);
+}
+
+void count_work(uint kind, uint amount) { atomicAdd(work_done[kind], amount); }
+
+void main() {
+  const uint pixels = own.packet_width * own.packet_height;
+  view = views[0];
+  done = WorkNumbers(0, 0, 0, 0, 0, 0, 0, 0);
+  if (gl_LocalInvocationIndex == 0) stack_count = diverged = 0;
+  for (uint k = gl_LocalInvocationIndex; k < kWorkCounts; k += gl_WorkGroupSize.x) work_done[k] = 0;
+  for (uint i = gl_LocalInvocationIndex; i < pixels; i += gl_WorkGroupSize.x) load_pixel(i);
+  barrier();
+
+  uint looked_for = 0;
+  for (side_number = 0; side_number < 1 + lookup.two_sided; ++side_number) {
+    for (face_number = 0; face_number < view.side[side_number].face_count; ++face_number) {
+      face = face_of(view.side[side_number], 0, lookup.size, face_number);
+      face_turn = face.axis == 2 ? 1.0 : face.axis == 0 ? face.sign : -face.sign;
+      for (uint i = gl_LocalInvocationIndex; i < pixels; i += gl_WorkGroupSize.x) {
+        if (pixel_state[i] == side_number) find_kernel(i);
+      }
+      barrier();
+      if (gl_LocalInvocationIndex == 0) choose_members(pixels);
+      barrier();
+      looked_for += member_count;
+      look_for_edges();
+    }
+  }
+  if (gl_LocalInvocationIndex == 0 && looked_for == 0) ++done.trivial;
+
+  for (uint i = gl_LocalInvocationIndex; i < pixels; i += gl_WorkGroupSize.x) store_pixel(i);
+  count_work(0, done.nodes);
+  count_work(1, done.cells);
+  count_work(2, done.edges);
+  count_work(3, done.shared_packets);
+  count_work(4, done.parted);
+  count_work(5, done.diverged);
+  count_work(6, done.trivial);
+  count_work(7, done.kernel_cells);
+  barrier();
+  for (uint k = gl_LocalInvocationIndex; k < kWorkCounts; k += gl_WorkGroupSize.x) {
+    const uint amount = work_done[k];
+    if (amount != 0 && atomicAdd(work[2 * k], amount) + amount < amount) atomicAdd(work[2 * k + 1], 1);
+  }
+  check_that_loops_ended();
+}

@@ -1,0 +1,56 @@
+// Guennebaud, Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping": contours of the texels that shade,
+// by marching squares, integrated around the light's centre. Departures: which texels shade is asked of the receiver's
+// plane in each texel's direction (taps.glsl); what the light's centre is in follows from the contour itself, not from
+// the texel it falls on; up to five faces hold what one perspective image cannot; areas are added as integers.
+
+#include "maps/backprojection/contours/contour.hpp"
+
+#include "maps/backprojection/contours/contour_recipe.hpp"
+#include "maps/backprojection/subsampled.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::ChoiceOption<Search, 4> kSearch = search_option(Search::hsm);
+constexpr visibility::ChoiceOption kTraversal{
+    "traversal",
+    {{"flat", Traversal::flat}, {"hierarchy", Traversal::hierarchy}, {"minmax", Traversal::minmax}},
+    Traversal::hierarchy,
+    "how contours are found, always the same ones: in every cell of a kernel, below a node of the searched pyramid (or "
+    "of an MSSM) over it, or below a min-max pyramid's root"};
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "contour",
+      .family = visibility::Family::image,
+      .paper = "Guennebaud et al. 2007",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
+      .lights = planar_lights(),
+      .textures = false,
+      .options = single_map_option_descriptions(),
+      .verdict_on = contour_verdict,
+      .repairs = contour_repairs};
+  description.options.push_back(kSearch.description());
+  description.options.push_back(kTraversal.description());
+  description.options.push_back(kSubsample.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription contour_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
+                                                 const visibility::MethodOptions& options) {
+  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const ContourChoices choices{.search = parsed[kSearch], .traversal = parsed[kTraversal]};
+  return subsampled(make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+                    parsed[kSubsample]);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,86 @@
+#include "maps/backprojection/contours/contour_products.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/mat2x2.hpp>
+
+#include <algorithm>
+#include <span>
+
+namespace penumbra::maps {
+namespace {
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+/// Rows that take a vector of the basis's plane to multiples of these axes.
+void set_to_unit(gpu::ContourLight& head, const glm::dvec2& u, const glm::dvec2& v) {
+  const glm::dmat2 rows = glm::transpose(glm::inverse(glm::dmat2(u, v)));
+  head.to_unit_x = rows[0];
+  head.to_unit_y = rows[1];
+}
+
+}  // namespace
+
+ContourLightData contour_light(const visibility::Light& light, const LightBasis& basis) {
+  ContourLightData data{};
+  const LightBounds bounds = light_bounds(light, basis);
+  data.head.lower = bounds.lower;
+  data.head.upper = bounds.upper;
+  if (light.kind == visibility::LightKind::disk) {
+    data.head.disk = 1;
+    set_to_unit(data.head, {light.radius, 0}, {0, light.radius});
+    return data;
+  }
+  if (light.kind == visibility::LightKind::ellipse) {
+    const LightAxes axes = light_axes(light, basis);
+    data.head.disk = 1;
+    set_to_unit(data.head, axes.u, axes.v);
+    return data;
+  }
+  if (light.kind == visibility::LightKind::rectangle) {
+    const visibility::LightFrame frame = visibility::light_frame(light);
+    const glm::dvec3 u = basis.local(basis.center + frame.u), v = basis.local(basis.center + frame.v);
+    set_to_unit(data.head, glm::dvec2(u), glm::dvec2(v));
+    return data;
+  }
+  std::vector<glm::dvec2> outline = light_outline(light, basis);
+  double twice = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) twice += cross(outline[i], outline[(i + 1) % outline.size()]);
+  if (twice < 0) std::reverse(outline.begin(), outline.end());
+  twice = std::abs(twice);
+  double swept = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    data.corners.emplace_back(outline[i], swept / twice);
+    swept += cross(outline[i], outline[(i + 1) % outline.size()]);
+  }
+  data.head.corners = static_cast<std::uint32_t>(outline.size());
+  data.head.inverse_area = static_cast<float>(2 / twice);
+  return data;
+}
+
+void ContourLightProduct::record(render::Commands& /*commands*/, const MapSet& maps) {
+  const ContourLightData data = contour_light(maps.light, maps.basis);
+  render::grow(*device_, light_, "contour light", sizeof(data.head) + (data.corners.size() + 1) * sizeof(glm::vec3));
+  light_->write<gpu::ContourLight>(std::span(&data.head, 1));
+  if (!data.corners.empty()) light_->write<glm::vec3>(data.corners, sizeof(data.head));
+}
+
+WorkCounts::WorkCounts(const render::Device& device) : counts_(device, "contour work", 2 * sizeof(gpu::WorkNumbers)) {}
+
+void WorkCounts::make(const MapSource& /*source*/) {
+  counts_.write<std::uint32_t>(std::array<std::uint32_t, 2 * gpu::kWorkCounts>{});
+}
+
+void WorkCounts::record(render::Commands& /*commands*/, const MapSet& /*maps*/) {}
+
+void WorkCounts::add_counters(std::map<std::string, std::uint64_t>& counters) const {
+  static constexpr std::array<const char*, gpu::kWorkCounts> kNames{
+      "nodes", "cells", "edges", "packetsShared", "packetsParted", "packetsDiverged", "packetsTrivial", "kernelCells"};
+  std::array<std::uint64_t, gpu::kWorkCounts> counts{};
+  counts_.read<std::uint64_t>(counts);
+  for (std::size_t i = 0; i < kNames.size(); ++i) counters[kNames[i]] = counts[i];
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,87 @@
+#include "maps/backprojection/contours/contour_recipe.hpp"
+
+#include "maps/backprojection/contours/contour.comp.spv.hpp"
+#include "maps/backprojection/contours/contour.shared.h"
+#include "maps/backprojection/contours/contour_products.hpp"
+#include "maps/host/error_repairs.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/products/nearest_caster.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+/// Places below a root have 14 bits on the stack of contour.comp.
+constexpr std::uint32_t kMostWalkedCells = 1u << 14;
+
+}  // namespace
+
+visibility::MeshVerdict contour_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("outlines of what the light's centre sees, each closed and by itself", mesh);
+}
+
+visibility::ErrorRepairs contour_repairs(const visibility::MethodDescription& method,
+                                         const visibility::MethodOptions& given) {
+  return map_repairs(method, given,
+                     {.ends_at_points = true,
+                      .layers = "outlines are of the nearest surfaces; no form of the method has more",
+                      .fusion = "outlines that overlap are added; no form of the method joins them",
+                      .gaps = "outlines are closed around connected texels: there is nothing between them"});
+}
+
+MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescription description,
+                         const ContourChoices& choices, const visibility::ParsedOptions& options) {
+  MapRecipe recipe{
+      .description = std::move(description), .look_up_name = "contour look-up", .look_up = shaders::kContourComp};
+  recipe.whole_light = true;
+  recipe.group_a_receiver = true;
+  recipe.packet_width = choices.packet_width;
+  recipe.packet_height = choices.packet_height;
+  recipe.sub_lights = choices.sub_lights;
+  recipe.constants = {device.limits().subgroup_size};
+
+  // Pyramids hold nearest depths: where a shadow begins behind another surface they say nothing.
+  const bool pyramids = options[kDepth] == DepthUse::first;
+  const Search search = pyramids ? choices.search : Search::none;
+  const bool walks = pyramids && options[kMapSize] + 1 < kMostWalkedCells;
+  const Traversal traversal = walks ? choices.traversal : Traversal::flat;
+
+  recipe.products.push_back(std::make_unique<NearestCaster>(device));
+  recipe.products.push_back(std::make_unique<ContourLightProduct>(device));
+  const auto add_pyramid = [&](PyramidKind kind) {
+    recipe.products.push_back(std::make_unique<DepthPyramid>(device, kind));
+  };
+  const auto add_same = [&](std::size_t product) {
+    recipe.products.push_back(std::make_unique<SameProduct>(*recipe.products[product]));
+  };
+  constexpr std::size_t kUnread = 0, kSearched = 2;
+  if (search == Search::none) {
+    add_same(kUnread);
+  } else {
+    add_pyramid(pyramid_of(search));
+  }
+  const Search walked = traversal == Traversal::minmax ? Search::hsm : search == Search::none ? Search::mssm : search;
+  if (traversal == Traversal::flat) {
+    add_same(kUnread);
+  } else if (search == walked) {
+    add_same(kSearched);
+  } else {
+    add_pyramid(pyramid_of(walked));
+  }
+  recipe.products.push_back(std::make_unique<WorkCounts>(device));
+
+  gpu::ContourPush push{};
+  push.packet_width = choices.packet_width;
+  push.packet_height = choices.packet_height;
+  push.search = search == Search::none ? gpu::kNoSearch : gpu::kSearch;
+  push.traversal = traversal == Traversal::flat        ? gpu::kFlat
+                   : traversal == Traversal::hierarchy ? gpu::kHierarchy
+                                                       : gpu::kMinMax;
+  push.divergence = static_cast<float>(choices.divergence);
+  recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
+  recipe.push = [push](const visibility::Light&) { return push_words(push); };
+  return recipe;
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,54 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/backprojection/patches/backproject.shared.h"
+#define GROUP_A_RECEIVER
+#define OWN_PUSH BackprojectPush
+#include "maps/host/look_up.glsl"
+#include "maps/host/group_kernel.glsl"
+#define LIGHT_TABLE 5
+#include "maps/backprojection/light_table.glsl"
+#include "maps/backprojection/patches/fill.glsl"
+#include "maps/backprojection/patches/sphere.glsl"
+#define PYRAMID_BINDING 6
+#include "maps/backprojection/patches/search.glsl"
+
+// Guennebaud, Barthe and Paulin 2006: V = 1 - the sum of what the patches of the kernel's texels cover of the light.
+
+layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
+
+Kernel kernel_of(MapFace face) {
+  float near = nearest[asked.number];
+  if (own.search != 0) return search_kernel(face, light.lower, light.upper, near, 0, true);
+  return kernel_on(face, lookup.size, asked.e, light.lower, light.upper, near, 0);
+}
+
+// Patches reach to their left and lower neighbours' depths; spheres, beyond their texels.
+bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
+  vec2 depths;
+  return none_hides(face, first - 1, last, own.layers, own.form == kFormPatch, depths);
+}
+
+float share_above() { return light_above_horizon(asked.e, asked.m); }
+
+Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }
+
+uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
+  const Tap tap = texel_at(face, layer, cell);
+  if (!hides(tap)) return 0;
+  if (own.form == kFormSphere) return sphere_hides(face, tap);
+  Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
+  fill_gaps(one, face, layer, cell, own.fill);
+  return light_between(in_light_order(face, one.from), in_light_order(face, one.to));
+}
+
+// Of several layers the deepest that hides some of the light counts: to add them all would count most bodies twice.
+uint hidden_by(MapFace face, uvec2 cell) {
+  for (uint layer = own.layers; layer-- > 0;) {
+    const uint hidden = hidden_by_layer(face, layer, cell);
+    if (hidden > 0) return hidden;
+  }
+  return 0;
+}
+
+#include "maps/host/group_scalar_main.glsl"

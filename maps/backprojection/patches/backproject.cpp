@@ -1,0 +1,82 @@
+// Guennebaud, Barthe and Paulin 2006, "Real-time soft shadow mapping by backprojection". Departures: each texel is
+// compared with the receiver's plane in its own direction (taps.glsl); up to five faces hold what one perspective image
+// cannot; parts of the light are added as integers; lights have any planar shape (light_table.hpp); several layers may
+// be asked, as Bavoil et al. 2006 do.
+
+#include "maps/backprojection/patches/backproject.hpp"
+
+#include "maps/backprojection/patches/backproject.comp.spv.hpp"
+#include "maps/backprojection/patches/backproject.shared.h"
+#include "maps/backprojection/light_table.hpp"
+#include "maps/backprojection/patches/options.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/patches/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
+#include "maps/products/depth_pyramid.hpp"
+#include "maps/products/nearest_caster.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr auto kFill = fill_option(gpu::kFillEdges);
+constexpr visibility::ChoiceOption kForm{
+    "form",
+    {{"patch", gpu::kFormPatch}, {"sphere", gpu::kFormSphere}},
+    gpu::kFormPatch,
+    "rectangles on the light, or bounding spheres before the disk of the light's area (without fill)"};
+constexpr visibility::IntegerOption kLayers{
+    "layers", 1, 16, 1, "layers of surfaces that are asked, of which the deepest that hides some of the light counts"};
+constexpr auto kSearch = search_option(Search::hsm);
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the surfaces that the light's centre sees, as patches whose shadows are added up", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "backproject",
+      .family = visibility::Family::image,
+      .paper = "Guennebaud et al. 2006",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
+      .lights = planar_lights(),
+      .options = single_map_option_descriptions(),
+      .verdict_on = verdict_on,
+      .repairs = backproject_repairs};
+  description.options.push_back(kFill.description());
+  description.options.push_back(kForm.description());
+  description.options.push_back(kLayers.description());
+  description.options.push_back(kSearch.description());
+  description.options.push_back(kSubsample.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription backproject_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_backproject(const render::Device& device,
+                                                     const visibility::MethodOptions& options) {
+  MapRecipe recipe{
+      .description = describe(), .look_up_name = "backproject look-up", .look_up = shaders::kBackprojectComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  recipe.whole_light = true;
+  recipe.group_a_receiver = true;
+  recipe.layers.count = parsed[kLayers] + (parsed[kDepth] == DepthUse::first ? 0 : 1);
+  recipe.products.push_back(std::make_unique<NearestCaster>(device));
+  recipe.products.push_back(std::make_unique<LightTable>(device));
+  const Search search = parsed[kSearch];
+  recipe.products.push_back(
+      std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
+  const gpu::BackprojectPush push{parsed[kFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kLayers]};
+  recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
+  recipe.push = [push](const visibility::Light&) { return push_words(push); };
+  return subsampled(make_map_method(device, std::move(recipe), options), parsed[kSubsample]);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,21 @@
+// One struct, two languages: what backproject.comp has behind LookupPush.
+#ifdef __cplusplus
+#pragma once
+#include "maps/backprojection/patches/fill.shared.h"
+namespace penumbra::maps::gpu {
+inline constexpr uint kFormPatch = 0, kFormSphere = 1;
+#else
+#include "maps/backprojection/patches/fill.shared.h"
+const uint kFormPatch = 0, kFormSphere = 1;
+#endif
+
+struct BackprojectPush {
+  uint fill;    // kFillNone ...
+  uint form;    // kFormPatch or kFormSphere
+  uint search;  // whether a pyramid is asked
+  uint layers;  // that are asked
+};
+
+#ifdef __cplusplus
+}  // namespace penumbra::maps::gpu
+#endif

@@ -1,0 +1,79 @@
+// Bavoil, Callahan and Silva 2006, "Robust soft shadow mapping with depth peeling". Departures: as in backproject; the
+// last layer's middle needs the layer behind it, which is peeled, too; a block is as wide as the square root of the
+// ratio of counts, where the paper takes the ratio.
+
+#include "maps/backprojection/patches/backproject_peel.hpp"
+
+#include "maps/backprojection/patches/backproject_peel.comp.spv.hpp"
+#include "maps/backprojection/patches/backproject_peel.shared.h"
+#include "maps/backprojection/light_table.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/patches/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
+#include "maps/products/depth_pyramid.hpp"
+#include "maps/products/nearest_caster.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 3, "layers of surfaces that are asked"};
+constexpr visibility::IntegerOption kSamples{
+    "samples", 0, 1048576, 121, "texels that a receiver asks at most, evenly spread over its kernel; 0: all"};
+constexpr visibility::ChoiceOption<std::uint32_t, 2> kSelect{
+    "select",
+    {{"contribution", 0u}, {"deepest", 1u}},
+    0u,
+    "of a texel's surfaces in front of the receiver the deepest that hides some of the light, or the deepest"};
+constexpr auto kPeelDepth = depth_option(DepthUse::midpoint);
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the surfaces nearest to the light's centre, as patches whose shadows are added up", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "backproject-peel",
+      .family = visibility::Family::image,
+      .paper = "Bavoil et al. 2006",
+      .output = visibility::Output::scalar,
+      .exact_for =
+          "nothing; in the limit of large maps and all samples, where all that shades lies in one plane "
+          "parallel to the light",
+      .lights = planar_lights(),
+      .options = single_map_option_descriptions(DepthUse::midpoint),
+      .verdict_on = verdict_on,
+      .repairs = peel_repairs};
+  description.options.push_back(kLayers.description());
+  description.options.push_back(kSamples.description());
+  description.options.push_back(kSelect.description());
+  description.options.push_back(kSubsample.description());
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription backproject_peel_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& device,
+                                                          const visibility::MethodOptions& options) {
+  MapRecipe recipe{
+      .description = describe(), .look_up_name = "backproject-peel look-up", .look_up = shaders::kBackprojectPeelComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  const gpu::PeelLookPush push{parsed[kLayers], parsed[kSamples], parsed[kSelect]};
+  recipe.whole_light = true;
+  recipe.group_a_receiver = true;
+  recipe.layers.count = push.layers + (parsed[kPeelDepth] == DepthUse::first ? 0 : 1);
+  recipe.products.push_back(std::make_unique<NearestCaster>(device));
+  recipe.products.push_back(std::make_unique<LightTable>(device));
+  recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
+  recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
+  recipe.push = [push](const visibility::Light&) { return push_words(push); };
+  return subsampled(make_map_method(device, std::move(recipe), options), parsed[kSubsample]);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,187 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/backprojection/patches/bitmask.shared.h"
+#define GROUP_A_RECEIVER
+#define OWN_PUSH BitmaskPush
+#include "maps/host/look_up.glsl"
+#include "maps/host/group_kernel.glsl"
+#define LIGHT_TABLE 5
+#include "maps/backprojection/light_table.glsl"
+#define SAMPLE_BANDS 6
+#include "maps/backprojection/patches/sample_bands.glsl"
+#include "maps/backprojection/patches/fill.glsl"
+#define PYRAMID_BINDING 7
+#include "maps/backprojection/patches/search.glsl"
+
+// Schwarz and Stamminger 2007, 2008: what texels hide is kept as a bit a light sample, so that occluders that overlap
+// count once. An occluder is a texel's rectangle, a quad between the centres of four texels that all hide light, a
+// triangle of three of them where just three do, or, of a coarse level, the rectangle around what there is in a block.
+
+layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
+layout(scalar, binding = 8) readonly buffer Levels { uvec2 levels[]; };  // level_maps.comp's
+
+uint level = 0;        // that is looked at now
+uint level_start = 0;    // where it begins among those that there are
+
+// Schwarz and Stamminger 2008: where a budget is exceeded coarser levels are looked at, by a number that grows with the
+// kernel without steps. Between two whole ones the coarser decides for so many of the light samples, shared out evenly.
+float wanted_level = 0.0;
+float coarser_share = 1.0;  // samples with a place below this are the coarser level's
+bool coarser = false;       // the coarser of two is looked at now
+
+// Places in [0, 1) that any first n of the samples fill evenly: multiples of the golden ratio.
+bool is_mine(uint j) {
+  if (coarser_share >= 1.0) return true;
+  return (float(j * 2654435769u >> 8) / 16777216.0 < coarser_share) == coarser;
+}
+
+uint side_of_level(uint l) { return ((lookup.size - 1) >> l) + 1; }
+uint level_size() { return side_of_level(level); }
+
+void look_at_level(uint l) {
+  level = l;
+  level_start = 0;
+  if (own.budget == 0) return;  // it is the only one
+  for (uint k = 1; k < l; ++k) level_start += lookup.layers * lookup.faces * side_of_level(k) * side_of_level(k);
+}
+
+// The same face with the level's texels.
+MapFace at_level(MapFace face) {
+  face.texel *= float(1u << level);
+  return face;
+}
+
+Tap texel_at(MapFace face, uint layer, uvec2 cell) {
+  if (level == 0) return ask_texel(face, layer, cell);
+  const uint side = level_size();
+  const uint texel = level_start + ((face.map + layer * lookup.faces) * side + cell.y) * side + cell.x;
+  Tap tap;
+  tap.direction = from_face(face, vec3(face.lower + (vec2(cell) + 0.5) * face.texel, 1.0));
+  tap.far = asked.view.far;
+  tap.depth = tap.far * uintBitsToFloat(levels[texel].x);
+  tap.second = tap.far;
+  if (lookup.depth_use != kDepthFirst) tap.second *= uintBitsToFloat(levels[texel + lookup.faces * side * side].x);
+  tap.along = asked.e.z / tap.direction.z;
+  tap.texel = max(face.texel.x, face.texel.y);
+  tap.axis = face.axis;
+  return tap;
+}
+
+// Quads and triangles lie between centres, of a texel and its right and upper neighbours; patches reach to the left and
+// lower ones.
+bool between_centres() { return own.occluder == kOccluderQuad || own.occluder == kOccluderTriangle; }
+
+// A rectangle of the light that holds what texels first ... last of a face parallel to it can hide, none of them nearer to
+// the light than depths.x or farther than depths.y; a texel more on every side, as in all_beside_light.
+bool may_hide_samples(MapFace face, ivec2 first, ivec2 last, vec2 depths) {
+  if (face.axis != 2) return true;
+  const vec2 from = (face.lower + vec2(first - 1) * face.texel) * asked.e.z - asked.e.xy;
+  const vec2 to = (face.lower + vec2(last + 2) * face.texel) * asked.e.z - asked.e.xy;
+  const vec2 scales = depths / max(asked.e.z - depths, vec2(1e-8 * asked.e.z));
+  return holds_samples(min(from * scales.x, from * scales.y), max(to * scales.x, to * scales.y));
+}
+
+bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
+  const ivec2 from = (between_centres() ? first : first - 1) << level;
+  const ivec2 to = ((between_centres() ? last + 2 : last + 1) << level) - 1;
+  vec2 depths;
+  return none_hides(face, from, to, own.layers, true, depths) || !may_hide_samples(face, from, to, depths);
+}
+
+int padding() { return between_centres() ? 1 : 0; }
+
+float near = 0.0;  // of the kernel
+
+Kernel kernel_at_level(MapFace face) {
+  return kernel_on(at_level(face), level_size(), asked.e, light.lower, light.upper, near, padding());
+}
+
+Kernel kernel_of(MapFace face) {
+  tile_shift = padding();
+  near = nearest[asked.number];
+  look_at_level(own.level);
+  coarser_share = 1.0;
+  Kernel kernel = kNoKernel;
+  if (own.search != 0) {
+    kernel = search_kernel(face, light.lower, light.upper, near, padding(), true);
+    if (is_empty(kernel)) return kernel;
+  }
+  if (own.search == 0 || level > 0) kernel = kernel_at_level(face);
+  if (own.budget == 0 || is_empty(kernel)) return kernel;
+  const ivec2 extent = kernel.last - kernel.first + 1;
+  wanted_level = float(level) + max(0.5 * log2(float(extent.x) * float(extent.y) / float(own.budget)), 0.0);
+  wanted_level = min(wanted_level, float(kCoarsestLevel));
+  coarser_share = own.blend != 0 ? fract(wanted_level) : 1.0;
+  coarser = false;
+  look_at_level(uint(own.blend != 0 ? floor(wanted_level) : ceil(wanted_level)));
+  return level == own.level ? kernel : kernel_at_level(face);
+}
+
+Kernel next_kernel(MapFace face, uint turn) {
+  if (turn > 1 || own.budget == 0 || own.blend == 0 || coarser_share == 0.0 || level >= kCoarsestLevel) return kNoKernel;
+  coarser = true;
+  look_at_level(level + 1);
+  return kernel_at_level(face);
+}
+
+void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {
+  Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
+  fill_gaps(one, face, layer, cell, own.fill);
+  hide_rectangle(in_light_order(face, one.from), in_light_order(face, one.to));
+}
+
+// The box of a block's texels that hold anything, at the block's nearest depth.
+void hide_box(MapFace fine, uint layer, uvec2 cell, Tap tap) {
+  const uint side = level_size();
+  const uint box = levels[level_start + ((fine.map + layer * lookup.faces) * side + cell.y) * side + cell.x].y;
+  const uvec2 first = uvec2(box & 255u, box >> 16 & 255u), last = uvec2(box >> 8 & 255u, box >> 24);
+  const Patch one = patch_of(fine, asked.e, (cell << level) + first, last - first + 1, tap.depth);
+  hide_rectangle(in_light_order(fine, one.from), in_light_order(fine, one.to));
+}
+
+// The quad between the centres of this texel and of its right and upper neighbours: two triangles, along the same diagonal
+// everywhere; or one, of the three that hide light.
+void hide_quad(MapFace face, uint layer, uvec2 cell) {
+  if (any(greaterThanEqual(cell + 1, uvec2(level_size())))) return;
+  const uvec2 at[4] = uvec2[](cell, cell + uvec2(1, 0), cell + 1, cell + uvec2(0, 1));
+  vec3 seen[4];
+  uint hiding = 0;
+  int missing = 0;
+  const uint fewest = own.occluder == kOccluderTriangle ? 3 : 4;
+  for (int k = 0; k < 4 && hiding + 4 >= uint(k) + fewest; ++k) {
+    const Tap tap = texel_at(face, layer, at[k]);
+    if (hides(tap)) {
+      seen[k] = onto_light(asked.e, tap.depth * tap.direction);
+      ++hiding;
+    } else {
+      missing = k;
+    }
+  }
+  if (hiding == 4) {
+    hide_triangle(seen[0], seen[1], seen[2]);
+    hide_triangle(seen[0], seen[2], seen[3]);
+  } else if (hiding == 3 && own.occluder == kOccluderTriangle) {
+    hide_triangle(seen[(missing + 1) & 3], seen[(missing + 2) & 3], seen[(missing + 3) & 3]);
+  }
+}
+
+void hide(MapFace fine, uvec2 cell) {
+  const MapFace face = at_level(fine);
+  for (uint layer = 0; layer < own.layers; ++layer) {
+    if (between_centres()) {
+      hide_quad(face, layer, cell);
+      continue;
+    }
+    const Tap tap = texel_at(face, layer, cell);
+    if (tap.depth >= tap.far) break;  // behind nothing there is nothing
+    if (!hides(tap)) continue;
+    if (own.occluder == kOccluderRect && level > 0) {
+      hide_box(fine, layer, cell, tap);
+    } else {
+      hide_patch(face, layer, cell, tap);
+    }
+  }
+}
+
+#include "maps/host/group_mask_main.glsl"

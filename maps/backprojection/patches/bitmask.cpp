@@ -1,0 +1,98 @@
+// Schwarz and Stamminger 2007, "Bitmask soft shadows"; 2008, "Quality scalability of soft shadow mapping" (rect,
+// level). Departures: bits are the light samples of the command line, whatever their number and pattern, and are
+// decided one by one in place of look-up tables; quads are two triangles; the box of a coarse texel is around what
+// there is in its block and not around what is nearer than the receiver, which no table could hold.
+
+#include "maps/backprojection/patches/bitmask.hpp"
+
+#include "maps/backprojection/patches/bitmask.comp.spv.hpp"
+#include "maps/backprojection/patches/bitmask.shared.h"
+#include "maps/backprojection/patches/level_maps.hpp"
+#include "maps/backprojection/patches/light_sample_bands.hpp"
+#include "maps/backprojection/light_table.hpp"
+#include "maps/backprojection/patches/options.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/backprojection/patches/repairs.hpp"
+#include "maps/products/depth_pyramid.hpp"
+#include "maps/products/nearest_caster.hpp"
+
+#include <utility>
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::ChoiceOption kOccluder{"occluder",
+                                             {{"patch", gpu::kOccluderPatch},
+                                              {"quad", gpu::kOccluderQuad},
+                                              {"triangle", gpu::kOccluderTriangle},
+                                              {"rect", gpu::kOccluderRect}},
+                                             gpu::kOccluderQuad,
+                                             "a texel's rectangle; a quad between four centres; with a triangle where "
+                                             "three of them hide; of a level, the rectangle "
+                                             "around what there is"};
+constexpr auto kFill = fill_option(gpu::kFillNone);
+constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 1, "layers of surfaces that are asked"};
+constexpr visibility::IntegerOption kLevel{"level", 0, 6, 0, "blocks of 2^level texels a side are one texel"};
+constexpr visibility::IntegerOption kBudget{
+    "budget", 0, 1u << 28, 0,
+    "texels of a face that a receiver may look at; where there are more, coarser levels stand for them; 0: no limit"};
+constexpr auto kBlend =
+    visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
+constexpr auto kSearch = search_option(Search::mssm);
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("the surfaces that the light's centre sees, each pair decided by their texels", mesh);
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "bitmask",
+      .family = visibility::Family::image,
+      .paper = "Schwarz and Stamminger 2007",
+      .output = visibility::Output::mask,
+      .exact_for =
+          "nothing; in the limit of large maps every pair of view sample and light sample whose occluders the "
+          "light's centre sees",
+      .lights = planar_lights(),
+      .on_request = true,
+      .options = single_map_option_descriptions(),
+      .verdict_on = verdict_on,
+      .repairs = bitmask_repairs};
+  for (const auto& option : {kOccluder.description(), kFill.description(), kLayers.description(), kLevel.description(),
+                             kBudget.description(), kBlend.description(), kSearch.description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+}  // namespace
+
+visibility::MethodDescription bitmask_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
+                                                 const visibility::MethodOptions& options) {
+  MapRecipe recipe{.description = describe(), .look_up_name = "bitmask look-up", .look_up = shaders::kBitmaskComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  const Search search = parsed[kSearch];
+  const gpu::BitmaskPush push{
+      parsed[kOccluder], parsed[kFill],           parsed[kLayers], parsed[kLevel], search == Search::none ? 0u : 1u,
+      parsed[kBudget],   parsed[kBlend] ? 1u : 0u};
+  recipe.whole_light = true;
+  recipe.group_a_receiver = true;
+  recipe.layers.count = push.layers + (parsed[kDepth] == DepthUse::first ? 0 : 1);
+  recipe.products.push_back(std::make_unique<NearestCaster>(device));
+  recipe.products.push_back(std::make_unique<LightTable>(device));
+  recipe.products.push_back(std::make_unique<LightSampleBands>(device));
+  recipe.products.push_back(
+      std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
+  recipe.products.push_back(std::make_unique<LevelMaps>(device, push.budget > 0 ? 1 : push.level,
+                                                        push.budget > 0 ? gpu::kCoarsestLevel : push.level));
+  recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
+  recipe.push = [push](const visibility::Light&) { return push_words(push); };
+  return make_map_method(device, std::move(recipe), options);
+}
+
+}  // namespace penumbra::maps

@@ -1,0 +1,131 @@
+// The three methods are one idea with other options, which is what takes their error apart: patches of k layers whose
+// shares of the light are added (backproject; backproject-peel with all texels), or whose bits are joined (bitmask).
+
+#include "maps/backprojection/patches/repairs.hpp"
+
+#include "maps/backprojection/patches/backproject.hpp"
+#include "maps/backprojection/patches/bitmask.hpp"
+#include "maps/host/error_repairs.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace penumbra::maps {
+namespace {
+
+using visibility::ErrorCause;
+using visibility::ErrorRepair;
+using visibility::ErrorRepairs;
+using visibility::MethodDescription;
+using visibility::MethodOptions;
+using visibility::RepairEnd;
+using visibility::RepairRun;
+
+ErrorRepair& of(ErrorRepairs& repairs, ErrorCause cause) {
+  return repairs.alone[static_cast<std::size_t>(cause)];
+}
+
+/// Those of these options that patches have in every method.
+MethodOptions patch_options(const MethodOptions& options, const MethodOptions& more) {
+  MethodOptions chosen = more;
+  for (const char* key : {"size", "bias", "depth", "rasteriser"}) chosen.emplace(key, options.at(key));
+  return chosen;
+}
+
+RepairRun joined(const MethodOptions& options, const MethodOptions& more) {
+  MethodOptions patches = patch_options(options, more);
+  patches["occluder"] = "patch";
+  return {"bitmask", options_with(bitmask_description(), patches, {}), 1, kRepairSamples};
+}
+
+ErrorRepair union_of(const MethodOptions& options, const MethodOptions& more) {
+  return {
+      .cause = ErrorCause::fusion,
+      .runs = {joined(options, more)},
+      .words = fmt::format("the same patches joined, not added: bits of {} light samples (bitmask)", kRepairSamples)};
+}
+
+ErrorRepair shared_borders(RepairRun run) {
+  return {.cause = ErrorCause::gaps,
+          .runs = {std::move(run)},
+          .words = "patches that end where their neighbours begin (fill=shared)"};
+}
+
+/// All but the view that can be combined for patches: the finest union of all layers.
+std::vector<RepairRun> patches_of_one_view(const MethodOptions& options) {
+  const RepairRun run =
+      joined(options, {{"layers", "16"}, {"fill", "shared"}, {"bias", "0.015625"}, {"depth", "first"}});
+  const std::string doubled[] = {"size"};
+  return from_finest(bitmask_description(), run, doubled);
+}
+
+}  // namespace
+
+ErrorRepairs backproject_repairs(const MethodDescription& method, const MethodOptions& given) {
+  const MethodOptions options = visibility::complete_options(method, given);
+  ErrorRepairs repairs = map_repairs(method, given,
+                                     {.ends_at_points = true,
+                                      .fusion = "spheres are added, and no form of the method joins them",
+                                      .gaps = "spheres reach beyond their texels: they only overlap"});
+  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  if (options.at("form") == "sphere") return repairs;
+  of(repairs, ErrorCause::fusion) = union_of(
+      options, {{"layers", options.at("layers")}, {"fill", options.at("fill")}, {"search", options.at("search")}});
+  of(repairs, ErrorCause::gaps) = shared_borders({method.name, options_with(method, given, {{"fill", "shared"}})});
+  repairs.one_view = patches_of_one_view(options);
+  return repairs;
+}
+
+ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& given) {
+  const MethodOptions options = visibility::complete_options(method, given);
+  const std::string left_out =
+      fmt::format("the same texels cannot be left out of another method; samples=0 leaves out none (here {})",
+                  options.at("samples"));
+  ErrorRepairs repairs = map_repairs(method, given, {.ends_at_points = true, .fusion = left_out, .gaps = left_out});
+  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  if (options.at("samples") != "0") {
+    // Half as wide texels would be left out twice as often: the limit is that of all texels.
+    ErrorRepair& resolution = of(repairs, ErrorCause::resolution);
+    for (RepairRun& run : resolution.runs)
+      run.options.insert_or_assign("samples", std::string(1, '0'));  // g++ 12 warns of "0"
+    resolution.runs.insert(resolution.runs.begin(), {method.name, options_with(method, given, {{"samples", "0"}})});
+    resolution.words = "all texels, then half and a quarter as wide, and the limit of that";
+  } else if (options.at("select") == "contribution") {
+    const MethodOptions alike{{"layers", options.at("layers")}, {"search", "none"}};
+    MethodOptions adding = patch_options(options, alike);
+    adding["fill"] = "shared";
+    of(repairs, ErrorCause::fusion) = union_of(options, alike);
+    of(repairs, ErrorCause::gaps) =
+        shared_borders({"backproject", options_with(backproject_description(), adding, {})});
+  }
+  repairs.one_view = patches_of_one_view(options);
+  return repairs;
+}
+
+ErrorRepairs bitmask_repairs(const MethodDescription& method, const MethodOptions& given) {
+  const MethodOptions options = visibility::complete_options(method, given);
+  const bool patches = options.at("occluder") == "patch";
+  ErrorRepairs repairs = map_repairs(
+      method, given,
+      {.ends_at_points = true,
+       .fusion = "bits are joined: nothing is counted twice",
+       .gaps = options.at("occluder") == "rect" ? "rectangles of blocks have no form that fills what is between them"
+                                                : "its occluders share their corners: there is nothing between them"});
+  of(repairs, ErrorCause::layers) = more_layers(method, given);
+  if (patches) {
+    of(repairs, ErrorCause::gaps) = {
+        .cause = ErrorCause::gaps,
+        .runs = {{method.name, options_with(method, given, {{"fill", "diagonal"}})}},
+        .words = "patches that reach to their neighbours, the diagonal one too (fill=diagonal); overlaps do no harm"};
+  }
+  for (RepairRun& run : repairs.one_view) {
+    run.options["layers"] = "16";
+    if (patches) run.options["fill"] = "diagonal";
+  }
+  return repairs;
+}
+
+}  // namespace penumbra::maps

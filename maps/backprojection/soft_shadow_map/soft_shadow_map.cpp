@@ -1,0 +1,386 @@
+// Atty, Holzschuch, Lapierre, Hasenfratz, Hansen and Sillion, "Soft shadow maps: efficient sampling of light source
+// visibility" (Computer Graphics Forum 25 (4), 2006). Departures: extents are computed an axis at a time, so that light
+// and map need not have the same aspect; the second pass draws the farthest surface in place of the farthest back face,
+// which closed meshes do not tell apart and soups can be asked for; sums are integers in place of blended floats
+// (precision=fp16: 16-bit floats, as published); each receiver texel gathers occluders (form=scatter: as published),
+// which are the same sums.
+
+#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_gather.comp.spv.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_resolve.comp.spv.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_scatter.comp.spv.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_scene.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_shadow_map.comp.spv.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_shadow_map.shared.h"
+#include "maps/host/caster_maps.hpp"
+#include "maps/host/error_repairs.hpp"
+#include "maps/backprojection/light_table.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+#include "maps/host/receivers.hpp"
+#include "render/compute_pass.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace penumbra::maps {
+namespace {
+
+enum class Precision : std::uint8_t { fp32, fp16 };
+enum class Form : std::uint8_t { gather, scatter };
+enum class Filter : std::uint8_t { linear, nearest };
+
+constexpr visibility::IntegerOption kSize{"size", 8, 16384, 128, "texels on a side of the map of occluders"};
+constexpr visibility::RealOption kNoBias{
+    "bias", 0, 1024, 0, "how far, in the occluders' texels, an occluder must be in front of a receiver"};
+constexpr visibility::IntegerOption kReceiverSize{"receiverSize", 8, 4096, 256,
+                                                  "texels on a side of the map of receivers, which holds V"};
+constexpr visibility::ChoiceOption kPasses{
+    "passes", {{"1", 1u}, {"2", 2u}}, 1u, "2: the farthest surfaces too, and the smaller V of the two"};
+constexpr visibility::ChoiceOption kPrecision{"precision",
+                                              {{"fp32", Precision::fp32}, {"fp16", Precision::fp16}},
+                                              Precision::fp32,
+                                              "fp16: adds in 16-bit floats, as the published blending did"};
+constexpr visibility::ChoiceOption kForm{
+    "form", {{"gather", Form::gather}, {"scatter", Form::scatter}}, Form::gather, "which map is walked: the same sums"};
+constexpr visibility::ChoiceOption kFilter{
+    "filter", {{"linear", Filter::linear}, {"nearest", Filter::nearest}}, Filter::linear, "how V is read from its map"};
+
+visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("a sum of texels, each projected onto the light; objects do not shade themselves", mesh);
+}
+
+visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
+  return map_repairs(method, given,
+                     {.doubled = {"size", "receiverSize"},
+                      .layers = "passes=2 adds the farthest surfaces; no form of the method has those between",
+                      .fusion = "patches are added, or the smaller V of two passes taken; no form joins them",
+                      .gaps = "no form of the method fills what is between patches",
+                      .bias = {{"bias", "0"}}});
+}
+
+visibility::MethodDescription describe() {
+  visibility::MethodDescription description{
+      .name = "soft-shadow-map",
+      .family = visibility::Family::image,
+      .paper = "Atty et al. 2006",
+      .output = visibility::Output::scalar,
+      .exact_for =
+          "nothing; in the limit of large maps a receiver below occluders that are flat and parallel to the light "
+          "and do not overlap",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(kSize, kNoBias),
+      .verdict_on = verdict_on,
+      .repairs = repairs};
+  for (const visibility::OptionDescription& option :
+       {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
+        kForm.description(), kFilter.description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+/// Turns of one invocation's loop: drivers for processors end all loops of a workgroup after 65,535.
+constexpr std::uint32_t kMostTurns = 60000;
+constexpr std::uint32_t kPassesPerSubmission = 96;
+
+struct Settings {
+  std::uint32_t receiver_size, passes;
+  Precision precision;
+  Form form;
+  Filter filter;
+};
+
+class SoftShadowMap final : public visibility::Method {
+ public:
+  SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings);
+
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void prepare_mesh(const visibility::SceneFloats& scene) override { scene_ = &scene; }
+  void prepare_light(const visibility::Light& light) override;
+  void prepare_view(const visibility::ViewSamples& samples) override;
+  [[nodiscard]] std::uint32_t max_tile_rows() const override {
+    return receivers_.max_rows(*device_, sizeof(std::uint32_t));
+  }
+  void evaluate(const visibility::Tile& tile) override;
+  void read_visibility(std::span<float> visibility) override;
+
+  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ private:
+  /// A map of some triangles from the light's centre, on the device and read back.
+  struct Map {
+    gpu::LightView view{};
+    std::uint32_t faces = 0;
+    std::vector<float> depths;
+  };
+  /// What of each texel's surfaces a map holds; nothing: 1, of the farthest 0.
+  enum class Kept : std::uint8_t { nearest, nearest_two, farthest };
+  /// Draws the chosen triangles. Of two layers the second is behind the first in the buffer, and is not read back.
+  Map draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size, Kept kept,
+           std::unique_ptr<render::Buffer>& buffer);
+  void add_up(const Map& occluders, std::uint32_t pass);
+  [[nodiscard]] gpu::SoftMapPush push_for(const Map& occluders, int side, std::uint32_t pass) const;
+
+  const render::Device* device_;
+  visibility::MethodDescription description_;
+  MapOptions map_;
+  Settings settings_;
+  CasterMaps occluder_maps_, receiver_maps_;
+  render::ComputePass gather_, scatter_, resolve_, look_up_;
+  Receivers receivers_;
+  visibility::PassTimes times_;
+  std::map<std::string, std::uint64_t> counters_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::ViewSamples* samples_ = nullptr;
+  const visibility::Light* light_ = nullptr;
+  LightBasis basis_;
+  LightTable light_table_;
+  gpu::LightTableHead light_shape_{};
+  bool upright_ = false;  ///< a rectangle along its basis, without texture
+  SoftScene parts_;
+  Map receiver_map_;
+  std::uint32_t tile_pixels_ = 0;
+  std::unique_ptr<render::Buffer> occluders_, receiver_depths_, visible_, sums_, counts_, views_, results_;
+};
+
+SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings)
+    : device_(&device),
+      description_(describe()),
+      map_(map),
+      settings_(settings),
+      occluder_maps_(device, map.size, map.rasteriser),
+      receiver_maps_(device, settings.receiver_size, map.rasteriser),
+      gather_(device, {.name = "gather occluders",
+                       .spirv = shaders::kSoftGatherComp,
+                       .push_bytes = sizeof(gpu::SoftMapPush),
+                       .constants = {}}),
+      scatter_(device, {.name = "scatter occluders",
+                        .spirv = shaders::kSoftScatterComp,
+                        .push_bytes = sizeof(gpu::SoftMapPush),
+                        .constants = {}}),
+      resolve_(device, {.name = "soft shadow map",
+                        .spirv = shaders::kSoftResolveComp,
+                        .push_bytes = sizeof(gpu::SoftMapPush),
+                        .constants = {}}),
+      look_up_(device, {.name = "soft shadow map look-up",
+                        .spirv = shaders::kSoftShadowMapComp,
+                        .push_bytes = sizeof(gpu::LookupPush) + sizeof(gpu::SoftLookupPush),
+                        .constants = {}}),
+      light_table_(device) {}
+
+SoftShadowMap::Map SoftShadowMap::draw(CasterMaps& casters, std::span<const std::uint8_t> chosen, std::uint32_t size,
+                                       Kept kept, std::unique_ptr<render::Buffer>& buffer) {
+  Map map;
+  const std::uint32_t layers = kept == Kept::nearest_two ? 2 : 1;
+  map.view = fit_window(*scene_, basis_, chosen, size, light_->two_sided);
+  map.faces = map.view.side[0].face_count + map.view.side[1].face_count;
+  check_faces_fit(*device_, size, layers * std::max(map.faces, 1u));
+  map.depths.resize(std::size_t{std::max(map.faces, 1u)} * size * size);
+  render::grow(*device_, buffer, "soft shadow map depths", layers * map.depths.size() * sizeof(float));
+  if (map.faces == 0) return map;
+  render::Commands commands(*device_);
+  if (kept == Kept::farthest) {
+    casters.record_farthest(commands, map.view, basis_, light_->index, *buffer, 0);
+  } else {
+    casters.record(commands, map.view, basis_, light_->index, *buffer, 0);
+    times_.add(commands.submit());
+    if (kept == Kept::nearest_two) {
+      casters.record_behind(commands, map.view, basis_, light_->index, *buffer, map.faces, 0);
+    }
+  }
+  times_.add(commands.submit());
+  buffer->read<float>(map.depths);
+  return map;
+}
+
+void SoftShadowMap::prepare_light(const visibility::Light& light) {
+  visibility::check_light(description_, light);
+  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", description_.name);
+  light_ = &light;
+  basis_ = light_basis(light);
+  const LightTableData shape = light_table(light, basis_);
+  light_table_.write(shape);
+  light_shape_ = shape.head;
+  upright_ = shape.head.width * shape.head.height == 1;
+  parts_ = part_scene(*scene_, light, basis_);
+  counters_ = {{"patches", 0}, {"fragments", 0}, {"pixelsOnOccluders", 0}};
+
+  visibility::SceneFloats drawn = *scene_;
+  drawn.casts_shadow = parts_.receivers;
+  receiver_maps_.upload(drawn);
+  drawn.casts_shadow = parts_.occluders;
+  occluder_maps_.upload(drawn);
+  receiver_map_ = draw(receiver_maps_, parts_.receivers, settings_.receiver_size, Kept::nearest, receiver_depths_);
+  render::grow(*device_, visible_, "soft shadow map", receiver_map_.depths.size() * sizeof(float));
+  render::grow(*device_, counts_, "fragments", 2 * sizeof(std::uint32_t));
+  for (std::uint32_t pass = 0; pass < settings_.passes; ++pass) {
+    const Kept nearest = map_.depth == DepthUse::first ? Kept::nearest : Kept::nearest_two;
+    add_up(draw(occluder_maps_, parts_.occluders, map_.size, pass > 0 ? Kept::farthest : nearest, occluders_), pass);
+  }
+  render::grow(*device_, views_, "map views", sizeof(gpu::LightView));
+  views_->write<gpu::LightView>(std::span(&receiver_map_.view, 1));
+}
+
+/// Of the depths that are there, in one face of a map: the least and the greatest.
+std::pair<float, float> extremes(std::span<const float> depths) {
+  std::pair<float, float> found(1, 0);
+  for (const float depth : depths) {
+    if (depth <= 0 || depth >= 1) continue;
+    found.first = std::min(found.first, depth);
+    found.second = std::max(found.second, depth);
+  }
+  return found;
+}
+
+gpu::SoftMapPush SoftShadowMap::push_for(const Map& occluders, int side, std::uint32_t pass) const {
+  const gpu::SideView &from = occluders.view.side[side], &to = receiver_map_.view.side[side];
+  const std::uint32_t size = map_.size, receiver_size = settings_.receiver_size;
+  gpu::SoftMapPush push{};
+  push.occluder_lower = from.lower;
+  push.occluder_texel = (from.upper - from.lower) / static_cast<float>(size);
+  push.receiver_lower = to.lower;
+  push.receiver_texel = (to.upper - to.lower) / static_cast<float>(receiver_size);
+  push.light_lower = light_shape_.lower;
+  push.light_upper = light_shape_.upper;
+  push.upright = upright_ ? 1 : 0;
+  push.occluder_far = occluders.view.far;
+  push.receiver_far = receiver_map_.view.far;
+  push.bias = static_cast<float>(map_.bias);
+  push.occluder_size = size;
+  push.receiver_size = receiver_size;
+  push.occluder_first = from.first_face * size * size;
+  push.receiver_first = to.first_face * receiver_size * receiver_size;
+  push.half_floats = settings_.precision == Precision::fp16 ? 1 : 0;
+  push.later = pass > 0 ? 1 : 0;
+  // The farthest surfaces have none behind them.
+  push.depth_use = pass > 0 ? gpu::kDepthFirst : static_cast<std::uint32_t>(map_.depth);
+  push.second_first = push.occluder_first + occluders.faces * size * size;
+  push.nearest = extremes(std::span(occluders.depths).subspan(push.occluder_first, std::size_t{size} * size)).first *
+                 push.occluder_far;
+  push.deepest =
+      extremes(std::span(receiver_map_.depths).subspan(push.receiver_first, std::size_t{receiver_size} * receiver_size))
+          .second *
+      push.receiver_far;
+  return push;
+}
+
+void SoftShadowMap::add_up(const Map& occluders, std::uint32_t pass) {
+  counters_["patches"] += static_cast<std::uint64_t>(
+      std::ranges::count_if(occluders.depths, [](float depth) { return depth > 0 && depth < 1; }));
+  render::Commands commands(*device_);
+  if (pass == 0) commands.fill(*visible_, 0x3f800000u);  // 1.0f
+  commands.fill(*counts_, 0);
+  for (int side = 0; side < 2; ++side) {
+    if (occluders.view.side[side].face_count == 0 || receiver_map_.view.side[side].face_count == 0) continue;
+    gpu::SoftMapPush push = push_for(occluders, side, pass);
+    const bool gathers = settings_.form == Form::gather;
+    const auto groups = [](std::uint64_t texels) { return (texels + gpu::kLookupGroup - 1) / gpu::kLookupGroup; };
+    const std::uint64_t receiver_texels = std::uint64_t{push.receiver_size} * push.receiver_size;
+    const std::uint64_t occluder_texels = std::uint64_t{push.occluder_size} * push.occluder_size;
+    render::grow(*device_, sums_, "soft shadow map sums", receiver_map_.depths.size() * 2 * sizeof(std::uint32_t));
+    commands.fill(*sums_, 0);
+    const std::uint32_t across = gathers ? push.occluder_size : push.receiver_size;
+    const std::uint32_t rows = std::max(kMostTurns / across, 1u);
+    for (std::uint32_t row = 0; row < across; row += rows) {
+      push.first_row = row;
+      push.last_row = std::min(row + rows, across);
+      (gathers ? gather_ : scatter_)
+          .record(commands, push, {*occluders_, *receiver_depths_, *sums_, *counts_, light_table_.buffer()},
+                  groups(gathers ? receiver_texels : occluder_texels));
+      if (row / rows % kPassesPerSubmission == kPassesPerSubmission - 1) times_.add(commands.submit());
+    }
+    resolve_.record(commands, push, {*sums_, *visible_}, groups(receiver_texels));
+    times_.add(commands.submit());
+  }
+  times_.add(commands.submit());
+  std::array<std::uint32_t, 2> fragments{};
+  counts_->read<std::uint32_t>(fragments);
+  counters_["fragments"] += std::uint64_t{fragments[1]} << 32 | fragments[0];
+}
+
+void SoftShadowMap::prepare_view(const visibility::ViewSamples& samples) {
+  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_view before prepare_mesh", description_.name);
+  samples_ = &samples;
+  receivers_.upload(*device_, *scene_, samples);
+}
+
+void SoftShadowMap::evaluate(const visibility::Tile& tile) {
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", description_.name);
+  tile_pixels_ = tile.row_count * receivers_.width();
+  if (tile_pixels_ == 0) return;
+  std::vector<std::uint32_t> on_occluder(tile_pixels_, 0);
+  for (std::size_t i = 0; i < on_occluder.size(); ++i) {
+    const std::int32_t triangle = samples_->triangle[std::size_t{tile.first_row} * receivers_.width() + i];
+    on_occluder[i] = triangle >= 0 && parts_.receivers[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
+  }
+  counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder, 1u));
+  render::grow(*device_, results_, "map visibility", on_occluder.size() * sizeof(std::uint32_t));
+  results_->write<std::uint32_t>(on_occluder);
+  const gpu::SoftLookupPush own{.size = settings_.receiver_size,
+                                .linear = settings_.filter == Filter::linear ? 1u : 0u};
+  render::Commands commands(*device_);
+  for (const Receivers::Part& part : receivers_.parts(tile)) {
+    gpu::LookupPush push{};
+    push.basis = basis_.rounded();
+    push.two_sided = light_->two_sided ? 1 : 0;
+    push.first_receiver = part.first_receiver;
+    push.receiver_count = part.count;
+    push.first_result = part.first_result;
+    std::vector<std::uint32_t> words = push_words(push);
+    const std::vector<std::uint32_t> more = push_words(own);
+    words.insert(words.end(), more.begin(), more.end());
+    const std::vector<render::BufferReference> buffers{*part.receivers, *views_,   *receiver_depths_,
+                                                       *results_,       *visible_, light_table_.buffer()};
+    look_up_.record(commands, std::as_bytes(std::span(words)), buffers, part.groups());
+  }
+  times_.add(commands.submit());
+}
+
+void SoftShadowMap::read_visibility(std::span<float> visibility) {
+  PENUMBRA_ASSERT(visibility.size() == tile_pixels_, "{} values for a tile of {} pixels", visibility.size(),
+                  tile_pixels_);
+  if (!visibility.empty()) results_->read(visibility);
+}
+
+std::uint64_t SoftShadowMap::memory_bytes() const {
+  std::uint64_t bytes = occluder_maps_.memory_bytes() + receiver_maps_.memory_bytes() + receivers_.memory_bytes();
+  for (const auto* buffer : {&occluders_, &receiver_depths_, &visible_, &sums_, &counts_, &views_, &results_}) {
+    bytes += *buffer ? (*buffer)->bytes() : 0;
+  }
+  return bytes;
+}
+
+}  // namespace
+
+visibility::MethodDescription soft_shadow_map_description() {
+  return describe();
+}
+
+std::unique_ptr<visibility::Method> make_soft_shadow_map(const render::Device& device,
+                                                         const visibility::MethodOptions& options) {
+  const visibility::MethodDescription description = describe();
+  const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
+  const Settings settings{.receiver_size = parsed[kReceiverSize],
+                          .passes = parsed[kPasses],
+                          .precision = parsed[kPrecision],
+                          .form = parsed[kForm],
+                          .filter = parsed[kFilter]};
+  if (settings.precision == Precision::fp16 && settings.form == Form::scatter) {
+    throw UsageError(
+        "method soft-shadow-map: 16-bit floats depend on the order of sums, and scattered ones have none; take "
+        "form=gather, "
+        "which adds patches in the order of their texels, or precision=fp32");
+  }
+  return std::make_unique<SoftShadowMap>(device, map_options(device, description, parsed), settings);
+}
+
+}  // namespace penumbra::maps

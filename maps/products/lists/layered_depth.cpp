@@ -1,0 +1,108 @@
+#include "maps/products/lists/layered_depth.hpp"
+
+#include "base/error.hpp"
+#include "maps/products/lists/layered_depth.shared.h"
+#include "maps/products/lists/layered_merge.comp.spv.hpp"
+#include "maps/products/lists/layered_warp.comp.spv.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace penumbra::maps {
+namespace {
+
+std::uint64_t groups_of(std::uint64_t texels) {
+  return (texels + gpu::kLookupGroup - 1) / gpu::kLookupGroup;
+}
+
+}  // namespace
+
+LayeredDepth::LayeredDepth(const render::Device& device, double epsilon)
+    : device_(&device),
+      epsilon_(epsilon),
+      samples_(device),
+      warp_(device, {.name = "warp maps",
+                     .spirv = shaders::kLayeredWarpComp,
+                     .push_bytes = sizeof(gpu::WarpPush),
+                     .constants = {}}),
+      merge_(device, {.name = "merge layers",
+                      .spirv = shaders::kLayeredMergeComp,
+                      .push_bytes = sizeof(gpu::MergePush),
+                      .constants = {}}) {}
+
+void LayeredDepth::make(const MapSource& source) {
+  samples_.make(source);
+  render::grow(*device_, centre_, "centre's view", sizeof(gpu::LightView));
+  centre_->write<gpu::LightView>(std::span(&source.centre, 1));
+  for (auto* word : {&node_count_, &most_}) render::grow(*device_, *word, "layer counter", sizeof(std::uint32_t));
+  const std::uint64_t texels = std::max<std::uint64_t>(std::uint64_t{source.faces} * source.size * source.size, 1);
+  render::grow(*device_, heads_, "layer lists", texels * sizeof(std::uint32_t));
+  render::grow(*device_, counts_, "layer counts", texels * sizeof(std::uint32_t));
+  layers_ = 4;
+  node_capacity_ = 2 * texels;
+  for (;;) {
+    const std::uint64_t bytes = texels * layers_ * sizeof(gpu::LayerEntry);
+    if (bytes > device_->limits().max_storage_buffer_range) {
+      const double fits = std::sqrt(static_cast<double>(device_->limits().max_storage_buffer_range) /
+                                    static_cast<double>(source.faces * layers_ * sizeof(gpu::LayerEntry)));
+      throw ResourceError(
+          "layered-attenuation: {} layers a texel do not fit into one buffer of {}; take size={} or less, or a larger "
+          "epsilon",
+          layers_, device_->info().name, std::max(8u, static_cast<std::uint32_t>(fits)));
+    }
+    render::grow(*device_, entries_, "layers", bytes);
+    render::grow(*device_, nodes_, "layer nodes", node_capacity_ * sizeof(glm::uvec2));
+    if (merge_all(source)) break;
+  }
+  source.counters["layers"] = layers_;
+}
+
+bool LayeredDepth::merge_all(const MapSource& source) {
+  if (source.faces == 0) return true;
+  const std::uint32_t texels = source.faces * source.size * source.size;
+  const std::uint64_t sample_texels = std::uint64_t{samples_.faces()} * source.size * source.size;
+  render::Commands commands(*device_);
+  commands.fill(*counts_, 0);
+  commands.fill(*most_, 0);
+  commands.fill(*entries_, 0);
+  for (const SampleMaps::Part& part : samples_.parts()) {
+    for (std::uint32_t k = 0; k < part.count; ++k) {
+      commands.fill(*heads_, 0);
+      commands.fill(*node_count_, 0);
+      const gpu::WarpPush warp{.basis = source.basis.rounded(),
+                               .size = source.size,
+                               .point = part.first + k,
+                               .first_map = k * samples_.faces(),
+                               .faces = source.faces,
+                               .sample_faces = samples_.faces(),
+                               .node_capacity = static_cast<std::uint32_t>(node_capacity_),
+                               .epsilon = static_cast<float>(epsilon_)};
+      warp_.record(commands, warp, {*centre_, samples_.views(), *part.maps, *heads_, *nodes_, *node_count_},
+                   groups_of(sample_texels));
+      const gpu::MergePush merge{texels, layers_, part.first + k, static_cast<float>(epsilon_)};
+      merge_.record(commands, merge, {*heads_, *nodes_, samples_.weights(), *counts_, *entries_, *most_},
+                    groups_of(texels));
+      source.times.add(commands.submit());
+      std::uint32_t nodes = 0;
+      node_count_->read<std::uint32_t>(std::span(&nodes, 1));
+      if (nodes > node_capacity_) {
+        node_capacity_ = std::uint64_t{nodes} + nodes / 2;
+        return false;
+      }
+    }
+  }
+  std::uint32_t most = 0;
+  most_->read<std::uint32_t>(std::span(&most, 1));
+  if (most <= layers_) return true;
+  layers_ *= 2;
+  return false;
+}
+
+std::uint64_t LayeredDepth::memory_bytes() const {
+  std::uint64_t bytes = samples_.memory_bytes();
+  for (const auto* buffer : {&centre_, &heads_, &nodes_, &node_count_, &counts_, &entries_, &most_})
+    bytes += *buffer ? (*buffer)->bytes() : 0;
+  return bytes;
+}
+
+}  // namespace penumbra::maps

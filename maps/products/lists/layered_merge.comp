@@ -1,0 +1,51 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/products/lists/layered_depth.shared.h"
+
+// Agrawala et al. 2000: what one light sample's map brought to a texel, merged into its layers, the nearest first. A depth
+// within epsilon of a layer is that layer, and counts once a sample; another one begins a layer of its own.
+
+layout(local_size_x = kLookupGroup) in;
+layout(scalar, binding = 0) readonly buffer Heads { uint heads[]; };
+layout(scalar, binding = 1) readonly buffer Nodes { uvec2 nodes[]; };
+layout(scalar, binding = 2) readonly buffer Weights { uint weights[]; };
+layout(scalar, binding = 3) buffer Counts { uint counts[]; };
+layout(scalar, binding = 4) buffer Entries { LayerEntry entries[]; };  // a texel's side by side
+layout(scalar, binding = 5) buffer Most { uint most; };                // layers that some texel wants
+layout(scalar, push_constant) uniform Push { MergePush push; };
+
+void main() {
+  const uint texel = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (texel >= push.texels || heads[texel] == 0) return;
+  const uint first = texel * push.layers;
+  uint count = counts[texel], done = 0;  // bits of the depth merged last; depths are positive
+  for (;;) {
+    uint next = 0xffffffffu;  // the smallest depth beyond
+    for (uint node = heads[texel]; node != 0; node = nodes[node - 1].y) {
+      if (nodes[node - 1].x > done) next = min(next, nodes[node - 1].x);
+    }
+    if (next == 0xffffffffu) break;
+    done = next;
+    const float t = uintBitsToFloat(next);
+    uint nearest = count;
+    float off = push.epsilon * t;
+    for (uint e = 0; e < count; ++e) {
+      const float from = abs(entries[first + e].t - t);
+      if (from > off || (from == off && nearest < count)) continue;
+      nearest = e;
+      off = from;
+    }
+    if (nearest == count) {
+      if (count == push.layers) {
+        atomicMax(most, count + 1);
+        continue;
+      }
+      entries[first + count++] = LayerEntry(t, weights[push.point], push.point + 1);
+    } else if (entries[first + nearest].last != push.point + 1) {
+      entries[first + nearest].weight += weights[push.point];
+      entries[first + nearest].last = push.point + 1;
+    }
+  }
+  counts[texel] = count;
+}

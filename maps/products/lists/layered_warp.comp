@@ -1,0 +1,96 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/products/lists/layered_depth.shared.h"
+
+// Agrawala et al. 2000: every texel of one light sample's maps warped into the maps of the light's centre. A texel covers
+// the centre's texels whose centres lie in its image; neighbours on one surface (depths within epsilon) share the image of
+// their border, so that a surface is covered without gaps. What arrives at a texel is a list; layered_merge.comp reads it
+// in the order of depth, so the order in which it is written changes nothing.
+
+layout(local_size_x = kLookupGroup) in;
+layout(scalar, binding = 0) readonly buffer Centre { LightView centre; };
+layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
+layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
+layout(scalar, binding = 3) buffer Heads { uint heads[]; };   // the last node of each texel of the centre, counted from 1
+layout(scalar, binding = 4) buffer Nodes { uvec2 nodes[]; };  // bits of the depth, the node before
+layout(scalar, binding = 5) buffer NodeCount { uint node_count; };
+layout(scalar, push_constant) uniform Push { WarpPush push; };
+
+// Coordinates on face k of a side, and back (face_of in map_fit.cpp).
+vec3 on_face(vec3 e, uint k) {
+  if (k == 0) return e;
+  if (k == 1) return vec3(e.y, e.z, e.x);
+  if (k == 2) return vec3(e.y, e.z, -e.x);
+  if (k == 3) return vec3(e.x, e.z, e.y);
+  return vec3(e.x, e.z, -e.y);
+}
+vec3 off_face(vec3 f, uint k) {
+  if (k == 0) return f;
+  if (k == 1) return vec3(f.z, f.x, f.y);
+  if (k == 2) return vec3(-f.z, f.x, f.y);
+  if (k == 3) return vec3(f.x, f.z, f.y);
+  return vec3(f.x, -f.z, f.y);
+}
+
+void main() {
+  const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  if (i >= push.sample_faces * push.size * push.size) return;
+  const LightView view = views[push.point];
+  const uint first = push.first_map * push.size * push.size;
+  const float stored = maps[first + i];
+  if (stored >= 1.0) return;
+  const float w = stored * view.far;
+  const ivec2 at = ivec2(i % push.size, i / push.size % push.size);
+  const uint face = i / (push.size * push.size), s = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
+  const SideView side = view.side[s], to = centre.side[s];
+  const uint own = face - side.first_face;
+  const vec2 lower = side.face_count == 1 ? side.lower : vec2(-1.0, own == 0 ? -1.0 : 0.0);
+  const vec2 upper = side.face_count == 1 ? side.upper : vec2(1.0), width = (upper - lower) / float(push.size);
+  const vec3 offset = view.point - centre.point;
+  const vec3 o = vec3(dot(push.basis.u, offset), dot(push.basis.v, offset), (s == 0 ? 1.0 : -1.0) * dot(push.basis.n, offset));
+
+  // The texel's centre, and the middles of its four borders at the depths that it shares with its neighbours.
+  const vec2 middle = lower + (vec2(at) + 0.5) * width, begin = lower + vec2(at) * width, end = lower + vec2(at + 1) * width;
+  vec3 places[5];
+  places[4] = o + off_face(vec3(middle * w, w), own);
+  for (uint k = 0; k < 4; ++k) {
+    const ivec2 next = at + ivec2(k == 0 ? -1 : (k == 1 ? 1 : 0), k == 2 ? -1 : (k == 3 ? 1 : 0));
+    float border = w;
+    if (all(greaterThanEqual(next, ivec2(0))) && all(lessThan(next, ivec2(push.size)))) {
+      const float beside = maps[first + (face * push.size + uint(next.y)) * push.size + uint(next.x)];
+      if (beside < 1.0 && abs(beside * view.far - w) <= push.epsilon * max(beside * view.far, w))
+        border = 0.5 * (beside * view.far + w);
+    }
+    const vec2 on = vec2(k == 0 ? begin.x : (k == 1 ? end.x : middle.x), k == 2 ? begin.y : (k == 3 ? end.y : middle.y));
+    places[k] = o + off_face(vec3(on * border, border), own);
+  }
+
+  for (uint k = 0; k < to.face_count; ++k) {
+    const bool window = to.face_count == 1;
+    const vec2 low = window ? to.lower : vec2(-1.0, k == 0 ? -1.0 : 0.0), high = window ? to.upper : vec2(1.0);
+    const vec2 texel = (high - low) / float(push.size);
+    vec2 from = vec2(1e30), until = vec2(-1e30);
+    bool in_front = true;
+    for (uint c = 0; c < 4; ++c) {
+      const vec3 f = on_face(places[c], k);
+      in_front = in_front && f.z > 0.0;
+      const vec2 place = (f.xy / f.z - low) / texel;
+      from = min(from, place);
+      until = max(until, place);
+    }
+    const float t = on_face(places[4], k).z;
+    if (!in_front || !(t > 0.0)) continue;
+    // Centres at c + 1/2 in [from, until).
+    const ivec2 first_texel = ivec2(ceil(clamp(from - 0.5, vec2(0.0), vec2(push.size))));
+    const ivec2 end_texel = ivec2(ceil(clamp(until - 0.5, vec2(0.0), vec2(push.size))));
+    for (int y = first_texel.y; y < end_texel.y; ++y) {
+      for (int x = first_texel.x; x < end_texel.x; ++x) {
+        const uint node = atomicAdd(node_count, 1);
+        if (node >= push.node_capacity) continue;
+        const uint place = ((to.first_face + k) * push.size + uint(y)) * push.size + uint(x);
+        nodes[node] = uvec2(floatBitsToUint(t), atomicExchange(heads[place], node + 1));
+      }
+    }
+  }
+}

@@ -1,0 +1,237 @@
+// Backprojection against every texel one by one, against closed forms, and the identities that hold on every scene.
+
+#include "tests/analytic/maps/parallel_square.hpp"
+#include "tests/analytic/maps/patch_twin.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <random>
+
+namespace penumbra::tests {
+namespace {
+
+using visibility::MethodOptions;
+
+MethodOptions options_of(std::initializer_list<std::pair<const std::string, std::string>> more,
+                         std::uint32_t size = 32) {
+  MethodOptions options{{"size", fmt::format("{}", size)}, {"search", "none"}, {"fill", "none"}};
+  for (const auto& [key, value] : more) options[key] = value;
+  return options;
+}
+
+/// Casters, which receive nothing, well above a floor that casts nothing.
+scenes::Scene boards_over_floor() {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;
+  add_quad(scene, {-0.5, 2, 0.2}, {0.8, 0.3, 0}, {0, 0.1, 0.7}).receives_shadow = false;
+  add_quad(scene, {0.7, 1, -0.4}, {0.4, 0, 0.1}, {0, 0.2, 0.5}).receives_shadow = false;
+  add_object(scene, "sphere", sphere({0.2, 2.4, 0.5}, 0.4, 6)).receives_shadow = false;
+  scene.lights.push_back(ceiling_light(5, 0.8));
+  scene.cameras.push_back(camera({0, 5, 0.5}, {0, 0, 0}, 50));
+  return scene;
+}
+
+/// A small floor, and a caster that shades it from far beside every direction that the floor is seen in.
+scenes::Scene blocker_beside() {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {0.2, 0, 0}, {0, 0, -0.2}).casts_shadow = false;
+  add_quad(scene, {1.3, 2, 0}, {1, 0, 0}, {0, 0, -3}).receives_shadow = false;
+  scene.lights.push_back(ceiling_light(3, 1));
+  scene.cameras.push_back(camera({0, 1, 1}, {0, 0, 0}, 20));
+  return scene;
+}
+
+/// A floor and walls up to the light's plane, which cast nothing, and boards in every direction.
+scenes::Scene boards_in_a_room() {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3}).casts_shadow = false;
+  add_quad(scene, {0, 1.5, -3}, {3, 0, 0}, {0, 1.5, 0}).casts_shadow = false;
+  add_quad(scene, {-3, 1.5, 0}, {0, 0, 3}, {0, 1.5, 0}).casts_shadow = false;
+  for (const glm::dvec3& centre : {glm::dvec3(-1.4, 1.9, 0), glm::dvec3(0.1, 2, -1.3), glm::dvec3(0.2, 1.7, 0.2)}) {
+    add_quad(scene, centre, {0.3, 0.05, 0.3}, {0.2, 0.1, -0.25}).receives_shadow = false;
+  }
+  scene.lights.push_back(ceiling_light(3, 0.4));
+  scene.cameras.push_back(camera({2.8, 1.5, 2.8}, {-1, 1, -1}, 70));
+  return scene;
+}
+
+class MapsBackproject : public MapsTest {
+ protected:
+  /// The largest and the mean difference between backproject and its twin over receivers.
+  static std::pair<double, double> off(const Stage& stage, const PatchTwin& twin, std::uint32_t size, Fill fill,
+                                       const MethodOptions& more = {}) {
+    MethodOptions options = options_of({}, size);
+    options["fill"] = fill == Fill::none ? "none" : fill == Fill::edges ? "edges" : "diagonal";
+    for (const auto& [key, value] : more) options[key] = value;
+    const Masks found = run(maps::make_backproject, stage, options);
+    double most = 0, sum = 0;
+    std::size_t count = 0, partly = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!visibility::is_receiver(stage.floats, stage.samples, i) || !twin.is_below_all_casters(i)) continue;
+      const double expected = twin.visibility(i, fill), off = std::abs(found.visibility[i] - expected);
+      most = std::max(most, off);
+      sum += off;
+      ++count;
+      partly += expected > 0 && expected < 1 ? 1 : 0;
+    }
+    EXPECT_GT(partly, 30U);
+    return {most, sum / static_cast<double>(count)};
+  }
+};
+
+// Borders are floats around 1 in light coordinates, each off by some 2⁻²⁰ where f magnifies by ten; only outer borders
+// of what hides the light count, about a hundred of them here: 1e-4. A kernel that misses a texel, or a constant that
+// is 2 % off, moves V by far more.
+TEST_F(MapsBackproject, IsTheSumOfAllTexelsOneByOne) {
+  for (const auto& [scene, name, faces] :
+       {std::tuple(boards_over_floor(), "boards", 1U), std::tuple(blocker_beside(), "beside", 1U)}) {
+    const Stage stage(scene, 20, 20, light_samples(1));
+    const PatchTwin twin(device(), stage, 32);
+    ASSERT_EQ(twin.faces(), faces);
+    for (const Fill fill : {Fill::none, Fill::edges, Fill::diagonal}) {
+      const auto [most, mean] = off(stage, twin, 32, fill);
+      fmt::print("{}: off by at most {:.2g}, {:.2g} in the mean\n", name, most, mean);
+      EXPECT_LT(most, 1e-4) << name;
+    }
+  }
+}
+
+// On sideways faces the sides of a texel stand where the middle of its row sees them: exact in the mean of a row, so
+// what remains are corners of the outline, each a fraction of a texel's square.
+TEST_F(MapsBackproject, AHemicubesFacesTooToASquareTexel) {
+  const Stage stage(boards_in_a_room(), 24, 24, light_samples(1));
+  const PatchTwin twin(device(), stage, 48);
+  ASSERT_EQ(twin.faces(), 5U);
+  const auto [most, mean] = off(stage, twin, 48, Fill::none);
+  fmt::print("hemicube: off by at most {:.2g}, {:.2g} in the mean\n", most, mean);
+  EXPECT_LT(most, 0.02);
+  EXPECT_LT(mean, 0.0005);
+}
+
+TEST_F(MapsBackproject, BothSidesOfATwoSidedLight) {
+  scenes::Scene scene = boards_over_floor();
+  add_quad(scene, {0, 9, 0}, {2, 0, 0}, {0, 0, 2}).casts_shadow = false;
+  add_quad(scene, {0.3, 7, 0}, {0.5, 0.2, 0}, {0, 0, 0.6}).receives_shadow = false;
+  scene.lights.front().two_sided = true;
+  scene.cameras.front() = camera({0, 4, 9}, {0, 4.5, 0}, 75);
+  const Stage stage(scene, 32, 32, light_samples(1));
+  const PatchTwin twin(device(), stage, 32);
+  ASSERT_EQ(twin.faces(), 2U);
+  EXPECT_LT(off(stage, twin, 32, Fill::edges).first, 1e-4);
+}
+
+// A search finds narrower kernels, never others; and where the whole kernel hides, all of the light is hidden.
+TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
+  for (const auto& [scene, fill] : {std::pair(boards_over_floor(), "none"), std::pair(boards_in_a_room(), "edges"),
+                                    std::pair(parallel_square(), "none")}) {
+    const Stage stage(scene, 24, 24, light_samples(1));
+    const Masks plain = run(maps::make_backproject, stage, options_of({{"fill", fill}}, 48));
+    for (const char* search : {"hsm", "mssm", "ysm"}) {
+      const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}, {"search", search}}, 48));
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        EXPECT_TRUE(found.visibility[i] == plain.visibility[i] || found.visibility[i] == 0)
+            << search << ", pixel " << i << ": " << found.visibility[i] << " for " << plain.visibility[i];
+      }
+    }
+  }
+}
+
+// On parallel rectangles nothing is lost but half a texel at each of an axis's two edges, f / w_l texels on the light.
+TEST_F(MapsBackproject, IsWithinATexelOfTheAreaUnderAParallelSquare) {
+  for (const std::uint32_t size : {16U, 31U, 33U, 128U}) {
+    const Stage stage(parallel_square(), 32, 32, light_samples(1));
+    const ParallelSquare exact(stage);
+    // Light at 5, square at depth 3: f = 3 · 5 / (5 − 3); the light is 2 wide; the window ±(0.8 + a texel).
+    const double texel = 1.6 / (size - 2), bound = 2 * texel * 7.5 / 2;
+    for (const char* search : {"none", "hsm"}) {
+      const Masks found = run(maps::make_backproject, stage, options_of({{"search", search}}, size));
+      double most = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        if (exact.on_floor(i)) most = std::max(most, std::abs(found.visibility[i] - exact.area(i)));
+      }
+      fmt::print("size {}: off by at most {:.4f}, bound {:.4f}\n", size, most, bound);
+      EXPECT_LT(most, bound + 1e-5);
+      EXPECT_GT(most, bound / 100) << "the bound says nothing";
+    }
+  }
+}
+
+// What is exact is exact to the bit: no caster in the kernel, and a plate that covers it.
+TEST_F(MapsBackproject, UmbraAndFullLightAreExact) {
+  scenes::Scene scene = parallel_square();
+  scene.objects[0].casts_shadow = false;
+  const Stage stage(scene, 32, 32, light_samples(1));
+  const ParallelSquare exact(stage);
+  for (const char* fill : {"none", "edges", "diagonal"}) {
+    for (const char* search : {"none", "mssm"}) {
+      const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}, {"search", search}}, 64));
+      std::size_t lit = 0, dark = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        if (!exact.on_floor(i)) continue;
+        // The umbra is ±1 …, the light is whole beyond ±2.33; a texel is 0.13 wide on the floor.
+        const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
+        if (std::max(std::abs(p.x), std::abs(p.z)) < 1 - 0.2) {
+          EXPECT_EQ(found.visibility[i], 0);
+          ++dark;
+        } else if (std::max(std::abs(p.x), std::abs(p.z)) > 7.0 / 3 + 0.2) {
+          EXPECT_EQ(found.visibility[i], 1);
+          ++lit;
+        }
+      }
+      EXPECT_GT(lit, 20U);
+      EXPECT_GT(dark, 5U);
+    }
+  }
+}
+
+// The bias says what hides, not where: casters well above the floor hide the same under any of these.
+TEST_F(MapsBackproject, TheBiasMovesNothing) {
+  const Stage stage(boards_over_floor(), 20, 20, light_samples(1));
+  const Masks none = run(maps::make_backproject, stage, options_of({{"bias", "0"}}));
+  for (const char* bias : {"0.5", "2", "4"}) {
+    EXPECT_EQ(run(maps::make_backproject, stage, options_of({{"bias", bias}})).visibility, none.visibility);
+  }
+}
+
+TEST_F(MapsBackproject, ALightWithoutExtentGivesTheShadowMap) {
+  scenes::Scene scene = boards_over_floor();
+  scene.lights.front() = ceiling_light(5, 1e-6);
+  const Stage stage(scene, 40, 40, light_samples(1));
+  const Masks hard = run(maps::make_shadow_map, stage, {{"size", "64"}});
+  for (const char* fill : {"none", "edges"}) {
+    const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}}, 64));
+    std::size_t different = 0, shaded = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      different += found.visibility[i] != hard.visibility[i] ? 1 : 0;
+      shaded += hard.visibility[i] == 0 ? 1 : 0;
+    }
+    // The windows differ by what stands beside the floor's directions: nothing here. A light of 1e-6 · f = 1e-5 meets a
+    // texel's border, of which there are 64 across the picture, for about 64 · 40 · 1e-5 pixels.
+    EXPECT_EQ(different, 0U) << fill;
+    EXPECT_GT(shaded, 100U);
+  }
+}
+
+TEST_F(MapsBackproject, TrianglesMayComeInAnyOrderAndWinding) {
+  scenes::Scene scene = boards_over_floor();
+  const Stage stage(scene, 20, 20, light_samples(1));
+  const Masks one = run(maps::make_backproject, stage, options_of({{"fill", "edges"}, {"search", "hsm"}}));
+  std::mt19937 random(6);
+  std::vector<std::size_t> order(scene.soup.triangles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::shuffle(order, random);
+  auto soup = scene.soup;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    soup.triangles[i] = scene.soup.triangles[order[i]];
+    soup.object[i] = scene.soup.object[order[i]];
+    if (random() % 2 == 0) std::swap(soup.triangles[i][0], soup.triangles[i][2]);
+  }
+  scene.soup = soup;
+  const Stage shuffled(scene, 20, 20, light_samples(1));
+  EXPECT_EQ(run(maps::make_backproject, shuffled, options_of({{"fill", "edges"}, {"search", "hsm"}})).visibility,
+            one.visibility);
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,380 @@
+// Contours against their closed form, and what holds of them on every scene: the way in which they are looked for never
+// changes a bit of V (Yang et al. 2009, sections 1 and 4.3).
+
+#include "base/error.hpp"
+#include "maps/host/map_fit.hpp"
+#include "scenes/formats/reader.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "tests/agreement/differences.hpp"
+#include "tests/analytic/maps/contour_scenes.hpp"
+
+#include <numbers>
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+using visibility::MethodOptions;
+
+class MapsContour : public ContourTest {};
+
+/// What contours hide under the parallel square: the texels whose centres it holds, with the corners cut off midway to
+/// the next texels' centres, projected onto the light.
+class OctagonTwin {
+ public:
+  OctagonTwin(const Stage& stage, std::uint32_t size) : stage_(&stage) {
+    const maps::LightBasis basis = maps::light_basis(stage.light);
+    const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
+    const glm::vec3 centre(basis.center);
+    const auto fitted = maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1),
+                                        {.size = size, .reach = glm::max(-bounds.lower, bounds.upper)});
+    const maps::gpu::SideView& side = fitted.views.front().side[0];
+    basis_ = basis;
+    glm::dvec2 lower(1e30), upper(-1e30);
+    for (std::size_t i = 6; i < 12; ++i) {  // the occluder's corners follow the floor's six
+      const glm::dvec3 corner = basis.local(stage.floats.positions[i]);
+      lower = glm::min(lower, glm::dvec2(corner) / corner.z);
+      upper = glm::max(upper, glm::dvec2(corner) / corner.z);
+      height_ = corner.z;
+    }
+    texel_ = (glm::dvec2(side.upper) - glm::dvec2(side.lower)) / static_cast<double>(size);
+    // First and last centres that it holds, and half a texel beyond: the contour.
+    const glm::dvec2 first = glm::ceil((lower - glm::dvec2(side.lower)) / texel_ - 0.5) - 0.5;
+    const glm::dvec2 last = glm::floor((upper - glm::dvec2(side.lower)) / texel_ - 0.5) + 0.5;
+    const glm::dvec2 a = glm::dvec2(side.lower) + (first + 0.5) * texel_,
+                     b = glm::dvec2(side.lower) + (last + 0.5) * texel_;
+    const glm::dvec2 half = 0.5 * texel_;
+    outline_ = {{a.x + half.x, a.y}, {b.x - half.x, a.y}, {b.x, a.y + half.y}, {b.x, b.y - half.y},
+                {b.x - half.x, b.y}, {a.x + half.x, b.y}, {a.x, b.y - half.y}, {a.x, a.y + half.y}};
+    if (stage.light.kind == visibility::LightKind::disk) {
+      constexpr int kSides = 4096;  // circumscribed and inscribed differ in area by 2 (π / 4096)² = 1.2e-6
+      for (int i = 0; i < kSides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kSides;
+        light_.emplace_back(stage.light.radius * std::cos(angle), stage.light.radius * std::sin(angle));
+      }
+    } else if (stage.light.kind == visibility::LightKind::ellipse) {
+      const auto [u, v] = maps::light_axes(stage.light, basis);
+      for (int i = 0; i < 4096; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 4096;
+        light_.push_back(std::cos(angle) * u + std::sin(angle) * v);
+      }
+    } else {
+      for (const glm::vec3& corner : stage.light.outline) light_.emplace_back(basis.local(corner));
+    }
+  }
+  [[nodiscard]] double visibility(std::size_t pixel) const {
+    const glm::dvec3 p = basis_.local(stage_->samples.p[pixel]);
+    std::vector<glm::dvec2> seen = light_;
+    const double f = height_ * p.z / (p.z - height_);
+    for (std::size_t i = 0; i < outline_.size(); ++i) {
+      const glm::dvec2 a = (outline_[i] - glm::dvec2(p) / p.z) * f;
+      const glm::dvec2 b = (outline_[(i + 1) % outline_.size()] - glm::dvec2(p) / p.z) * f;
+      std::vector<glm::dvec2> inside;
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        const glm::dvec2 &s = seen[k], &t = seen[(k + 1) % seen.size()];
+        const double left_s = cross(b - a, s - a), left_t = cross(b - a, t - a);
+        if (left_s >= 0) inside.push_back(s);
+        if ((left_s >= 0) != (left_t >= 0)) inside.push_back(s + (t - s) * (left_s / (left_s - left_t)));
+      }
+      seen = std::move(inside);
+    }
+    return 1 - area(seen) / area(light_);
+  }
+
+ private:
+  static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+  static double area(const std::vector<glm::dvec2>& polygon) {
+    double twice = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+    return std::abs(twice) / 2;
+  }
+  const Stage* stage_;
+  maps::LightBasis basis_;
+  double height_ = 0;
+  glm::dvec2 texel_{0};
+  std::vector<glm::dvec2> outline_, light_;
+};
+
+/// The light's first axis stays along x, where the occluder's sides are.
+scenes::Scene under_shape(int shape) {
+  scenes::Scene scene = parallel_square();
+  if (shape == 1) scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
+  if (shape == 2) scene.lights.front().shape = scenes::Polygon{{{-1, 5, -1}, {1, 5, -1}, {0.7, 5, 0.9}, {-0.4, 5, 1}}};
+  if (shape == 3) scene.lights.front() = rectangle_light({0.1, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.8});
+  if (shape == 4) scene.lights.front().shape = scenes::Ellipse{{0.1, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.5}};
+  return scene;
+}
+
+// An occluder of n × m texels is n · m − ½ texels large: each of its four corners is cut off by an eighth. Areas are
+// rounded to 2⁻²² of the light for each of the edges, tangents to 2⁻²⁴ of the window's 1.6, which are 1e-6 of the
+// light's width there; and a disk's swept angle, for which drivers may take 4,096 units in the last place, to 2.4e-4 at
+// worst.
+TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
+  for (const int shape : {0, 1, 2, 3, 4}) {
+    for (const std::uint32_t size : {33U, 96U}) {
+      const Stage stage(under_shape(shape), 40, 40, light_samples(1));
+      const ParallelSquare square(stage);
+      const OctagonTwin twin(stage, size);
+      const Masks found = run(maps::make_contour, stage, {{"size", std::to_string(size)}});
+      double largest = 0;
+      std::size_t partly = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        if (!square.on_floor(i)) continue;
+        const double expected = twin.visibility(i);
+        partly += expected > 0.01 && expected < 0.99 ? 1 : 0;
+        largest = std::max(largest, std::abs(static_cast<double>(found.visibility[i]) - expected));
+      }
+      EXPECT_GT(partly, 100U);
+      EXPECT_LT(largest, shape == 1 || shape == 4 ? 5e-4 : 4e-5) << "shape " << shape << ", size " << size;
+      RecordProperty(fmt::format("shape {} size {}", shape, size), fmt::format("{:.2g}", largest));
+    }
+  }
+}
+
+/// All ways to look for the same contours.
+std::vector<std::pair<Factory, MethodOptions>> all_ways() {
+  std::vector<std::pair<Factory, MethodOptions>> ways;
+  for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
+    ways.push_back({maps::make_contour, {{"search", search}, {"traversal", "flat"}}});
+  }
+  for (const char* traversal : {"hierarchy", "minmax"}) {
+    for (const char* search : {"none", "hsm", "ysm"}) {
+      ways.push_back({maps::make_contour, {{"search", search}, {"traversal", traversal}}});
+    }
+  }
+  for (const char* packet : {"1x1", "2x2", "3x3", "8x8"}) ways.push_back({maps::make_packet, {{"packet", packet}}});
+  for (const char* divergence : {"0", "0.31", "1"}) {
+    ways.push_back({maps::make_packet, {{"packet", "4x2"}, {"divergence", divergence}}});
+  }
+  ways.push_back({maps::make_packet, {{"packet", "5x5"}, {"divergence", "1"}, {"hierarchy", "off"}}});
+  return ways;
+}
+
+class MapsContourWays : public ContourTest {
+ protected:
+  static void expect_one_image(const Stage& stage, const char* size, const std::string& what) {
+    const Masks first = run(maps::make_contour, stage, {{"size", size}, {"search", "none"}, {"traversal", "flat"}});
+    std::set<float> values(first.visibility.begin(), first.visibility.end());
+    for (const float v : values) EXPECT_TRUE(v >= 0 && v <= 1) << what << ": " << v;
+    for (auto [factory, options] : all_ways()) {
+      options["size"] = size;
+      const std::vector<float> found = run(factory, stage, options).visibility;
+      std::string way;
+      for (const auto& [name, value] : options) way += fmt::format(" {}={}", name, value);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (found[i] == first.visibility[i]) continue;
+        ADD_FAILURE() << what << way << ", pixel " << i << ": " << found[i] << " for " << first.visibility[i];
+        break;
+      }
+    }
+  }
+};
+
+TEST_F(MapsContourWays, OneImageOnAShippedSceneOfAnySize) {
+  const Stage stage(scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / "bunny.json"), 41, 37,
+                    light_samples(1));
+  expect_one_image(stage, "100", "bunny");
+}
+
+TEST_F(MapsContourWays, OneImageInHemicubesOnBothSidesAndForEveryShape) {
+  scenes::Scene room;
+  add_quad(room, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});
+  add_quad(room, {0, 2, -3}, {3, 0, 0}, {0, 2, 0});
+  add_quad(room, {-3, 2, 0}, {0, 0, 3}, {0, 2, 0});
+  add_quad(room, {-1.5, 2, -1.5}, {0.3, 0.3, 0}, {0, 0, 0.8});
+  add_quad(room, {0.5, 1.5, 0}, {0.5, 0.1, 0}, {0, 0, 0.4});
+  add_quad(room, {0.5, 3.5, 0}, {0.5, 0.1, 0}, {0, 0, 0.4});
+  room.lights.push_back(ceiling_light(3, 0.4));
+  room.lights.front().two_sided = true;
+  room.cameras.push_back(camera({0, 2, 7}, {0, 1.7, 0}, 50));
+  expect_one_image(Stage(room, 17, 16, light_samples(1)), "20", "room");
+  for (const int shape : {1, 2, 3}) {
+    expect_one_image(Stage(under_shape(shape), 16, 16, light_samples(1)), "40", "shape");
+  }
+}
+
+// Triangles that touch, overlap, stand through the light's plane, behind it and on the receivers: V is defined, in any
+// way of looking the same, and the same for another order of the triangles.
+TEST_F(MapsContourWays, OneImageOfSoupsAndWithinBounds) {
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    std::mt19937 random(seed);
+    const auto number = [&] { return static_cast<double>(random() % 7) - 3; };
+    std::vector<Corners> triangles(12);
+    for (Corners& corners : triangles) {
+      for (glm::dvec3& corner : corners) corner = {number(), number(), number()};
+    }
+    const auto scene_of = [&](const std::vector<Corners>& soup) {
+      scenes::Scene scene;
+      add_object(scene, "soup", soup);
+      scene.lights.push_back(rectangle_light({0, seed % 2 == 0 ? 4.0 : 1.0, 0}, {1, 0, 0}, {0, 0, 1}));
+      scene.lights.front().two_sided = seed % 3 == 0;
+      scene.cameras.push_back(camera({1, 2, 9}, {0, 0, 0}, 50));
+      return scene;
+    };
+    const Stage stage(scene_of(triangles), 12, 10, light_samples(1));
+    expect_one_image(stage, seed % 2 == 0 ? "8" : "21", fmt::format("seed {}", seed));
+    const Masks first = run(maps::make_packet, stage, {{"size", "21"}});
+    std::shuffle(triangles.begin(), triangles.end(), random);
+    const Stage shuffled(scene_of(triangles), 12, 10, light_samples(1));
+    EXPECT_EQ(run(maps::make_packet, shuffled, {{"size", "21"}}).visibility, first.visibility) << "seed " << seed;
+  }
+}
+
+// Meshes with every defect that there is a name for, and soups whose corners, edges and planes coincide.
+TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
+  for (const std::uint32_t seed : {1U, 2U}) {
+    const mesh::LatticeSoup soup{.triangles = 40, .cells = 3, .seed = seed, .center = {0, 1, 0}};
+    expect_one_image(Stage(with_a_floor(mesh::make_lattice_soup(soup)), 12, 12, light_samples(1)), "24",
+                     fmt::format("lattice soup {}", seed));
+  }
+  std::vector<std::string> defects;
+  for (const mesh::DefectName& defect : mesh::broken_defects()) defects.emplace_back(defect.name);
+  const Stage broken(with_a_floor(mesh::make_broken_mesh({defects, 1, {0, 1, 0}, 1}).soup), 16, 16, light_samples(1));
+  expect_one_image(broken, "32", "broken mesh");
+}
+
+TEST_F(MapsContour, TilesDoNotChangeIt) {
+  const Stage stage(ball_over_floor(1), 31, 40, light_samples(1));
+  for (const char* sub_lights : {"1", "2"}) {
+    const auto method = maps::make_packet(device(), {{"size", "64"}, {"sublights", sub_lights}});
+    EXPECT_EQ(run(*method, stage).visibility, run(*method, stage, 7).visibility);
+  }
+}
+
+TEST_F(MapsContour, DepthsBehindTheNearestAreAskedInOneWay) {
+  const Stage stage(ball_over_floor(1), 32, 32, light_samples(1));
+  for (const char* depth : {"second", "midpoint", "dual"}) {
+    const Masks flat = run(maps::make_contour, stage, {{"size", "64"}, {"depth", depth}});
+    EXPECT_EQ(run(maps::make_packet, stage, {{"size", "64"}, {"depth", depth}}).visibility, flat.visibility) << depth;
+  }
+}
+
+TEST_F(MapsContour, NothingInTheKernelIsLitAndAnUmbraIsDark) {
+  // Light of half-size 1 at 5, occluder of half-size 1 at 2, floor: umbra where |x| < 1 − 2/3 · ... of the square.
+  const Stage stage(parallel_square(), 48, 48, light_samples(1));
+  const ParallelSquare square(stage);
+  const OctagonTwin twin(stage, 128);
+  for (const Factory& factory : {Factory(maps::make_contour), Factory(maps::make_packet)}) {
+    const Masks found = run(factory, stage, {{"size", "128"}});
+    std::size_t lit = 0, dark = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!square.on_floor(i)) continue;
+      // Where the twin is further than the areas' rounding inside either.
+      const double expected = twin.visibility(i);
+      if (expected == 1) {
+        ++lit;
+        EXPECT_EQ(found.visibility[i], 1.0F);
+      } else if (expected < 1e-12) {
+        ++dark;
+        EXPECT_EQ(found.visibility[i], 0.0F);
+      }
+    }
+    EXPECT_GT(lit, 100U);
+    EXPECT_GT(dark, 10U);
+  }
+}
+
+// Guennebaud 2006's trivial pixels: tighter ranges find more of them, and smaller kernels.
+TEST_F(MapsContour, TighterRangesFindSmallerKernels) {
+  const Stage stage(plate_over_plate(), 40, 40, light_samples(1));
+  std::array<Counted, 4> runs;
+  std::size_t at = 0;
+  for (const char* search : {"none", "hsm", "ysm", "mssm"}) {
+    runs[at++] = counted(maps::make_contour, stage, {{"size", "128"}, {"search", search}, {"traversal", "flat"}});
+  }
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    EXPECT_LE(runs[i].count("kernelCells"), runs[i - 1].count("kernelCells"));
+    EXPECT_GE(runs[i].count("packetsTrivial"), runs[i - 1].count("packetsTrivial"));
+  }
+  EXPECT_LT(runs[3].count("kernelCells"), 0.8 * runs[1].count("kernelCells"));
+}
+
+// The mean over the parts of the light as lights of their own (Yang 2009, section 5).
+TEST_F(MapsContour, SubLightsAreTheMeanOfContoursOfTheParts) {
+  const scenes::Scene scene = ball_over_floor(1);
+  const Stage stage(scene, 32, 32, light_samples(1));
+  const Masks found = run(maps::make_packet, stage, {{"size", "64"}, {"sublights", "2"}});
+  const auto& whole = std::get<scenes::Rectangle>(scene.lights.front().shape);
+  const glm::dvec3 half_u = 0.5 * whole.half_u, half_v = 0.5 * whole.half_v;
+  std::vector<double> mean(found.visibility.size(), 0.0);
+  for (const double x : {-0.5, 0.5}) {
+    for (const double z : {-0.5, 0.5}) {
+      scenes::Scene part = scene;
+      part.lights.front() = rectangle_light({x, 5, z}, half_u, half_v);
+      const Stage part_stage(part, 32, 32, light_samples(1));
+      const Masks one = run(maps::make_contour, part_stage, {{"size", "64"}});
+      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += 0.25 * static_cast<double>(one.visibility[i]);
+    }
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    largest = std::max(largest, std::abs(mean[i] - static_cast<double>(found.visibility[i])));
+  }
+  EXPECT_LT(largest, 1e-6);
+}
+
+// Disks, ellipses and polygons are cut in polygons: together they are the light, and looked at from each one's own
+// centroid less is missed, as of a rectangle (MapsContourClaims).
+TEST_F(MapsContour, SubLightsOfAnyShape) {
+  for (const int shape : {1, 2, 4}) {
+    scenes::Scene scene = ball_over_floor(1);
+    scene.lights.front().shape = under_shape(shape).lights.front().shape;
+    const Stage stage(scene, 40, 40, light_samples(1));
+    const Masks truth = exact(stage);
+    std::vector<double> errors;
+    for (const char* sub_lights : {"1", "2", "4"}) {
+      const Masks found = run(maps::make_packet, stage, {{"size", "128"}, {"sublights", sub_lights}});
+      errors.push_back(floor_errors(stage, found, truth).rmse);
+      RecordProperty(fmt::format("shape {} S={}", shape, sub_lights), fmt::format("{:.4f}", errors.back()));
+      fmt::print("shape {}, S={}: RMSE {:.4f}\n", shape, sub_lights, errors.back());
+    }
+    EXPECT_LT(errors[1], 0.6 * errors[0]) << shape;
+    EXPECT_LT(errors[2], 0.7 * errors[1]) << shape;
+  }
+}
+
+// A light whose left half is black is its right half.
+TEST_F(MapsContour, SubLightsWeighByTheTexture) {
+  scenes::Scene scene = ball_over_floor(1);
+  const Stage plain(scene, 24, 24, light_samples(4));
+  visibility::Light textured = plain.light;
+  textured.texture = visibility::LightTexture{
+      .width = 2, .height = 1, .colors = {glm::vec3(0), glm::vec3(1)}, .luminance = {0, 1}, .mean_luminance = 0.5};
+  const auto method = maps::make_packet(device(), {{"size", "64"}, {"sublights", "2"}});
+  const Masks found = tests::run(*method, plain.floats, textured, plain.samples);
+  const visibility::LightFrame frame = visibility::light_frame(plain.light);
+  std::vector<double> mean(found.visibility.size(), 0.0);
+  for (const double t : {-0.5, 0.5}) {
+    visibility::Light part = plain.light;
+    const glm::dvec3 center = frame.center + 0.5 * frame.u + t * frame.v, u = 0.5 * frame.u, v = 0.5 * frame.v;
+    part.center = center;
+    part.center_u = center + u;
+    part.center_v = center + v;
+    part.outline = {center - u - v, center + u - v, center + u + v, center - u + v};
+    const auto contour = maps::make_contour(device(), {{"size", "64"}});
+    const Masks one = tests::run(*contour, plain.floats, part, plain.samples);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += 0.5 * static_cast<double>(one.visibility[i]);
+  }
+  for (std::size_t i = 0; i < mean.size(); ++i) EXPECT_NEAR(found.visibility[i], mean[i], 1e-6);
+}
+
+TEST_F(MapsContour, WhatItCannotDoIsRefused) {
+  scenes::Scene scene = ball_over_floor(1);
+  const Stage plain(scene, 8, 8, light_samples(4));
+  visibility::Light textured = plain.light;
+  textured.texture = visibility::LightTexture{
+      .width = 1, .height = 1, .colors = {glm::vec3(1)}, .luminance = {1}, .mean_luminance = 1};
+  const auto contour = maps::make_contour(device(), {{"size", "16"}});
+  contour->prepare_mesh(plain.floats);
+  EXPECT_THROW(contour->prepare_light(textured), InputError);
+  scene.lights.front().shape = scenes::Sphere{{0, 5, 0}, 0.9};
+  const Stage bulb(scene, 8, 8, light_samples(4));
+  const auto packet = maps::make_packet(device(), {{"size", "16"}, {"sublights", "2"}});
+  packet->prepare_mesh(bulb.floats);
+  EXPECT_THROW(packet->prepare_light(bulb.light), InputError);
+  EXPECT_THROW(maps::make_packet(device(), {{"packet", "0x3"}}), UsageError);
+  EXPECT_THROW(maps::make_contour(device(), {{"traversal", "deep"}}), UsageError);
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,104 @@
+#pragma once
+// Scenes for contours: what they are about is said beside each. Lights are 5 above a floor at height 0.
+
+#include "reference/exact_method.hpp"
+#include "tests/analytic/maps/parallel_square.hpp"
+
+namespace penumbra::tests {
+
+inline scenes::Scene contour_floor(double light_half, double floor_half = 4) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {floor_half, 0, 0}, {0, 0, -floor_half});
+  scene.lights.push_back(ceiling_light(5, light_half));
+  scene.cameras.push_back(camera({0.3, 1.2, 7}, {0, 0.2, 0}, 55));
+  return scene;
+}
+
+/// A solid: what is seen of its outline from the light's centre is not what other light points see.
+inline scenes::Scene ball_over_floor(double light_half, double height = 2) {
+  scenes::Scene scene = contour_floor(light_half);
+  add_object(scene, "ball", sphere({0, height, 0}, 1, 24));
+  return scene;
+}
+
+/// A plate over a larger plate, apart from it: what the smaller one hides of the larger is missing in the map.
+inline scenes::Scene plate_over_plate(double light_half = 0.6) {
+  scenes::Scene scene = contour_floor(light_half);
+  add_quad(scene, {0, 3.5, 0}, {0.3, 0, 0}, {0, 0, 0.3});
+  add_quad(scene, {0, 1.5, 0}, {1.6, 0, 0}, {0, 0, 1.6});
+  return scene;
+}
+
+/// Two plates of which the map shows the same, with a gap between them or without one.
+inline scenes::Scene plates_alike(bool gap) {
+  scenes::Scene scene = contour_floor(0.6);
+  add_quad(scene, {-1, 3.5, 0}, {1, 0, 0}, {0, 0, 2});
+  const double from = gap ? 0 : -2;
+  add_quad(scene, {(from + 2) / 2, 1.5, 0}, {(2 - from) / 2, 0, 0}, {0, 0, 2});
+  return scene;
+}
+
+inline bool on_object(const Stage& stage, std::size_t pixel, std::uint32_t object) {
+  const std::int32_t triangle = stage.samples.triangle[pixel];
+  return triangle >= 0 && stage.floats.object[static_cast<std::size_t>(triangle)] == object;
+}
+
+/// What there is to say of V against exact areas, over the floor (object 0).
+struct FloorErrors {
+  double rmse = 0, bias = 0;
+  double leak = 0;    ///< the share of pixels in the umbra that are brighter than 0.05
+  double dark = 0;    ///< of lit pixels, those that are darker than 0.95
+  double shadow = 0;  ///< Σ|V − exact| over the pixels that are not lit
+  double lowest = 0;  ///< of V − exact
+  std::size_t pixels = 0;
+};
+inline FloorErrors floor_errors(const Stage& stage, const Masks& found, const Masks& exact) {
+  FloorErrors errors;
+  double umbra = 0, lit = 0, shaded = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    if (!on_object(stage, i, 0)) continue;
+    const double v = found.visibility[i], truth = exact.visibility[i], difference = v - truth;
+    ++errors.pixels;
+    errors.rmse += difference * difference;
+    errors.bias += difference;
+    errors.lowest = std::min(errors.lowest, difference);
+    if (truth == 0) {
+      umbra += 1;
+      errors.leak += v > 0.05 ? 1 : 0;
+    }
+    if (truth == 1) {
+      lit += 1;
+      errors.dark += v < 0.95 ? 1 : 0;
+    } else {
+      shaded += 1;
+      errors.shadow += std::abs(difference);
+    }
+  }
+  EXPECT_GT(errors.pixels, 100U);
+  errors.rmse = std::sqrt(errors.rmse / static_cast<double>(errors.pixels));
+  errors.bias /= static_cast<double>(errors.pixels);
+  errors.leak /= std::max(umbra, 1.0);
+  errors.dark /= std::max(lit, 1.0);
+  errors.shadow /= std::max(shaded, 1.0);
+  return errors;
+}
+
+/// A method's V, and what it counted.
+struct Counted {
+  Masks masks;
+  std::map<std::string, std::uint64_t> counters;
+  [[nodiscard]] double count(const std::string& name) const { return static_cast<double>(counters.at(name)); }
+};
+
+class ContourTest : public MapsTest {
+ protected:
+  static Counted counted(const Factory& factory, const Stage& stage, const visibility::MethodOptions& options) {
+    const auto method = factory(device(), options);
+    Counted result{tests::run(*method, stage), {}};
+    result.counters = method->counters();
+    return result;
+  }
+  static Masks exact(const Stage& stage) { return tests::run(*reference::make_exact({}), stage); }
+};
+
+}  // namespace penumbra::tests

@@ -1,0 +1,221 @@
+// What holds of every filter whatever it is given: V in [0, 1] for input that has no meaning, 1 where nothing is near,
+// the same bytes in any order of triangles; and where filters are known to be wrong.
+
+#include "maps/filters/convolution.hpp"
+#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/pcf.hpp"
+#include "maps/filters/vssm.hpp"
+#include "mesh/shapes/broken_meshes.hpp"
+#include "tests/agreement/differences.hpp"
+#include "tests/analytic/maps/centre_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+namespace penumbra::tests {
+namespace {
+
+struct Filter {
+  std::string name;
+  Factory make;
+  visibility::MethodOptions options;
+};
+
+std::vector<Filter> all_filters(const std::string& size) {
+  std::vector<Filter> all{{"pcf", maps::make_pcf, {{"size", size}}},
+                          {"pcf off", maps::make_pcf, {{"size", size}, {"receiverPlane", "off"}, {"window", "4"}}},
+                          {"pcss", maps::make_pcss, {{"size", size}}},
+                          {"convolution", maps::make_convolution, {{"size", size}}}};
+  for (const char* depth : {"second", "midpoint", "dual"}) {
+    all.push_back({fmt::format("vssm {}", depth), maps::make_vssm, {{"size", size}, {"depth", depth}}});
+    all.push_back({fmt::format("occlusion-textures {}", depth),
+                   maps::make_occlusion_textures,
+                   {{"size", size}, {"depth", depth}}});
+    all.push_back({fmt::format("convolution {}", depth), maps::make_convolution, {{"size", size}, {"depth", depth}}});
+  }
+  for (const char* filter : {"sat", "mip", "n-buffer"}) {
+    for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
+      all.push_back({fmt::format("vssm {} {}", moments, filter),
+                     maps::make_vssm,
+                     {{"size", size}, {"moments", moments}, {"filter", filter}, {"terms", "3"}}});
+    }
+    all.push_back({fmt::format("occlusion-textures {}", filter),
+                   maps::make_occlusion_textures,
+                   {{"size", size}, {"filter", filter}}});
+  }
+  return all;
+}
+
+class Filters : public MapsTest {
+ protected:
+  /// Methods are made once: their pipelines take longer than small pictures.
+  static void expect_shares(const std::vector<Stage>& stages, const std::string& size) {
+    for (const Filter& filter : all_filters(size)) {
+      const auto method = filter.make(device(), filter.options);
+      for (std::size_t i = 0; i < stages.size(); ++i) {
+        const Masks found = run(*method, stages[i]);
+        const auto is_share = [](float v) { return v >= 0 && v <= 1; };  // no NaN either
+        EXPECT_TRUE(std::ranges::all_of(found.visibility, is_share))
+            << filter.name << " of size " << size << ", stage " << i;
+      }
+    }
+  }
+};
+
+/// A floor, and what `add` puts above it.
+template <typename Add>
+scenes::Scene above_a_floor(const scenes::AreaLight& light, const Add& add) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add(scene);
+  scene.lights.push_back(light);
+  scene.cameras.push_back(camera({0.3, 3, 4}, {0, 0.5, 0}));
+  return scene;
+}
+
+TEST_F(Filters, DegenerateInputGivesAShareOfTheLight) {
+  const auto nothing = [](scenes::Scene& /*scene*/) {};
+  const auto through_the_light = [](scenes::Scene& scene) {
+    add_object(scene, "needle", {{glm::dvec3(-0.3, 0, 0), glm::dvec3(0.1, 3, 0.2), glm::dvec3(0.4, 0.2, -0.5)}});
+    add_quad(scene, {0, 2, 0}, {0.3, 0, 0}, {0, 0, 0.3});  // in the light's own plane
+  };
+  const auto around_the_light = [](scenes::Scene& scene) { add_object(scene, "shell", sphere({0, 2, 0}, 0.7, 4)); };
+  const auto beside_the_window = [](scenes::Scene& scene) {
+    add_quad(scene, {5, 1, 0}, {2, 0, 0}, {0, 0, 2}).receives_shadow = false;
+  };
+  scenes::AreaLight two_sided = ceiling_light(2, 0.5);
+  two_sided.two_sided = true;
+  const scenes::AreaLight point = ceiling_light(2, 1e-6), large = ceiling_light(2, 20);
+  std::vector<Stage> stages;
+  const auto add = [&](const scenes::Scene& scene) { stages.emplace_back(scene, 12, 12, light_samples(1)); };
+  for (const scenes::AreaLight& light : {ceiling_light(2, 0.5), two_sided, point, large}) {
+    add(above_a_floor(light, nothing));
+    add(above_a_floor(light, through_the_light));
+  }
+  add(above_a_floor(ceiling_light(2, 0.5), around_the_light));
+  add(above_a_floor(ceiling_light(2, 0.5), beside_the_window));
+  scenes::Scene empty = above_a_floor(two_sided, nothing);  // nothing casts at all
+  empty.objects[0].casts_shadow = false;
+  add(empty);
+  for (const char* size : {"8", "37"}) expect_shares(stages, size);
+}
+
+TEST_F(Filters, SoupsAndBrokenMeshesGiveAShareOfTheLight) {
+  std::vector<Stage> stages;
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    const mesh::LatticeSoup soup{.triangles = 40, .cells = 3, .seed = seed, .center = {0, 1, 0}};
+    stages.emplace_back(with_a_floor(mesh::make_lattice_soup(soup)), 12, 12, light_samples(1));
+  }
+  std::vector<std::string> defects;
+  for (const mesh::DefectName& defect : mesh::broken_defects()) defects.emplace_back(defect.name);
+  stages.emplace_back(with_a_floor(mesh::make_broken_mesh({defects, 1, {0, 1, 0}, 1}).soup), 16, 16, light_samples(1));
+  expect_shares(stages, "32");
+}
+
+// No caster in a window: V is 1 to the last bit.
+TEST_F(Filters, WhereNothingIsNearVIsOne) {
+  const auto board = [](scenes::Scene& scene) { add_quad(scene, {-1.2, 0.3, 0}, {0.3, 0, 0}, {0, 0, 0.3}); };
+  const Stage stage(above_a_floor(ceiling_light(2, 0.3), board), 32, 32, light_samples(1),
+                    grid_samples(32, {1.0, 0, 0}, {0.9, 0, 0}, {0, 0, 0.9}, {0, 1, 0}));
+  for (const Filter& filter : all_filters("128")) {
+    if (filter.name.find("csm") != std::string::npos) continue;  // rings
+    if (filter.name.find("mip") != std::string::npos) continue;  // a level's texels are as large as the window
+    const Masks found = run(filter.make, stage, filter.options);
+    EXPECT_EQ(*std::ranges::min_element(found.visibility), 1.0F) << filter.name;
+  }
+}
+
+TEST_F(Filters, OrderAndWindingOfTrianglesChangeNoByte) {
+  const auto solids = [](scenes::Scene& scene) {
+    add_object(scene, "sphere", sphere({0.2, 0.7, 0.1}, 0.4, 6));
+    add_quad(scene, {-0.6, 0.5, 0}, {0.3, 0.2, 0}, {0, 0, 0.4});
+  };
+  scenes::Scene scene = above_a_floor(ceiling_light(2, 0.3), solids), turned = scene;
+  std::mt19937 random(7);
+  std::vector<std::size_t> order(scene.soup.triangles.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::shuffle(order.begin() + 2, order.end(), random);  // the floor's stay first
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    turned.soup.triangles[i] = scene.soup.triangles[order[i]];
+    turned.soup.object[i] = scene.soup.object[order[i]];
+    if (random() % 2 == 0) std::swap(turned.soup.triangles[i][0], turned.soup.triangles[i][1]);
+  }
+  const Stage first(scene, 32, 32, light_samples(1)), second(turned, 32, 32, light_samples(1));
+  for (const Filter& filter : all_filters("64")) {
+    EXPECT_EQ(run(filter.make, first, filter.options).visibility, run(filter.make, second, filter.options).visibility)
+        << filter.name;
+  }
+}
+
+TEST_F(Filters, TilesChangeNoByte) {
+  const auto solids = [](scenes::Scene& scene) { add_object(scene, "sphere", sphere({0.2, 0.7, 0.1}, 0.4, 6)); };
+  const Stage stage(above_a_floor(ceiling_light(2, 0.3), solids), 32, 32, light_samples(1));
+  for (const Filter& filter : all_filters("64")) {
+    const auto method = filter.make(device(), filter.options);
+    EXPECT_EQ(run(*method, stage).visibility, run(*method, stage, 5).visibility) << filter.name;
+  }
+}
+
+// S4 figures 5.3 and 5.4: what a window holds is taken for a blocker wherever it stands, also beside the light.
+TEST_F(Filters, BlockersBesideTheLightDarkenWhatTheyDoNotShade) {
+  // A tall wall along x = 1: from the floor beside it the light's every point is in plain view.
+  const auto wall = [](scenes::Scene& scene) { add_quad(scene, {1, 1.2, 0}, {0, 1.2, 0}, {0, 0, 2}); };
+  const Stage stage(above_a_floor(ceiling_light(4, 0.8), wall), 32, 32, light_samples(1),
+                    grid_samples(32, {0, 0, 0}, {0.95, 0, 0}, {0, 0, 0.5}, {0, 1, 0}));
+  const auto dark = [&](const Factory& make) {
+    const Masks found = run(make, stage, {{"size", "512"}});
+    return static_cast<double>(std::ranges::count_if(found.visibility, [](float v) { return v < 0.95F; })) / 1024;
+  };
+  const double taps = dark(maps::make_pcss), moments = dark(maps::make_vssm), sampled = dark(maps::make_accumulate);
+  fmt::print("lit pixels beside a wall darker than 0.95: pcss {:.3f}, vssm {:.3f}, accumulate {:.3f}\n", taps, moments,
+             sampled);
+  EXPECT_GT(taps, 0.01);
+  EXPECT_GT(moments, 0.01);
+  EXPECT_EQ(sampled, 0);
+}
+
+// S4 figure 5.3: two heights become one mean, whose window is wider than the lower blocker's: light where there is
+// none.
+TEST_F(Filters, BlockersAtTwoHeightsLightTheUmbra) {
+  const auto boards = [](scenes::Scene& scene) {
+    add_quad(scene, {-0.35, 3, 0}, {0.25, 0, 0}, {0, 0, 3}).receives_shadow = false;
+    add_quad(scene, {-2.25, 0.5, 0}, {2.75, 0, 0}, {0, 0, 3}).receives_shadow = false;  // up to x = 0.5
+  };
+  const Stage stage(above_a_floor(ceiling_light(4, 0.5), boards), 32, 32, light_samples(1),
+                    grid_samples(32, {0, 0, 0}, {0.49, 0, 0}, {0, 0, 0.49}, {0, 1, 0}));
+  // The lower board alone hides the whole light up to x (1 − 1/8) + 0.5/8 = 0.5: everywhere here.
+  const auto lit = [&](const Factory& make) {
+    const Masks found = run(make, stage, {{"size", "512"}});
+    return static_cast<double>(std::ranges::count_if(found.visibility, [](float v) { return v > 0.05F; })) / 1024;
+  };
+  const double taps = lit(maps::make_pcss), moments = lit(maps::make_vssm);
+  fmt::print("umbra pixels lighter than 0.05: pcss {:.3f}, vssm {:.3f}\n", taps, moments);
+  EXPECT_GT(taps, 0.01);
+  EXPECT_GT(moments, 0.01);
+}
+
+// S4 5.2.2.1: few taps of a search differ from pixel to pixel.
+TEST_F(Filters, FewTapsAreFarFromMany) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
+  add_object(scene, "sphere", sphere({0, 2, 0}, 1, 12));
+  scene.lights.push_back(ceiling_light(5, 1));
+  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
+  const Stage stage(scene, 32, 32, light_samples(1), grid_samples(32, {0, 0, 0}, {2.5, 0, 0}, {0, 0, 2.5}, {0, 1, 0}));
+  const auto with = [&](const char* taps) {
+    return run(maps::make_pcss, stage, {{"size", "512"}, {"blockerSamples", taps}, {"filterSamples", taps}});
+  };
+  const Masks many = with("1024"), some = with("256"), few = with("16");
+  const auto error = [&](const Masks& found) {
+    return rmse(
+        stage, [](std::size_t) { return true; },
+        [&](std::size_t i) { return found.visibility[i] - many.visibility[i]; });
+  };
+  fmt::print("pcss against 1024 taps: 16 taps {:.4f}, 256 taps {:.4f}\n", error(few), error(some));
+  EXPECT_GT(error(few), 2 * error(some));
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,170 @@
+// Layers of a map: what depth peeling finds, against every triangle at every texel in double, and what the option
+// `depth` makes of the first two.
+
+#include "maps/filters/convolution.hpp"
+#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/pcf.hpp"
+#include "maps/filters/vssm.hpp"
+#include "selftest/rasteriser_checks.hpp"
+#include "tests/analytic/maps/centre_maps.hpp"
+#include "tests/analytic/maps/parallel_square.hpp"
+#include "tests/unit/passed.hpp"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+namespace penumbra::tests {
+namespace {
+
+/// Boards at several heights, some of them twice, and a sphere, over a floor that casts, too.
+scenes::Scene stacked() {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_object(scene, "sphere", sphere({0.4, 1, 0.3}, 0.7, 6));
+  add_quad(scene, {-0.6, 2.5, 0.2}, {1, 0.3, 0}, {0, 0.1, 0.9});
+  add_quad(scene, {0.3, 3, -0.3}, {0.6, -0.1, 0.2}, {0, 0, 0.8});
+  add_quad(scene, {0.3, 3, -0.3}, {-0.6, 0.1, -0.2}, {0, 0, 0.8});  // again, the other way round
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+  return scene;
+}
+
+class MapsLayers : public MapsTest {};
+
+TEST_F(MapsLayers, EachHoldsTheNextSurfaceAndTheFarthestTheLast) {
+  const Stage stage(stacked(), 4, 4, light_samples(1));
+  constexpr std::uint32_t kSize = 48, kLayers = 4;
+  const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = kLayers, .farthest = true});
+  ASSERT_EQ(maps.fitted.faces, 1U);
+  expect_passed(selftest::check_maps(device(), stage, kSize, maps::Rasteriser::vulkan));
+  const std::vector<float> texels = maps.read();
+  for (std::uint32_t layer = 0; layer <= kLayers; ++layer) {
+    const auto held = std::span(texels).subspan(std::size_t{layer} * kSize * kSize, std::size_t{kSize} * kSize);
+    EXPECT_GT(std::ranges::count_if(held, [](float depth) { return depth > 0 && depth < 1; }), 20) << layer;
+  }
+}
+
+// An open sheet over a floor that casts nothing: there is no second surface under it.
+TEST_F(MapsLayers, AnOpenSheetCastsNothingByItsSecondSurfaceAndTheSameByAllOthers) {
+  scenes::Scene scene = parallel_square();
+  scene.objects[0].casts_shadow = false;
+  const Stage stage(scene, 32, 32, light_samples(1));
+  const ParallelSquare exact(stage);
+  for (const Factory& factory :
+       {Factory(maps::make_shadow_map), Factory(maps::make_pcf), Factory(maps::make_pcss),
+        Factory(maps::make_backproject), Factory(maps::make_vssm), Factory(maps::make_convolution),
+        Factory(maps::make_occlusion_textures), Factory(maps::make_soft_shadow_map)}) {
+    const auto with = [&](const char* depth) { return run(factory, stage, {{"size", "64"}, {"depth", depth}}); };
+    const Masks first = with("first"), second = with("second"), midpoint = with("midpoint"), dual = with("dual");
+    EXPECT_EQ(first.visibility, midpoint.visibility);
+    EXPECT_EQ(first.visibility, dual.visibility);
+    std::size_t shaded = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!exact.on_floor(i)) continue;
+      EXPECT_EQ(second.visibility[i], 1);
+      shaded += first.visibility[i] < 1 ? 1 : 0;
+    }
+    EXPECT_GT(shaded, 50U);
+  }
+}
+
+/// A slab between heights 0.1 and 2.1 over a floor at 0, and view samples inside it, in its shadow's upper half and
+/// lower half: where each use of the depths says that the shadow begins.
+TEST_F(MapsLayers, AThickCasterBeginsToShadeWhereTheOptionSays) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_quad(scene, {0, 2.1, 0}, {1, 0, 0}, {0, 0, -1}).receives_shadow = false;
+  add_quad(scene, {0, 0.1, 0}, {1, 0, 0}, {0, 0, -1}).receives_shadow = false;
+  add_quad(scene, {0, 1, 0}, {0.5, 0, 0}, {0, 0, -0.5}).casts_shadow = false;  // carries the samples
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
+  constexpr std::uint32_t kSide = 64;
+  const auto column = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+    visibility::ViewSamples samples;
+    samples.width = 1;
+    samples.height = kSide;
+    for (std::uint32_t i = 0; i < kSide; ++i) {
+      const double height = 2.4 * (i + 0.5) / kSide;
+      samples.triangle.push_back(6);
+      samples.p.emplace_back(glm::dvec3(0.1, height, 0.05) - floats.origin);
+      samples.n.emplace_back(0, 1, 0);
+      samples.depth.push_back(1);
+      samples.facing.push_back(1);
+    }
+    return samples;
+  };
+  const Stage stage(scene, 1, kSide, light_samples(1), column);
+  // Light at 5: surfaces at depths 2.9 and 4.9, their middle at 3.9. The window holds the floor, ±2 / 5, and what
+  // stands above it: a texel is at most 4.2 / 5 / 62 wide, so the bias of 8 is 8 · 0.0135 · z, 0.32 … 0.35 around z
+  // = 3.2.
+  // vssm takes the bias off the receiver, and as much off what needs none: to a level receiver that is the same.
+  for (const Factory& factory : {Factory(maps::make_shadow_map), Factory(maps::make_vssm)}) {
+    const auto begins_at = [&](const char* depth, const char* bias) {
+      const Masks found = run(factory, stage, {{"size", "64"}, {"depth", depth}, {"bias", bias}});
+      double deepest_lit = 0;
+      for (std::uint32_t i = 0; i < kSide; ++i) {
+        if (found.visibility[i] == 1) deepest_lit = std::max(deepest_lit, 5 - 2.4 * (i + 0.5) / kSide);
+      }
+      return deepest_lit;
+    };
+    const double step = 2.4 / kSide;
+    EXPECT_NEAR(begins_at("first", "0"), 2.9, step);
+    EXPECT_NEAR(begins_at("midpoint", "0"), 3.9, step);
+    EXPECT_NEAR(begins_at("midpoint", "8"), 3.9, step) << "the bias is only where there is no second surface";
+    EXPECT_NEAR(begins_at("second", "8"), 4.9, step);
+    const double biased = begins_at("first", "8");
+    EXPECT_GT(biased, 2.9 + 0.2);
+    EXPECT_LT(biased, 3.9 - 0.2);
+    EXPECT_EQ(begins_at("dual", "8"), biased);
+    EXPECT_NEAR(begins_at("dual", "40"), 3.9, step) << "no farther than the middle";
+    EXPECT_GT(begins_at("first", "40"), 4.9) << "the bias alone goes on";
+  }
+}
+
+// A slab through the floor: in its upper side's shadow, not yet in its lower side's. soft-shadow-map asks at the floor
+// alone.
+TEST_F(MapsLayers, ASlabThroughTheFloorShadesItAsTheOptionSays) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;
+  std::vector<Corners> slab = quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1});
+  for (const Corners& lower : quad({0, -0.5, 0}, {1.5, 0, 0}, {0, 0, -1.5})) slab.push_back(lower);
+  add_object(scene, "slab", slab).receives_shadow = false;
+  scene.lights.push_back(ceiling_light(5, 0.3));
+  scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
+  const Stage stage(scene, 8, 8, light_samples(1), grid_samples(8, {0, 0, 0}, {0.5, 0, 0}, {0, 0, 0.5}, {0, 1, 0}));
+  const auto lit = [&](const char* depth, const char* bias, const char* form) {
+    const Masks found =
+        run(maps::make_soft_shadow_map, stage, {{"size", "64"}, {"depth", depth}, {"bias", bias}, {"form", form}});
+    const std::set<float> values(found.visibility.begin(), found.visibility.end());
+    EXPECT_EQ(values.size(), 1U) << depth << " " << bias << " " << form;
+    return *values.begin();
+  };
+  for (const char* form : {"gather", "scatter"}) {
+    EXPECT_EQ(lit("first", "0", form), 0.0F);
+    EXPECT_EQ(lit("second", "0", form), 1.0F);
+    EXPECT_EQ(lit("midpoint", "0", form), 0.0F);
+    // A texel is 2/3 / 62 wide at depth 1: 50 of them at depth 5 are 2.7, more than what is between 3 and 5.
+    EXPECT_EQ(lit("first", "50", form), 1.0F);
+    EXPECT_EQ(lit("midpoint", "50", form), 0.0F);
+    EXPECT_EQ(lit("dual", "50", form), 0.0F);
+  }
+}
+
+// The ground is no blocker of convolution's: a sheet over it has nothing behind it.
+TEST_F(MapsLayers, ASheetOverTheGroundHasNoSecondSurfaceForConvolution) {
+  const Stage stage(parallel_square(), 32, 32, light_samples(1));
+  const ParallelSquare exact(stage);
+  const Masks first = run(maps::make_convolution, stage, {{"size", "64"}}),
+              second = run(maps::make_convolution, stage, {{"size", "64"}, {"depth", "second"}});
+  std::size_t shaded = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    if (!exact.on_floor(i)) continue;
+    EXPECT_EQ(second.visibility[i], 1);
+    shaded += first.visibility[i] < 1 ? 1 : 0;
+  }
+  EXPECT_GT(shaded, 50U);
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,365 @@
+// Lists of depths a texel, joined from the maps of many light samples: deep-penumbra's steps and layered-attenuation's
+// layers, against twins and against the maps that they were made of.
+
+#include "tests/analytic/maps/parallel_square.hpp"
+
+#include "maps/products/lists/layered_depth.hpp"
+#include "maps/products/lists/layered_depth.shared.h"
+#include "maps/products/lists/penumbra_events.hpp"
+#include "maps/sampling/deep_penumbra.hpp"
+#include "maps/sampling/layered_attenuation.hpp"
+#include "selftest/list_checks.hpp"
+#include "tests/unit/passed.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+using visibility::MethodOptions;
+
+/// A board and a sphere over a floor; with a wall up to beyond the light hemicubes are needed.
+scenes::Scene crowded(bool wall, bool two_sided) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_object(scene, "sphere", sphere({0.3, 1, 0.2}, 0.6, 8));
+  add_quad(scene, {-0.8, 2.5, 0.3}, {0.7, 0.2, 0}, {0, 0.1, 0.5});
+  if (wall) add_quad(scene, {3, 3, 0}, {0, 3, 0}, {0, 0, 3});
+  if (two_sided) {
+    add_quad(scene, {0, 8, 0}, {3, 0, 0}, {0, 0, 3});
+    add_quad(scene, {0.5, 6.5, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  }
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.lights.back().two_sided = two_sided;
+  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+  return scene;
+}
+
+class MapLists : public MapsTest {
+ protected:
+  using Made = selftest::ListSource;
+  static std::vector<std::uint32_t> words_of(const render::Buffer& buffer) {
+    std::vector<std::uint32_t> words(buffer.bytes() / sizeof(std::uint32_t));
+    buffer.read<std::uint32_t>(words);
+    return words;
+  }
+};
+
+class DeepPenumbra : public MapLists {};
+class LayeredAttenuation : public MapLists {};
+
+// Each sample's map asked at places along each texel's ray, in double: behind what it holds, or not.
+TEST_F(DeepPenumbra, StepsAreTheirTwinAlongEveryRay) {
+  constexpr std::uint32_t kSize = 12;
+  for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+    for (const std::uint32_t samples : {9U, 36U}) {
+      const Stage stage(crowded(wall, two_sided), 4, 4, light_samples(samples));
+      const Made made(device(), stage, kSize);
+      ASSERT_EQ(made.centre.faces, (wall ? 5U : 1U) + (two_sided ? 5U : 0U));
+      const selftest::Check check = selftest::check_penumbra_events(device(), stage, kSize);
+      expect_passed(check);
+      EXPECT_GT(check.compared, 1000U);
+    }
+  }
+}
+
+TEST_F(DeepPenumbra, CompressedStepsStayWithinTheBoundEverywhere) {
+  constexpr std::uint32_t kSize = 24;
+  const Stage stage(crowded(false, false), 4, 4, light_samples(64));
+  Made made(device(), stage, kSize);
+  maps::PenumbraEvents whole(device(), 0);
+  whole.make(*made.source);
+  const std::vector<std::uint32_t> all = words_of(whole.buffer());
+  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
+  std::size_t last = all[kTexels];
+  for (const double bound : {0.004, 0.02, 0.1, 0.5}) {
+    maps::PenumbraEvents product(device(), bound);
+    product.make(*made.source);
+    const std::vector<std::uint32_t> words = words_of(product.buffer());
+    double worst = 0;
+    for (std::size_t texel = 0; texel < kTexels; ++texel) {
+      for (std::uint32_t k = all[texel]; k < all[texel + 1]; ++k) {
+        // Between two events V is constant: ask just behind each.
+        const float t = std::nextafter(std::bit_cast<float>(all[kTexels + 1 + 2 * std::size_t{k}]), 1e30F);
+        const float exact = selftest::stepped(all, kTexels, texel, t),
+                    found = selftest::stepped(words, kTexels, texel, t);
+        worst = std::max(worst, static_cast<double>(std::abs(exact - found)));
+        EXPECT_TRUE(exact != 1 || found == 1) << "what is lit stays so";
+        EXPECT_TRUE(exact != 0 || found == 0) << "what is dark stays so";
+      }
+    }
+    fmt::print("bound {}: {} steps of {}, off by {:.4f}\n", bound, words[kTexels], all[kTexels], worst);
+    EXPECT_LE(worst, bound + 1e-6);
+    EXPECT_LE(words[kTexels], last);
+    last = words[kTexels];
+    if (bound >= 0.1) {
+      EXPECT_LT(2 * last, all[kTexels]);
+      EXPECT_GT(worst, 0.5 * std::min(bound, 0.2)) << "the bound is used";
+    }
+  }
+}
+
+// One sample at the light's centre: the ray through a texel stays in that texel of the sample's map.
+TEST_F(DeepPenumbra, WithTheCentreAloneItIsTheShadowMap) {
+  for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+    const Stage stage(crowded(wall, two_sided), 48, 48, light_samples(1));
+    ASSERT_EQ(stage.light.points.front(), stage.light.center);
+    for (const char* size : {"8", "50", "128"}) {
+      const Masks deep = run(maps::make_deep_penumbra, stage, {{"size", size}}),
+                  hard = run(maps::make_shadow_map, stage, {{"size", size}});
+      EXPECT_EQ(deep.visibility, hard.visibility) << size;
+    }
+  }
+}
+
+double distance(const Stage& stage, const Masks& a, const Masks& b) {
+  return rmse(
+      stage, [&](std::size_t i) { return stage.samples.triangle[i] >= 0; },
+      [&](std::size_t i) { return static_cast<double>(a.visibility[i]) - static_cast<double>(b.visibility[i]); });
+}
+
+// Half a texel moves an edge over whole rows of samples: the error goes with the root of the texel.
+TEST_F(DeepPenumbra, TendsToAccumulateOnTheSameSamples) {
+  const Stage stage(parallel_square(), 48, 48, light_samples(64));
+  const Masks truth = run(maps::make_accumulate, stage, {{"size", "1024"}});
+  double last = 1;
+  for (const char* size : {"32", "96", "288"}) {
+    const double error = distance(stage, run(maps::make_deep_penumbra, stage, {{"size", size}, {"bound", "0"}}), truth);
+    fmt::print("deep-penumbra, size {}: RMSE {:.5f} to accumulate\n", size, error);
+    EXPECT_LT(error, 0.8 * last);
+    last = error;
+  }
+  EXPECT_LT(last, 0.015);
+}
+
+/// The unsorted words of a layered depth image as entries.
+std::vector<maps::gpu::LayerEntry> entries_of(const maps::LayeredDepth& product, std::size_t texels) {
+  std::vector<maps::gpu::LayerEntry> entries(texels * product.layers());
+  product.buffer().read<maps::gpu::LayerEntry>(entries);
+  return entries;
+}
+
+// One sample at the centre: every texel's own depth once, and nothing else.
+TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
+  constexpr std::uint32_t kSize = 32;
+  for (const bool wall : {false, true}) {
+    const Stage stage(crowded(wall, false), 4, 4, light_samples(1));
+    Made made(device(), stage, kSize);
+    maps::LayeredDepth product(device(), 0.001);
+    product.make(*made.source);
+    maps::SampleMaps samples(device());
+    samples.make(*made.source);
+    const std::vector<float> depths = selftest::depths_of(samples, kSize);
+    const auto entries = entries_of(product, depths.size());
+    const float far = made.centre.views.front().far;
+    std::size_t own = 0, all = 0;
+    for (std::size_t texel = 0; texel < depths.size(); ++texel) {
+      for (std::size_t e = 0; e < product.layers(); ++e) {
+        const auto& entry = entries[texel * product.layers() + e];
+        if (entry.weight == 0) continue;
+        ++all;
+        EXPECT_EQ(entry.weight, 1U);
+        own += std::abs(entry.t - depths[texel] * far) <= 1e-6F * far ? 1 : 0;
+      }
+    }
+    const auto filled = static_cast<std::size_t>(std::ranges::count_if(depths, [](float depth) { return depth < 1; }));
+    EXPECT_EQ(own, filled);
+    // Hemicubes: a texel beside an edge of the cube reaches onto the next face.
+    EXPECT_LE(all, wall ? filled + filled / 4 : filled);
+  }
+}
+
+TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
+  constexpr std::uint32_t kSize = 40, kSamples = 36;
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_quad(scene, {0, 2, 0}, {0.8, 0, 0}, {0, 0, 0.8});
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+  const Stage stage(scene, 4, 4, light_samples(kSamples));
+  Made made(device(), stage, kSize);
+  maps::LayeredDepth product(device(), 0.01);
+  product.make(*made.source);
+  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
+  const auto entries = entries_of(product, kTexels);
+  std::size_t lit_floor = 0, uncovered = 0;
+  for (std::size_t texel = 0; texel < kTexels; ++texel) {
+    std::uint32_t board = 0, floor = 0;
+    for (std::size_t e = 0; e < product.layers(); ++e) {
+      const auto& entry = entries[texel * product.layers() + e];
+      EXPECT_LE(entry.weight, kSamples);
+      if (entry.weight == 0) continue;
+      const bool is_floor = std::abs(entry.t - 5) < 0.05F, is_board = std::abs(entry.t - 3) < 0.03F;
+      EXPECT_TRUE(is_floor || is_board) << entry.t;
+      (is_floor ? floor : board) += entry.weight;
+    }
+    // The board hides the floor from no sample where the centre's ray is far from it: |x| > 0.8 5/3 + 0.5 2/3 there.
+    const glm::dvec3 at = 5.0 * maps::face_of(made.centre.views.front(), made.basis, 0)
+                                    .direction(static_cast<std::uint32_t>(texel % kSize),
+                                               static_cast<std::uint32_t>(texel / kSize), kSize);
+    const double out = std::max(std::abs(at.x), std::abs(at.z));
+    const double texel_width = 6.0 / (kSize - 2);
+    if (out < 0.8 * 5 / 3 - 0.5 * 2 / 3 - texel_width) {
+      EXPECT_EQ(floor, 0U) << "umbra";
+    }
+    if (out < 0.8 * 5 / 3 + 0.5 * 2 / 3 + texel_width || out > 3 - texel_width) continue;
+    ++lit_floor;
+    uncovered += floor != kSamples ? 1 : 0;
+  }
+  EXPECT_GT(lit_floor, kTexels / 4);
+  EXPECT_EQ(uncovered, 0U);
+}
+
+// Where a board is tilted, images of one map's texels begin at all fractions of the centre's: the middle of a gap of a
+// fiftieth would be met many times.
+TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
+  constexpr std::uint32_t kSize = 40, kSamples = 36;
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_quad(scene, {0, 2, 0}, {0.8, 0.08, 0}, {0, 0, 0.8});
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+  const Stage stage(scene, 4, 4, light_samples(kSamples));
+  Made made(device(), stage, kSize);
+  maps::LayeredDepth product(device(), 0.01);
+  product.make(*made.source);
+  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
+  const auto entries = entries_of(product, kTexels);
+  const double texel_width = 6.0 / (kSize - 2) * 3 / 5;
+  std::size_t inside = 0;
+  for (std::size_t texel = 0; texel < kTexels; ++texel) {
+    const glm::dvec3 way =
+        maps::face_of(made.centre.views.front(), made.basis, 0)
+            .direction(static_cast<std::uint32_t>(texel % kSize), static_cast<std::uint32_t>(texel / kSize), kSize);
+    // The board is at height 2 + x / 10, that is at depth 3 - x / 10.
+    const glm::dvec3 at = 3 / (1 + 0.1 * way.x) * way;
+    if (std::max(std::abs(at.x), std::abs(at.z)) > 0.8 - 2 * texel_width) continue;
+    std::uint32_t board = 0;
+    for (std::size_t e = 0; e < product.layers(); ++e) {
+      const auto& entry = entries[texel * product.layers() + e];
+      if (entry.weight > 0 && entry.t < 4) board += entry.weight;
+    }
+    EXPECT_EQ(board, kSamples) << texel;
+    ++inside;
+  }
+  EXPECT_GT(inside, 50U);
+}
+
+// On a slope whose neighbouring texels' depths differ by more than the tolerance, but by less than twice that, their
+// images from beside the centre overlap where it falls away from the sample, and both may be near one layer. Samples
+// weigh 1, 4, 16 and 64: of one that counts twice, an odd bit is set.
+TEST_F(LayeredAttenuation, OnASteepSurfaceAMapCountsOnce) {
+  constexpr std::uint32_t kSize = 40;
+  std::size_t all = 0;
+  for (const double aside : {0.0, 0.01, 0.02, 0.03, 0.04, 0.05}) {  // a texel is 0.1 wide there
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+    add_quad(scene, {aside - 0.5, 2, 0}, {0.4, 0.36, 0}, {0, 0, 1});
+    add_quad(scene, {aside + 0.5, 2, 0}, {0.4, -0.36, 0}, {0, 0, 1});
+    scene.lights.push_back(ceiling_light(5, 1));
+    scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+    Stage stage(scene, 4, 4, {4, 1, 4, visibility::SamplePattern::rows, 0});
+    for (int i = 0; i < 4; ++i) stage.light.weights.push_back(std::ldexp(1.0, 2 * i - 24));
+    Made made(device(), stage, kSize);
+    maps::LayeredDepth product(device(), 0.025);
+    product.make(*made.source);
+    for (const auto& entry : entries_of(product, std::size_t{kSize} * kSize)) {
+      EXPECT_EQ(entry.weight & ~0x55U, 0U) << entry.weight << " at depth " << entry.t;
+      all += entry.weight == 0x55U && entry.t < 4 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(all, 100U);
+}
+
+TEST_F(LayeredAttenuation, VCountsSamplesAndTendsToAccumulate) {
+  const Stage stage(parallel_square(), 48, 48, light_samples(64));
+  const Masks truth = run(maps::make_accumulate, stage, {{"size", "1024"}});
+  double last = 1;
+  for (const char* size : {"32", "96", "288"}) {
+    const Masks found = run(maps::make_layered_attenuation, stage, {{"size", size}});
+    for (const float v : found.visibility) EXPECT_EQ(v * 64, std::round(v * 64));
+    const double error = distance(stage, found, truth);
+    fmt::print("layered-attenuation, size {}: RMSE {:.5f} to accumulate\n", size, error);
+    EXPECT_LT(error, 0.8 * last);
+    last = error;
+  }
+  EXPECT_LT(last, 0.015);
+}
+
+// Too small a tolerance parts what samples see of a curved surface into layers of their own, each seen by a part of
+// them; too large a one takes what lies just below an occluder for the occluder. (Of one plane all maps hold the same
+// places: their windows end where the receivers end.)
+TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact) {
+  scenes::Scene round, contact;
+  add_quad(round, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_object(round, "sphere", sphere({0, 1.2, 0}, 1, 24));
+  round.cameras.push_back(camera({0, 5.5, 2}, {0, 1, 0}, 35));
+  add_quad(contact, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_quad(contact, {-2, 0.2, 0}, {2, 0, 0}, {0, 0, 2.5}).receives_shadow = false;  // over one half of the floor
+  contact.cameras.push_back(camera({0, 0.1, 3}, {0, 0, 0}, 60));                    // from below the board
+  struct Shares {
+    double dark, leak;
+  };
+  const auto shares = [&](scenes::Scene scene, const char* epsilon) {
+    scene.lights.push_back(ceiling_light(5, 0.4));
+    const Stage stage(scene, 48, 48, light_samples(36));
+    const Masks truth = run(maps::make_accumulate, stage, {{"size", "1024"}}),
+                found =
+                    run(maps::make_layered_attenuation, stage, {{"size", "128"}, {"bias", "0"}, {"epsilon", epsilon}});
+    double lit = 0, dark = 0, umbra = 0, leak = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (stage.samples.triangle[i] < 0) continue;
+      lit += truth.visibility[i] == 1 ? 1 : 0;
+      dark += truth.visibility[i] == 1 && found.visibility[i] < 0.95F ? 1 : 0;
+      umbra += truth.visibility[i] == 0 ? 1 : 0;
+      leak += truth.visibility[i] == 0 && found.visibility[i] > 0.05F ? 1 : 0;
+    }
+    const Shares result{dark / std::max(lit, 1.0), leak / std::max(umbra, 1.0)};
+    fmt::print("epsilon {}: dark {:.3f} of {}, leak {:.3f} of {}\n", epsilon, result.dark, lit, result.leak, umbra);
+    return result;
+  };
+  const double small = shares(round, "0.0003").dark, middle = shares(round, "0.01").dark,
+               large = shares(round, "0.04").dark;
+  EXPECT_GT(small, 0.4);
+  EXPECT_LT(middle, 0.5 * small);
+  EXPECT_LT(large, 0.5 * middle);
+  EXPECT_LT(shares(contact, "0.01").leak, 0.05);
+  EXPECT_GT(shares(contact, "0.06").leak, 0.5);
+}
+
+TEST_F(MapLists, TilesAndRepetitionChangeNothingAndVIsDefinedEverywhere) {
+  scenes::Scene nothing = parallel_square(), crossing = parallel_square(), inside, disk = crowded(false, false);
+  nothing.objects[1].casts_shadow = nothing.objects[0].casts_shadow = false;
+  add_quad(crossing, {0.5, 5, 0}, {0, 1, 0}, {0, 0, 1});  // through the light
+  add_object(inside, "sphere", sphere({0, 0, 0}, 2, 8));  // around light and camera
+  inside.lights.push_back(ceiling_light(0, 0.5));
+  inside.lights.back().two_sided = true;
+  inside.cameras.push_back(camera({0.5, 0.5, 0.5}, {0, -1, 0}, 90));
+  disk.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.5};
+  scenes::Scene textured = crowded(false, false);
+  textured.lights.front().texture = scenes::Texture{"", 2, 1, {{0, 0, 0}, {1, 1, 1}}};
+  for (const Factory& factory : {Factory(maps::make_deep_penumbra), Factory(maps::make_layered_attenuation)}) {
+    for (const scenes::Scene& scene : {nothing, crossing, inside, disk, textured}) {
+      const Stage stage(scene, 20, 20, light_samples(6));
+      for (const char* size : {"8", "50"}) {
+        const auto method = factory(device(), {{"size", size}});
+        const Masks once = run(*method, stage), tiled = run(*method, stage, 7);
+        EXPECT_EQ(once.visibility, tiled.visibility);
+        for (const float v : once.visibility) EXPECT_TRUE(v >= 0 && v <= 1) << v;
+      }
+    }
+    // A texture weighs samples: close to accumulate, which takes the same weights.
+    const Stage stage(textured, 32, 32, light_samples(36));
+    EXPECT_LT(
+        distance(stage, run(factory, stage, {{"size", "256"}}), run(maps::make_accumulate, stage, {{"size", "256"}})),
+        0.08);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,300 @@
+// vssm: against its twin in double, against the closed forms of Chebyshev's bound, and what each kind of moments
+// promises.
+
+#include "maps/filters/vssm.hpp"
+
+#include "tests/analytic/maps/vssm_twin.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace penumbra::tests {
+namespace {
+
+constexpr std::uint32_t kSize = 128;
+
+/// What the methods ask their map to hold beside the receivers.
+glm::dvec2 beside(const Stage& stage) {
+  return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
+}
+
+visibility::MethodOptions options_of(const VssmSettings& settings, std::uint32_t size = kSize) {
+  return {{"size", fmt::format("{}", size)},
+          {"moments", settings.moments},
+          {"layers", fmt::format("{}", settings.moments == "lvsm" ? settings.count : 4)},
+          {"terms", fmt::format("{}", settings.moments == "csm" ? settings.count : 16)},
+          {"exponent", fmt::format("{}", settings.exponent)},
+          {"scale", fmt::format("{}", settings.scale)},
+          {"leak", fmt::format("{}", settings.leak)},
+          {"bias", fmt::format("{}", settings.bias)},
+          {"fallback", settings.fallback ? "on" : "off"}};
+}
+
+/// A floor, a sphere and two boards above it, one of them tilted.
+scenes::Scene scene_with(const decltype(scenes::AreaLight::shape)& shape) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+  add_object(scene, "sphere", sphere({0.5, 0.8, 0.3}, 0.5, 8));
+  add_quad(scene, {-0.8, 1.5, 0}, {0.4, 0, 0}, {0, 0, 0.9});
+  add_quad(scene, {-0.5, 0.5, -0.6}, {0.5, 0.2, 0}, {0, 0, 0.5});
+  scene.lights.push_back(ceiling_light(4, 0.5));
+  scene.lights.back().shape = shape;
+  scene.cameras.push_back(camera({0, 5, 4}, {0, 0, 0}, 40));
+  return scene;
+}
+
+class Vssm : public MapsTest {};
+
+TEST_F(Vssm, IsItsTwin) {
+  const std::vector<decltype(scenes::AreaLight::shape)> shapes{
+      scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}, scenes::Disk{{0.2, 4, 0}, {0, -1, 0}, 0.5},
+      scenes::Polygon{{{-0.5, 4, -0.5}, {0.6, 4, -0.4}, {0.1, 4, 0.6}}}};
+  const std::array<VssmSettings, 6> all{
+      VssmSettings{.moments = "vsm"},  {.moments = "vsm", .leak = 0.2, .bias = 3},
+      {.moments = "lvsm", .count = 5}, {.moments = "evsm", .exponent = 40},
+      {.moments = "csm", .count = 3},  {.moments = "esm", .exponent = 30, .fallback = false}};
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const Stage stage(scene_with(shapes[k]), 24, 24, light_samples(1));
+    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    ASSERT_EQ(maps.fitted.faces, 1U);
+    for (const VssmSettings& settings : all) {
+      const Masks found = run(maps::make_vssm, stage, options_of(settings));
+      const VssmTwin twin(maps, stage, settings);
+      std::size_t receivers = 0, off = 0, soft = 0;
+      double sum = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+        ++receivers;
+        const double v = twin(i).v, is = found.visibility[i];
+        soft += v > 0.02 && v < 0.98 ? 1 : 0;
+        sum += std::abs(v - is);
+        // Where a mean is at the receiver's own height within rounding, the search says blocked or not by a hair, and V
+        // may be anything between the filter's answer and 1.
+        off += std::abs(v - is) > 2e-3 ? 1 : 0;
+      }
+      fmt::print("{} of light {}: {} receivers, {} in penumbra, {} off, mean {:.2e}\n", settings.moments, k, receivers,
+                 soft, off, sum / static_cast<double>(receivers));
+      EXPECT_GT(soft, receivers / 20) << settings.moments;
+      EXPECT_LE(off, receivers / 100) << settings.moments << " of light " << k;
+    }
+  }
+}
+
+/// A floor under half-planes parallel to it and to the light.
+struct Board {
+  double height, x0, x1;
+};
+scenes::Scene under_boards(const std::vector<Board>& boards, double light = 0.5) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
+  for (const Board& board : boards) {
+    add_quad(scene, {(board.x0 + board.x1) / 2, board.height, 0}, {(board.x1 - board.x0) / 2, 0, 0}, {0, 0, 3})
+        .receives_shadow = false;
+  }
+  scene.lights.push_back(ceiling_light(4, light));
+  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
+  return scene;
+}
+
+/// The floor's middle, 48 × 48.
+Stage floor_stage(const std::vector<Board>& boards, double light = 0.5) {
+  return {under_boards(boards, light), 48, 48, light_samples(1),
+          grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};
+}
+
+// S4 4.2.1: one flat blocker and one flat receiver, both parallel to the light, are two depths, and of those the bound
+// is the share itself.
+TEST_F(Vssm, OfTwoDepthsTheBoundIsTheShare) {
+  const Stage stage = floor_stage({{2, -4, 0.1}});
+  const VssmSettings settings{.moments = "vsm", .bias = 0};
+  const Masks found = run(maps::make_vssm, stage, options_of(settings, 512));
+  const CentreMaps maps(device(), stage, 512, beside(stage));
+  const VssmTwin twin(maps, stage, settings);
+  std::size_t soft = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    // The search's window is the filter's, since the near plane is the blocker's: the share is of the texels under it.
+    const VssmTwin::Answer answer = twin(i);
+    const double share = answer.no_blockers ? 1 : answer.pcf;
+    // A share f lit gives f (1 − f) Δ² + ε over (1 − f) Δ² + ε, Δ half of the range of heights and ε the least
+    // variance, 2⁻²²: off by less than 2⁻²⁰ / (1 − f).
+    EXPECT_NEAR(found.visibility[i], share, share < 1 ? 0x1p-20 / (1 - share) + 1e-5 : 1e-6) << i;
+    soft += share > 0 && share < 1 ? 1 : 0;
+  }
+  EXPECT_GT(soft, 300U);
+}
+
+// S4 4.2.1: "the correct shadow could be darker, but never brighter".
+TEST_F(Vssm, TheBoundIsNeverDarkerThanCountingTheSameTexels) {
+  for (const char* moments : {"vsm", "lvsm", "evsm"}) {
+    const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 32, 32, light_samples(1));
+    const VssmSettings settings{.moments = moments, .count = std::string(moments) == "lvsm" ? 4U : 1U, .exponent = 40};
+    const Masks found = run(maps::make_vssm, stage, options_of(settings));
+    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const VssmTwin twin(maps, stage, settings);
+    std::size_t brighter = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      const VssmTwin::Answer answer = twin(i);
+      if (answer.no_blockers || answer.v < answer.pcf) continue;  // the horizon may cut V
+      const double is = found.visibility[i];
+      EXPECT_GE(is, answer.pcf - 2e-3) << moments << " at pixel " << i;
+      brighter += is > answer.pcf + 0.01 ? 1 : 0;
+    }
+    EXPECT_GT(brighter, 20U) << moments;
+  }
+}
+
+// S4 figure 4.5 as a closed form. Of a sheet at z1 over one at z2 that covers all, seen from z3, with Δ = z2 − z1 and
+// D = z3 − z2: the bound is q (1 − q) Δ² / (q (1 − q) Δ² + (D + q Δ)²) where the upper sheet fills q of the window,
+// largest at q = D / (Δ + 2 D), where it is 1 / (1 + 2 D / Δ)².
+TEST_F(Vssm, TheWorstLeakUnderTwoSheetsIsTheClosedForm) {
+  for (const auto& [upper, lower] : {std::pair(2.5, 1.25), std::pair(2.5, 2.5 / 3), std::pair(2.0, 1.5)}) {
+    const double delta = upper - lower, below = lower, worst = 1 / std::pow(1 + 2 * below / delta, 2);
+    const Stage stage = floor_stage({{upper, -6, 0.02}, {lower, -6, 6}});
+    for (const bool repaired : {false, true}) {
+      const VssmSettings settings{.moments = "vsm", .leak = repaired ? worst + 1e-3 : 0, .bias = 0};
+      const Masks found = run(maps::make_vssm, stage, options_of(settings, 256));
+      const double most = *std::ranges::max_element(found.visibility);
+      fmt::print("sheets at {} and {}: leak {:.5f}, closed form {:.5f}{}\n", upper, lower, most, worst,
+                 repaired ? ", cut" : "");
+      // Everything is umbra. 48 columns over a window's width: q is met within 1/20, and V is flat there: with
+      // V'' ≈ −2 worst (1 + 2 D / Δ)² … below, 1/20 off the best q costs less than 2 % of it.
+      if (repaired) {
+        EXPECT_EQ(most, 0) << upper << " over " << lower;
+      } else {
+        EXPECT_LE(most, worst + 1e-4) << upper << " over " << lower;
+        EXPECT_GT(most, 0.98 * worst) << upper << " over " << lower;
+      }
+    }
+  }
+}
+
+// S4 4.2.3: with a bias beyond the step's first maximum the series is the count but for its swings, of up to 0.0486
+// (see below). Whether more terms come closer depends on where between two swings heights lie.
+TEST_F(Vssm, TheSeriesIsTheCountButForItsSwings) {
+  constexpr std::uint32_t kTexels = 64;
+  const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 24, 24, light_samples(1));
+  const CentreMaps maps(device(), stage, kTexels, beside(stage));
+  for (const std::uint32_t terms : {4U, 8U, 16U}) {
+    const VssmSettings settings{.moments = "csm", .count = terms, .scale = 1, .bias = 2};
+    const Masks found = run(maps::make_vssm, stage, options_of(settings, kTexels));
+    const VssmTwin twin(maps, stage, settings);
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      const VssmTwin::Answer answer = twin(i);
+      if (answer.no_blockers) continue;
+      sum += std::pow(static_cast<double>(found.visibility[i]) - answer.pcf, 2);
+      ++count;
+    }
+    ASSERT_GT(count, 100U);
+    const double error = std::sqrt(sum / static_cast<double>(count));
+    fmt::print("csm of {} terms: RMSE {:.4f} against counting\n", terms, error);
+    EXPECT_LT(error, 0.0486);
+  }
+}
+
+// The nearest caster's shadow on the deepest receiver: their heights are as far apart as heights are, and the series
+// must not have jumped back there. It swings: beyond its first maximum a sum of sines is never further below a step of
+// 1 than 1/2 - Si(2 pi) / pi = 0.0486 (Gibbs). Were heights to span all of half a period, 0.37 would be left.
+TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
+  const Stage stage = floor_stage({{2, -4, 0.1}});
+  for (const std::uint32_t terms : {1U, 2U, 4U, 16U}) {
+    const VssmSettings settings{.moments = "csm", .count = terms, .scale = 1};
+    const Masks found = run(maps::make_vssm, stage, options_of(settings));
+    std::size_t umbra = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      // The board is half way to the light, whose half is 0.5: the umbra ends at 2 * 0.1 - 0.5; a texel is 0.05 wide.
+      if (stage.samples.p[i].x + stage.floats.origin.x > -0.4) continue;
+      ++umbra;
+      EXPECT_LT(found.visibility[i], 0.0486 + 0x1p-10) << terms << " terms";
+    }
+    EXPECT_GT(umbra, 500U);
+  }
+}
+
+// S4 figure 4.8: at a plane's own height the series is exactly a half, and scaled by two it is lit.
+TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaled) {
+  const Stage stage = floor_stage({{2, -4, 0.1}});
+  for (const std::uint32_t terms : {1U, 4U, 16U}) {
+    for (const double scale : {1.0, 2.0}) {
+      const VssmSettings settings{.moments = "csm", .count = terms, .scale = scale, .bias = 0};
+      const Masks found = run(maps::make_vssm, stage, options_of(settings));
+      std::size_t plane = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        // Lit whole, with nothing nearer than the floor in the search's window either.
+        const double x = stage.samples.p[i].x + stage.floats.origin.x;
+        if (x < 1.0) continue;
+        ++plane;
+        // 12 digits, and the sum of 2 / c_k over the terms: below 2.
+        EXPECT_NEAR(found.visibility[i], scale / 2, scale * 0x1p-10) << terms << " terms";
+      }
+      EXPECT_GT(plane, 100U);
+    }
+  }
+}
+
+// S4 4.2.4: a texel behind the receiver makes the exponential more than 1. There are none over a level floor, and there
+// are on a tilted one and where a caster's outline lets the floor behind it be seen.
+TEST_F(Vssm, TheExponentialFailsWhereTexelsLieBehindTheReceiver) {
+  const auto differing = [](const Stage& stage) {
+    const VssmSettings with{.moments = "esm"}, without{.moments = "esm", .fallback = false};
+    const Masks a = run(maps::make_vssm, stage, options_of(with)), b = run(maps::make_vssm, stage, options_of(without));
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.visibility.size(); ++i) {
+      count += std::abs(a.visibility[i] - b.visibility[i]) > 1e-3F ? 1 : 0;
+      EXPECT_LE(a.visibility[i], b.visibility[i] + 1e-3F);  // without it, V is 1 there
+    }
+    return static_cast<double>(count) / static_cast<double>(a.visibility.size());
+  };
+  EXPECT_EQ(differing(floor_stage({{2, -4, 0.1}})), 0);
+  const double solid =
+      differing(Stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 48, 48, light_samples(1)));
+  fmt::print("esm: {:.1f} % of pixels need the fallback around a sphere and boards\n", 100 * solid);
+  EXPECT_GT(solid, 0.01);
+}
+
+// A light without size has windows of one texel, the receiver's own.
+TEST_F(Vssm, APointLightIsTheShadowMap) {
+  scenes::Scene scene = under_boards({{2, -0.7, 0.1}}, 1e-6);
+  const Stage stage(scene, 64, 64, light_samples(1), grid_samples(64, {0, 0, 0}, {1.9, 0, 0}, {0, 0, 1.9}, {0, 1, 0}));
+  const Masks hard = run(maps::make_shadow_map, stage, {{"size", "128"}});
+  for (const char* moments : {"vsm", "lvsm", "evsm", "esm"}) {
+    for (const char* filter : {"sat", "n-buffer"}) {
+      const Masks found = run(maps::make_vssm, stage, {{"size", "128"}, {"moments", moments}, {"filter", filter}});
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        // The board is half of the range of heights away: the least variance, 2⁻²² of the warped range, leaves less
+        // than 2⁻²⁰ of light in front of (16 layers' or 40 e-folds') Δ² ≥ 1/4.
+        EXPECT_NEAR(found.visibility[i], hard.visibility[i], 1e-4) << moments << " " << filter << " at " << i;
+      }
+    }
+  }
+  const Masks taps = run(maps::make_pcss, stage, {{"size", "128"}});
+  EXPECT_EQ(taps.visibility, hard.visibility);
+}
+
+// The other filters are approximations of the same means.
+TEST_F(Vssm, PyramidsAndWindowsComeNearTheTables) {
+  const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}), 48, 48, light_samples(1));
+  for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
+    const auto with = [&](const char* filter) {
+      return run(maps::make_vssm, stage,
+                 {{"size", "100"}, {"moments", moments}, {"filter", filter}, {"exponent", "30"}});
+    };
+    const Masks table = with("sat"), windows = with("n-buffer"), pyramid = with("mip");
+    const auto receives = [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.samples, i); };
+    const double of_windows =
+        rmse(stage, receives, [&](std::size_t i) { return windows.visibility[i] - table.visibility[i]; });
+    const double of_pyramid =
+        rmse(stage, receives, [&](std::size_t i) { return pyramid.visibility[i] - table.visibility[i]; });
+    fmt::print("{}: RMSE against tables: n-buffer {:.4f}, mip {:.4f}\n", moments, of_windows, of_pyramid);
+    EXPECT_LT(of_windows, 0.05) << moments;
+    EXPECT_LT(of_pyramid, 0.12) << moments;
+    EXPECT_GT(of_pyramid, of_windows) << moments;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,175 @@
+// pcf: a fixed window of texels, whose widths, levels and self-shadowing are known in closed form.
+
+#include "maps/filters/pcf.hpp"
+
+#include "tests/analytic/maps/centre_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace penumbra::tests {
+namespace {
+
+class Pcf : public MapsTest {
+ protected:
+  static visibility::MethodOptions window(std::uint32_t n, std::uint32_t size = 1024) {
+    return {{"window", fmt::format("{}", n)}, {"size", fmt::format("{}", size)}};
+  }
+};
+
+/// A floor at height 0 and a board above it, from x = edge to far beyond the floor, under a light at height 2.
+scenes::Scene under_a_board(double height, double edge, double half_light) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
+  if (height > 0) add_quad(scene, {edge + 4, height, 0}, {4, 0, 0}, {0, 0, 4}).receives_shadow = false;
+  scene.lights.push_back(ceiling_light(2, half_light));
+  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
+  return scene;
+}
+
+// S4 4.1.2: the window knows neither occluder nor light. V rises over n texels of t z each on the floor, linearly up to
+// one texel's step, around the hard shadow's edge.
+TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
+  constexpr std::uint32_t kSamples = 2048, kSize = 256;
+  for (const std::uint32_t n : {7U, 8U, 21U}) {
+    for (const double z : {0.3, 1.0, 1.7}) {
+      const double height = 2 - z, edge = 0.05 * z;  // its shadow begins at x = 0.1
+      std::vector<float> first;
+      for (const double half_light : {0.1, 0.5, 1.0}) {
+        const auto line = [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+          visibility::ViewSamples samples;
+          samples.width = kSamples;
+          samples.height = 1;
+          for (std::uint32_t i = 0; i < kSamples; ++i) {
+            samples.triangle.push_back(0);
+            samples.p.emplace_back(glm::dvec3(-1 + 2.0 * i / kSamples, 0, 0.003) - floats.origin);
+            samples.n.emplace_back(0, 1, 0);
+            samples.depth.push_back(1);
+            samples.facing.push_back(1);
+          }
+          return samples;
+        };
+        const Stage stage(under_a_board(height, edge, half_light), kSamples, 1, light_samples(1), line);
+        const Masks found = run(maps::make_pcf, stage, window(n, kSize));
+        if (first.empty()) first = found.visibility;
+        EXPECT_EQ(found.visibility, first) << "light " << half_light;
+        // Texels of the window of ±1 in x/z, a little wider for what is beside it, on the floor at distance 2.
+        const CentreMaps maps(device(), stage, kSize, glm::dvec2(8.0 * (n / 2) / kSize));
+        const auto& side = maps.fitted.views.front().side[0];
+        const double texel = 2.0 * static_cast<double>(side.upper.x - side.lower.x) / kSize;
+        const auto place_of = [&](double share) {  // V falls along x
+          std::size_t i = 0;
+          while (i<kSamples&& static_cast<double>(found.visibility[i])> share) ++i;
+          return -1 + 2.0 * static_cast<double>(i) / kSamples;
+        };
+        // Steps of 1/n stand a texel apart: a level is crossed within half a texel of where a ramp would cross it, and
+        // a sample's spacing later.
+        const double spacing = 2.0 / kSamples;
+        EXPECT_NEAR(place_of(0.1) - place_of(0.9), 0.8 * n * texel, texel + spacing) << n << " at z " << z;
+        // A row of texels begins anywhere, so the edge is where the rasteriser put it: half a texel either way; an even
+        // window is centred half a texel off.
+        EXPECT_NEAR(place_of(0.5), 0.1, texel + spacing) << n << " at z " << z;
+      }
+    }
+  }
+}
+
+// S4 figure 4.3: with the receiver's own depth for every texel, half a tilted plane shades the other half.
+TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
+  constexpr std::uint32_t kSide = 40, kSize = 256;
+  for (const double tilt : {30.0, 60.0}) {
+    const double angle = tilt * 0.017453292519943295;
+    const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), up(-std::sin(angle), std::cos(angle), 0);
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, along, {0, 0, -1});
+    scene.lights.push_back(ceiling_light(5, 0.5));
+    scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
+    // Away from the border by more than the widest window.
+    const Stage stage(scene, kSide, kSide, light_samples(1),
+                      grid_samples(kSide, {0, 0, 0}, 0.8 * along, {0, 0, 0.8}, up));
+    for (const std::uint32_t n : {1U, 3U, 7U, 15U}) {
+      visibility::MethodOptions options = window(n, kSize);
+      const Masks followed = run(maps::make_pcf, stage, options);
+      options["receiverPlane"] = "off";
+      options["bias"] = "0";
+      const Masks found = run(maps::make_pcf, stage, options);
+      const CentreMaps maps(device(), stage, kSize);
+      const auto& side = maps.fitted.views.front().side[0];
+      std::size_t more = 0, less = 0;
+      for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+        EXPECT_EQ(followed.visibility[i], 1.0F) << "pixel " << i;
+        const glm::dvec3 d = maps.basis.local(glm::dvec3(stage.samples.p[i]));
+        // Depth changes along one axis alone. Its own column is nearer than the receiver if its centre is on the side
+        // where the plane rises toward the light: then (n − 1) / 2 columns are lit of n, else (n + 1) / 2.
+        const int axis = std::abs(maps.basis.u.x) > 0.5 ? 0 : 1;
+        const double texel = static_cast<double>(side.upper[axis] - side.lower[axis]) / kSize;
+        const double at = (d[axis] / d.z - static_cast<double>(side.lower[axis])) / texel, part = at - std::floor(at);
+        if (std::abs(part - 0.5) < 0.02 || std::min(part, 1 - part) < 0.02) continue;  // rounding of p and of depths
+        const bool rises = (axis == 0 ? maps.basis.u.x : maps.basis.v.x) > 0;          // depth falls as x grows
+        const bool own_is_lit = (part < 0.5) != rises;
+        const std::uint32_t columns = own_is_lit ? (n + 1) / 2 : (n - 1) / 2;
+        EXPECT_EQ(found.visibility[i], static_cast<float>(columns * n) / static_cast<float>(n * n)) << "pixel " << i;
+        (own_is_lit ? more : less) += 1;
+      }
+      EXPECT_GT(std::min(more, less), stage.samples.size() / 4) << tilt << ", " << n;
+    }
+  }
+}
+
+/// A floor, a sphere, a wall up to `wall`, which asks for a hemicube where it reaches the light.
+scenes::Scene sphere_and_wall(double wall, bool two_sided) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_object(scene, "sphere", sphere({0.3, 1, 0.2}, 0.6, 8));
+  add_quad(scene, {3, wall / 2, 0}, {0, wall / 2, 0}, {0, 0, 3});
+  scene.lights.push_back(ceiling_light(4, 0.5));
+  scene.lights.back().two_sided = two_sided;
+  scene.cameras.push_back(camera({-3, 3, 6}, {0.5, 1.5, 0}));
+  return scene;
+}
+
+TEST_F(Pcf, AWindowOfOneTexelIsTheShadowMap) {
+  for (const double wall : {1.0, 5.0}) {
+    const Stage stage(sphere_and_wall(wall, wall > 4), 48, 48, light_samples(1));
+    const Masks hard = run(maps::make_shadow_map, stage, {{"size", "128"}});
+    const Masks found = run(maps::make_pcf, stage, window(1, 128));
+    EXPECT_EQ(found.visibility, hard.visibility) << "wall " << wall;
+  }
+}
+
+TEST_F(Pcf, LevelsAreWholeTexelsOfTheWindow) {
+  for (const std::uint32_t n : {2U, 7U, 12U}) {
+    const Stage stage(sphere_and_wall(5, true), 48, 48, light_samples(1));
+    const Masks found = run(maps::make_pcf, stage, window(n, 128));
+    std::size_t between = 0;
+    for (const float v : found.visibility) {
+      const auto texels = static_cast<float>(n * n);
+      EXPECT_EQ(v, std::round(v * texels) / texels);
+      between += v > 0 && v < 1 ? 1 : 0;
+    }
+    EXPECT_GT(between, 5U);
+  }
+}
+
+// In a hemicube a window goes on on the next face: the seams do not show on a floor that nothing shades.
+TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
+  scenes::Scene scene = sphere_and_wall(5, false);
+  scene.objects[1].casts_shadow = false;
+  const Stage stage(scene, 64, 64, light_samples(1));
+  const Masks found = run(maps::make_pcf, stage, window(9, 64));
+  std::size_t floor = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    const std::int32_t triangle = stage.samples.triangle[i];
+    if (triangle < 0 || stage.floats.object[static_cast<std::size_t>(triangle)] != 0) continue;
+    // Within the window of the wall's foot the wall stands nearer than the floor's plane goes on.
+    const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
+    if (p.x > 2) continue;
+    ++floor;
+    EXPECT_EQ(found.visibility[i], 1.0F) << p.x << " " << p.z;
+  }
+  EXPECT_GT(floor, 300U);
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,360 @@
+// What papers and algebra say of the image-based family on every scene, or on every scene of a class, where no other
+// file of this room has it. docs/predicates.md lists all, with their names and what is measured.
+
+#include "maps/filters/vssm.hpp"
+#include "tests/analytic/maps/backprojection_scenes.hpp"
+#include "tests/analytic/maps/contour_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace penumbra::tests {
+namespace {
+
+using visibility::MethodOptions;
+
+class MapsPredicates : public MapsTest {
+ protected:
+  static Masks exact(const Stage& stage) { return tests::run(*reference::make_exact({}), stage); }
+  static Masks soft(const Stage& stage, const MethodOptions& options) {
+    return run(maps::make_soft_shadow_map, stage, options);
+  }
+  static void record(const std::string& what, double value) {
+    RecordProperty(what, fmt::format("{:.5g}", value));
+    fmt::print("{}: {:.5g}\n", what, value);
+  }
+  /// Atty's measure (2006, section 5.2.1).
+  static double shadow_error(const Masks& found, const Masks& truth) {
+    double sum = 0, shaded = 0;
+    for (std::size_t i = 0; i < found.visibility.size(); ++i) {
+      if (truth.visibility[i] >= 1) continue;
+      sum += static_cast<double>(std::abs(found.visibility[i] - truth.visibility[i]));
+      shaded += 1;
+    }
+    EXPECT_GT(shaded, 50);
+    return sum / shaded;
+  }
+  static double bias(const Masks& found, const Masks& truth) {
+    double sum = 0;
+    for (std::size_t i = 0; i < found.visibility.size(); ++i) {
+      sum += static_cast<double>(found.visibility[i]) - static_cast<double>(truth.visibility[i]);
+    }
+    return sum / static_cast<double>(found.visibility.size());
+  }
+};
+
+/// The casters of `scene` that `keep` names, object by object.
+scenes::Scene only(scenes::Scene scene, const std::function<bool(std::size_t)>& keep) {
+  for (std::size_t object = 1; object < scene.objects.size(); ++object) {
+    if (!keep(object)) scene.objects[object].casts_shadow = false;
+  }
+  return scene;
+}
+
+// I18 (Eisemann et al. 2009, equation 1.5): with exact shares B of the parts of any caster, the whole hides at least
+// the largest and at most their sum; the product of what they leave lies between.
+TEST_F(MapsPredicates, WhatPartsHideBoundsWhatTheWholeHides) {
+  double nearest_to_max = 1, nearest_to_sum = 1, off = 0;
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    const auto number = [&](int low, int high) {
+      return static_cast<double>(low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1))) / 2;
+    };
+    scenes::Scene scene = bare_floor(1, 2);
+    for (int part = 0; part < 3; ++part) {
+      std::vector<Corners> triangles(3);
+      for (Corners& corners : triangles) {
+        for (glm::dvec3& corner : corners) corner = {number(-3, 3), number(1, 7), number(-3, 3)};
+      }
+      add_object(scene, fmt::format("part {}", part), triangles).receives_shadow = false;
+    }
+    const auto on_the_floor = [&](const scenes::Scene& s) { return on_floor(s, 12, light_samples(1)); };
+    const Masks whole = exact(on_the_floor(scene));
+    std::vector<Masks> parts;
+    for (std::size_t part = 1; part <= 3; ++part) {
+      parts.push_back(exact(on_the_floor(only(scene, [&](std::size_t object) { return object == part; }))));
+    }
+    for (std::size_t i = 0; i < whole.visibility.size(); ++i) {
+      const double hidden = 1 - static_cast<double>(whole.visibility[i]);
+      double most = 0, sum = 0, left = 1;
+      for (const Masks& part : parts) {
+        const double share = 1 - static_cast<double>(part.visibility[i]);
+        most = std::max(most, share);
+        sum += share;
+        left *= 1 - share;
+      }
+      // V is a float: each is off by 2^-25.
+      constexpr double kRounding = 4 * 0x1p-25;
+      EXPECT_GE(hidden, most - kRounding) << "seed " << seed << ", pixel " << i;
+      EXPECT_LE(hidden, std::min(1.0, sum) + kRounding) << "seed " << seed << ", pixel " << i;
+      EXPECT_GE(1 - left, most - kRounding);
+      EXPECT_LE(1 - left, std::min(1.0, sum) + kRounding);
+      if (most > 0.05 && most < 0.95 && sum - most > 0.05) {
+        nearest_to_max = std::min(nearest_to_max, hidden - most);
+        nearest_to_sum = std::min(nearest_to_sum, std::min(1.0, sum) - hidden);
+        off = std::max(off, std::abs(1 - left - hidden));
+      }
+    }
+  }
+  record("I18 least of whole - max", nearest_to_max);
+  record("I18 least of sum - whole", nearest_to_sum);
+  record("I18 product off by up to", off);
+  EXPECT_LT(nearest_to_max, 0.01) << "both bounds are reached";
+  EXPECT_LT(nearest_to_sum, 0.01);
+}
+
+/// One ball, whose map from the light's centre is the receivers' window: four specks at its corners.
+scenes::Scene ball_and_specks() {
+  scenes::Scene scene = bare_floor(0.5, 4);
+  add_object(scene, "ball", sphere({0, 2, 0}, 1, 16)).receives_shadow = false;
+  for (const double x : {-1, 1}) {
+    for (const double z : {-1, 1}) {
+      add_quad(scene, {1.9 * x, 2.5, 1.9 * z}, {0.1, 0, 0}, {0, 0, 0.1}).receives_shadow = false;
+    }
+  }
+  return scene;
+}
+
+// I15: behind a convex body the second layer is the farthest surface, and two ways to sum its patches are one: what the
+// second pass of soft-shadow-map adds up, at a texel of its receivers, and the deepest layer of backproject-peel.
+TEST_F(MapsPredicates, BehindAConvexBodyPeelingIsTheSecondPass) {
+  const Stage stage(ball_and_specks(), 20, 20, light_samples(1),
+                    [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+                      visibility::ViewSamples samples;
+                      samples.width = samples.height = 20;
+                      for (std::uint32_t i = 0; i < 400; ++i) {
+                        // Centres of texels 4, 7, ... of 66 over the floor, one of which is to spare on either side.
+                        const glm::dvec2 at = glm::dvec2(4 + 3 * (i % 20), 4 + 3 * (i / 20)) + 0.5 - 33.0;
+                        samples.triangle.push_back(0);
+                        samples.p.emplace_back(glm::dvec3(8 * at.x / 64, 0, 8 * at.y / 64) - floats.origin);
+                        samples.n.emplace_back(0, 1, 0);
+                        samples.depth.push_back(1);
+                        samples.facing.push_back(1);
+                      }
+                      return samples;
+                    });
+  const MethodOptions map{{"size", "64"}, {"receiverSize", "66"}, {"filter", "nearest"}};
+  MethodOptions both = map;
+  both["passes"] = "2";
+  const Masks one = soft(stage, map), two = soft(stage, both);
+  const auto peeled = [&](const char* select) {
+    return run(
+        maps::make_backproject_peel, stage,
+        {{"size", "64"}, {"layers", "2"}, {"samples", "0"}, {"depth", "first"}, {"bias", "0"}, {"select", select}});
+  };
+  const Masks deepest = peeled("deepest"), contribution = peeled("contribution");
+  double off = 0, darker = 0;
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    EXPECT_LE(contribution.visibility[i], deepest.visibility[i]);
+    if (!(two.visibility[i] < one.visibility[i])) continue;  // there V of the second pass is not the smaller one
+    ++compared;
+    off = std::max(off, static_cast<double>(std::abs(two.visibility[i] - deepest.visibility[i])));
+    darker = std::max(darker, static_cast<double>(two.visibility[i] - contribution.visibility[i]));
+  }
+  record("I15 select=deepest off by", off);
+  record("I15 select=contribution darker by up to", darker);
+  EXPECT_GT(compared, 40U);
+  // Borders on the light are rounded to 2^-20 of its sides here and to 2^-30 of its area there, those of 16 patches a
+  // side: V is off by 16 of them at most; floats of tangents by as much again.
+  EXPECT_LT(off, 1e-4);
+  EXPECT_GT(darker, 0.01) << "a nearer patch counts where the farther one misses the light";
+}
+
+// E6 (Atty et al. 2006, figure 19), of this box alone: under the light it is nearer to the truth than half a width
+// aside.
+TEST_F(MapsPredicates, ABoxUnderTheLightIsNearerToTheTruthThanAside) {
+  std::array<double, 4> errors{};
+  std::size_t at = 0;
+  for (const double aside : {0.0, 0.4, 0.8, 1.5}) {
+    scenes::Scene scene = box_over_floor(aside);
+    const Stage stage = on_floor(scene, 32, light_samples(1));
+    const Masks truth = exact(stage);
+    const Masks one = soft(stage, {}), two = soft(stage, {{"passes", "2"}});
+    errors.at(at) = shadow_error(one, truth);
+    if (aside == 0) {  // A15: only its top is in the map, and there are no gaps to blame
+      record("A15 bias in one pass", bias(one, truth));
+      record("A15 bias in two passes", bias(two, truth));
+      EXPECT_GT(bias(one, truth), 0);
+      EXPECT_LT(bias(two, truth), bias(one, truth));
+    }
+    record(fmt::format("E6 error, {} aside, one pass", aside), errors.at(at++));
+    record(fmt::format("E6 error, {} aside, two passes", aside), shadow_error(two, truth));
+  }
+  EXPECT_LT(errors[0], errors[1]);
+}
+
+// E9 (Atty et al. 2006, section 5.1.2): over a tilted plane gaps and overlaps of summed patches cancel in part; a union
+// of the same patches has the gaps alone.
+TEST_F(MapsPredicates, OverATiltedPlaneSumsAreLessBiasedThanUnions) {
+  const Stage stage = on_floor(oblique_quad(), 32, light_samples(1024));
+  const Masks truth = exact(stage);
+  for (const char* size : {"64", "128"}) {
+    const double sum =
+        bias(run(maps::make_backproject, stage, {{"size", size}, {"fill", "none"}, {"search", "none"}}), truth);
+    const double united =
+        bias(run(maps::make_bitmask, stage, {{"size", size}, {"occluder", "patch"}, {"search", "none"}}), truth);
+    record(fmt::format("E9 bias of the sum, size {}", size), sum);
+    record(fmt::format("E9 bias of the union, size {}", size), united);
+    EXPECT_LT(std::abs(sum), std::abs(united));
+    EXPECT_GT(united, 0);
+  }
+}
+
+/// Of the pixels in the umbra those that are brighter than 0.05.
+double leak(const Masks& found, const Masks& truth) {
+  double umbra = 0, lit = 0;
+  for (std::size_t i = 0; i < found.visibility.size(); ++i) {
+    if (truth.visibility[i] > 0) continue;
+    umbra += 1;
+    lit += found.visibility[i] > 0.05F ? 1 : 0;
+  }
+  EXPECT_GT(umbra, 20);
+  return lit / umbra;
+}
+
+// B6 (Schwarz and Stamminger 2007): quads of a connected surface share their borders: no light comes through, as it
+// does between patches.
+TEST_F(MapsPredicates, QuadsOfATiltedPlaneDoNotLeakAsPatchesDo) {
+  const Stage stage = on_floor(oblique_quad(), 32, light_samples(256));
+  const Masks truth = exact(stage);
+  const auto leak_of = [&](const char* occluder) {
+    return leak(run(maps::make_bitmask, stage, {{"size", "128"}, {"occluder", occluder}}), truth);
+  };
+  const double quads = leak_of("quad"), patches = leak_of("patch");
+  record("B6 leak of quads", quads);
+  record("B6 leak of patches", patches);
+  EXPECT_LE(quads, 0.02);
+  EXPECT_GT(patches, 0.2);
+}
+
+// S1' (Eisemann et al. 2009, figure 1.8): of nested shells one layer has the outermost; the rest of the shadow comes
+// layer by layer.
+TEST_F(MapsPredicates, LayersOfNestedShellsBringTheShadowBack) {
+  scenes::Scene scene = bare_floor(1, 3);
+  // Caps that the light's centre sees one behind the other, the lowest the widest for the floor.
+  for (int shell = 0; shell < 4; ++shell) {
+    add_quad(scene, {0, 3.6 - 0.8 * shell, 0}, {0.35, 0, 0}, {0, 0, -0.35}).receives_shadow = false;
+  }
+  const Stage stage = on_floor(scene, 20, light_samples(256));
+  const Masks truth = exact(stage);
+  double last = 1;
+  for (const char* layers : {"1", "2", "3", "4"}) {
+    const Masks found = run(maps::make_bitmask, stage, {{"size", "64"}, {"layers", layers}});
+    const double off = bias(found, truth);
+    record(fmt::format("S1' bias of {} layers", layers), off);
+    EXPECT_GT(off, -0.005);
+    EXPECT_LT(off, last);
+    last = off;
+  }
+}
+
+/// Along a line of places outward over a shadow's edge: where V leaves 0, passes 1/2 and reaches 1.
+struct Edge {
+  double inner = 0, middle = 0, outer = 0;
+};
+Edge edge_of(const std::vector<double>& places, const std::vector<float>& visibility) {
+  Edge edge{places.back(), places.back(), places.back()};
+  for (std::size_t i = places.size(); i-- > 0;) {
+    if (visibility[i] > 0.002F) edge.inner = places[i];
+    if (visibility[i] >= 0.5F) edge.middle = places[i];
+    if (visibility[i] < 0.998F) {
+      edge.outer = std::max(places[i], edge.outer == places.back() ? places[i] : edge.outer);
+    }
+  }
+  return edge;
+}
+
+// E11 (Atty et al. 2006, section 5.2.2): both the inner and the outer penumbra are there, as wide as they are; and the
+// middle of the shadow's edge stands where it does.
+TEST_F(MapsPredicates, PenumbraeReachInwardAndOutwardAsFarAsTheyDo) {
+  for (const double height : {0.25, 1.0, 2.0}) {
+    scenes::Scene scene = bare_floor(0.5, 4);
+    add_quad(scene, {0, height, 0}, {1, 0, 0}, {0, 0, -1}).receives_shadow = false;
+    std::vector<double> places;
+    for (int i = 0; i < 600; ++i) places.push_back(0.5 + 2.5 * i / 600);
+    const Stage stage = along_floor(scene, places, light_samples(1));
+    // A texel of the occluders' map, 2 / 126 of the plate, is that much larger on the floor; a receivers' texel is 8 /
+    // 510.
+    const double texel = 2.0 / 126 * 5 / (5 - height) + 8.0 / 510;
+    const Edge true_edge = edge_of(places, exact(stage).visibility);
+    const Edge found = edge_of(places, soft(stage, {{"receiverSize", "512"}}).visibility);
+    const double hard = 5 / (5 - height);  // the hard shadow's edge
+    record(fmt::format("E11 plate at {}: inner edge off by", height), found.inner - true_edge.inner);
+    record(fmt::format("E11 plate at {}: middle off by", height), found.middle - true_edge.middle);
+    record(fmt::format("E11 plate at {}: outer edge off by", height), found.outer - true_edge.outer);
+    record(fmt::format("E11 plate at {}: texel", height), texel);
+    EXPECT_LT(found.inner, hard);
+    EXPECT_GT(found.outer, hard);
+    EXPECT_NEAR(found.inner, true_edge.inner, texel);
+    EXPECT_NEAR(found.middle, true_edge.middle, texel);
+    EXPECT_NEAR(found.outer, true_edge.outer, texel);
+  }
+}
+
+// C3 (Eisemann et al. 2009, figure 5.8c), of this scene: what outlines make of moving plates jumps where the depth at
+// an outline does; quads, which have no outlines, jump less.
+TEST_F(MapsPredicates, OutlinesJumpWhereDepthsAtThemDo) {
+  visibility::SampleRequest request = light_samples(1024);
+  request.pattern = visibility::SamplePattern::sobol;
+  Masks last_contour, last_quad, last_truth;
+  double contour_jump = 0, quad_jump = 0;
+  for (int step = 0; step <= 12; ++step) {
+    scenes::Scene scene = bare_floor(0.6, 3.5);
+    // As the light's centre sees them the small plate's edge passes over the large one's, at x/z = 0.457.
+    add_quad(scene, {0.31 + 0.012 * step, 3.5, 0}, {0.3, 0, 0}, {0, 0, -0.3}).receives_shadow = false;
+    add_quad(scene, {0, 1.5, 0}, {1.6, 0, 0}, {0, 0, -1.6}).receives_shadow = false;
+    const Stage stage = on_floor(scene, 18, request);
+    const Masks truth = exact(stage), contour = run(maps::make_contour, stage, {{"size", "64"}}),
+                quad = run(maps::make_bitmask, stage, {{"size", "64"}});
+    for (std::size_t i = 0; step > 0 && i < truth.visibility.size(); ++i) {
+      const float moved = truth.visibility[i] - last_truth.visibility[i];
+      contour_jump = std::max(
+          contour_jump, static_cast<double>(std::abs(contour.visibility[i] - last_contour.visibility[i] - moved)));
+      quad_jump =
+          std::max(quad_jump, static_cast<double>(std::abs(quad.visibility[i] - last_quad.visibility[i] - moved)));
+    }
+    last_contour = contour;
+    last_quad = quad;
+    last_truth = truth;
+  }
+  record("C3 largest jump of contour", contour_jump);
+  record("C3 largest jump of quads", quad_jump);
+  EXPECT_GT(contour_jump, quad_jump);
+}
+
+// M4 (Yang et al. 2009, section 5): sub-lights make wide penumbrae smooth; narrow ones stay as coarse as the map.
+TEST_F(MapsPredicates, NarrowPenumbraeStayAliasedUnderSubLights) {
+  for (const char* sub_lights : {"1", "2", "4"}) {
+    std::array<double, 2> in_penumbra{}, in_picture{};
+    std::size_t at = 0;
+    for (const double height : {0.05, 2.0}) {
+      scenes::Scene scene = bare_floor(0.5, 2);
+      add_quad(scene, {0.013, height, 0.007}, {0.7, 0, 0}, {0, 0, -0.7}).receives_shadow = false;
+      const Stage stage = on_floor(scene, 160, light_samples(1));
+      const Masks truth = exact(stage),
+                  found = run(maps::make_packet, stage, {{"size", "128"}, {"sublights", sub_lights}});
+      // On the floor a penumbra is height / (5 - height) wide, of which a texel is 5 (4 / 5 + 2 beside) / 126 at most.
+      double penumbra = 0, picture = 0, pixels = 0;
+      for (std::size_t i = 0; i < truth.visibility.size(); ++i) {
+        const double square = std::pow(static_cast<double>(found.visibility[i] - truth.visibility[i]), 2);
+        picture += square;
+        if (truth.visibility[i] <= 0 || truth.visibility[i] >= 1) continue;
+        penumbra += square;
+        pixels += 1;
+      }
+      EXPECT_GT(pixels, 50);
+      in_penumbra.at(at) = std::sqrt(penumbra / pixels);
+      in_picture.at(at) = std::sqrt(picture / static_cast<double>(truth.visibility.size()));
+      record(fmt::format("M4 S={}, plate at {}: RMSE in the penumbra", sub_lights, height), in_penumbra.at(at));
+      record(fmt::format("M4 S={}, plate at {}: RMSE of the picture", sub_lights, height), in_picture.at(at++));
+    }
+    EXPECT_GT(in_penumbra[0], 2 * in_penumbra[1]) << sub_lights;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,153 @@
+// What means over windows are taken from: summed areas, mip levels and N-buffers against twins, bit by bit.
+
+#include "maps/products/map_frame.hpp"
+#include "maps/products/nearest_caster.hpp"
+#include "maps/products/prefilter.hpp"
+#include "selftest/map_checks.hpp"
+#include "selftest/prefilter_checks.hpp"
+#include "tests/analytic/maps/centre_maps.hpp"
+#include "tests/unit/passed.hpp"
+
+#include <array>
+#include <numbers>
+#include <random>
+
+namespace penumbra::tests {
+namespace {
+
+class Prefilters : public MapsTest {};
+
+TEST_F(Prefilters, SummedAreasAreExactModulo32BitsAtAnySize) {
+  std::mt19937 random(1);
+  for (const std::uint32_t size : {8U, 9U, 100U, 257U}) {
+    std::vector<std::uint32_t> words(std::size_t{3} * size * size);
+    for (std::uint32_t& word : words) word = static_cast<std::uint32_t>(random());  // most sums wrap around
+    expect_passed(selftest::check_summed_areas(device(), words, size));
+  }
+}
+
+// S4 5.2.2.3: sums of many values lose precision in float32, so 32-bit integers (fixed point) are used beyond some
+// size.
+TEST(SummedAreaTables, OfFloatsLoseWhatIntegersKeep) {
+  constexpr std::uint32_t kSide = 2048, kBits = 10, kBox = 4;  // 2048² digits of 10 bits: 2³²
+  std::mt19937 random(2);
+  std::vector<float> floats(std::size_t{kSide} * kSide), float_sums(floats.size());
+  std::vector<std::uint32_t> digits(floats.size());
+  for (std::size_t i = 0; i < floats.size(); ++i) {
+    digits[i] = 512 + static_cast<std::uint32_t>(random() % 512);
+    floats[i] = static_cast<float>(digits[i]) / static_cast<float>(1U << kBits);
+  }
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    float row = 0;
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      const std::size_t at = std::size_t{y} * kSide + x;
+      row += floats[at];
+      float_sums[at] = row + (y > 0 ? float_sums[at - kSide] : 0);
+    }
+  }
+  const std::vector<std::uint32_t> sums = selftest::summed_areas(digits, kSide);
+  double worst_float = 0;
+  for (std::uint32_t k = 0; k < 2000; ++k) {
+    const std::uint32_t x = 1 + static_cast<std::uint32_t>(random() % (kSide - kBox - 1)),
+                        y = 1 + static_cast<std::uint32_t>(random() % (kSide - kBox - 1));
+    const auto corner = [&](const auto& table, std::uint32_t i, std::uint32_t j) {
+      return table[(std::size_t{y} + j - 1) * kSide + x + i - 1];
+    };
+    std::uint32_t truth = 0;
+    for (std::uint32_t j = 0; j < kBox; ++j) {
+      for (std::uint32_t i = 0; i < kBox; ++i) truth += digits[(std::size_t{y} + j) * kSide + x + i];
+    }
+    const std::uint32_t box =
+        corner(sums, kBox, kBox) - corner(sums, 0, kBox) - corner(sums, kBox, 0) + corner(sums, 0, 0);
+    EXPECT_EQ(box, truth);
+    const float mean = (corner(float_sums, kBox, kBox) - corner(float_sums, 0, kBox) - corner(float_sums, kBox, 0) +
+                        corner(float_sums, 0, 0)) /
+                       (kBox * kBox);
+    worst_float = std::max(worst_float, std::abs(static_cast<double>(mean) - truth / 1024.0 / (kBox * kBox)));
+  }
+  RecordProperty("worstFloatMean", std::to_string(worst_float));
+  EXPECT_GT(worst_float, 1e-3);
+}
+
+/// A floor and a sphere under a square light, in a window or, with a wall up to the light, a hemicube.
+scenes::Scene scene_of(bool hemicube) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;  // leaves texels where nothing is
+  add_object(scene, "sphere", sphere({0.3, 1, 0.2}, 0.6, 8));
+  if (hemicube) add_quad(scene, {2, 2, 0}, {0, 2, 0}, {0, 0, 2});
+  scene.lights.push_back(ceiling_light(3, 0.5));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+  return scene;
+}
+
+TEST_F(Prefilters, TablesAreSumsOfTheValuesDigits) {
+  for (const bool hemicube : {false, true}) {
+    const Stage stage(scene_of(hemicube), 4, 4, light_samples(1));
+    ASSERT_EQ(CentreMaps(device(), stage, 8).fitted.faces, hemicube ? 5U : 1U);
+    for (const std::uint32_t size : {32U, 51U}) {
+      expect_passed(selftest::check_prefilter_tables(device(), stage, size));
+    }
+  }
+}
+
+// Mip levels and N-buffers, from their finest level up: the same sums of four in the same order.
+TEST_F(Prefilters, LevelsAreMeansOfTheLevelBefore) {
+  for (const bool hemicube : {false, true}) {
+    const Stage stage(scene_of(hemicube), 4, 4, light_samples(1));
+    for (const maps::PrefilterKind kind : {maps::PrefilterKind::pyramid, maps::PrefilterKind::windows}) {
+      for (const std::uint32_t size : {8U, 32U, 51U}) {
+        expect_passed(selftest::check_prefilter_levels(device(), stage, size, kind));
+      }
+    }
+  }
+}
+
+TEST_F(Prefilters, WhatNoBuffersHoldIsRefusedWithTheSizeThatDoes) {
+  const std::uint64_t most = device().limits().max_storage_buffer_range;
+  maps::PrefilterOptions options{.kind = maps::PrefilterKind::table,
+                                 .functions = std::vector<maps::PrefilterFunction>(300)};
+  std::uint32_t size = 16;
+  while (size < 16384 && maps::prefilter_layout(options, size, 1, most)) size *= 2;
+  ASSERT_FALSE(maps::prefilter_layout(options, size, 1, most));
+  const Stage stage(scene_of(false), 4, 4, light_samples(1));
+  maps::NearestCaster nearest(device());
+  maps::MapFrame frame(device());
+  maps::Prefilter product(device(), options, {.nearest = &nearest, .frame = &frame});
+  const CentreMaps maps(device(), stage, 16);
+  maps::MapSet set = maps.set(stage);
+  set.size = size;
+  try {
+    render::Commands commands(device());
+    product.record(commands, set);
+    ADD_FAILURE() << size << " is too large";
+  } catch (const ResourceError& error) {
+    const std::string message = error.what();
+    const auto named = static_cast<std::uint32_t>(std::stoul(message.substr(message.rfind("size=") + 5)));
+    EXPECT_TRUE(maps::prefilter_layout(options, named, 1, most)) << message;
+    EXPECT_FALSE(maps::prefilter_layout(options, named + 1, 1, most)) << message;
+  }
+}
+
+// A disk's and a polygon's box have their second moments; a rectangle's is itself.
+TEST(LightBox, HasTheLightsOwnMoments) {
+  scenes::Scene scene = scene_of(false);
+  struct Shape {
+    decltype(scenes::AreaLight::shape) shape;
+    glm::dvec2 half;
+  };
+  // A right triangle with legs 2 along its axes: variance of x is 2²/18.
+  for (const Shape& one :
+       {Shape{scenes::Rectangle{{0, 3, 0}, {0.7, 0, 0}, {0, 0, 0.2}}, {0.7, 0.2}},
+        Shape{scenes::Disk{{0, 3, 0}, {0, -1, 0}, 0.5}, glm::dvec2(std::sqrt(0.75) * 0.5)},
+        Shape{scenes::Ellipse{{0, 3, 0}, {0.4, 0, 0}, {0.3, 0, 0.2}}, std::sqrt(0.75) * glm::dvec2(0.5, 0.2)},
+        Shape{scenes::Polygon{{{0, 3, 0}, {2, 3, 0}, {0, 3, 2}}}, glm::dvec2(std::sqrt(3 * 4.0 / 18))}}) {
+    scene.lights.front().shape = one.shape;
+    const Stage stage(scene, 4, 4, light_samples(1));
+    const glm::dvec2 half = maps::half_box(stage.light, maps::light_basis(stage.light));
+    EXPECT_NEAR(half.x, one.half.x, 1e-6);
+    EXPECT_NEAR(half.y, one.half.y, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests

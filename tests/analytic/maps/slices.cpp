@@ -1,0 +1,283 @@
+// occlusion-textures and convolution: slices against their twin, and what flat blockers parallel to the light must
+// give.
+
+#include "maps/filters/convolution.hpp"
+#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/vssm.hpp"
+#include "maps/products/light_shape.hpp"
+#include "maps/products/slices.hpp"
+#include "selftest/map_checks.hpp"
+#include "tests/analytic/maps/centre_maps.hpp"
+#include "tests/unit/passed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace penumbra::tests {
+namespace {
+
+class SliceProducts : public MapsTest {
+ protected:
+  /// A floor, a sphere, a board and, for a hemicube, a wall up to the light.
+  static scenes::Scene scene(bool hemicube, bool two_sided) {
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+    add_object(scene, "sphere", sphere({0.31, 1.07, 0.23}, 0.61, 6));
+    add_quad(scene, {-0.7, 1.5, 0.1}, {0.43, 0.21, 0}, {0, 0, 0.77});
+    if (hemicube) add_quad(scene, {2, 2, 0}, {0, 2, 0}, {0, 0, 2});
+    if (two_sided) {
+      add_quad(scene, {0, 6, 0}, {2, 0, 0}, {0, 0, 2});
+      add_quad(scene, {0.2, 5, 0}, {0.5, 0.1, 0}, {0, 0, 0.5});
+    }
+    scene.lights.push_back(ceiling_light(3, 0.5));
+    scene.lights.back().two_sided = two_sided;
+    scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+    return scene;
+  }
+};
+
+TEST_F(SliceProducts, MarkEverySurfaceInItsSlice) {
+  constexpr std::uint32_t kSize = 48, kSlices = 5;
+  for (const auto& [hemicube, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
+    const Stage stage(scene(hemicube, two_sided), 4, 4, light_samples(1));
+    for (const maps::Rasteriser rasteriser : {maps::Rasteriser::vulkan, maps::Rasteriser::opengl}) {
+      expect_passed(selftest::check_slices(device(), stage, kSize, kSlices, rasteriser));
+    }
+    const CentreMaps maps(device(), stage, kSize);
+    maps::Slices product(device(), {.count = kSlices});
+    render::Commands commands(device());
+    product.record(commands, maps.set(stage));
+    commands.submit();
+    std::vector<std::uint32_t> found(maps.texel_count());
+    product.buffer().read<std::uint32_t>(found);
+    EXPECT_GT(std::ranges::count_if(found, [](std::uint32_t word) { return std::popcount(word) > 1; }), 20);
+  }
+}
+
+// Closed, it has a top and a bottom; a sheet has one surface. Slices end at depths 2.25, 2.5, 2.75 and 3.
+TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3}).casts_shadow = false;
+  add_quad(scene, {-1, 2, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  add_quad(scene, {-1, 1, 0}, {0.8, 0, 0}, {0, 0, 0.8});
+  add_quad(scene, {1.5, 1.4, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  scene.lights.push_back(ceiling_light(4, 0.5));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+  const Stage stage(scene, 4, 4, light_samples(1));
+  constexpr std::uint32_t kSize = 64;
+  const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = 2});
+  const auto& side = maps.fitted.views.front().side[0];
+  // The body's middle is seen at x/z = -1/2.5, the sheet's at 1.5/2.6.
+  const auto words_of = [&](maps::DepthUse depth) {
+    maps::Slices product(device(), {.count = 4, .depth = depth, .bias = 0.5});
+    render::Commands commands(device());
+    product.record(commands, maps.set(stage));
+    commands.submit();
+    std::vector<std::uint32_t> found(std::size_t{kSize} * kSize);
+    product.buffer().read<std::uint32_t>(found);
+    const auto at = [&](double tangent) {
+      // Along the basis' first axis, whichever way it runs.
+      const glm::dvec3 d = glm::dvec3(tangent, -1, 0);
+      const glm::dvec2 place =
+          (glm::dvec2(glm::dot(d, maps.basis.u), glm::dot(d, maps.basis.v)) - glm::dvec2(side.lower)) /
+          glm::dvec2(side.upper - side.lower) * static_cast<double>(kSize);
+      return found[static_cast<std::size_t>(place.y) * kSize + static_cast<std::size_t>(place.x)];
+    };
+    return std::pair(at(-0.45), at(1.5 / 2.6));
+  };
+  EXPECT_EQ(words_of(maps::DepthUse::first), std::pair(0b1001U, 0b100U));
+  EXPECT_EQ(words_of(maps::DepthUse::second), std::pair(0b1000U, 0U));
+  EXPECT_EQ(words_of(maps::DepthUse::midpoint), std::pair(0b1010U, 0b100U));
+  EXPECT_EQ(words_of(maps::DepthUse::dual), std::pair(0b1001U, 0b100U));
+}
+
+TEST_F(SliceProducts, OnePlaneIsTheBlockersMeanHeightWithoutTheGround) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});
+  add_quad(scene, {-1, 2, 0}, {0.5, 0, 0}, {0, 0, 0.5});  // area 1 at distance 3
+  add_quad(scene, {1, 1, 0}, {0.5, 0, 0}, {0, 0, 1.5});   // area 3 at distance 4
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
+  const Stage stage(scene, 4, 4, light_samples(1));
+  const CentreMaps maps(device(), stage, 16);
+  EXPECT_EQ(maps::ground_of(stage.floats, maps.basis), 0U);
+  EXPECT_NEAR(maps::slice_planes(maps.set(stage), maps::SliceRule::one_plane, 1).plane[0][0], 3.75, 1e-6);
+  scene.objects[0].casts_shadow = false;
+  const Stage lit(scene, 4, 4, light_samples(1));
+  EXPECT_EQ(maps::ground_of(lit.floats, maps.basis), maps::kNoObject);
+  const CentreMaps its(device(), lit, 16);
+  EXPECT_NEAR(maps::slice_planes(its.set(lit), maps::SliceRule::one_plane, 1).plane[0][0], 3.75, 1e-6);
+}
+
+/// A board parallel to the light, as the light's box sees it from p: what share of it it hides.
+struct Board {
+  double height;
+  glm::dvec2 lower, upper;  // in x and z
+};
+constexpr double kLight = 4, kHalf = 0.5, kFloor = 1;
+
+/// The light's half size 0.5 at height 4 over a floor of half size 1 that casts no shadow.
+scenes::Scene under(const std::vector<Board>& boards) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {kFloor, 0, 0}, {0, 0, kFloor}).casts_shadow = false;
+  for (const Board& board : boards) {
+    const glm::dvec2 middle = 0.5 * (board.lower + board.upper), half = 0.5 * (board.upper - board.lower);
+    add_quad(scene, {middle.x, board.height, middle.y}, {half.x, 0, 0}, {0, 0, half.y}).receives_shadow = false;
+  }
+  scene.lights.push_back(ceiling_light(kLight, kHalf));
+  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
+  return scene;
+}
+
+Stage floor_stage(const std::vector<Board>& boards, std::uint32_t n = 32) {
+  return {under(boards), n, n, light_samples(1), grid_samples(n, {0, 0, 0}, {0.97, 0, 0}, {0, 0, 0.97}, {0, 1, 0})};
+}
+
+/// What `board` hides of the light from p on the floor, as intervals on the light.
+struct Shadow {
+  glm::dvec2 lower, upper;  // on the light, −0.5 … 0.5
+  [[nodiscard]] double share() const {
+    const glm::dvec2 extent = glm::max(upper - lower, glm::dvec2(0));
+    return extent.x * extent.y;
+  }
+};
+Shadow shadow_of(const Board& board, const glm::dvec3& p) {
+  const glm::dvec2 at(p.x, p.z);
+  const double to_light = kLight / board.height;
+  const auto on_light = [&](const glm::dvec2& corner) { return (at + (corner - at) * to_light) / (2 * kHalf); };
+  return {glm::clamp(on_light(board.lower), -0.5, 0.5), glm::clamp(on_light(board.upper), -0.5, 0.5)};
+}
+
+/// How far off a share can be because a board's four edges are known to half a texel, and corners to 1/256: each edge
+/// moves by so much of the window's width, which is the light's.
+double half_texels(const CentreMaps& maps, double height) {
+  const auto& side = maps.fitted.views.front().side[0];
+  const glm::dvec2 texel = glm::dvec2(side.upper - side.lower) / static_cast<double>(maps.size);
+  const double window = 2 * kHalf * (1 / (kLight - height) - 1 / kLight);
+  return (2 * (0.5 + 1.0 / 256)) * (texel.x + texel.y) / window;
+}
+
+glm::dvec2 beside(const Stage& stage) {
+  return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
+}
+
+class SliceMethods : public MapsTest {
+ protected:
+  static constexpr std::uint32_t kSize = 1024;
+  static glm::dvec3 world(const Stage& stage, std::size_t pixel) {
+    return glm::dvec3(stage.samples.p[pixel]) + stage.floats.origin;
+  }
+};
+
+// Eisemann and Décoret 2006, Soler and Sillion 1998: of one flat blocker parallel to the light the box filter is the
+// share of the light itself.
+TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
+  const Board board{2, {-0.3, -0.2}, {0.25, 0.4}};
+  const Stage stage = floor_stage({board});
+  const CentreMaps maps(device(), stage, kSize, beside(stage));
+  const double bound = half_texels(maps, board.height) + 1e-5;
+  const Masks one = run(maps::make_occlusion_textures, stage, {{"slices", "1"}});
+  const Masks blurred = run(maps::make_convolution, stage);
+  const Masks taps = run(maps::make_pcss, stage, {{"blockerSamples", "1024"}, {"filterSamples", "1024"}});
+  EXPECT_EQ(one.visibility, blurred.visibility);
+  double worst = 0;
+  std::size_t soft = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    const double exact = 1 - shadow_of(board, world(stage, i)).share(), off = std::abs(one.visibility[i] - exact);
+    worst = std::max(worst, off);
+    soft += exact > 0 && exact < 1 ? 1 : 0;
+    EXPECT_LT(off, bound) << i;
+    // 1024 taps of the R2 sequence: log₂ n / n of the light for each of four edges.
+    EXPECT_NEAR(taps.visibility[i], exact, bound + 4 * 10.0 / 1024) << i;
+  }
+  RecordProperty("worst", std::to_string(worst));
+  fmt::print("one flat blocker: off by {:.5f} at most, half texels allow {:.5f}\n", worst, bound);
+  EXPECT_LT(bound, 0.012) << "2 % of the filter's width would move V by 0.01 and more";
+  EXPECT_GT(soft, 500U);
+}
+
+// S4 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half over one another, nested.
+TEST_F(SliceMethods, TwoBlockersAreMultipliedInEveryLayout) {
+  const Board upper{2, {-0.2, -0.5}, {0.1, 0.5}};
+  for (const double shift : {0.45, 0.15, 0.0}) {
+    // Nested or beside one another from the floor's middle: the lower one's shadow on the light is moved by `shift`.
+    const Board lower{1, {-0.1 + shift, -0.4}, {0.05 + shift, 0.4}};
+    // A speck far aside above both begins the slices, so that either board lies in the far plane of one: 2.25, 2, …, 1.
+    const Board speck{2.25, {-0.9, 0.9}, {-0.89, 0.91}};
+    const Stage stage = floor_stage({upper, lower, speck});
+    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const double bound = half_texels(maps, upper.height) + half_texels(maps, lower.height) + 1e-5;
+    const Masks found = run(maps::make_occlusion_textures, stage, {{"slices", "5"}});
+    double fused = 0;
+    std::size_t both = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const glm::dvec3 p = world(stage, i);
+      if (p.x < -0.5 && p.z > 0.4) continue;  // the speck's own shadow
+      const Shadow a = shadow_of(upper, p), b = shadow_of(lower, p);
+      const Shadow common{glm::max(a.lower, b.lower), glm::min(a.upper, b.upper)};
+      EXPECT_NEAR(found.visibility[i], (1 - a.share()) * (1 - b.share()), bound) << i;
+      const double exact = 1 - a.share() - b.share() + common.share();
+      fused = std::max(fused, std::abs(found.visibility[i] - exact));
+      both += a.share() > 0.05 && b.share() > 0.05 ? 1 : 0;
+    }
+    fmt::print("shift {}: product off the truth by up to {:.3f}\n", shift, fused);
+    EXPECT_GT(both, 100U);
+    EXPECT_GT(fused, 0.05) << "the product is not the truth";
+  }
+}
+
+double error_of(const Stage& stage, const Masks& found, const Masks& truth) {
+  const auto on_floor = [&](std::size_t i) { return stage.samples.triangle[i] == 0; };
+  return rmse(stage, on_floor, [&](std::size_t i) { return found.visibility[i] - truth.visibility[i]; });
+}
+
+// S4 5.2.5: right for flat blockers alone. The deeper a box reaches below its top, the worse.
+TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
+  double before = 0;
+  for (const double depth : {0.01, 0.6, 1.2}) {
+    scenes::Scene scene = under({});
+    std::vector<Corners> box = quad({0, 2, 0}, {0.3, 0, 0}, {0, 0, 0.3});
+    for (const Corners& side : quad({0.3, 2 - depth / 2, 0}, {0, depth / 2, 0}, {0, 0, 0.3})) box.push_back(side);
+    for (const Corners& side : quad({-0.3, 2 - depth / 2, 0}, {0, depth / 2, 0}, {0, 0, 0.3})) box.push_back(side);
+    for (const Corners& side : quad({0, 2 - depth / 2, 0.3}, {0.3, 0, 0}, {0, depth / 2, 0})) box.push_back(side);
+    for (const Corners& side : quad({0, 2 - depth / 2, -0.3}, {0.3, 0, 0}, {0, depth / 2, 0})) box.push_back(side);
+    for (const Corners& side : quad({0, 2 - depth, 0}, {0.3, 0, 0}, {0, 0, 0.3})) box.push_back(side);
+    add_object(scene, "box", box);
+    const Stage stage(scene, 32, 32, light_samples(256),
+                      grid_samples(32, {0, 0, 0}, {0.97, 0, 0}, {0, 0, 0.97}, {0, 1, 0}));
+    const double error =
+        error_of(stage, run(maps::make_convolution, stage), run(maps::make_accumulate, stage, {{"size", "256"}}));
+    fmt::print("convolution of a box {} deep: RMSE {:.4f}\n", depth, error);
+    EXPECT_GT(error, before);
+    if (depth < 0.1) {
+      EXPECT_LT(error, 0.02);
+    }
+    before = error;
+  }
+}
+
+// S4 5.2.5: no shadow inside a slice. A box on a floor that casts, too: near its foot the shadow is missing.
+TEST_F(SliceMethods, WithinASliceOfTheFloorTheShadowIsMissing) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {kFloor, 0, 0}, {0, 0, kFloor});
+  add_quad(scene, {0.2, 0.1, 0}, {0.3, 0, 0}, {0, 0, 0.3}).receives_shadow = false;  // within the last slice of 8
+  add_quad(scene, {-0.8, 2, -0.8}, {0.1, 0, 0}, {0, 0, 0.1}).receives_shadow = false;
+  scene.lights.push_back(ceiling_light(kLight, kHalf));
+  scene.cameras.push_back(camera({0, 1, 3}, {0, 0, 0}));
+  const Stage stage(scene, 32, 32, light_samples(1), grid_samples(32, {0, 0, 0}, {0.9, 0, 0}, {0, 0, 0.9}, {0, 1, 0}));
+  const Masks found = run(maps::make_occlusion_textures, stage, {{"slices", "8"}}), taps = run(maps::make_pcss, stage);
+  std::size_t missing = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    const glm::dvec3 p = world(stage, i);
+    if (std::abs(p.x - 0.2) > 0.25 || std::abs(p.z) > 0.25) continue;
+    EXPECT_EQ(found.visibility[i], 1.0F);
+    EXPECT_EQ(taps.visibility[i], 0.0F);
+    ++missing;
+  }
+  EXPECT_GT(missing, 50U);
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,491 @@
+// soft-shadow-map against closed forms, its two forms against each other, and the error curves of Atty et al. 2006.
+
+#include "tests/analytic/maps/parallel_square.hpp"
+
+#include "base/error.hpp"
+#include "maps/backprojection/patches/backproject.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
+#include "reference/exact_method.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace penumbra::tests {
+namespace {
+
+using visibility::MethodOptions;
+
+class SoftShadowMap : public MapsTest {
+ protected:
+  struct Run {
+    Masks picture;
+    std::uint64_t patches, fragments;
+  };
+  static Run soft(const Stage& stage, const MethodOptions& options = {}, std::uint32_t rows_at_once = 0) {
+    const auto method = maps::make_soft_shadow_map(device(), options);
+    Masks picture = run(*method, stage, rows_at_once);
+    const auto counters = method->counters();
+    return {std::move(picture), counters.at("patches"), counters.at("fragments")};
+  }
+  static bool on_object(const Stage& stage, std::size_t i, std::uint32_t object) {
+    return stage.samples.triangle[i] >= 0 &&
+           stage.floats.object[static_cast<std::size_t>(stage.samples.triangle[i])] == object;
+  }
+  /// View samples on the floor (object 0, at height 0) at these places.
+  static Stage on_floor(const scenes::Scene& scene, const std::vector<glm::dvec2>& places) {
+    return Stage(scene, static_cast<std::uint32_t>(places.size()), 1, light_samples(1),
+                 [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+                   visibility::ViewSamples samples;
+                   samples.width = static_cast<std::uint32_t>(places.size());
+                   samples.height = 1;
+                   for (const glm::dvec2& place : places) {
+                     samples.triangle.push_back(0);
+                     samples.p.emplace_back(glm::dvec3(place.x, 0, place.y) - floats.origin);
+                     samples.n.emplace_back(0, 1, 0);
+                     samples.depth.push_back(1);
+                     samples.facing.push_back(1);
+                   }
+                   return samples;
+                 });
+  }
+  /// A floor of half-size 4, the light of half-size `half` 5 above it.
+  static scenes::Scene floor_and_light(double half) {
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});
+    scene.lights.push_back(ceiling_light(5, half));
+    scene.cameras.push_back(camera({0, 4, 7}, {0, 0.5, 0}, 60));
+    return scene;
+  }
+  static scenes::Scene ball(double half, double height = 2) {
+    scenes::Scene scene = floor_and_light(half);
+    add_object(scene, "sphere", sphere({0, height, 0}, 1, 16));
+    return scene;
+  }
+  /// The measure of the paper's section 5.2.1 over the floor: the sum of abs(V - V_ref) over the number of pixels in
+  /// umbra or penumbra; and the areas of the umbrae, found and true.
+  struct Measure {
+    double error, umbra, true_umbra;
+  };
+  static Measure measure(const Stage& stage, const Masks& found, const Masks& truth) {
+    Measure result{0, 0, 0};
+    double shaded = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!on_object(stage, i, 0)) continue;
+      result.error += static_cast<double>(std::abs(found.visibility[i] - truth.visibility[i]));
+      shaded += truth.visibility[i] < 1 ? 1 : 0;
+      result.umbra += found.visibility[i] < 0.05F ? 1 : 0;
+      result.true_umbra += truth.visibility[i] < 0.05F ? 1 : 0;
+    }
+    result.error /= shaded;
+    return result;
+  }
+  static Masks exact(const Stage& stage) { return tests::run(*reference::make_exact({}), stage); }
+};
+
+// A parallel rectangle, and a small one beside it so that no texel's border lies on an edge. On either axis each edge
+// is off by half a texel at most, which is t f on the light.
+TEST_F(SoftShadowMap, AParallelRectangleIsOffByNoMoreThanItsTexels) {
+  struct Rectangle {
+    glm::dvec2 center, half;
+  };
+  const std::array<Rectangle, 2> rectangles{{{{0.1, 0}, {1, 0.7}}, {{2.137, 0.3}, {0.2, 0.37}}}};
+  scenes::Scene scene = floor_and_light(1);
+  for (const auto& [center, half] : rectangles) {
+    add_quad(scene, {center.x, 2, center.y}, {half.x, 0, 0}, {0, 0, half.y});
+  }
+  // The places that the receivers' map holds: 200 texels over +-4/5 with one to spare all around.
+  constexpr int kReceivers = 202;
+  std::vector<glm::dvec2> places;
+  for (int i = 20; i < 180; i += 3) {
+    for (int j = 60; j < 140; j += 7) {
+      places.push_back(8.0 * (glm::dvec2(i, j) + 0.5 - kReceivers / 2.0) / (kReceivers - 2.0));
+    }
+  }
+  const Stage stage = on_floor(scene, places);
+  double before = 1;
+  for (const int size : {33, 66, 132, 264, 528}) {
+    const MethodOptions options{{"size", std::to_string(size)}, {"receiverSize", std::to_string(kReceivers)}};
+    MethodOptions twice = options;
+    twice["passes"] = "2";
+    const Run found = soft(stage, options);
+    EXPECT_EQ(found.picture.visibility, soft(stage, twice).picture.visibility) << "a flat sheet has one surface";
+    // Texels: over the x of both rectangles, and over the z of the larger one; at depth 3 of 5.
+    const double to_light = 3.0 * 5.0 / 2.0, across = (2.337 + 0.9) / 3 / (size - 2), along = 1.4 / 3 / (size - 2);
+    const double bound = 2 * (across + along) / 2 * to_light / 2 * 2;
+    double worst = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      double covered = 0;
+      for (const auto& [center, half] : rectangles) {
+        const glm::dvec2 to = places[i] + (center - places[i]) * 2.5, reach = 2.5 * half;
+        const glm::dvec2 overlap =
+            glm::max(glm::min(to + reach, glm::dvec2(1)) - glm::max(to - reach, glm::dvec2(-1)), 0.0);
+        covered += overlap.x * overlap.y / 4;
+      }
+      worst = std::max(worst, std::abs(static_cast<double>(found.picture.visibility[i]) - (1 - covered)));
+    }
+    fmt::print("{} texels: off by {:.4f} of {:.4f}\n", size, worst, bound);
+    EXPECT_LE(worst, bound + 2.0 / 256 * bound + 1e-5);  // corners snap to 1/256 of a texel
+    before = worst;  // spikes with where texels' borders fall: no two sizes need to agree
+  }
+  EXPECT_LT(before, 0.01);
+}
+
+// The paper's equation 1: two neighbouring texels at different depths, seen from beside their common border, part or
+// overlap.
+TEST_F(SoftShadowMap, DepthThatGrowsOutwardLeavesAGapAndDepthThatShrinksAnOverlap) {
+  scenes::Scene scene = floor_and_light(1);
+  scene.objects[0].casts_shadow = false;              // so that it is the receiver, though the smaller one
+  add_quad(scene, {-6, 3, 0}, {6, 0, 0}, {0, 0, 9});  // x < 0, at depth 2
+  add_quad(scene, {6, 2, 0}, {6, 0, 0}, {0, 0, 9});   // x > 0, at depth 3
+  std::vector<glm::dvec2> places;
+  for (int i = -12; i <= 12; ++i) places.emplace_back(8.0 * i / 101, 0);  // centres of 101 texels over the floor
+  const Stage stage = on_floor(scene, places);
+  const Run found = soft(stage, {{"size", "64"}, {"receiverSize", "103"}});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    // x of the border on the light: -alpha f(z), alpha = x / 5; f = z 5 / (5 - z).
+    const double near = std::min(-places[i].x / 5 * (2.0 * 5 / 3), 1.0),
+                 far = std::min(-places[i].x / 5 * (3.0 * 5 / 2), 1.0);
+    const double gap = far - near;  // what of it is on the light
+    EXPECT_NEAR(static_cast<double>(found.picture.visibility[i]), std::clamp(gap / 2, 0.0, 1.0), 2e-4) << places[i].x;
+  }
+}
+
+// Sums in 16-bit floats stop where half a unit in the last place is more than a texel: kernels of 32 texels and fewer
+// are safe.
+TEST_F(SoftShadowMap, SixteenBitSumsStopAsTheKernelGrows) {
+  // One plate over all, depth 2.5 of 5; tangents +-2 in 400 texels, and a kernel of 2 half (1/2.5 - 1/5) / 0.01 = 40
+  // half.
+  for (const auto& [width, sum] : {std::pair(32, 1.0), std::pair(40, 0.915), std::pair(64, 0.5), std::pair(90, 0.5),
+                                   std::pair(91, 0.25), std::pair(128, 0.125), std::pair(256, 0.031)}) {
+    scenes::Scene scene = floor_and_light(width / 40.0);
+    scene.objects[0].casts_shadow = false;
+    add_quad(scene, {0, 2.5, 0}, {5, 0, 0}, {0, 0, 5});
+    const Stage stage = on_floor(scene, {{0, 0}});
+    const MethodOptions options{{"size", "402"}, {"receiverSize", "33"}, {"filter", "nearest"}};
+    MethodOptions blended = options;
+    blended["precision"] = "fp16";
+    MethodOptions scattered = options;
+    scattered["form"] = "scatter";
+    EXPECT_EQ(soft(stage, options).picture.visibility[0], 0.0F) << width;
+    EXPECT_EQ(soft(stage, scattered).picture.visibility[0], 0.0F) << width;
+    const double found = 1 - static_cast<double>(soft(stage, blended).picture.visibility[0]);
+    fmt::print("kernel {} texels wide: sum {:.4f}\n", width, found);
+    EXPECT_NEAR(found, sum, 0.006) << width;
+  }
+}
+
+TEST_F(SoftShadowMap, ScatteredAndGatheredSumsAreTheSameBits) {
+  scenes::Scene stacked = ball(0.6), inside;
+  add_quad(stacked, {0.8, 3.2, 0.3}, {0.5, 0.2, 0}, {0, 0.1, 0.6});
+  stacked.lights.front().two_sided = true;
+  add_quad(stacked, {0, 9, 0}, {3, 0, 0}, {0, 0, 3}).casts_shadow = false;
+  add_quad(stacked, {0, 7, 0}, {1, 0, 0}, {0, 0, 1});
+  for (const scenes::Scene& scene : {ball(0.3), stacked}) {
+    const Stage stage(scene, 40, 40, light_samples(1));
+    for (const char* passes : {"1", "2"}) {
+      for (const char* bias : {"0", "2"}) {
+        MethodOptions options{{"size", "50"}, {"receiverSize", "60"}, {"passes", passes}, {"bias", bias}};
+        const Run gathered = soft(stage, options);
+        options["form"] = "scatter";
+        const Run scattered = soft(stage, options);
+        EXPECT_EQ(gathered.picture.visibility, scattered.picture.visibility);
+        EXPECT_EQ(gathered.fragments, scattered.fragments);
+        EXPECT_GT(gathered.fragments, 1000U);
+        EXPECT_EQ(gathered.picture.visibility,
+                  soft(stage, {{"size", "50"}, {"receiverSize", "60"}, {"passes", passes}, {"bias", bias}}, 7)
+                      .picture.visibility);
+      }
+    }
+  }
+  EXPECT_THROW(maps::make_soft_shadow_map(device(), {{"form", "scatter"}, {"precision", "fp16"}}), UsageError);
+}
+
+// What an occluder's texel reaches ends 160 texels of the receivers' map from it: 2 % of that are more than the two
+// that rounding adds.
+TEST_F(SoftShadowMap, AWideKernelIsScatteredWhole) {
+  scenes::Scene scene = floor_and_light(4);
+  add_quad(scene, {0, 2.5, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  const Stage stage = on_floor(scene, {{0, 0}});
+  MethodOptions options{{"size", "32"}, {"receiverSize", "322"}};
+  const Run gathered = soft(stage, options);
+  options["form"] = "scatter";
+  const Run scattered = soft(stage, options);
+  EXPECT_EQ(gathered.fragments, scattered.fragments) << "pairs of all texels of both maps";
+  EXPECT_EQ(gathered.picture.visibility, scattered.picture.visibility);
+}
+
+// Solids: the second pass adds what the centre does not see of them, at every pixel, and costs about as much as the
+// first.
+TEST_F(SoftShadowMap, TwoPassesAreDarkerEverywhereAndNearerToTheTruthForSolids) {
+  double small_light = 0;
+  for (const double half : {0.1, 0.25, 0.5, 1.0}) {
+    const Stage stage(ball(half), 64, 64, light_samples(1));
+    const Masks truth = exact(stage);
+    const Run one = soft(stage), two = soft(stage, {{"passes", "2"}});
+    for (std::size_t i = 0; i < stage.samples.size(); ++i)
+      EXPECT_LE(two.picture.visibility[i], one.picture.visibility[i]);
+    const Measure first = measure(stage, one.picture, truth), second = measure(stage, two.picture, truth);
+    const double work =
+        static_cast<double>(two.fragments + two.patches) / static_cast<double>(one.fragments + one.patches);
+    fmt::print("light half {}: error {:.4f} in one pass, {:.4f} in two; work {:.2f}; umbra {} and {} of {}\n", half,
+               first.error, second.error, work, first.umbra, second.umbra, first.true_umbra);
+    EXPECT_LT(second.error, first.error);
+    // Twice the patches; but those of the far side have smaller penumbrae.
+    EXPECT_EQ(two.patches, 2 * one.patches);
+    EXPECT_GT(work, 1.0);
+    EXPECT_LT(work, 2.0);
+    if (half == 0.1) small_light = first.error;
+    if (half == 0.5) {
+      EXPECT_GT(first.error, 2 * small_light);
+    }
+    if (half == 0.25) {  // umbrae are neither dramatically over- nor underestimated
+      EXPECT_GT(second.umbra, 0.8 * second.true_umbra);
+      EXPECT_LT(second.umbra, 1.25 * second.true_umbra);
+    }
+  }
+}
+
+// A thin solid: both sides at about the same depth, and twice the work.
+TEST_F(SoftShadowMap, TwoPassesOverAThinSolidCostTwice) {
+  scenes::Scene scene = floor_and_light(0.5);
+  add_quad(scene, {0, 2, 0}, {1, 0, 0}, {0, 0, 1});
+  add_quad(scene, {0, 1.95, 0}, {1, 0, 0}, {0, 0, 1});
+  const Stage stage(scene, 16, 16, light_samples(1));
+  const Run one = soft(stage), two = soft(stage, {{"passes", "2"}});
+  const double work = static_cast<double>(two.fragments) / static_cast<double>(one.fragments);
+  fmt::print("thin solid: work of two passes {:.3f}\n", work);
+  EXPECT_GT(work, 1.85);
+  EXPECT_LT(work, 2.0);
+}
+
+// What is left of the error beyond some resolution is the silhouette; it grows as the solid nears the light.
+TEST_F(SoftShadowMap, TheErrorStopsFallingWithResolutionAndGrowsTowardTheLight) {
+  const Stage stage(ball(0.5), 64, 64, light_samples(1));
+  const Masks truth = exact(stage);
+  const auto error = [&](const char* size) {
+    return measure(stage, soft(stage, {{"size", size}}).picture, truth).error;
+  };
+  const double coarse = error("100"), fine = error("200");
+  fmt::print("size 100: error {:.4f}, 200: {:.4f}\n", coarse, fine);
+  EXPECT_GT(fine, 0.8 * coarse);
+  double last = 0;
+  for (const double height : {1.2, 2.0, 2.8, 3.4}) {
+    const Stage near(ball(0.5, height), 64, 64, light_samples(1));
+    const double found = measure(near, soft(near).picture, exact(near)).error;
+    fmt::print("sphere at {}: error {:.4f}\n", height, found);
+    EXPECT_GT(found, 0.9 * last);
+    last = found;
+  }
+}
+
+TEST_F(SoftShadowMap, WorkDependsOnTexelsAndNotOnTriangles) {
+  scenes::Scene one = floor_and_light(0.5), many = floor_and_light(0.5);
+  add_quad(one, {0, 2, 0}, {1, 0, 0}, {0, 0, 1});
+  std::vector<Corners> pieces;
+  for (int x = -4; x < 4; ++x) {
+    for (int z = -4; z < 4; ++z) {
+      for (const Corners& piece : quad({(x + 0.5) / 4, 2, (z + 0.5) / 4}, {0.125, 0, 0}, {0, 0, 0.125}))
+        pieces.push_back(piece);
+    }
+  }
+  add_object(many, "pieces", pieces);
+  const Stage whole(one, 16, 16, light_samples(1)), parted(many, 16, 16, light_samples(1));
+  const auto work = [](const Stage& stage, const char* size, const char* receivers) {
+    return soft(stage, {{"size", size}, {"receiverSize", receivers}});
+  };
+  const Run a = work(whole, "32", "64"), b = work(parted, "32", "64");
+  EXPECT_EQ(a.patches, b.patches);
+  EXPECT_EQ(a.fragments, b.fragments);
+  EXPECT_EQ(a.picture.visibility, b.picture.visibility);
+  // Occluder texels times receiver texels: sixteen times for both maps twice as large.
+  const Run twice = work(whole, "62", "126");  // 30 and 62 texels of contents, then 60 and 124
+  const double ratio = static_cast<double>(twice.fragments) / static_cast<double>(a.fragments);
+  fmt::print("work of maps twice as large: {:.2f}\n", ratio);
+  // A patch reaches its own width p and the kernel's 2 k: four times the patches, each on 4 ((p/2 + 2k) / (p + 2k))^2
+  // as many.
+  const double p = 2.0 / 3 / 30, k = 0.5 * (1.0 / 3 - 1.0 / 5),
+               expected = 16 * std::pow((p / 2 + 2 * k) / (p + 2 * k), 2);
+  EXPECT_NEAR(ratio, expected, 0.03 * expected);
+}
+
+TEST_F(SoftShadowMap, ATinyLightCastsTheHardShadow) {
+  scenes::Scene scene = floor_and_light(1e-6);
+  add_quad(scene, {0.1, 2, 0}, {1, 0, 0}, {0, 0, 0.7});
+  const Stage stage(scene, 64, 64, light_samples(1));
+  const Run found = soft(stage, {{"size", "256"}, {"receiverSize", "512"}, {"filter", "nearest"}});
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    if (!on_object(stage, i, 0)) continue;
+    const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
+    const glm::dvec2 off(std::abs(p.x - 0.1 * 5 / 3) - 5.0 / 3, std::abs(p.z) - 0.7 * 5 / 3);
+    const double texel = 8.0 / 510 + 10.0 / 3 / 254;  // of both maps, on the floor
+    if (std::abs(off.x) < texel || std::abs(off.y) < texel) continue;
+    const bool shaded = off.x < 0 && off.y < 0;
+    dark += shaded ? 1 : 0;
+    EXPECT_EQ(found.picture.visibility[i], shaded ? 0.0F : 1.0F);
+  }
+  EXPECT_GT(dark, 50U);
+}
+
+// The paper's figure 23: small lights need large maps, for large ones small maps do as well.
+TEST_F(SoftShadowMap, LargeLightsDoWithSmallMaps) {
+  double last = 1e9;
+  for (const double half : {0.05, 0.25, 1.0}) {
+    const Stage stage(ball(half), 64, 64, light_samples(1));
+    const Masks truth = exact(stage);
+    const auto error = [&](const char* size) {
+      return measure(stage, soft(stage, {{"size", size}}).picture, truth).error;
+    };
+    const double coarse = error("24"), fine = error("192"), gain = coarse / fine;
+    fmt::print("light half {}: error {:.4f} of 24^2 texels, {:.4f} of 192^2, {:.2f} times\n", half, coarse, fine, gain);
+    EXPECT_LT(gain, last);
+    last = gain;
+  }
+}
+
+// Errors of aligned edges add up, those of others cancel (5.1.1).
+TEST_F(SoftShadowMap, ATurnedSquareIsNearerToTheTruthThanTheWorstAlignedOne) {
+  const auto error = [&](double degrees, double shift) {
+    const double angle = degrees * std::numbers::pi / 180;
+    scenes::Scene scene = floor_and_light(0.5);
+    add_quad(scene, {shift, 2, shift}, {std::cos(angle), 0, std::sin(angle)}, {-std::sin(angle), 0, std::cos(angle)});
+    add_quad(scene, {-2.2, 2, -2.2}, {0.1, 0, 0}, {0, 0, 0.1});  // holds the window
+    add_quad(scene, {2.2, 2, 2.2}, {0.1, 0, 0}, {0, 0, 0.1});
+    const Stage stage(scene, 64, 64, light_samples(1));
+    return measure(stage, soft(stage, {{"size", "42"}, {"receiverSize", "512"}}).picture, exact(stage)).error;
+  };
+  double worst = 0;
+  for (int i = 0; i < 4; ++i) worst = std::max(worst, error(0, 4.6 / 40 * i / 4));
+  const double turned = error(30, 0);
+  fmt::print("error of a square: turned {:.4f}, aligned at worst {:.4f}\n", turned, worst);
+  EXPECT_LT(turned, worst);
+}
+
+/// Places that the receivers' map of a floor of half-size 4, 5 below the light, has texels at.
+std::vector<glm::dvec2> texel_centres(int size, int step) {
+  std::vector<glm::dvec2> places;
+  for (int i = 2; i < size - 2; i += step) {
+    for (int j = 2; j < size - 2; j += step) {
+      places.push_back(8.0 * (glm::dvec2(i, j) + 0.5 - size / 2.0) / (size - 2.0));
+    }
+  }
+  return places;
+}
+
+// Of the same map, at a texel of the receivers' map, it is the sum that backproject makes: only the loops are turned
+// round. Four small boards make the occluders' window the receivers'. Any planar light, plain or with a texture; and
+// both forms are the same bits.
+TEST_F(SoftShadowMap, AtATexelOfTheReceiversItIsBackproject) {
+  scenes::Scene scene = ball(0.5);
+  scene.objects[0].casts_shadow = false;
+  add_quad(scene, {0.4, 3.2, 0.3}, {0.4, 0.15, 0}, {0, 0.1, 0.5});
+  for (const double x : {-1, 1}) {
+    for (const double z : {-1, 1}) add_quad(scene, {1.9 * x, 2.5, 1.9 * z}, {0.1, 0, 0}, {0, 0, 0.1});
+  }
+  // The light's centroid is above the middle, where the maps' texels are.
+  const std::vector<decltype(scenes::AreaLight::shape)> shapes{
+      scene.lights.front().shape, scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.55},
+      scenes::Ellipse{{0, 5, 0}, {0.6, 0, 0}, {0.1, 0, 0.3}}, scenes::Rectangle{{0, 5, 0}, {0.5, 0, 0}, {0.2, 0, 0.5}},
+      scenes::Polygon{{{-0.5, 5, -0.3}, {0.7, 5, -0.3}, {-0.2, 5, 0.6}}}};
+  for (std::size_t k = 0; k <= shapes.size(); ++k) {
+    scene.lights.front().shape = shapes[k % shapes.size()];
+    const Stage stage = on_floor(scene, texel_centres(66, 3));
+    visibility::Light light = stage.light;
+    if (k == shapes.size()) {  // the first again, with a texture
+      light.texture = visibility::LightTexture{.width = 2,
+                                               .height = 2,
+                                               .colors = std::vector<glm::vec3>(4, glm::vec3(1)),
+                                               .luminance = {1, 0, 0.2, 0.5},
+                                               .mean_luminance = 0.425};
+    }
+    const auto visibility_of = [&](const Factory& factory, const MethodOptions& options) {
+      return tests::run(*factory(device(), options), stage.floats, light, stage.samples).visibility;
+    };
+    MethodOptions options{{"size", "64"}, {"receiverSize", "66"}, {"filter", "nearest"}};
+    const std::vector<float> found = visibility_of(maps::make_soft_shadow_map, options);
+    options["form"] = "scatter";
+    EXPECT_EQ(visibility_of(maps::make_soft_shadow_map, options), found) << k;
+    const std::vector<float> sums =
+        visibility_of(maps::make_backproject, {{"size", "64"}, {"bias", "0"}, {"fill", "none"}, {"search", "none"}});
+    double worst = 0;
+    std::size_t between = 0;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      worst = std::max(worst, std::abs(static_cast<double>(found[i]) - static_cast<double>(sums[i])));
+      between += sums[i] > 0 && sums[i] < 1 ? 1 : 0;
+    }
+    fmt::print("light {}: soft-shadow-map and backproject off by {:.2g} at {} places, {} in penumbrae\n", k, worst,
+               sums.size(), between);
+    EXPECT_GT(between, 50U);
+    EXPECT_LT(worst, 1e-4);
+  }
+}
+
+TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) {
+  // The floor is the larger one; a wheel of four boards shades it and not itself.
+  const Stage stage(ball(0.5), 48, 48, light_samples(1));
+  const Run found = soft(stage);
+  std::size_t lit = 0, half = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    if (!on_object(stage, i, 1)) continue;
+    const glm::dvec3 p = stage.samples.p[i], n = stage.samples.n[i];
+    double above = 0;
+    for (int k = 0; k < 10000; ++k) {
+      const glm::dvec3 l =
+          glm::dvec3(stage.light.center) + glm::dvec3((k % 100 + 0.5) / 100 - 0.5, 0, (k / 100 + 0.5) / 100 - 0.5);
+      above += glm::dot(n, l - p) > 0 ? 1e-4 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(found.picture.visibility[i]), above, 0.008);
+    (above > 0.9999 ? lit : half) += 1;
+  }
+  EXPECT_GT(lit, 20U);
+  EXPECT_GT(half, 5U);
+  // What only receives is the receiver, however small; then the floor shades it.
+  scenes::Scene table = ball(0.5);
+  add_quad(table, {0, -1, 0}, {0.5, 0, 0}, {0, 0, 0.5}).casts_shadow = false;
+  table.cameras.front() = camera({0, -0.5, 1.5}, {0, -1, 0}, 60);
+  const Stage below(table, 16, 16, light_samples(1));
+  const Run under = soft(below);
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < below.samples.size(); ++i) {
+    if (!on_object(below, i, 2)) continue;
+    EXPECT_LT(under.picture.visibility[i], 0.1F);  // where the sphere hides the floor from the light, there are gaps
+    ++dark;
+  }
+  EXPECT_GT(dark, 5U);
+}
+
+TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
+  scenes::Scene nothing = floor_and_light(0.5), crossing = ball(0.5), touching = floor_and_light(0.5), inside,
+                room = ball(0.5);
+  add_quad(crossing, {0.5, 5, 0}, {0, 1, 0}, {0, 0, 1});   // through the light
+  add_quad(touching, {0, 1e-6, 0}, {1, 0, 0}, {0, 0, 1});  // on the receiver
+  add_object(inside, "sphere", sphere({0, 0, 0}, 2, 8));   // around light and camera
+  inside.lights.push_back(ceiling_light(0, 0.5));
+  inside.lights.back().two_sided = true;
+  inside.cameras.push_back(camera({0.5, 0.5, 0.5}, {0, -1, 0}, 90));
+  add_quad(room, {4, 6, 0}, {0, 6, 0}, {0, 0, 6});  // a wall up to beyond the light, larger than the floor
+  for (const scenes::Scene& scene : {nothing, crossing, touching, inside, room}) {
+    const Stage stage(scene, 16, 16, light_samples(1));
+    for (const char* size : {"8", "100"}) {
+      for (const char* precision : {"fp16", "fp32"}) {
+        const Run found =
+            soft(stage, {{"size", size}, {"receiverSize", size}, {"passes", "2"}, {"precision", precision}});
+        for (const float v : found.picture.visibility) EXPECT_TRUE(v >= 0 && v <= 1) << v;
+      }
+    }
+  }
+  const Stage stage(nothing, 16, 16, light_samples(1));
+  for (const float v : soft(stage).picture.visibility) EXPECT_EQ(v, 1.0F) << "no occluder";
+  scenes::Scene bulb = ball(0.5);
+  bulb.lights.front().shape = scenes::Sphere{{0, 5, 0}, 0.5};
+  const Stage round(bulb, 8, 8, light_samples(1));
+  const auto method = maps::make_soft_shadow_map(device(), {});
+  method->prepare_mesh(round.floats);
+  EXPECT_THROW(method->prepare_light(round.light), InputError);
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,127 @@
+// V of few pixels for all: what is computed, what is filled in, and how far off that is.
+
+#include "maps/backprojection/subsampled.hpp"
+#include "tests/analytic/maps/contour_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+namespace penumbra::tests {
+namespace {
+
+using maps::KnownPixel;
+using visibility::MethodOptions;
+
+class MapsSubsampled : public ContourTest {};
+
+/// A ball over a floor, and a board so small that no grid of pixels need meet it.
+scenes::Scene ball_and_speck() {
+  scenes::Scene scene = ball_over_floor(1);
+  add_quad(scene, {1.6, 0.3, 1.5}, {0.09, 0, 0}, {0, 0.06, 0});
+  return scene;
+}
+
+MethodOptions with(MethodOptions options, std::uint32_t step) {
+  options["subsample"] = std::to_string(step);
+  return options;
+}
+
+TEST_F(MapsSubsampled, ComputedPixelsAreTheMethodsAndOthersLieBetweenThem) {
+  const Stage stage(ball_and_speck(), 61, 53, light_samples(1));
+  const std::vector<std::pair<Factory, MethodOptions>> ways{{maps::make_contour, {{"size", "64"}}},
+                                                            {maps::make_packet, {{"size", "64"}, {"sublights", "2"}}},
+                                                            {maps::make_backproject, {{"size", "64"}}},
+                                                            {maps::make_backproject_peel, {{"size", "64"}}}};
+  for (const auto& [factory, options] : ways) {
+    const Masks whole = run(factory, stage, options);
+    EXPECT_EQ(run(factory, stage, with(options, 1)).visibility, whole.visibility);
+    for (const std::uint32_t step : {2U, 5U}) {
+      const auto method = factory(device(), with(options, step));
+      const Masks few = run(*method, stage);
+      EXPECT_EQ(run(*method, stage, 7).visibility, few.visibility) << "tiles change nothing";
+      std::size_t speck = 0;
+      for (std::size_t i = 0; i < few.visibility.size(); ++i) {
+        EXPECT_TRUE(few.visibility[i] >= 0 && few.visibility[i] <= 1);
+        const bool on_grid = i % 61 % step == 0 && i / 61 % step == 0;
+        if (on_grid || !visibility::is_receiver(stage.floats, stage.samples, i)) {
+          EXPECT_EQ(few.visibility[i], whole.visibility[i]) << i;
+        }
+        if (on_object(stage, i, 2)) ++speck;
+      }
+      EXPECT_GT(speck, 0U);
+      EXPECT_LT(method->counters().at("pixelsComputed"), 61U * 53U / (step * step) * 3 / 2 + speck);
+    }
+  }
+}
+
+TEST_F(MapsSubsampled, TheErrorGrowsWithTheStep) {
+  const Stage stage(ball_over_floor(1), 96, 80, light_samples(1));
+  const Masks whole = run(maps::make_packet, stage, {{"size", "128"}});
+  double last = 0;
+  for (const std::uint32_t step : {2U, 4U, 8U, 16U}) {
+    const Masks few = run(maps::make_packet, stage, with({{"size", "128"}}, step));
+    const double off = rmse(
+        stage, [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.samples, i); },
+        [&](std::size_t i) { return static_cast<double>(few.visibility[i] - whole.visibility[i]); });
+    fmt::print("subsample={}: RMSE {:.4f} of the whole picture\n", step, off);
+    RecordProperty(fmt::format("subsample {}", step), fmt::format("{:.4f}", off));
+    EXPECT_GT(off, last);
+    if (step == 2) {
+      EXPECT_LT(off, 0.05);
+    }
+    last = off;
+  }
+}
+
+// Pull-push by hand: a constant stays one, nothing crosses from object to object, and a ramp comes back within its
+// step.
+TEST(MapsFillIn, KeepsConstantsAndObjectsApart) {
+  constexpr std::uint32_t kWidth = 37, kHeight = 29;
+  std::vector<KnownPixel> pixels(kWidth * kHeight);
+  for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+    const std::uint32_t x = i % kWidth, y = i / kWidth;
+    pixels[i].object = x + y < 30 ? 0 : 7;
+    pixels[i].known = x % 4 == 0 && y % 4 == 0;
+    pixels[i].v = pixels[i].known ? (pixels[i].object == 0 ? 0.25F : 0.75F) : -1;
+    if (x == 36) pixels[i].object = KnownPixel::kNothing;
+  }
+  maps::fill_in(pixels, kWidth);
+  for (const KnownPixel& pixel : pixels) {
+    if (pixel.object == KnownPixel::kNothing) continue;
+    EXPECT_EQ(pixel.v, pixel.object == 0 ? 0.25F : 0.75F);
+  }
+}
+
+// Known at every second, fourth or eighth pixel: between four known ones V is bilinear, so that a ramp comes back as it
+// was.
+TEST(MapsFillIn, BetweenFourPixelsIsBilinear) {
+  constexpr std::uint32_t kWidth = 65;
+  std::mt19937 random(3);
+  for (const std::uint32_t step : {2U, 4U, 8U}) {
+    std::vector<KnownPixel> pixels(kWidth * kWidth), ramp(pixels.size());
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+      const std::uint32_t x = i % kWidth, y = i / kWidth;
+      pixels[i].object = ramp[i].object = 2;
+      pixels[i].known = ramp[i].known = x % step == 0 && y % step == 0;
+      pixels[i].v = static_cast<float>(random() % 100) / 100;
+      ramp[i].v = ramp[i].known ? 0.1F + 0.005F * static_cast<float>(x) + 0.006F * static_cast<float>(y) : 0;
+    }
+    const std::vector<KnownPixel> before = pixels;
+    maps::fill_in(pixels, kWidth);
+    maps::fill_in(ramp, kWidth);
+    const auto known = [&](std::uint32_t x, std::uint32_t y) { return static_cast<double>(before[y * kWidth + x].v); };
+    for (std::uint32_t y = 0; y < kWidth; ++y) {
+      for (std::uint32_t x = 0; x < kWidth; ++x) {
+        EXPECT_NEAR(ramp[y * kWidth + x].v, 0.1 + 0.005 * x + 0.006 * y, 1e-6) << step << " " << x << " " << y;
+        if (step > 2 || x % 2 == 0 || y % 2 == 0) continue;
+        const double mean = (known(x - 1, y - 1) + known(x + 1, y - 1) + known(x - 1, y + 1) + known(x + 1, y + 1)) / 4;
+        EXPECT_NEAR(pixels[y * kWidth + x].v, mean, 1e-6);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,196 @@
+// What moves and bends in glTF: animations, skins, morph targets.
+#include "scenes/formats/gltf_reader.hpp"
+
+#include "tests/unit/import/gltf_file.hpp"
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace penumbra::scenes {
+namespace {
+
+using test::Gltf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class GltfAnimation : public test::FileTest {
+ protected:
+  Scene read(Gltf& gltf, std::optional<double> time = {}) const {
+    ReadOptions options;
+    options.time = time;
+    return read_gltf(write("scene.glb", gltf.glb()), options);
+  }
+  std::string refusal(Gltf& gltf) const {
+    const auto path = write("scene.glb", gltf.glb());
+    ReadOptions options;
+    options.time = 0.5;
+    return test::input_error([&] { read_gltf(path, options); });
+  }
+  /// Where the corner of the body that was modelled at (1, 0, 0) is.
+  glm::dvec3 corner(Gltf& gltf, std::optional<double> time) const { return read(gltf, time).soup.positions[1]; }
+};
+
+constexpr float kHalf = 0.70710678f;  // sine and cosine of 45 degrees
+
+TEST_F(GltfAnimation, RestsWhereNoTimeIsAsked) {
+  Gltf gltf;
+  gltf.animate(0, "translation", {1, 2}, {5, 0, 0, 7, 0, 0});
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0));
+  const Scene scene = read(gltf);
+  ASSERT_TRUE(scene.motion);
+  EXPECT_EQ(scene.motion->first, 1);
+  EXPECT_EQ(scene.motion->last, 2);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  Gltf still;
+  EXPECT_FALSE(read(still, 1.0).motion);
+}
+
+TEST_F(GltfAnimation, LinearStepAndCubic) {
+  Gltf linear;
+  linear.animate(0, "translation", {1, 3}, {0, 0, 0, 8, 4, 0});
+  EXPECT_EQ(corner(linear, 0), glm::dvec3(1, 0, 0));  // before the first key
+  EXPECT_EQ(corner(linear, 1.5), glm::dvec3(3, 1, 0));
+  EXPECT_EQ(corner(linear, 3), glm::dvec3(9, 4, 0));
+  EXPECT_EQ(corner(linear, 99), glm::dvec3(9, 4, 0));
+  Gltf step;
+  step.animate(0, "scale", {1, 2, 3}, {1, 1, 1, 2, 2, 2, 5, 5, 5}, "STEP");
+  EXPECT_EQ(corner(step, 1.99), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(corner(step, 2), glm::dvec3(2, 0, 0));
+  EXPECT_EQ(corner(step, 3), glm::dvec3(5, 0, 0));
+  // In-tangent, value, out-tangent of two keys two seconds apart. Without slopes it is 3 t² − 2 t³; with the line's own
+  // slope the line; with one slope m at the beginning that and 2 m (t³ − 2 t² + t).
+  const auto cubic = [&](float out, float in, double time) {
+    Gltf gltf;
+    gltf.animate(0, "translation", {1, 3}, {0, 0, 0, 0, 0, 0, out, 0, 0, in, 0, 0, 8, 0, 0, 0, 0, 0}, "CUBICSPLINE");
+    return corner(gltf, time).x - 1;
+  };
+  EXPECT_EQ(cubic(0, 0, 1.5), 8 * 0.15625);
+  EXPECT_EQ(cubic(4, 4, 1.5), 2);
+  EXPECT_EQ(cubic(1, 0, 1.5), 8 * 0.15625 + 2 * 0.140625);
+  EXPECT_EQ(cubic(3, 3, 1), 0);
+}
+
+TEST_F(GltfAnimation, RotationsTakeTheShorterArc) {
+  for (const float sign : {1.0f, -1.0f}) {  // a quaternion and its negative are one rotation
+    Gltf gltf;
+    gltf.animate(0, "rotation", {0, 3}, {0, 0, 0, 1, 0, sign * kHalf, 0, sign * kHalf});
+    const glm::dvec3 turned = corner(gltf, 1);  // by 30 degrees about Y
+    EXPECT_LT(glm::distance(turned, glm::dvec3(std::cos(M_PI / 6), 0, -std::sin(M_PI / 6))), 1e-7) << sign;
+  }
+}
+
+TEST_F(GltfAnimation, LightsCamerasAndChildrenMove) {
+  Gltf gltf;
+  gltf.at("/nodes/1")["children"] = {2};
+  gltf.at("/scenes/0/nodes") = {0, 1};
+  gltf.animate(1, "translation", {0, 1}, {0, 5, 0, 0, 7, 0});
+  const Scene scene = read(gltf, 0.5);
+  EXPECT_EQ(std::get<Rectangle>(scene.lights[0].shape).center, glm::dvec3(0, 6, 0));
+  EXPECT_EQ(scene.cameras[0].eye, glm::dvec3(1, 8, 8));
+}
+
+/// World space less the origin must not jump: the origin is that of the scene at rest, whatever the time.
+TEST_F(GltfAnimation, TheOriginRests) {
+  Gltf gltf;
+  gltf.animate(0, "translation", {0, 1}, {0, 0, 0, 100, 0, 0});
+  const Scene at_rest = read(gltf);
+  EXPECT_FALSE(at_rest.origin) << "the middle of what is there";
+  const glm::dvec3 middle(0, 2.5, 0);  // of the lamp from −1 to 1 at a height of 5, and the body from 0 to 1
+  for (const double time : {0.0, 0.25, 1.0}) EXPECT_EQ(read(gltf, time).origin, middle) << time;
+  gltf.at("/meshes/0/primitives/0")["targets"] = {
+      {{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 50, 0, 0, 0, 0, 0})}}};
+  gltf.at("/meshes/0")["weights"] = {1};
+  EXPECT_EQ(read(gltf).origin, middle);
+}
+
+TEST_F(GltfAnimation, MorphTargetsAreAddedByWeight) {
+  Gltf gltf;
+  const auto one = gltf.add_floats("VEC3", {0, 0, 0, 2, 0, 0, 0, 0, 0}),
+             two = gltf.add_floats("VEC3", {0, 0, 0, 0, 4, 0, 0, 0, 0});
+  gltf.at("/meshes/0/primitives/0")["targets"] = {{{"POSITION", one}}, {{"POSITION", two}}};
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0));
+  gltf.at("/meshes/0")["weights"] = {0.5, 0.25};
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(2, 1, 0));
+  gltf.at("/nodes/0")["weights"] = {0, 1};
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 4, 0));
+  gltf.animate(0, "weights", {0, 1}, {0, 0, 1, 1});
+  EXPECT_EQ(corner(gltf, 0.5), glm::dvec3(2, 2, 0));
+  EXPECT_THAT(read(gltf, 0.5).warnings, IsEmpty());
+}
+
+/// Two joints: node 3 stands still, node 4 turns; the body's corners hang on one, the other, and both.
+Gltf skinned(const std::vector<float>& weights) {
+  Gltf gltf;
+  gltf.at("/nodes").push_back({{"name", "Hip"}});
+  gltf.at("/nodes").push_back({{"name", "Knee"}, {"translation", {0, 0, 3}}});
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+  std::vector<float> bind(32, 0);
+  for (const std::size_t i : {0u, 5u, 10u, 15u, 16u, 21u, 26u, 31u}) bind[i] = 1;
+  bind[16 + 14] = -3;  // the knee was bound where it is
+  gltf.document["skins"] = {{{"joints", {3, 4}}, {"inverseBindMatrices", gltf.add_floats("MAT4", bind)}}};
+  gltf.at("/nodes/0")["skin"] = 0;
+  auto& attributes = gltf.at("/meshes/0/primitives/0/attributes");
+  attributes["JOINTS_0"] = gltf.add_floats("VEC4", {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
+  attributes["WEIGHTS_0"] = gltf.add_floats("VEC4", weights);
+  return gltf;
+}
+
+TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
+  // The second corner hangs on the knee; the third halfway, by weights that do not add up to 1.
+  Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0.25f, 0.25f, 0, 0});
+  gltf.at("/nodes/0")["translation"] = {50, 60, 70};  // the mesh's own place is none of a skin's business
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0)) << "bound where it is modelled";
+  gltf.animate(4, "translation", {0, 1}, {0, 0, 3, 8, 0, 3});
+  const Scene scene = read(gltf, 0.5);
+  EXPECT_EQ(scene.soup.positions[0], glm::dvec3(0, 0, 0));
+  EXPECT_EQ(scene.soup.positions[1], glm::dvec3(5, 0, 0));
+  EXPECT_EQ(scene.soup.positions[2], glm::dvec3(2, 1, 0));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  // At rest, where its skin does not bend it, the mesh is where its node is.
+  EXPECT_EQ(scene.origin, glm::dvec3((51 - 1) / 2.0, (61 + 5) / 2.0, (70 + 1) / 2.0 - 1));
+}
+
+TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
+  const auto expect = [&](Gltf gltf, const std::string& what) { EXPECT_THAT(refusal(gltf), HasSubstr(what)); };
+  Gltf gltf;
+  gltf.animate(0, "translation", {1, 1}, {0, 0, 0, 8, 4, 0});
+  expect(gltf, "times must ascend");
+  gltf = {};
+  gltf.animate(0, "translation", {1, 2}, {0, 0, 0});
+  expect(gltf, "3 numbers for 2 keys; expected 6");
+  gltf = {};
+  gltf.animate(0, "translation", {1, 2}, {0, 0, 0, 0, 0, 0}, "QUADRATIC");
+  expect(gltf, "expected LINEAR, STEP or CUBICSPLINE");
+  gltf = {};
+  gltf.animate(0, "weights", {1, 2}, {0, 0});
+  expect(gltf, "/animations/0/channels/0/target/path: \"weights\" of node 0 cannot be moved");
+  gltf = {};
+  gltf.animate(77, "scale", {1, 2}, {1, 1, 1, 1, 1, 1});
+  expect(gltf, "node 77 does not exist");
+  gltf = {};
+  gltf.animate(0, "scale", {1, 2}, {1, 1, 1, 1, 1, 1});
+  gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  expect(gltf, "node 0 has a matrix");
+  gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
+  expect(gltf, "no joint moves vertex 2");
+  gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
+  gltf.at("/skins/0/joints") = {3, 44};
+  expect(gltf, "/skins/0/joints/1: node 44 is not in the scene");
+  gltf.at("/skins/0/joints") = {3};
+  expect(gltf, "joint 1 of 1");
+}
+
+TEST_F(GltfAnimation, TheLastOfTwoAnimationsIsShownAndSaid) {
+  Gltf gltf;
+  gltf.animate(0, "translation", {0, 1}, {1, 0, 0, 1, 0, 0});
+  gltf.animate(0, "translation", {0, 1}, {2, 0, 0, 2, 0, 0});
+  const Scene scene = read(gltf, 0.5);
+  EXPECT_EQ(scene.soup.positions[1], glm::dvec3(3, 0, 0));
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Body'")));
+}
+
+}  // namespace
+}  // namespace penumbra::scenes

@@ -1,0 +1,160 @@
+// How glTF surfaces look: colours, pictures, normals, and what lets light through.
+#include "scenes/formats/gltf_reader.hpp"
+
+#include "base/image.hpp"
+#include "base/png.hpp"
+#include "tests/unit/import/gltf_file.hpp"
+
+#include <glm/geometric.hpp>
+#include <gmock/gmock.h>
+
+namespace penumbra::scenes {
+namespace {
+
+using test::Gltf;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class GltfSurfaces : public test::FileTest {
+ protected:
+  Scene read(Gltf& gltf, bool lenient = false) const {
+    ReadOptions options;
+    options.lenient = lenient;
+    return read_gltf(write("scene.glb", gltf.glb()), options);
+  }
+  std::string refusal(Gltf& gltf) const {
+    const auto path = write("scene.glb", gltf.glb());
+    return test::input_error([&] { read_gltf(path); });
+  }
+};
+
+/// A picture of 2 x 1 texels, dark red and white, on the body.
+Gltf textured() {
+  Gltf gltf;
+  const auto png = encode_png({2, 1, {{128, 0, 0}, {255, 255, 255}}});
+  const std::string bytes(reinterpret_cast<const char*>(png.data()), png.size());
+  gltf.document["images"] = {{{"name", "leaf"}, {"mimeType", "image/png"}, {"bufferView", gltf.add_view(bytes)}}};
+  gltf.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+  gltf.document["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  gltf.at("/materials/0/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
+  gltf.at("/meshes/0/primitives/0/attributes")["TEXCOORD_0"] = gltf.add_floats("VEC2", {0, 0, 1, 0, 0.5f, 1});
+  return gltf;
+}
+
+TEST_F(GltfSurfaces, HavePicturesWithPlaces) {
+  Gltf gltf = textured();
+  Scene scene = read(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(scene.pictures.size(), 1u);
+  EXPECT_EQ(scene.pictures[0].file, "leaf");
+  EXPECT_EQ(scene.pictures[0].width, 2u);
+  EXPECT_THAT(scene.pictures[0].texels, ::testing::ElementsAre(std::array<std::uint8_t, 4>{128, 0, 0, 255},
+                                                               std::array<std::uint8_t, 4>{255, 255, 255, 255}));
+  ASSERT_TRUE(scene.objects[0].picture);
+  EXPECT_EQ(scene.objects[0].picture->wrap_s, PictureUse::Wrap::clamp);
+  EXPECT_EQ(scene.objects[0].picture->wrap_t, PictureUse::Wrap::mirror);
+  EXPECT_TRUE(scene.objects[0].picture->nearest);
+  ASSERT_EQ(scene.looks.places.size(), scene.soup.positions.size());
+  EXPECT_EQ(scene.looks.places[2], glm::dvec2(0.5, 1));
+  gltf.at("/materials/0/pbrMetallicRoughness/baseColorTexture")["extensions"] = {
+      {"KHR_texture_transform", {{"offset", {0.25, 0.5}}, {"scale", {2, 3}}}}};
+  EXPECT_EQ(read(gltf).looks.places[2], glm::dvec2(1.25, 3.5));
+  gltf.at("/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform")["rotation"] = 1;
+  scene = read(gltf);
+  EXPECT_FALSE(scene.objects[0].picture);
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("'Body'"), HasSubstr("without its picture"))));
+}
+
+TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
+  Gltf gltf;
+  auto& attributes = gltf.at("/meshes/0/primitives/0/attributes");
+  attributes["COLOR_0"] = gltf.add_floats("VEC3", {1, 0, 0, 0, 1, 0, 0, 0, 0.5f});
+  attributes["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, 0, 1, 0, 0, 0, 0});
+  gltf.at("/nodes/0")["scale"] = {1, 1, -2};
+  const Scene scene = read(gltf);
+  EXPECT_EQ(scene.objects[0].material, "Grey");
+  ASSERT_EQ(scene.looks.colors.size(), scene.soup.positions.size());
+  ASSERT_EQ(scene.looks.normals.size(), scene.soup.positions.size());
+  // A mirrored triangle's corners are taken in another order.
+  EXPECT_EQ(scene.looks.colors[0], glm::vec4(1, 0, 0, 1));
+  EXPECT_THAT(scene.looks.colors, Contains(glm::vec4(0, 0, 0.5f, 1)));
+  EXPECT_EQ(scene.looks.colors.back(), glm::vec4(1)) << "the lamp has none";
+  EXPECT_EQ(scene.looks.normals[0], glm::vec3(0, 0, -1)) << "turned over with its node";
+  EXPECT_EQ(scene.looks.normals.back(), glm::vec3(0));
+}
+
+/// What stops all light, or none, is done right; what lies between is refused by name.
+TEST_F(GltfSurfaces, LetLightThroughOrAreRefused) {
+  Gltf gltf;
+  auto& material = gltf.at("/materials/0");
+  material["alphaMode"] = "MASK";
+  EXPECT_EQ(read(gltf).objects.size(), 2u) << "an alpha of 1 is solid";
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.3};
+  const Scene gone = read(gltf);
+  ASSERT_EQ(gone.objects.size(), 1u) << "below the cutoff of 0.5 there is nothing";
+  EXPECT_EQ(gone.objects[0].name, "Lamp");
+  EXPECT_EQ(mesh::import_mesh(write("scene.glb", gltf.glb())).soup.triangles.size(), 2u) << "as a mesh, too";
+  material["alphaCutoff"] = 0.25;
+  EXPECT_EQ(read(gltf).objects.size(), 2u);
+  material["alphaMode"] = "BLEND";
+  EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("'Body' is translucent"), HasSubstr("--lenient")));
+  const Scene lenient = read(gltf, true);
+  EXPECT_EQ(lenient.objects[0].alpha.mode, Alpha::Mode::blend);
+  EXPECT_EQ(lenient.objects[0].alpha.factor, 0.3);
+  EXPECT_THAT(lenient.warnings, Contains(HasSubstr("'Body' is translucent")));
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0};
+  EXPECT_EQ(read(gltf).objects.size(), 1u);
+  material["alphaMode"] = "DITHER";
+  EXPECT_THAT(refusal(gltf), HasSubstr("/materials/0/alphaMode"));
+  Gltf glass;
+  glass.at("/materials/0")["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
+  glass.at("/extensionsUsed").push_back("KHR_materials_transmission");
+  EXPECT_THAT(refusal(glass), HasSubstr("'Body' lets light through"));
+  Gltf metal;
+  metal.at("/materials/0/pbrMetallicRoughness").erase("metallicFactor");
+  metal.at("/extensionsUsed").push_back("KHR_materials_specular");
+  EXPECT_THAT(read(metal).warnings, ::testing::ElementsAre(HasSubstr("'Body' has a metallic material")));
+}
+
+/// The picture's own alpha: solid texels are no holes; a file that cannot be read might have some.
+TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
+  Gltf gltf = textured();
+  gltf.at("/materials/0")["alphaMode"] = "MASK";
+  EXPECT_EQ(read(gltf).objects.size(), 2u);
+  gltf.at("/meshes/0/primitives/0/attributes")["COLOR_0"] =
+      gltf.add_floats("VEC4", {1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1});
+  EXPECT_THAT(refusal(gltf), HasSubstr("'Body' has holes"));
+  gltf.at("/meshes/0/primitives/0/attributes").erase("COLOR_0");
+  gltf.at("/images/0")["bufferView"] = 0;
+  EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("'Body'"), HasSubstr("PNG")));
+  gltf.at("/materials/0").erase("alphaMode");
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("without its picture")));
+}
+
+/// A light of radiance (20, 10, 0) under a picture of dark red and white: the mean, in linear light.
+TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPicture) {
+  Gltf gltf = textured();
+  gltf.at("/materials/1")["emissiveTexture"] = {{"index", 0}};
+  const Scene scene = read(gltf);
+  const double red = (linear_of_srgb(128 / 255.0) + 1) / 2;
+  EXPECT_LT(glm::distance(scene.lights[0].radiance, glm::dvec3(20 * red, 10 * 0.5, 0)), 1e-12);
+  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("mean"))));
+  gltf.at("/images/0")["bufferView"] = 0;
+  EXPECT_THAT(refusal(gltf), HasSubstr("'Lamp' would shine without its emissive picture"));
+}
+
+TEST_F(GltfSurfaces, CamerasHaveTheirShape) {
+  Gltf gltf;
+  EXPECT_EQ(read(gltf).cameras[0].aspect, 1.7777);
+  gltf.at("/cameras/0") = {{"type", "orthographic"},
+                           {"orthographic", {{"xmag", 4}, {"ymag", 3}, {"znear", 0}, {"zfar", 9}}}};
+  const Scene scene = read(gltf);
+  ASSERT_EQ(scene.cameras.size(), 1u) << "no other is put in its place";
+  EXPECT_EQ(scene.cameras[0].height, 6);
+  EXPECT_DOUBLE_EQ(*scene.cameras[0].aspect, 4.0 / 3);
+}
+
+}  // namespace
+}  // namespace penumbra::scenes

@@ -1,0 +1,84 @@
+#include "tests/unit/scenes/support.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+/// The scenes that ship load, and are what their names say.
+namespace penumbra::test {
+namespace {
+
+const std::filesystem::path kScenes = PENUMBRA_SCENES;
+
+scenes::Scene read_shipped(const std::string& name) {
+  return scenes::read_scene(kScenes / name);
+}
+
+bool is_scene_file(const std::filesystem::path& path) {
+  return path.extension() == ".json" && !path.filename().string().ends_with(".schema.json");
+}
+
+TEST(ShippedScenes, AllLoadWithoutAWarning) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+    if (!is_scene_file(entry.path())) continue;
+    const scenes::Scene scene = scenes::read_scene(entry.path());
+    for (const std::string& warning : scene.warnings) ADD_FAILURE() << entry.path() << ": " << warning;
+    EXPECT_EQ(scene.width, 512u) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 9);
+}
+
+TEST(ShippedScenes, EveryLightIsARectangleThatFacesTheScene) {
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+    if (!is_scene_file(entry.path())) continue;
+    const scenes::Scene scene = scenes::read_scene(entry.path());
+    for (const scenes::AreaLight& light : scene.lights) {
+      ASSERT_TRUE(std::holds_alternative<scenes::Rectangle>(light.shape)) << entry.path();
+      const auto& rectangle = std::get<scenes::Rectangle>(light.shape);
+      const glm::dvec3 normal = glm::cross(rectangle.half_u, rectangle.half_v);
+      EXPECT_GT(glm::dot(normal, scene.cameras[0].target - rectangle.center), 0) << entry.path() << " " << light.name;
+    }
+  }
+}
+
+TEST(ShippedScenes, BunnyIsTheDefaultScene) {
+  const scenes::Scene scene = read_shipped("bunny.json");
+  EXPECT_EQ(scene.soup.triangles.size(), 69'666u + 2);
+  glm::dvec3 low(1e9), high(-1e9);
+  for (std::size_t i = 0; i < 69'666; ++i) {
+    for (const std::uint32_t vertex : scene.soup.triangles[i]) {
+      low = glm::min(low, scene.soup.positions[vertex]);
+      high = glm::max(high, scene.soup.positions[vertex]);
+    }
+  }
+  EXPECT_NEAR(low.y, 0, 1e-12);
+  EXPECT_NEAR(high.y, 2, 1e-12);
+  EXPECT_NEAR(low.x + high.x, 0, 1e-12);
+  EXPECT_NEAR(low.z + high.z, 0, 1e-12);
+  const auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
+  EXPECT_EQ(light.center, glm::dvec3(0.5, 5, 0.5));
+  EXPECT_EQ(light.half_u, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(light.half_v, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(scene.cameras[0].eye, glm::dvec3(4, 3, 5));
+  EXPECT_EQ(scene.cameras[0].target, glm::dvec3(0, 0.8, 0));
+  EXPECT_EQ(scene.cameras[0].vertical_fov, 45);
+}
+
+TEST(ShippedScenes, TerrainHasAMillionTriangles) {
+  EXPECT_EQ(read_shipped("terrain-1m.json").soup.triangles.size(), 1'000'000u);
+}
+
+TEST(ShippedScenes, CountsThatTheirPurposeNeeds) {
+  EXPECT_EQ(read_shipped("parallel-square.json").soup.triangles.size(), 4u);
+  EXPECT_EQ(read_shipped("fusion.json").objects.size(), 4u);
+  EXPECT_EQ(read_shipped("thin.json").soup.triangles.size(), 2u + 12 * 43 + 2 * 600 * 10 + 4 * 12 * 13);
+}
+
+}  // namespace
+}  // namespace penumbra::test

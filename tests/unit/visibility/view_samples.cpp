@@ -1,0 +1,180 @@
+#include "visibility/view_samples.hpp"
+
+#include "base/error.hpp"
+#include "tests/unit/visibility/scenes.hpp"
+#include "visibility/lights/horizon.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace penumbra::visibility {
+namespace {
+
+TEST(Camera, RaysGoThroughPixelCentres) {
+  const PinholeCamera camera = make_camera(tests::camera({1, 2, 10}, {1, 2, 0}, 90), {1, 2, 3}, 4, 2);
+  EXPECT_EQ(camera.eye, glm::dvec3(0, 0, 7));
+  EXPECT_NEAR(camera.tan_half_fov, 1, 1e-15);
+  const glm::dvec3 first = camera.direction(0, 0), last = camera.direction(3, 1);
+  EXPECT_NEAR(glm::length(first - glm::dvec3(-1.5, 0.5, -1)), 0, 1e-15);  // t is the distance along the view axis
+  EXPECT_NEAR(glm::length(last - glm::dvec3(1.5, -0.5, -1)), 0, 1e-15);
+}
+
+TEST(Camera, RefusesWhatHasNoView) {
+  EXPECT_THROW(make_camera(tests::camera({1, 2, 3}, {1, 2, 3}), glm::dvec3(0), 4, 4), InputError);
+  EXPECT_THROW(make_camera(tests::camera({0, 0, 0}, {0, 5, 0}), glm::dvec3(0), 4, 4), InputError);
+  EXPECT_THROW(make_camera(tests::camera({0.1, 0.3, 0.7}, {0.1, 5, 0.7}), glm::dvec3(0), 4, 4), InputError);
+  EXPECT_THROW(make_camera(tests::camera({0, 0, 0}, {1, 0, 0}, 180), glm::dvec3(0), 4, 4), InputError);
+}
+
+TEST(ViewSamples, SeeTheNearestTriangleAndItsSideTowardTheViewer) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  tests::add_object(scene, "board", tests::quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}));
+  scene.cameras.push_back(tests::camera({0, 8, 0.001}, {0, 0, 0}));
+  scene.lights.push_back(tests::ceiling_light(9, 1));
+  const tests::Stage setup(scene, 33, 33);
+  const ViewSamples& samples = setup.samples;
+  const std::size_t middle = 16 * 33 + 16, corner = 0;
+  EXPECT_GE(samples.triangle[middle], 2);
+  EXPECT_NEAR(samples.p[middle].y + setup.floats.origin.y, 1, 1e-6);
+  EXPECT_LT(samples.triangle[corner], 2);
+  for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
+    ASSERT_NE(samples.triangle[pixel], ViewSamples::kBackground);
+    EXPECT_EQ(samples.n[pixel], glm::vec3(0, 1, 0));
+    const auto corners = setup.floats.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
+    const glm::vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    EXPECT_GT(normal.y * static_cast<float>(samples.facing[pixel]), 0);
+    EXPECT_TRUE(above_horizon(corners, samples.facing[pixel], {0, 5, 0}));
+    EXPECT_FALSE(above_horizon(corners, samples.facing[pixel], {0, -5, 0}));
+    EXPECT_FALSE(above_horizon(corners, samples.facing[pixel], corners[1])) << "on the plane is not strictly above";
+  }
+}
+
+TEST(ViewSamples, BackgroundIsEmpty) {
+  scenes::Scene scene;
+  tests::add_object(scene, "speck", {{glm::dvec3(0, 0, 0), glm::dvec3(0.1, 0, 0), glm::dvec3(0, 0.1, 0)}});
+  scene.cameras.push_back(tests::camera({0, 0, 5}, {0, 4, 0}));
+  scene.lights.push_back(tests::ceiling_light(9, 1));
+  const tests::Stage setup(scene, 4, 4);
+  EXPECT_EQ(setup.samples.triangle, std::vector<std::int32_t>(16, ViewSamples::kBackground));
+  EXPECT_EQ(setup.samples.facing, std::vector<std::int8_t>(16, 0));
+  EXPECT_EQ(setup.samples.p, std::vector<glm::vec3>(16, glm::vec3(0)));
+}
+
+TEST(ViewSamples, EqualDepthsGoToTheSmallerVertices) {
+  // Two triangles of one plane, both over the pixel: the one with the lexicographically smaller sorted vertices wins,
+  // whatever comes first.
+  const tests::Corners small = {glm::dvec3(-3, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 2, 0)};
+  const tests::Corners large = {glm::dvec3(-1, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 2, 0)};
+  for (const bool swapped : {false, true}) {
+    scenes::Scene scene;
+    tests::add_object(scene, "a", swapped ? std::vector{large, small} : std::vector{small, large});
+    scene.cameras.push_back(tests::camera({0, 0, 4}, {0, 0, 0}));
+    scene.lights.push_back(tests::ceiling_light(9, 1));
+    EXPECT_EQ(tests::Stage(scene, 1, 1).samples.triangle[0], swapped ? 1 : 0);
+  }
+}
+
+TEST(Classify, EveryKindOfPixel) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}));
+  tests::add_object(scene, "wall", tests::quad({3, 1, 0}, {1, 0, 0}, {0, 1, 0}));    // faces +z, cuts the light's rows
+  tests::add_object(scene, "shelf", tests::quad({6, 7, 0}, {1, 0, 0}, {0, 0, -1}));  // above the light
+  tests::add_object(scene, "lamp", tests::quad({9, 0, 0}, {1, 0, 0}, {0, 0, -1})).emits = 0;
+  tests::add_object(scene, "sky", tests::quad({12, 0, 0}, {1, 0, 0}, {0, 0, -1})).receives_shadow = false;
+  scene.lights.push_back(tests::ceiling_light(5, 1));
+  const SceneFloats floats = make_scene_floats(scene);
+  const Light light = make_light(scene, 0, floats.origin, {});
+  const auto class_at = [&](const glm::dvec3& eye, const glm::dvec3& target) {
+    const PinholeCamera pinhole = make_camera(tests::camera(eye, target), floats.origin, 1, 1);
+    return classify_pixels(floats, brute_force_view_samples(floats, pinhole), light)[0];
+  };
+  EXPECT_EQ(class_at({0.1, 3, 1}, {0.1, 0, 0.1}), PixelClass::judged);
+  EXPECT_EQ(class_at({0.1, -3, 1}, {0.1, 0, 0.1}), PixelClass::horizon);  // seen from below: the light is under it
+  EXPECT_EQ(class_at({3.1, 1, 4}, {3.1, 1.2, 0}), PixelClass::horizon);
+  EXPECT_EQ(class_at({6.1, 9, 1}, {6.1, 7, 0.1}), PixelClass::behind);
+  EXPECT_EQ(class_at({9.1, 9, 1}, {9.1, 0, 0.1}), PixelClass::emitter);
+  EXPECT_EQ(class_at({12.1, 9, 1}, {12.1, 0, 0.1}), PixelClass::unshadowed);
+  EXPECT_EQ(class_at({0, 9, 0.5}, {50, 0, 50}), PixelClass::background);
+}
+
+TEST(Classify, LinkedLightsAndMeshes) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1})).lit_by = {1};
+  tests::add_object(scene, "board", tests::quad({0, 1, 0}, {0.1, 0, 0}, {0, 0, -0.1}));
+  scene.lights = {tests::ceiling_light(5, 1), tests::ceiling_light(5, 1)};
+  scene.lights[1].unshaded_by = {1};
+  const SceneFloats floats = make_scene_floats(scene);
+  const PinholeCamera pinhole = make_camera(tests::camera({0.5, 3, 1}, {0.5, 0, 0.1}), floats.origin, 1, 1);
+  const ViewSamples samples = brute_force_view_samples(floats, pinhole);
+  const Light first = make_light(scene, 0, floats.origin, {}), second = make_light(scene, 1, floats.origin, {});
+  EXPECT_EQ(classify_pixels(floats, samples, first)[0], PixelClass::unlit);
+  EXPECT_EQ(classify_pixels(floats, samples, second)[0], PixelClass::judged);
+  EXPECT_EQ(cast_for(floats, first).casts_shadow, (std::vector<std::uint8_t>{1, 1, 1, 1}));
+  EXPECT_EQ(cast_for(floats, second).casts_shadow, (std::vector<std::uint8_t>{1, 1, 0, 0}));
+}
+
+TEST(Classify, AllOfASunsConeIsAboveOrNot) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}));
+  scene.lights.emplace_back();
+  const SceneFloats floats = make_scene_floats(scene);
+  const PinholeCamera pinhole = make_camera(tests::camera({0.1, 3, 1}, {0.1, 0, 0.1}), floats.origin, 1, 1);
+  const ViewSamples samples = brute_force_view_samples(floats, pinhole);
+  const auto class_under = [&](double elevation, double angle) {
+    const double e = glm::radians(elevation);
+    scene.lights[0].shape = scenes::Sun{{-std::cos(e), -std::sin(e), 0}, angle};
+    return classify_pixels(floats, samples, make_light(scene, 0, floats.origin, {}))[0];
+  };
+  EXPECT_EQ(class_under(90, 179), PixelClass::judged);
+  EXPECT_EQ(class_under(20, 39.999), PixelClass::judged);
+  EXPECT_EQ(class_under(20, 40.001), PixelClass::horizon);
+  EXPECT_EQ(class_under(20, 0), PixelClass::judged);
+  EXPECT_EQ(class_under(-20, 0), PixelClass::horizon);
+  EXPECT_EQ(class_under(0, 0), PixelClass::horizon) << "along the plane is not strictly above it";
+}
+
+TEST(Horizon, BulkAnswersAreTheExactOnes) {
+  // Planes through lattice points and light points on, next to and far from them.
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> lattice(-2, 2);
+  const auto point = [&] { return glm::vec3(lattice(random), lattice(random), lattice(random)); };
+  int on_plane = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const std::array<glm::vec3, 3> carrier = {point(), point(), point()};
+    if (collinear(carrier[0], carrier[1], carrier[2])) continue;
+    std::vector<glm::vec3> points;
+    for (int j = 0; j < 40; ++j) {
+      glm::vec3 q = point();
+      if (j % 3 == 0) q.x = std::nextafter(q.x, 9.0f);
+      points.push_back(q);
+    }
+    const std::int8_t facing = round % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
+    Light light;
+    if (round % 4 > 1) light.sun.emplace();  // points are directions
+    const HorizonTest horizon(light, carrier, facing, {glm::vec3(-2.001f), glm::vec3(2.001f)});
+    std::array<std::uint32_t, 2> words{~0u, ~0u};
+    horizon.mask(points, words);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const bool above = above_horizon(light, carrier, facing, points[j]);
+      if (light.sun) {
+        const glm::dvec3 a(carrier[0]), n = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
+        const glm::dvec3 lattice_point = glm::round(glm::dvec3(points[j]));  // all but the step of nextafter
+        const double whole = glm::dot(n, lattice_point), rest = glm::dot(n, glm::dvec3(points[j]) - lattice_point);
+        EXPECT_EQ(above, (whole != 0 ? whole : rest) * facing > 0);
+      }
+      EXPECT_EQ((words[j / 32] >> (j % 32)) & 1u, above ? 1u : 0u);
+      on_plane += side_of_plane(carrier[0], carrier[1], carrier[2], points[j]) == Side::on ? 1 : 0;
+    }
+    EXPECT_EQ(words[1] >> 8, 0u) << "bits beyond the points are 0";
+  }
+  EXPECT_GT(on_plane, 1000);
+}
+
+}  // namespace
+}  // namespace penumbra::visibility
