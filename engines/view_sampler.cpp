@@ -10,7 +10,7 @@ ViewSampler::ViewSampler(const render::Device& device, const visibility::SceneFl
 }
 
 visibility::ViewSamples ViewSampler::find(const visibility::PinholeCamera& camera) {
-  return buffer_ ? buffer_->render(camera) : native::scan_view_samples(scene_, camera);
+  return buffer_ ? buffer_->render(camera) : vectors::scan_view_samples(scene_, camera);
 }
 
 }  // namespace penumbra::engines

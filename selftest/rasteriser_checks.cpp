@@ -59,7 +59,7 @@ visibility::ViewSamples view_samples_by(ViewSampler sampler, const render::Devic
     case ViewSampler::opengl:
       return render::proposed_view_samples(device.opengl(), floats, camera);
     case ViewSampler::vectors:
-      return native::scan_view_samples(floats, camera);
+      return vectors::scan_view_samples(floats, camera);
   }
   return {};
 }

@@ -122,7 +122,7 @@ glm::vec3 center_of(const Light& light);
 /// The frame that a light is stored with, in double: its plane's points are center + s·u + t·v. A rectangle is
 /// s, t ∈ [−1, 1], a disk or ellipse the unit disk. u and v are differences of stored points, rounded once; u × v
 /// points to the emitting side. What else describes a light's plane is made from this: DeviceLight (a rectangle around
-/// the samples in the floats of device passes), maps::LightBasis (orthonormal), native::LightGrid (in cells of light
+/// the samples in the floats of device passes), maps::LightBasis (orthonormal), vectors::LightGrid (in cells of light
 /// samples), volumes::gpu::WedgePush (the duals of u and v). Only areas::IntegerFrame takes the stored points
 /// themselves, since it is exact.
 struct LightFrame {

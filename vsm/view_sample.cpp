@@ -6,7 +6,7 @@
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
 #include "visibility/lights/device_light.hpp"
-#include "vsm/vectors/view_sample_native.hpp"
+#include "vsm/vectors/view_sample_vectors.hpp"
 #include "vsm/view_sample_lists.hpp"
 #include "vsm/view_sample_vulkan.hpp"
 
@@ -59,7 +59,7 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Device& devic
     return make_view_sample_lists(std::move(description));
   }
   if (!engines::runs_on_vectors(device, options[engines::kEngine])) return make_vulkan_view_sample(device);
-  return engines::make_engine_by_light({[] { return make_native_view_sample(view_sample_description()); },
+  return engines::make_engine_by_light({[] { return make_view_sample_on_vectors(view_sample_description()); },
                                         [&device] { return make_vulkan_view_sample(device); }, visibility::has_rows});
 }
 

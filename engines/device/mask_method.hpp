@@ -30,7 +30,7 @@ enum class Attempt : std::uint8_t {
 
 /// A method on the Vulkan device that finds which light samples each view sample sees. What comes before and after its
 /// lists and kernels is the same for all: uploads, tiles, lists that grow, open light samples decided by exact
-/// predicates, masks and V. The twin of native::MaskMethod.
+/// predicates, masks and V. The twin of vectors::MaskMethod.
 ///
 /// Kernels write into masks() (MaskLayout) and counts() (visible light samples of a pixel; of a pixel that sees none,
 /// or all, the mask says nothing), and append questions to questions(), each of as many bytes as the constructor was

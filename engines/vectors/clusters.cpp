@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 float size1(const glm::vec3& x) {
@@ -78,4 +78,4 @@ std::vector<std::size_t> split_at_gaps(std::span<GridSample> samples) {
   return ends;
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

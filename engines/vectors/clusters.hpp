@@ -9,7 +9,7 @@
 #include <vector>
 
 /// From pixels to clusters of view samples. Inside engines/vectors/ only.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// What is certain of a view sample's light samples before any triangle is looked at.
 enum class SampleClass : std::uint8_t {
@@ -35,4 +35,4 @@ SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at)
 /// a part the order stays. Returns where each part ends.
 std::vector<std::size_t> split_at_gaps(std::span<GridSample> samples);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 using visibility::LightKind;
@@ -281,4 +281,4 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   at.per_lean = kRound * (16 * grid.per_length + 24 * glm::length(at.lean));
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -15,7 +15,7 @@
 /// Spheres and suns: each view sample sees a round cone of its own. Where its light samples are in the square around
 /// the cone is the same for all, so they share tiles; what may matter to a few view samples is found through a
 /// rectangle of a plane behind all of their light points. docs/edge-scatter.md, "Spheres and suns".
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 struct ConeOptions {
   std::string method;         ///< names errors
@@ -31,7 +31,7 @@ class ConeLight {
 
   /// Tiles and masks; not yet turned to any view samples.
   [[nodiscard]] LightGrid make_grid() const;
-  /// As native::classify; an answer in_front comes with how p sees the light.
+  /// As vectors::classify; an answer in_front comes with how p sees the light.
   SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at, LightCone& cone) const;
   /// Turns the grid to view samples that have cones, and places them over it. False: they see the light from such
   /// different sides that no rectangle will do. One alone always sees it through one.
@@ -55,4 +55,4 @@ Cluster everything(std::span<const GridSample> samples);
 /// What `complete` adds for a sphere or sun.
 void see_cone(const LightGrid& grid, ClusterSample& at);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -9,7 +9,7 @@
 #include "engines/vectors/walk-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::native::HWY_NAMESPACE {
+namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
 /// first, first + 1, … as the bits of floats (numbers_from of vectors-inl.hpp)
@@ -220,11 +220,11 @@ void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_
 }
 
 }  // namespace
-}  // namespace penumbra::native::HWY_NAMESPACE
+}  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 HWY_EXPORT(find_edge_roots_here);
 HWY_EXPORT(find_edges_here);
@@ -255,5 +255,5 @@ void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>
   HWY_DYNAMIC_DISPATCH(find_triangles_here)(input, roots, stack, triangles);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors
 #endif

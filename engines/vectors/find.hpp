@@ -9,7 +9,7 @@
 #include <vector>
 
 /// Edges and triangles that may matter to a cluster of view samples.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// The columns of an EdgeTable. One row is one edge, from A to B, with up to two triangles; all positions are relative
 /// to the middle of the cluster that it was found for, in the grid's axes (across, along, axis), n in world axes.
@@ -89,4 +89,4 @@ std::size_t count_leaves(const TriangleInput& input, const std::vector<std::uint
 void find_triangles(const TriangleInput& input, const std::vector<std::uint32_t>& roots,
                     std::vector<std::uint32_t>& stack, TriangleTable& triangles);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

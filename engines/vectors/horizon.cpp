@@ -9,7 +9,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::native::HWY_NAMESPACE {
+namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -76,11 +76,11 @@ void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open
 }
 
 }  // namespace
-}  // namespace penumbra::native::HWY_NAMESPACE
+}  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 HWY_EXPORT(cut_at_horizon_here);
 
@@ -110,5 +110,5 @@ void see_all(const LightGrid& grid, const GridSample& at, Open& open, OpenJudge&
   if (open.any()) judge.decide(at, open, mask);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors
 #endif

@@ -7,7 +7,7 @@
 
 /// Masks without casters: all or none visible, less what is below p's own plane. For engines/vectors/ and the stages of
 /// methods.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// All light samples, or none.
 void fill(const LightGrid& grid, bool visible, SampleMask& mask);
@@ -17,4 +17,4 @@ void cut_at_horizon(const LightGrid& grid, const GridSample& at, Open& open, Sam
 /// is open already is decided.
 void see_all(const LightGrid& grid, const GridSample& at, Open& open, OpenJudge& judge, SampleMask& mask);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -1,10 +1,10 @@
 // What may meet the hull of view samples and the light. Inside engines/vectors/ only, and in the stages of methods.
 
-#if defined(PENUMBRA_NATIVE_HULL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef PENUMBRA_NATIVE_HULL_INL_HPP
-#undef PENUMBRA_NATIVE_HULL_INL_HPP
+#if defined(PENUMBRA_VECTORS_HULL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VECTORS_HULL_INL_HPP
+#undef PENUMBRA_VECTORS_HULL_INL_HPP
 #else
-#define PENUMBRA_NATIVE_HULL_INL_HPP
+#define PENUMBRA_VECTORS_HULL_INL_HPP
 #endif
 
 #include "engines/vectors/light_grid.hpp"
@@ -14,7 +14,7 @@
 #include <cstddef>
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::native::HWY_NAMESPACE {
+namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -45,7 +45,7 @@ M meets(const Hull& hull, const std::array<Corners, kCount>& corners) {
 }
 
 }  // namespace
-}  // namespace penumbra::native::HWY_NAMESPACE
+}  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // once a target

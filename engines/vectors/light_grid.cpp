@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 float float_size1(const glm::dvec3& x) {
@@ -224,4 +224,4 @@ Hull hull_of(const LightGrid& grid, const Cluster& cluster, std::span<const Clus
   return hull;
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

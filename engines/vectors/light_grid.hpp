@@ -16,7 +16,7 @@
 /// Methods on the processor's own vector units: what they share. A light as seen from view samples that lie
 /// together. Bounds are derived in docs/edge-scatter.md; names are those of the device's passes
 /// (volumes/edges/edge_scatter.glsl). Lengths are scene floats times visibility::device_scale.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 
@@ -150,4 +150,4 @@ struct Hull {
 };
 Hull hull_of(const LightGrid& grid, const Cluster& cluster, std::span<const ClusterSample> samples);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 constexpr float kNowhere = 0x1p24F;  // more than layers
@@ -78,4 +78,4 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
   return tiles;
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

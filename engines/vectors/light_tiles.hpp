@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Light samples that form no rows of a rectangle.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// Light samples anywhere on a light: sixteen neighbours are a tile, tiles that lie side by side a row of tiles. So a
 /// straight edge has few tiles on both of its sides, and of all others of a row that it crosses one number says how
@@ -39,4 +39,4 @@ struct LightTiles {
 /// `places`: of light samples, in cells.
 LightTiles make_light_tiles(std::span<const glm::vec2> places);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

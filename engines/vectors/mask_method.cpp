@@ -15,7 +15,7 @@
 #include <cmath>
 #include <utility>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels, whose clusters have lists
@@ -276,4 +276,4 @@ std::uint64_t MaskMethod::memory_bytes() const {
          visible_.size() * sizeof(visible_[0]);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// How large the blocks of pixels are whose clusters have lists.
 enum class Blocks : std::uint8_t {
@@ -123,4 +123,4 @@ class MaskMethod : public visibility::Method {
   std::map<std::string, std::uint64_t> counters_;
 };
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

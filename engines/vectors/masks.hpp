@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Which light samples are visible from a view sample, and what is not certain of that.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// Sixteen light samples each.
 inline std::size_t mask_words(const LightGrid& grid) {
@@ -64,4 +64,4 @@ class OpenJudge {
   virtual void decide(const GridSample& sample, const Open& open, SampleMask& mask) = 0;
 };
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 std::uint32_t ExactOpenJudge::depth(const GridSample& sample, std::uint32_t light_sample) {
   ++pairs_;
@@ -86,4 +86,4 @@ void ExactOpenJudge::decide_one(const GridSample& sample, std::uint32_t light_sa
   word = static_cast<std::uint16_t>(visible ? word | bit : word & ~bit);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// Decides at once, by exact predicates, what is not certain, and counts it.
 class ExactOpenJudge final : public OpenJudge {
@@ -40,4 +40,4 @@ class ExactOpenJudge final : public OpenJudge {
   std::uint64_t pixels_ = 0, pairs_ = 0;
 };
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

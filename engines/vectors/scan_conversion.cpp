@@ -29,7 +29,7 @@
 #include <limits>
 #include <optional>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 using visibility::PinholeCamera;
@@ -307,4 +307,4 @@ visibility::ViewSamples scan_view_samples(const SceneFloats& scene, const Pinhol
   return visibility::complete_view_samples(scene, camera, Scan(scene, camera).run());
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -2,7 +2,7 @@
 
 #include "visibility/view_samples.hpp"
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// View samples by scan conversion on the processor, in double: the bits of visibility::brute_force_view_samples and of
 /// render::VisibilityBuffer. All cores; triangles are sorted into tiles of pixels, each tile keeps its smallest t.
@@ -11,4 +11,4 @@ namespace penumbra::native {
 visibility::ViewSamples scan_view_samples(const visibility::SceneFloats& scene,
                                           const visibility::PinholeCamera& camera);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::native::HWY_NAMESPACE {
+namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -124,11 +124,11 @@ double scan_tile_here(const visibility::SceneFloats& scene, const ScanCamera& ca
 }
 
 }  // namespace
-}  // namespace penumbra::native::HWY_NAMESPACE
+}  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 HWY_EXPORT(scan_tile_here);
 
@@ -145,5 +145,5 @@ double scan_tile(const visibility::SceneFloats& scene, const ScanCamera& camera,
   return HWY_DYNAMIC_DISPATCH(scan_tile_here)(scene, camera, entries, tile);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors
 #endif

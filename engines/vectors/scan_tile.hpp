@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// Pixels a side of a tile: what its pixels hold fits into the first cache.
 inline constexpr std::uint32_t kScanTile = 32;
@@ -40,4 +40,4 @@ struct ScanTile {
 double scan_tile(const visibility::SceneFloats& scene, const ScanCamera& camera, std::span<const TileEntry> entries,
                  const ScanTile& tile);
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

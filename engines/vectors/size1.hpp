@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// The sum of the components' sizes: bounds the length.
 inline double size1(const glm::dvec3& x) {
   return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -7,7 +7,7 @@
 #include <utility>
 
 /// Inside engines/vectors/ only, and in the stages of methods.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 /// Columns of floats, side by side.
 template <std::size_t kFields>
@@ -36,4 +36,4 @@ class Table {
   std::size_t capacity_ = 0;
 };
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

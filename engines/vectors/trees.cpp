@@ -4,7 +4,7 @@
 
 #include <bit>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 using visibility::Texel;
@@ -94,4 +94,4 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
   return wide;
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -12,7 +12,7 @@
 
 /// Hierarchies as a processor's vector units like them: eight children, edges or triangles side by
 /// side, all numbers scaled like the device's.
-namespace penumbra::native {
+namespace penumbra::vectors {
 
 constexpr std::size_t kWide = 8;
 using WideFloats = std::array<float, kWide>;
@@ -68,4 +68,4 @@ std::uint64_t bytes_of(const Tree& tree) {
   return tree.nodes.size() * sizeof(tree.nodes[0]) + tree.leaves.size() * sizeof(tree.leaves[0]);
 }
 
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

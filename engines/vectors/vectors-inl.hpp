@@ -1,11 +1,11 @@
 // Vectors of floats, as many as the processor has: included once a target by each stage of a method on the processor.
 // Inside engines/vectors/ only, and in the stages of methods.
 
-#if defined(PENUMBRA_NATIVE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef PENUMBRA_NATIVE_VECTORS_INL_HPP
-#undef PENUMBRA_NATIVE_VECTORS_INL_HPP
+#if defined(PENUMBRA_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VECTORS_INL_HPP
+#undef PENUMBRA_VECTORS_INL_HPP
 #else
-#define PENUMBRA_NATIVE_VECTORS_INL_HPP
+#define PENUMBRA_VECTORS_INL_HPP
 #endif
 
 #include <hwy/highway.h>
@@ -14,7 +14,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::native::HWY_NAMESPACE {
+namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -55,7 +55,7 @@ void for_each_lane(M which, Visit visit) {
 }
 
 }  // namespace
-}  // namespace penumbra::native::HWY_NAMESPACE
+}  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // once a target

@@ -1,11 +1,11 @@
 // Walks of hierarchies with the shaft from a cluster of view samples to the light, eight children at a time, as those
 // of find_edges.comp. Inside engines/vectors/ only.
 
-#if defined(PENUMBRA_NATIVE_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef PENUMBRA_NATIVE_WALK_INL_HPP
-#undef PENUMBRA_NATIVE_WALK_INL_HPP
+#if defined(PENUMBRA_VECTORS_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VECTORS_WALK_INL_HPP
+#undef PENUMBRA_VECTORS_WALK_INL_HPP
 #else
-#define PENUMBRA_NATIVE_WALK_INL_HPP
+#define PENUMBRA_VECTORS_WALK_INL_HPP
 #endif
 
 #include "engines/vectors/light_grid.hpp"
@@ -19,7 +19,7 @@
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
-namespace penumbra::native::HWY_NAMESPACE {
+namespace penumbra::vectors::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -165,7 +165,7 @@ void descend(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vec
 }
 
 }  // namespace
-}  // namespace penumbra::native::HWY_NAMESPACE
+}  // namespace penumbra::vectors::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif  // once a target

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 TEST(LightTiles, HoldEachSampleOnce) {
@@ -58,4 +58,4 @@ TEST(LightTiles, HoldEachSampleOnce) {
 }
 
 }  // namespace
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

@@ -12,7 +12,7 @@
 #include "volumes/edges/edge_method.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
 #include "volumes/scatter/scatter_edges.comp.spv.hpp"
-#include "volumes/scatter/vectors/edge_scatter_native.hpp"
+#include "volumes/scatter/vectors/edge_scatter_vectors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -197,11 +197,12 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool exact = options[kExactRows];
   const engines::Engine engine = options[engines::kEngine];
-  if (exact || engines::runs_on_vectors(device, engine)) return make_native_edge_scatter(std::move(description), exact);
+  if (exact || engines::runs_on_vectors(device, engine))
+    return make_edge_scatter_on_vectors(std::move(description), exact);
   if (engine == engines::Engine::vulkan) return std::make_unique<EdgeScatter>(device, std::move(description));
   return engines::make_engine_by_light(
       {[&device, description] { return std::make_unique<EdgeScatter>(device, description); },
-       [description] { return make_native_edge_scatter(description, false); }, visibility::has_rows});
+       [description] { return make_edge_scatter_on_vectors(description, false); }, visibility::has_rows});
 }
 
 bool edge_scatter_on_vectors(const render::Device& device, const visibility::MethodOptions& given,

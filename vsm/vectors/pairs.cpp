@@ -21,7 +21,7 @@ namespace penumbra::vsm::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace native::HWY_NAMESPACE;
+using namespace vectors::HWY_NAMESPACE;
 
 constexpr std::size_t kGroup = 16;   // view samples that sort out triangles together
 constexpr std::size_t kChunk = 256;  // triangles between two looks whether anything is left to hide

@@ -19,22 +19,22 @@
 namespace penumbra::vsm {
 
 // From engines/vectors/, by name: what the stages here hand to one another is made of these.
-using native::Cluster;
-using native::ClusterSample;
-using native::GridSample;
-using native::Hull;
-using native::kRound;
-using native::kWide;
-using native::LightGrid;
-using native::Open;
-using native::OpenJudge;
-using native::SampleMask;
-using native::Table;
-using native::TriangleTable;
-using native::WidePoints;
-using native::WideTriangles;
-using native::WideTriangleTree;
-using enum native::TriangleField;
+using vectors::Cluster;
+using vectors::ClusterSample;
+using vectors::GridSample;
+using vectors::Hull;
+using vectors::kRound;
+using vectors::kWide;
+using vectors::LightGrid;
+using vectors::Open;
+using vectors::OpenJudge;
+using vectors::SampleMask;
+using vectors::Table;
+using vectors::TriangleTable;
+using vectors::WidePoints;
+using vectors::WideTriangles;
+using vectors::WideTriangleTree;
+using enum vectors::TriangleField;
 
 /// Of a triangle that may appear at a light row: where its corners appear, the bound of that, and its row in the
 /// group's table (bits).

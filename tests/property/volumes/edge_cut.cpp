@@ -22,11 +22,11 @@ using visibility::TriangleTree;
 
 using Numbers = std::array<float, 20>;  // of an edge: ends, and normal, anchor, plane of each side
 
-Numbers numbers_of(const native::WideEdges& leaf, std::size_t lane) {
+Numbers numbers_of(const vectors::WideEdges& leaf, std::size_t lane) {
   Numbers numbers{};
   std::size_t i = 0;
   for (const auto* points : {&leaf.a, &leaf.b, &leaf.n[0], &leaf.n[1], &leaf.anchor[0], &leaf.anchor[1]}) {
-    for (const native::WideFloats& axis : *points) numbers[i++] = axis[lane];
+    for (const vectors::WideFloats& axis : *points) numbers[i++] = axis[lane];
   }
   numbers[i++] = static_cast<float>(leaf.plane[0][lane]);
   numbers[i] = static_cast<float>(leaf.plane[1][lane]);
@@ -34,11 +34,11 @@ Numbers numbers_of(const native::WideEdges& leaf, std::size_t lane) {
 }
 
 /// All edges that a walk from the roots can reach, sorted.
-std::vector<Numbers> reachable(const native::WideEdgeTree& tree) {
+std::vector<Numbers> reachable(const vectors::WideEdgeTree& tree) {
   std::vector<Numbers> found;
   std::vector<std::uint32_t> stack = tree.roots;
   while (!stack.empty()) {
-    const native::WideNode& node = tree.nodes[stack.back()];
+    const vectors::WideNode& node = tree.nodes[stack.back()];
     stack.pop_back();
     for (std::uint32_t left = node.used; left != 0; left &= left - 1) {
       const std::uint32_t reference = node.reference[static_cast<std::size_t>(std::countr_zero(left))];
@@ -46,7 +46,7 @@ std::vector<Numbers> reachable(const native::WideEdgeTree& tree) {
         stack.push_back(reference);
         continue;
       }
-      const native::WideEdges& leaf = tree.leaves[reference & ~TriangleTree::kLeafBit];
+      const vectors::WideEdges& leaf = tree.leaves[reference & ~TriangleTree::kLeafBit];
       for (std::uint32_t used = leaf.used; used != 0; used &= used - 1) {
         found.push_back(numbers_of(leaf, static_cast<std::size_t>(std::countr_zero(used))));
       }

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <random>
 
-namespace penumbra::native {
+namespace penumbra::vectors {
 namespace {
 
 using Exact = glm::tvec3<long double>;
@@ -129,4 +129,4 @@ TEST(VectorBounds, PlacesOfPointsOnTheLight) {
 }
 
 }  // namespace
-}  // namespace penumbra::native
+}  // namespace penumbra::vectors

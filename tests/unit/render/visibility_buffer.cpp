@@ -98,7 +98,7 @@ TEST_F(VisibilityBufferTest, TheProcessorFindsTheSameWhereMuchIsHidden) {
   VisibilityBuffer buffer(device(), floats);
   for (const scenes::Camera& camera : scene.cameras) {
     const auto pinhole = visibility::make_camera(camera, floats.origin, 203, 117);
-    const ViewSamples expected = buffer.render(pinhole), found = native::scan_view_samples(floats, pinhole);
+    const ViewSamples expected = buffer.render(pinhole), found = vectors::scan_view_samples(floats, pinhole);
     EXPECT_EQ(found.triangle, expected.triangle);
     EXPECT_EQ(found.p, expected.p);
   }

@@ -19,7 +19,7 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace native::HWY_NAMESPACE;
+using namespace vectors::HWY_NAMESPACE;
 
 std::optional<bool> certainly_meets(const CornerInput& in, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 p(in.at.p);

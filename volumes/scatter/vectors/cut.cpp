@@ -5,9 +5,9 @@
 namespace penumbra::volumes {
 namespace {
 
-using native::WideEdges;
-using native::WideNode;
-using native::WidePoints;
+using vectors::WideEdges;
+using vectors::WideNode;
+using vectors::WidePoints;
 
 glm::vec3 point(const WidePoints& points, std::size_t lane) {
   return {points[0][lane], points[1][lane], points[2][lane]};
@@ -56,19 +56,19 @@ class CutEdges::Dropping {
   }
 
   CutEdges& edges_;
-  native::WideEdgeTree& tree_;
+  vectors::WideEdgeTree& tree_;
   float scale_;
 };
 
-native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale) {
+vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale) {
   const EdgeTexels texels = edge_texels(records, scale);
-  return texels.depth == 0 ? native::WideEdgeTree{} : native::wide_edge_tree(texels.nodes, texels.slots);
+  return texels.depth == 0 ? vectors::WideEdgeTree{} : vectors::wide_edge_tree(texels.nodes, texels.slots);
 }
 
 void CutEdges::restore() {
   if (!is_cut_) return;
   ends_.reset();
-  plane_of_light_ = native::Cluster::kSeveral;
+  plane_of_light_ = vectors::Cluster::kSeveral;
   // Backwards: of one that was changed more than once, the first is what it was.
   for (auto it = nodes_.rbegin(); it != nodes_.rend(); ++it) tree_.nodes[it->number].used = it->used;
   for (auto it = leaves_.rbegin(); it != leaves_.rend(); ++it) tree_.leaves[it->number].used = it->used;
@@ -97,7 +97,7 @@ void CutEdges::cut(const CutInput& input) {
       edges_in_plane(input.scene, input.casters, across, input.side, ends_ ? &*ends_ : nullptr);
   Dropping dropping(*this, input.side.scale);
   cut_hierarchy(dropping, input.side, ends_ ? &*ends_ : nullptr, records);
-  native::append(tree_, wide_edges(records, input.side.scale));
+  vectors::append(tree_, wide_edges(records, input.side.scale));
 }
 
 }  // namespace penumbra::volumes

@@ -13,16 +13,16 @@
 /// Edge scatter on a processor: edges for lights whose plane cuts them. Inside volumes/ only.
 namespace penumbra::volumes {
 
-native::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
+vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
 
 /// A hierarchy of edges that is cut at a light's plane, and restored for the next light. Only what the plane cuts is
 /// computed again: subtrees behind it are left out, the cut edges are a second tree beside the first.
 class CutEdges {
  public:
   CutEdges() = default;
-  explicit CutEdges(native::WideEdgeTree whole) : tree_(std::move(whole)) {}
+  explicit CutEdges(vectors::WideEdgeTree whole) : tree_(std::move(whole)) {}
 
-  [[nodiscard]] const native::WideEdgeTree& tree() const { return tree_; }
+  [[nodiscard]] const vectors::WideEdgeTree& tree() const { return tree_; }
   /// Of edges with a number (WideEdges::cut); null: none has.
   [[nodiscard]] const CutEnds* ends() const { return ends_ ? &*ends_ : nullptr; }
   /// The number of the plane (SceneFloats::plane) that the light lies in, if triangles lie in it: they are not
@@ -38,9 +38,9 @@ class CutEdges {
   struct Used {
     std::uint32_t number, used;
   };
-  native::WideEdgeTree tree_;
+  vectors::WideEdgeTree tree_;
   std::optional<CutEnds> ends_;
-  std::uint32_t plane_of_light_ = native::Cluster::kSeveral;
+  std::uint32_t plane_of_light_ = vectors::Cluster::kSeveral;
   bool is_cut_ = false;
   std::size_t roots_ = 0, nodes_count_ = 0, leaves_count_ = 0;  // of the whole
   std::vector<Used> nodes_, leaves_;                            // that were changed

@@ -22,7 +22,7 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace native::HWY_NAMESPACE;
+using namespace vectors::HWY_NAMESPACE;
 
 struct Box3 {
   glm::vec3 low{0}, high{0};

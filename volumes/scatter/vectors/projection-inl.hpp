@@ -15,7 +15,7 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace native::HWY_NAMESPACE;
+using namespace vectors::HWY_NAMESPACE;
 
 /// k_e at p, and whether rounding leaves it open. In one order, without fused multiplications, as everywhere where the
 /// same sign must come out for all edges of a triangle.

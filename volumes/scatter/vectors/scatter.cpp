@@ -24,7 +24,7 @@ namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using namespace native::HWY_NAMESPACE;
+using namespace vectors::HWY_NAMESPACE;
 
 template <typename Counter>
 class SampleScatter {

@@ -26,31 +26,31 @@ class TextureBlocks;
 namespace penumbra::volumes {
 
 // From engines/vectors/, by name: what the stages here hand to one another is made of these.
-using native::Cluster;
-using native::ClusterSample;
-using native::count_leaves;
-using native::EdgeTable;
-using native::GridSample;
-using native::HorizonLine;
-using native::Hull;
-using native::kRound;
-using native::kWide;
-using native::LightCone;
-using native::LightGrid;
-using native::LightTiles;
-using native::Open;
-using native::OpenJudge;
-using native::Placing;
-using native::SampleMask;
-using native::Table;
-using native::TriangleTable;
-using native::WideEdges;
-using native::WideEdgeTree;
-using native::WidePoints;
-using native::WideTriangles;
-using native::WideTriangleTree;
-using enum native::EdgeField;
-using enum native::TriangleField;
+using vectors::Cluster;
+using vectors::ClusterSample;
+using vectors::count_leaves;
+using vectors::EdgeTable;
+using vectors::GridSample;
+using vectors::HorizonLine;
+using vectors::Hull;
+using vectors::kRound;
+using vectors::kWide;
+using vectors::LightCone;
+using vectors::LightGrid;
+using vectors::LightTiles;
+using vectors::Open;
+using vectors::OpenJudge;
+using vectors::Placing;
+using vectors::SampleMask;
+using vectors::Table;
+using vectors::TriangleTable;
+using vectors::WideEdges;
+using vectors::WideEdgeTree;
+using vectors::WidePoints;
+using vectors::WideTriangles;
+using vectors::WideTriangleTree;
+using enum vectors::EdgeField;
+using enum vectors::TriangleField;
 
 /// Of an edge that matters to a group of view samples: the first 18 of EdgeField, then a bound of the error of where
 /// its ends appear (of a sphere or sun: kFar), and its row in the EdgeTable (bits).

@@ -9,7 +9,7 @@ namespace penumbra::volumes {
 /// `edge-scatter` on the processor's own vector units (edge-scatter with engine=native): the same algorithm, and the
 /// same bits, since every one is the truth of its pair. Any number of light rows and columns. With
 /// `exact_rows` the share of the light that is visible, without light samples. docs/edge-scatter.md.
-std::unique_ptr<visibility::Method> make_native_edge_scatter(visibility::MethodDescription description,
-                                                             bool exact_rows);
+std::unique_ptr<visibility::Method> make_edge_scatter_on_vectors(visibility::MethodDescription description,
+                                                                 bool exact_rows);
 
 }  // namespace penumbra::volumes

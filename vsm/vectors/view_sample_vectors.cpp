@@ -1,6 +1,6 @@
-// View-sample mapping on a processor: its lists and what becomes of them. The rest is native::MaskMethod.
+// View-sample mapping on a processor: its lists and what becomes of them. The rest is vectors::MaskMethod.
 
-#include "vsm/vectors/view_sample_native.hpp"
+#include "vsm/vectors/view_sample_vectors.hpp"
 
 #include "engines/vectors/horizon.hpp"
 #include "engines/vectors/mask_method.hpp"
@@ -34,9 +34,9 @@ bool is_outside(const ClosedPart& part, const glm::vec3& p) {
   return false;
 }
 
-class NativeViewSample final : public native::MaskMethod {
+class VectorViewSample final : public vectors::MaskMethod {
  public:
-  explicit NativeViewSample(visibility::MethodDescription given) : MaskMethod(std::move(given), "test pairs") {}
+  explicit VectorViewSample(visibility::MethodDescription given) : MaskMethod(std::move(given), "test pairs") {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     MaskMethod::prepare_mesh(scene);
@@ -59,10 +59,10 @@ class NativeViewSample final : public native::MaskMethod {
     return false;
   }
 
-  native::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
+  vectors::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
     PairScratch& scratch = scratch_.local();
     find_triangle_roots({grid, triangles(), all, all.whole}, scratch.triangles, scratch.roots);
-    return native::Blocks::usual;
+    return vectors::Blocks::usual;
   }
 
   void do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
@@ -127,8 +127,8 @@ class NativeViewSample final : public native::MaskMethod {
 
 }  // namespace
 
-std::unique_ptr<visibility::Method> make_native_view_sample(visibility::MethodDescription description) {
-  return std::make_unique<NativeViewSample>(std::move(description));
+std::unique_ptr<visibility::Method> make_view_sample_on_vectors(visibility::MethodDescription description) {
+  return std::make_unique<VectorViewSample>(std::move(description));
 }
 
 }  // namespace penumbra::vsm

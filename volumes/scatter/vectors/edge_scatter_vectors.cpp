@@ -1,6 +1,6 @@
-// Edge scatter on a processor: its lists and what becomes of them. The rest is native::MaskMethod.
+// Edge scatter on a processor: its lists and what becomes of them. The rest is vectors::MaskMethod.
 
-#include "volumes/scatter/vectors/edge_scatter_native.hpp"
+#include "volumes/scatter/vectors/edge_scatter_vectors.hpp"
 
 #include "areas/form_factor_sum.hpp"
 #include "base/assert.hpp"
@@ -26,10 +26,10 @@ constexpr std::size_t kDense = 1024;
 constexpr std::size_t kGroup = 16, kDenseGroup = 8;  // view samples
 
 /// Finds each cluster's edges and triangles.
-class NativeEdges : public native::MaskMethod {
+class VectorEdges : public vectors::MaskMethod {
  public:
   /// `exact_area`: not of light samples but of the light.
-  NativeEdges(visibility::MethodDescription given, bool exact_area)
+  VectorEdges(visibility::MethodDescription given, bool exact_area)
       : MaskMethod(std::move(given), "scatter edges"), exact_area_(exact_area), sides_(description().name) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
@@ -63,14 +63,14 @@ class NativeEdges : public native::MaskMethod {
                                                                  : visibility::find_touch(scene(), tree(), light());
     return edges.front.has_value() && !exact_area_;  // whose edges stay whole
   }
-  native::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
+  vectors::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
     Scratch& scratch = scratch_.local();
     find_edge_roots({grid, edges_of(grid), all}, scratch.edges, scratch.edge_roots);
     find_triangle_roots({grid, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
     scratch.dense =
         count_leaves({grid, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
     scratch.dense_regions += scratch.dense ? 1 : 0;
-    return scratch.dense ? native::Blocks::small : native::Blocks::usual;
+    return scratch.dense ? vectors::Blocks::small : vectors::Blocks::usual;
   }
   void do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
                   std::span<SampleMask> masks) final {
@@ -126,9 +126,9 @@ class NativeEdges : public native::MaskMethod {
 };
 
 /// Light samples.
-class NativeEdgeScatter final : public NativeEdges {
+class VectorEdgeScatter final : public VectorEdges {
  public:
-  explicit NativeEdgeScatter(visibility::MethodDescription given) : NativeEdges(std::move(given), false) {}
+  explicit VectorEdgeScatter(visibility::MethodDescription given) : VectorEdges(std::move(given), false) {}
 
  private:
   void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
@@ -145,25 +145,25 @@ class NativeEdgeScatter final : public NativeEdges {
 };
 
 /// rows=exact: shares of the light, and their form factors on request.
-class NativeEdgeRows final : public NativeEdges {
+class VectorEdgeRows final : public VectorEdges {
  public:
-  explicit NativeEdgeRows(visibility::MethodDescription given) : NativeEdges(std::move(given), true) {}
+  explicit VectorEdgeRows(visibility::MethodDescription given) : VectorEdges(std::move(given), true) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
-    NativeEdges::prepare_mesh(scene);
+    VectorEdges::prepare_mesh(scene);
     areas_.prepare_mesh(scene, tree());
   }
   void prepare_light(const visibility::Light& light) override {
     areas_.prepare_light(light);
     window_ = window_of(light);
-    NativeEdges::prepare_light(light);
+    VectorEdges::prepare_light(light);
     region_.emplace(make_light_region(light, window_, grid(), scale()));
     blocks_.reset();
     if (light.texture) blocks_.emplace(*light.texture);
   }
   void evaluate(const visibility::Tile& tile) override {
     shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
-    NativeEdges::evaluate(tile);
+    VectorEdges::evaluate(tile);
   }
   void read_masks(std::span<std::uint32_t>) override {
     PENUMBRA_ASSERT(false, "{} has no masks with rows=exact", description().name);
@@ -211,7 +211,7 @@ class NativeEdgeRows final : public NativeEdges {
             true,
             kCells,
             kCells,
-            native::LightGridInput::Window{corner, to_scale * axes.u, to_scale * axes.v, axes.skew},
+            vectors::LightGridInput::Window{corner, to_scale * axes.u, to_scale * axes.v, axes.skew},
             static_cast<float>(2 + axes.skew)};
   }
   /// Of what nothing hides.
@@ -266,7 +266,7 @@ class NativeEdgeRows final : public NativeEdges {
   }
 
   void count(std::map<std::string, std::uint64_t>& counters) override {
-    NativeEdges::count(counters);
+    VectorEdges::count(counters);
     for (Scratch& scratch : scratch_) counters["unprovenPixels"] += std::exchange(scratch.unproven, 0);
   }
 
@@ -279,10 +279,10 @@ class NativeEdgeRows final : public NativeEdges {
 
 }  // namespace
 
-std::unique_ptr<visibility::Method> make_native_edge_scatter(visibility::MethodDescription description,
-                                                             bool exact_rows) {
-  if (exact_rows) return std::make_unique<NativeEdgeRows>(std::move(description));
-  return std::make_unique<NativeEdgeScatter>(std::move(description));
+std::unique_ptr<visibility::Method> make_edge_scatter_on_vectors(visibility::MethodDescription description,
+                                                                 bool exact_rows) {
+  if (exact_rows) return std::make_unique<VectorEdgeRows>(std::move(description));
+  return std::make_unique<VectorEdgeScatter>(std::move(description));
 }
 
 }  // namespace penumbra::volumes
