@@ -82,13 +82,15 @@ void TriangleTree::for_each_near(const glm::vec3& lower, const glm::vec3& upper,
   }
 }
 
-/// The stretch of a segment from p along `way` (p→l), 0 … 1, that is in a box.
-class SegmentInBox {
+/// A line p + t · way and a box: calls narrow(first, last) with the stretch of t between each pair of opposite planes;
+/// false if the line runs beside a pair.
+class LineAndBox {
  public:
-  SegmentInBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
+  LineAndBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
 
-  [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
-    double enter = -0x1p-40, leave = 1 + 0x1p-40;
+ protected:
+  template <typename Narrow>
+  [[nodiscard]] bool between_planes(const glm::vec3& lower, const glm::vec3& upper, Narrow&& narrow) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double from = lower[axis] - p_[axis], to = upper[axis] - p_[axis];
       if (std::isinf(inverse_[axis])) {
@@ -96,40 +98,46 @@ class SegmentInBox {
         continue;
       }
       const double t0 = from * inverse_[axis], t1 = to * inverse_[axis];
-      enter = std::max(enter, std::min(t0, t1) - 0x1p-40);
-      leave = std::min(leave, std::max(t0, t1) + 0x1p-40);
+      narrow(std::min(t0, t1), std::max(t0, t1));
     }
-    return enter <= leave;
+    return true;
   }
 
  private:
   glm::dvec3 p_, inverse_;
 };
 
+/// The stretch of a segment from p along `way` (p→l), 0 … 1, that is in a box.
+class SegmentInBox : private LineAndBox {
+ public:
+  using LineAndBox::LineAndBox;
+
+  [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
+    double enter = -0x1p-40, leave = 1 + 0x1p-40;
+    return between_planes(lower, upper,
+                          [&](double first, double last) {
+                            enter = std::max(enter, first - 0x1p-40);
+                            leave = std::min(leave, last + 0x1p-40);
+                          }) &&
+           enter <= leave;
+  }
+};
+
 /// Does the ray p + t · way, t ≥ 0, touch a box? p is a float, so where it begins is not rounded; ends are taken a
 /// little apart, by more than double rounding of them.
-class RayInBox {
+class RayInBox : private LineAndBox {
  public:
-  RayInBox(const glm::dvec3& p, const glm::dvec3& way) : p_(p), inverse_(1.0 / way) {}
+  using LineAndBox::LineAndBox;
 
   [[nodiscard]] bool touches(const glm::vec3& lower, const glm::vec3& upper) const {
     double enter = 0, leave = std::numeric_limits<double>::infinity();
-    for (int axis = 0; axis < 3; ++axis) {
-      const double from = lower[axis] - p_[axis], to = upper[axis] - p_[axis];
-      if (std::isinf(inverse_[axis])) {
-        if (from > 0 || to < 0) return false;
-        continue;
-      }
-      const double t0 = from * inverse_[axis], t1 = to * inverse_[axis];
-      const double first = std::min(t0, t1), last = std::max(t0, t1);
-      enter = std::max(enter, first - 0x1p-40 * std::abs(first));
-      leave = std::min(leave, last + 0x1p-40 * std::abs(last));
-    }
-    return enter <= leave;
+    return between_planes(lower, upper,
+                          [&](double first, double last) {
+                            enter = std::max(enter, first - 0x1p-40 * std::abs(first));
+                            leave = std::min(leave, last + 0x1p-40 * std::abs(last));
+                          }) &&
+           enter <= leave;
   }
-
- private:
-  glm::dvec3 p_, inverse_;
 };
 
 template <typename Visit>
