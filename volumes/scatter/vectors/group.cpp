@@ -32,7 +32,7 @@ struct GroupBounds {
   glm::vec3 middle{0}, half_size{0};
   glm::vec2 foot_low{0}, foot_high{0};
   glm::vec2 lean_low{0}, lean_high{0};
-  float height_low = 0, height_high = 0, far = 0, per_way = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
+  float height_high = 0, far = 0, per_way = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
   LightGrid::Range window;
   glm::vec3 turned{0};  // least and largest shares of a way's coordinates in how high it is over p on the light
 };
@@ -43,7 +43,7 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
   g.in_grid = {one.in_grid, one.in_grid};
   Box3 local{one.local, one.local};
   g.foot_low = g.foot_high = one.foot;
-  g.height_low = g.height_high = one.height;
+  g.height_high = one.height;
   g.lean_low = g.lean_high = one.lean;
   g.window = one.window;
   g.turned = {0, 0, 1};
@@ -52,7 +52,6 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
     local = {glm::min(local.low, at.local), glm::max(local.high, at.local)};
     g.foot_low = glm::min(g.foot_low, at.foot);
     g.foot_high = glm::max(g.foot_high, at.foot);
-    g.height_low = std::min(g.height_low, at.height);
     g.height_high = std::max(g.height_high, at.height);
     g.far = std::max(g.far, at.far);
     g.per_way = std::max(g.per_way, at.on_grid.per_way);
@@ -185,12 +184,14 @@ class GroupFilter {
   }
 
   /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so
-  /// the corners bound it.
+  /// the corners bound it. X − foot and H − h are ways, taken from the cluster's middle: h / (H − h) may be thousands,
+  /// and the feet are rounded over the light.
   [[nodiscard]] Range range_of(std::size_t first, std::size_t i) const {
     const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
     Range r;
     r.level = hn::Add(column(first + 2, i), set(height_));
-    const V w_low = hn::Sub(set(g_.height_low), r.level), w_high = hn::Sub(set(g_.height_high), r.level);
+    const V below = column(first + 2, i);
+    const V w_low = hn::Sub(set(g_.in_grid.low.z), below), w_high = hn::Sub(set(g_.in_grid.high.z), below);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.grid.reach)));
     if (in_.grid.cones) {
       // Whoever sees the light from aside has a height of its own.
@@ -204,14 +205,16 @@ class GroupFilter {
       r.bounded = hn::And(r.bounded, hn::Gt(own, hn::Mul(set(0.25F), w_high)));
     }
     const V inverse = hn::Div(set(1), w_low), at_low = hn::Mul(r.level, inverse), at_high = hn::Div(r.level, w_high);
-    const auto span = [&](V from, float low, float high) {
-      const V e0 = hn::Sub(from, set(high)), e1 = hn::Sub(from, set(low));
+    const auto span = [&](V from, std::size_t axis) {
+      const auto j = static_cast<glm::length_t>(axis);
+      const V at = column(first + axis, i), e0 = hn::Sub(at, set(g_.in_grid.high[j])),
+              e1 = hn::Sub(at, set(g_.in_grid.low[j]));
       const V p0 = hn::Mul(e0, at_low), p1 = hn::Mul(e0, at_high), p2 = hn::Mul(e1, at_low), p3 = hn::Mul(e1, at_high);
       return std::pair(hn::Add(from, hn::Min(hn::Min(p0, p1), hn::Min(p2, p3))),
                        hn::Add(from, hn::Max(hn::Max(p0, p1), hn::Max(p2, p3))));
     };
-    const auto [low_x, high_x] = span(x, g_.foot_low.x, g_.foot_high.x);
-    const auto [low_y, high_y] = span(y, g_.foot_low.y, g_.foot_high.y);
+    const auto [low_x, high_x] = span(x, 0);
+    const auto [low_y, high_y] = span(y, 1);
     const auto away = [&](V low, V high, float foot_low, float foot_high) {
       return hn::Add(hn::Max(hn::Abs(hn::Sub(high, set(foot_low))), hn::Abs(hn::Sub(low, set(foot_high)))),
                      set(foot_high - foot_low));

@@ -7,6 +7,7 @@
 #include "volumes/scatter/vectors/scatter.hpp"
 
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -50,6 +51,8 @@ std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const
   const std::vector<glm::dvec2>& places = in.light.coordinates;
   const std::size_t step = std::max<std::size_t>(1, places.size() / kTries);
   for (std::size_t i = step / 2; i < places.size(); i += step) {
+    // Edges beside the square are not stored.
+    if (glm::any(glm::greaterThan(glm::abs(places[i]) * half, half - off))) continue;
     const std::optional<std::int32_t> relative = rows.relative_depth((places[i] + 1.0) * half, off);
     if (relative) return static_cast<std::int32_t>(judge.depth(at, static_cast<std::uint32_t>(i))) - *relative;
   }
