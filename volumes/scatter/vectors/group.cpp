@@ -186,7 +186,7 @@ class GroupFilter {
   /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so
   /// the corners bound it. X − foot and H − h are ways, taken from the cluster's middle: h / (H − h) may be thousands,
   /// and the feet are rounded over the light.
-  [[nodiscard]] Range range_of(std::size_t first, std::size_t i) const {
+  [[nodiscard]] HWY_INLINE Range range_of(std::size_t first, std::size_t i) const {
     const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
     Range r;
     r.level = hn::Add(column(first + 2, i), set(height_));

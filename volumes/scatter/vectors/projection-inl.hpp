@@ -90,7 +90,7 @@ class Projection {
 
   /// Edges well above p.
   template <typename Special>
-  void settled(std::size_t i, Special& special) {
+  HWY_INLINE void settled(std::size_t i, Special& special) {
     const GroupTable& table = lists_.settled;
     const Multiplicity m = multiplicity(table, at_, i);
     const M live = hn::And(first_lanes(table.count - i), hn::Or(m.open, hn::Ne(m.k, set(0))));
@@ -177,7 +177,7 @@ class Projection {
     V k, error, number;
   };
   /// What crosses light rows or the light's left side, or may.
-  void keep_crossing(const ProjectedEdges& e, M live) {
+  HWY_INLINE void keep_crossing(const ProjectedEdges& e, M live) {
     const D d;
     const V low_x = hn::Sub(hn::Min(e.a.x, e.b.x), e.error), high_x = hn::Add(hn::Max(e.a.x, e.b.x), e.error);
     const V low_y = hn::Sub(hn::Min(e.a.y, e.b.y), e.error), high_y = hn::Add(hn::Max(e.a.y, e.b.y), e.error);
