@@ -148,6 +148,9 @@ PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin
                      camera.up.x, camera.up.y, camera.up.z);
   }
   result.right = glm::normalize(right);
+  // So short a product has rounding along `forward`: places on the screen are found by axes at right angles.
+  if (glm::length(right) < 0x1p-16 * glm::length(camera.up))
+    result.right = glm::normalize(result.right - glm::dot(result.right, result.forward) * result.forward);
   result.up = glm::cross(result.right, result.forward);
   result.tan_half_fov = std::tan(glm::radians(camera.vertical_fov) / 2);
   result.width = width;

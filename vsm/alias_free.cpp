@@ -111,7 +111,7 @@ class Polygon {
   [[nodiscard]] std::span<const glm::dvec3> corners() const { return std::span(corners_).first(count_); }
 
  private:
-  std::array<glm::dvec3, 8> corners_;  // three, and one more for each of four cuts
+  std::array<glm::dvec3, 8> corners_;  // three, and one more for each of five cuts
   std::size_t count_;
 };
 

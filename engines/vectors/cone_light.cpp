@@ -128,6 +128,7 @@ SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, Grid
   if (light_.sun) {
     cone = {glm::dvec3(light_.center), tangent_ * glm::dvec3(light_.sun->axis_u),
             tangent_ * glm::dvec3(light_.sun->axis_v)};
+    if (tangent_ >= kFlattest) return SampleClass::open;
   } else {
     if (!visibility::in_front_of_light(light_, p)) return SampleClass::other_side;
     const visibility::LightFrame seen = visibility::light_frame_from(light_, p);

@@ -35,11 +35,12 @@ namespace {
 using visibility::PinholeCamera;
 using visibility::SceneFloats;
 
-constexpr double kMargin = 1.0 / 32;                   // pixels, beside a triangle that is certain
-constexpr double kNoise = 0x1p-38;                     // of |D| in units of |d| R³: see above, and t's 2⁻⁸
-constexpr std::size_t kBatch = std::size_t{1} << 16U;  // triangles between two looks at what is hidden
-constexpr std::size_t kChunk = std::size_t{1} << 11U;  // of them, what one core sorts at a time
-constexpr std::uint32_t kFewTiles = 4;                 // up to here a triangle's box is its tiles
+constexpr double kMargin = 1.0 / 32;                         // pixels, beside a triangle that is certain
+constexpr double kNoise = 0x1p-38;                           // of |D| in units of |d| R³: see above, and t's 2⁻⁸
+constexpr std::size_t kBatch = std::size_t{1} << 16U;        // triangles between two looks at what is hidden
+constexpr std::size_t kChunk = std::size_t{1} << 11U;        // of them, what one core sorts at a time
+constexpr std::size_t kMostEntries = std::size_t{1} << 16U;  // of a chunk's lists, but for those of its last triangle
+constexpr std::uint32_t kFewTiles = 4;                       // up to here a triangle's box is its tiles
 
 /// Pixel centres that a triangle may cover, both ends included, and what no t of it is below (0: nothing known).
 struct PixelBox {
@@ -53,10 +54,14 @@ struct Sorted {
   TileEntry entry;
 };
 
-/// What one core found among its triangles: by tile, in ascending order of triangles.
+/// What one core found among its triangles, by tile.
 class Chunk {
  public:
+  /// Of these triangles, `next` is the first that is not sorted yet.
+  std::size_t next = 0, end = 0;
+
   void clear() { found_.clear(); }
+  [[nodiscard]] bool is_full() const { return found_.size() >= kMostEntries; }
   void add(std::uint32_t tile, const TileEntry& entry) { found_.push_back({tile, entry}); }
   void sort(std::size_t tiles) {
     end_.assign(tiles + 1, 0);
@@ -110,7 +115,7 @@ class Scan {
   [[nodiscard]] std::optional<PixelBox> careful_box(std::uint32_t triangle) const;
   [[nodiscard]] std::optional<PixelBox> pixels_in(glm::dvec2 lower, glm::dvec2 upper, double margin,
                                                   double nearest) const;
-  void sort(std::size_t begin, std::size_t end, Chunk& chunk) const;
+  void sort(Chunk& chunk) const;
   void sort(std::uint32_t triangle, const PixelBox& box, Chunk& chunk) const;
   void paint(std::span<const Chunk> chunks);
   [[nodiscard]] std::array<glm::dvec3, 4> rays_around(std::uint32_t tile_x, std::uint32_t tile_y) const;
@@ -253,11 +258,11 @@ void Scan::sort(std::uint32_t triangle, const PixelBox& box, Chunk& chunk) const
   }
 }
 
-void Scan::sort(std::size_t begin, std::size_t end, Chunk& chunk) const {
+void Scan::sort(Chunk& chunk) const {
   chunk.clear();
-  for (std::size_t i = begin; i < end; ++i) {
-    if (scene_.plane[i] == SceneFloats::kNoPlane) continue;
-    const auto triangle = static_cast<std::uint32_t>(i);
+  for (; chunk.next < chunk.end && !chunk.is_full(); ++chunk.next) {
+    if (scene_.plane[chunk.next] == SceneFloats::kNoPlane) continue;
+    const auto triangle = static_cast<std::uint32_t>(chunk.next);
     if (const std::optional<PixelBox> box = box_of(triangle)) sort(triangle, *box, chunk);
   }
   chunk.sort(farthest_.size());
@@ -284,11 +289,14 @@ std::vector<std::int32_t> Scan::run() {
   for (std::size_t first = 0; first < count; first += kBatch) {
     const std::size_t here = std::min(kBatch, count - first);
     chunks.resize((here + kChunk - 1) / kChunk);
-    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t chunk) {
-      const std::size_t begin = first + chunk * kChunk;
-      sort(begin, std::min(begin + kChunk, first + here), chunks[chunk]);
-    });
-    paint(chunks);
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      chunks[i].next = first + i * kChunk;
+      chunks[i].end = std::min(chunks[i].next + kChunk, first + here);
+    }
+    while (std::ranges::any_of(chunks, [](const Chunk& chunk) { return chunk.next < chunk.end; })) {
+      tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) { sort(chunks[i]); });
+      paint(chunks);
+    }
   }
   std::vector<std::int32_t> triangles(std::size_t{view_.width} * view_.height);
   tbb::parallel_for(std::uint32_t{0}, view_.height, [&](std::uint32_t y) {

@@ -103,7 +103,9 @@ class Painter {
     hn::StoreMaskBits(Pixels(), equal, lanes);
     for (std::uint32_t left = lanes[0]; left != 0; left &= left - 1) {
       std::int64_t& carrier = tile_.carrier[slot + static_cast<std::size_t>(std::countr_zero(left))];
-      if (scene_.comes_before(triangle, static_cast<std::uint32_t>(carrier))) carrier = triangle;
+      const auto other = static_cast<std::uint32_t>(carrier);
+      if (scene_.comes_before(triangle, other) || (triangle < other && !scene_.comes_before(other, triangle)))
+        carrier = triangle;
     }
   }
 

@@ -35,8 +35,8 @@ struct ScanTile {
   std::span<std::int64_t> carrier;  ///< its triangle; at equal t the first by SceneFloats::comes_before, then by number
 };
 
-/// Lets the triangles of a tile, in ascending order, take the pixels that they cover (visibility::cover, the same
-/// operations in the same order). Returns the largest of the tile's smallest t.
+/// Lets the triangles of a tile, in any order, take the pixels that they cover (visibility::cover, the same operations
+/// in the same order). Returns the largest of the tile's smallest t.
 double scan_tile(const visibility::SceneFloats& scene, const ScanCamera& camera, std::span<const TileEntry> entries,
                  const ScanTile& tile);
 

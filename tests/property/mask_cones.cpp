@@ -31,7 +31,7 @@ scenes::LightShape sphere_of(tests::LatticeSoup& soup, int range) {
 scenes::LightShape sun_of(tests::LatticeSoup& soup, int) {
   glm::dvec3 direction = soup.point();
   if (direction == glm::dvec3(0)) direction.y = -1;
-  static constexpr std::array kAngles{0.53, 0.0, 30.0, 90.0, 170.0, 1e-5};
+  static constexpr std::array kAngles{0.53, 0.0, 30.0, 90.0, 170.0, 1e-5, 179.9, 179.98};
   return scenes::Sun{direction, kAngles[soup.below(kAngles.size())]};
 }
 

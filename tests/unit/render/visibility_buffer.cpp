@@ -104,6 +104,23 @@ TEST_F(VisibilityBufferTest, TheProcessorFindsTheSameWhereMuchIsHidden) {
   }
 }
 
+TEST_F(VisibilityBufferTest, ListsOfTilesThatAreFullAreEmptiedOnTheWay) {
+  // Each triangle is in the lists of all 64 tiles, and each is there twice: the first of two carries.
+  scenes::Scene scene;
+  std::vector<tests::Corners> soup;
+  for (int i = 0; i < 3000; ++i) {
+    const double z = -1 - 0.001 * ((i / 2 * 7) % 1500);
+    soup.push_back({glm::dvec3(-90, -90, z), glm::dvec3(90, -90, z), glm::dvec3(0, 120, z)});
+  }
+  tests::add_object(scene, "stack", soup);
+  scene.cameras.push_back(tests::camera({0, 0, 4}, {0, 0, 0}, 35));
+  const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+  const auto pinhole = visibility::make_camera(scene.cameras[0], floats.origin, 512, 128);
+  const std::vector<std::int32_t> all(pinhole.width * std::size_t{pinhole.height},
+                                      visibility::carrier_of(floats, pinhole, 128, 64));
+  EXPECT_EQ(vectors::scan_view_samples(floats, pinhole).triangle, all);
+}
+
 TEST_F(VisibilityBufferTest, AFewPixelsAndNoTriangles) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
