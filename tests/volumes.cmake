@@ -32,10 +32,11 @@ penumbra_test(volumes
   property/volumes/depth_complexity_lattice.cpp
   property/volumes/hard_volume_exact.cpp
   property/volumes/packed_counters.cpp
+  property/volumes/row_bounds.cpp
   property/volumes/row_sweep.cpp
   property/volumes/silhouette_pass.cpp
   property/volumes/vector_bounds.cpp
   property/volumes/wedge_builder.cpp
   unit/light_tiles.cpp
-  LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb)
+  LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb gmpxx gmp)
 target_compile_definitions(volumes_test PRIVATE PENUMBRA_TEST_LAMPS="${CMAKE_CURRENT_SOURCE_DIR}/lamps")

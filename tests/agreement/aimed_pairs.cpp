@@ -38,6 +38,7 @@ class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<
                under_test.name, name_of(aim), counts.pairs, counts.visible, counts.blocked, counts.zero, open);
     if (is_searched(aim)) {
       fmt::print("up to {:.1f} % of the bound is used\n", 100 * used);
+      RecordProperty("percent_of_bound", fmt::format("{:.1f}", 100 * used));
       EXPECT_LT(used, 1);
       EXPECT_GT(used, tests::planted_cut(aim)) << "planted_faults cuts it to that";
     }
@@ -58,11 +59,14 @@ TEST_P(AimedPairs, EveryPairIsTheExactDecision) {
 TEST_P(AimedPairs, ThousandsFull) {
   for (std::uint32_t first = 1000; first < 4000 && !HasFailure(); first += 500) look(first, 500);
 }
+std::string name_of_aim(const testing::TestParamInfo<std::tuple<Aim, tests::MaskMethod>>& info) {
+  return fmt::format("{}_{}", std::get<1>(info.param).name, name_of(std::get<0>(info.param)));
+}
 INSTANTIATE_TEST_SUITE_P(At, AimedPairs,
                          testing::Combine(testing::ValuesIn(tests::kAims), testing::ValuesIn(tests::kAllMaskMethods)),
-                         [](const auto& it) {
-                           return fmt::format("{}_{}", std::get<1>(it.param).name, name_of(std::get<0>(it.param)));
-                         });
+                         name_of_aim);
+INSTANTIATE_TEST_SUITE_P(Searched, AimedPairs,
+                         testing::Values(std::tuple(Aim::beside, tests::MaskMethod(tests::kEdgeScatter))), name_of_aim);
 
 }  // namespace
 }  // namespace penumbra

@@ -5,6 +5,7 @@
 // predicates show it.
 
 #include "mesh/predicates.hpp"
+#include "tests/agreement/crossings.hpp"
 #include "tests/agreement/device_twins.hpp"
 #include "tests/agreement/most_used.hpp"
 #include "tests/agreement/support.hpp"
@@ -35,18 +36,20 @@ enum class Aim : std::uint8_t {
   side,     ///< p in the plane of a triangle that stands above it on a narrow foot, under a panel
   det,      ///< p in the plane of a triangle that stands above it on a wide foot
   needle,   ///< the light's corner in a needle between two triangles of a sheet
+  beside,   ///< an edge on the other side of the light sample than where its place is computed to be
 };
 inline constexpr std::array kAims{Aim::edge,    Aim::corner,  Aim::left, Aim::vertex, Aim::row,   Aim::sliver,
                                   Aim::grazing, Aim::horizon, Aim::side, Aim::det,    Aim::needle};
-/// Those of which the scene is searched for: that which uses most of a bound.
-inline constexpr std::array kSearchedAims{Aim::side, Aim::det, Aim::needle};
+/// Those of which the scene is searched for: that which uses most of a bound. The last is of edge-scatter on the device
+/// alone.
+inline constexpr std::array kSearchedAims{Aim::side, Aim::det, Aim::needle, Aim::beside};
 /// The share of the bound that planted_faults leaves of it.
 inline double planted_cut(Aim aim) {
   return aim == Aim::det ? 1.0 / 256 : 0.01;
 }
 inline std::string name_of(Aim aim) {
-  static constexpr std::array kNames{"edge",    "corner",  "left", "vertex", "row",   "sliver",
-                                     "grazing", "horizon", "side", "det",    "needle"};
+  static constexpr std::array kNames{"edge",    "corner",  "left", "vertex", "row",    "sliver",
+                                     "grazing", "horizon", "side", "det",    "needle", "beside"};
   return kNames.at(static_cast<std::size_t>(aim));
 }
 
@@ -79,7 +82,8 @@ class AimedScene {
     std::vector<glm::dvec2> places;
     std::vector<glm::vec3> points;
     for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-      const glm::vec3 l = light.points[random_() % light.points.size()];
+      const auto sample = static_cast<std::uint32_t>(random_() % light.points.size());
+      const glm::vec3 l = light.points[sample];
       const glm::dvec2 st(positive() * 0.45, positive() * 0.45);
       Corners carrier = floor[random_() % 2];
       if (aim_ == Aim::horizon) {
@@ -99,6 +103,8 @@ class AimedScene {
       if (aim_ == Aim::needle) {
         const std::vector<Corners> sheet = needle(p, size);
         casters.insert(casters.end(), sheet.begin(), sheet.end());
+      } else if (aim_ == Aim::beside) {
+        casters.push_back(passing(points.back(), sample, 2 * size));
       } else {
         casters.push_back(aim_ == Aim::side || aim_ == Aim::det ? standing(p, l) : aimed(p, glm::dvec3(l), size));
       }
@@ -201,6 +207,30 @@ class AimedScene {
     };
     const Numbers best = most_used(random_, kTries, [&](const Numbers& numbers) { return sign(numbers).far_wrong(); });
     used = std::max(used, sign(best).wrong());
+    return make(best);
+  }
+
+  /// A triangle with an edge that passes the light sample: of many that which is computed to pass on the other side by
+  /// most.
+  Corners passing(const glm::vec3& p, std::uint32_t sample, double width) {
+    const std::uint32_t row = sample / light.columns, column = sample % light.columns;
+    const glm::dvec3 to_next = glm::dvec3(frame_.u) * (2.0 / static_cast<double>(light.columns));
+    const glm::vec2 half_cells = 0.5F * glm::vec2(static_cast<float>(light.columns), static_cast<float>(light.rows));
+    const DevicePlaces places(frame_, p, half_cells);
+    const auto make = [&](Numbers numbers) -> Corners {
+      return triangle_at(glm::dvec3(p), glm::dvec3(light.points[sample]), width, numbers);
+    };
+    const auto crossing = [&](const Numbers& numbers) {
+      const Corners corners = make(numbers);
+      const std::array edge{glm::vec3(corners[0]), glm::vec3(corners[1])};
+      return crossing_as_rounded(
+          places(edge), half_cells,
+          {static_cast<float>(row), static_cast<float>(column), static_cast<float>(light.row_shift[row])},
+          exact_crossing(p, light.points[sample], edge, to_next));
+    };
+    const Numbers best =
+        most_used(random_, kTries, [&](const Numbers& numbers) { return crossing(numbers).far_wrong(); });
+    used = std::max(used, crossing(best).wrong());
     return make(best);
   }
 

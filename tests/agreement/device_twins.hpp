@@ -55,25 +55,26 @@ T det(const visibility::DeviceLight& light, const FloatCorners& corners, const g
   return glm::dot(glm::cross(to_light(a - p), to_light(V(corners[1]) - a)), to_light(V(corners[2]) - a));
 }
 
-/// The light's frame, two cells to a side, and what of p depends on it.
+/// The light's frame, two cells to a side or `half_cells` twice, and what of p depends on it.
 template <typename T>
 struct Frame {
-  Frame(const visibility::DeviceLight& light, const glm::vec3& from) : p(from) {
+  Frame(const visibility::DeviceLight& light, const glm::vec3& from, const glm::vec2& half_cells = glm::vec2(1))
+      : p(from) {
     const V u(light.u), v(light.v), n = glm::cross(u, v), center_to_p = p - V(light.center);
     const T squared = glm::dot(n, n);
     axis = glm::normalize(n);
-    across = glm::cross(v, n) / squared;
-    along = glm::cross(n, u) / squared;
+    across = glm::cross(v, n) / squared * T(half_cells.x);
+    along = glm::cross(n, u) / squared * T(half_cells.y);
     height = glm::dot(axis, center_to_p);
-    const V2 first_cell(T(0.5)), foot = V2(glm::dot(across, center_to_p), glm::dot(along, center_to_p)) + first_cell;
-    lean = (first_cell - V2(1) - foot) / height;
+    foot = V2(glm::dot(across, center_to_p), glm::dot(along, center_to_p)) + V2(half_cells) - T(0.5);
+    lean = (V2(T(-0.5)) - foot) / height;
   }
 
   using V = glm::tvec3<T>;
   using V2 = glm::tvec2<T>;
   V p, axis, across, along;
   T height;
-  V2 lean;
+  V2 foot, lean;
 };
 
 /// A triangle from p, the segment to the light's lower left corner as third axis: heights over p, and what decides.

@@ -1,19 +1,20 @@
 // How much of a bound of error is ever used on vector units: a search for the input that uses most of it. Exact values
 // come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
 
-#include "engines/vectors/clusters.hpp"
-#include "engines/vectors/light_grid.hpp"
+#include "tests/agreement/crossings.hpp"
 #include "tests/agreement/most_used.hpp"
-#include "tests/agreement/support.hpp"
-#include "visibility/lights/device_light.hpp"
-#include "visibility/tree/tree_texels.hpp"
+#include "tests/property/volumes/under_a_light.hpp"
+#include "volumes/scatter/edge_scatter.hpp"
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
 
 namespace penumbra::vectors {
 namespace {
@@ -23,6 +24,23 @@ using Exact = glm::tvec3<long double>;
 struct Use {
   double of_bound = 0, error = 0, bound = 0;
 };
+
+/// Where a point appears as the tables and Projection compute it: one order, nothing fused.
+struct Appears {
+  glm::vec2 at{0};
+  float bound = 0;  ///< of either coordinate's error; 0: the point is not well above p
+};
+Appears appears(const LightGrid& grid, const Cluster& cluster, const ClusterSample& at, const glm::vec3& x) {
+  const glm::vec3 from = x - cluster.middle;
+  const auto dot = [&](const glm::vec3& n) { return (from.x * n.x + from.y * n.y) + from.z * n.z; };
+  const float w = at.in_grid.z - dot(grid.axis), q = at.height / w;
+  const float far = glm::length(from) * 1.0001F + at.far;
+  if (!(w > 64 * kRound * far)) return {};
+  const glm::vec2 place = at.foot + q * glm::vec2(dot(grid.across) - at.in_grid.x, dot(grid.along) - at.in_grid.y);
+  const float from_foot = glm::length(place - at.foot);
+  return {place, far / w * (at.on_grid.per_way + at.on_grid.per_reach * from_foot) + at.on_grid.per_foot * from_foot +
+                     at.on_grid.fixed};
+}
 
 /// One view sample under a light, and a point whose place on the light is asked for.
 class BoundX {
@@ -41,47 +59,20 @@ class BoundX {
     scene.lights.push_back(tests::rectangle_light(offset + glm::dvec3(3 * real(), 1 + 4 * next(), 3 * real()),
                                                   size * glm::dvec3(1, 0.3 * real(), 0.3 * real()),
                                                   size * glm::dvec3(0.5 * real(), 0.3 * real(), 1)));
-    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const visibility::Light light =
-        visibility::make_light(scene, 0, floats.origin, {64, 8, 8, visibility::SamplePattern::rows, 0});
-    const float scale = visibility::device_scale(floats);
-    const visibility::DeviceLight device_light = visibility::make_device_light(light, scale);
-    const auto scaled = [&](const glm::vec3& x) { return glm::dvec3(x) * static_cast<double>(scale); };
-    const LightGrid grid = make_light_grid({device_light,
-                                            {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
-                                            true,
-                                            light.rows,
-                                            light.columns,
-                                            0,
-                                            1,
-                                            visibility::reach_of(floats, device_light, scale),
-                                            0,
-                                            scale,
-                                            light.points});
-    visibility::ViewSamples samples;
-    samples.width = 2;
-    samples.height = 1;
-    for (int i = 0; i < 2; ++i) {
-      const glm::dvec3 at = glm::dvec3(floats.positions[0]) + patch * (vector() + glm::dvec3(1, 0, -1));
-      samples.triangle.push_back(0);
-      samples.p.emplace_back(at);
-      samples.n.emplace_back(0, 1, 0);
-      samples.depth.push_back(1);
-      samples.facing.push_back(1);
-    }
-    const std::vector<std::uint8_t> known(floats.triangles.size(), 1);
-    const ViewInput view{floats, samples, device_light, grid, known, scale};
-    std::array<GridSample, 2> view_samples;
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      if (classify(view, i, view_samples[i]) != SampleClass::in_front) return {};
-    }
-    const Cluster cluster = make_cluster(grid, view_samples);
-    const ClusterSample at = complete(grid, cluster, view_samples[0]);
+    tests::UnderALight under(scene);
+    const auto near = [&] {
+      return glm::vec3(glm::dvec3(under.floats.positions[0]) + patch * (vector() + glm::dvec3(1, 0, -1)));
+    };
+    const glm::vec3 one = near(), other = near();
+    const auto placed = under.place({one, other});
+    if (!placed) return {};
+    const Cluster cluster = make_cluster(under.grid, *placed);
+    const ClusterSample at = complete(under.grid, cluster, placed->front());
     // A point over p, on the way to somewhere near the light.
-    const glm::dvec3 target = scaled(light.center) + 2 * real() * (scaled(light.center_u) - scaled(light.center)) +
-                              2 * real() * (scaled(light.center_v) - scaled(light.center));
-    const glm::vec3 x(glm::mix(glm::dvec3(at.p), target, 0.95 * next()));
-    return use_of(grid, cluster, at, x);
+    const glm::dvec3 center = under.scaled(under.light.center);
+    const glm::dvec3 target = center + 2 * real() * (under.scaled(under.light.center_u) - center) +
+                              2 * real() * (under.scaled(under.light.center_v) - center);
+    return use_of(under.grid, cluster, at, glm::vec3(glm::mix(glm::dvec3(at.p), target, 0.95 * next())));
   }
 
  private:
@@ -90,14 +81,8 @@ class BoundX {
   glm::dvec3 vector() { return numbers_.vector(); }
 
   static Use use_of(const LightGrid& grid, const Cluster& cluster, const ClusterSample& at, const glm::vec3& x) {
-    // As the tables and Projection compute it: one order, nothing fused.
-    const glm::vec3 from = x - cluster.middle;
-    const auto dot = [&](const glm::vec3& n) { return (from.x * n.x + from.y * n.y) + from.z * n.z; };
-    const float w = at.in_grid.z - dot(grid.axis), q = at.height / w;
-    const float far = glm::length(from) * 1.0001F + at.far;
-    if (!(w > 64 * kRound * far)) return {};
-    const glm::vec2 place_on_light =
-        at.foot + q * glm::vec2(dot(grid.across) - at.in_grid.x, dot(grid.along) - at.in_grid.y);
+    const Appears computed = appears(grid, cluster, at, x);
+    if (computed.bound == 0) return {};
     // The light's plane and axes are those of the stored points (LightGrid::axes, exact up to 2⁻⁵³).
     const auto exact_dot = [](const glm::dvec3& n, const Exact& d) { return n.x * d.x + n.y * d.y + n.z * d.z; };
     const Exact p(at.p), way = Exact(x) - p, to_p = p - Exact(grid.corner);
@@ -106,10 +91,8 @@ class BoundX {
     for (int axis = 0; axis < 2; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
       const long double place = exact_dot(grid.axes[i], to_p) + height / over * exact_dot(grid.axes[i], way) - 0.5L;
-      const float from_foot = glm::length(place_on_light - at.foot);
-      const double bound = far / w * (at.on_grid.per_way + at.on_grid.per_reach * from_foot) +
-                           at.on_grid.per_foot * from_foot + at.on_grid.fixed;
-      const auto error = static_cast<double>(std::abs(static_cast<long double>(place_on_light[axis]) - place));
+      const auto error = static_cast<double>(std::abs(static_cast<long double>(computed.at[axis]) - place));
+      const auto bound = static_cast<double>(computed.bound);
       if (error / bound > worst.of_bound) worst = {error / bound, error, bound};
     }
     return worst;
@@ -124,8 +107,87 @@ TEST(VectorBounds, PlacesOfPointsOnTheLight) {
       BoundX(tests::most_used(random, 20000, [](const tests::Numbers& x) { return BoundX(x)().of_bound; }))();
   fmt::print("X: {:.1f} % of the bound used (off by {:.2e} cells, allowed {:.2e})\n", 100 * most.of_bound, most.error,
              most.bound);
+  RecordProperty("percent_of_bound_X", fmt::format("{:.1f}", 100 * most.of_bound));
   EXPECT_LT(most.of_bound, 1);
   EXPECT_GT(most.of_bound, 0.02) << "a bound that is never used is no bound of this error";
+}
+
+/// One view sample under a light, and a triangle of which an edge passes one of the light samples within rounding.
+class AimedCrossing {
+ public:
+  explicit AimedCrossing(tests::Numbers numbers) {
+    const double away = std::exp2(3 * numbers.next()), size = std::exp2(-5 * numbers.next());
+    const glm::dvec3 offset = away * numbers.vector(),
+                     over(3 * numbers.real(), 1 + 4 * numbers.next(), 3 * numbers.real());
+    tests::add_object(scene_, "floor",
+                      {{offset + glm::dvec3(-1, 0, 1), offset + glm::dvec3(1, 0.3, 0), offset + glm::dvec3(0, 0, -1)}});
+    tests::add_object(scene_, "anchor", {{glm::dvec3(-32), glm::dvec3(32, 32, -32), glm::dvec3(32)}}).casts_shadow =
+        false;
+    scene_.lights.push_back(tests::rectangle_light(offset + over,
+                                                   size * glm::dvec3(1, 0.3 * numbers.real(), 0.3 * numbers.real()),
+                                                   size * glm::dvec3(0.5 * numbers.real(), 0.3 * numbers.real(), 1)));
+    p_ = glm::vec3(offset + glm::dvec3(0, 0.1, 0));
+    // The light samples are those of the scene without the triangle: nothing of it is beyond the anchor.
+    const tests::UnderALight without(scene_);
+    sample_ = std::min(static_cast<std::uint32_t>(64 * numbers.next()), 63U);
+    const std::array triangle =
+        tests::triangle_at(glm::dvec3(p_), glm::dvec3(without.light.points[sample_]), 2 * size, numbers);
+    edge_ = {glm::vec3(triangle[0]), glm::vec3(triangle[1])};
+    tests::add_object(scene_, "caster", {triangle});
+    under_.emplace(scene_);
+    is_placed_ = under_->floats.origin == glm::dvec3(0) && under_->place({p_}).has_value();
+  }
+
+  /// From the light sample to the crossing; nothing where the edge is not well above p.
+  [[nodiscard]] tests::Rounded crossing() {
+    if (!is_placed_) return {};
+    const std::vector<GridSample> placed = *under_->place({p_});
+    const LightGrid& grid = under_->grid;
+    const Cluster cluster = make_cluster(grid, placed);
+    const ClusterSample at = complete(grid, cluster, placed[0]);
+    const std::array ends{appears(grid, cluster, at, edge_[0] * under_->scale),
+                          appears(grid, cluster, at, edge_[1] * under_->scale)};
+    if (ends[0].bound == 0 || ends[1].bound == 0) return {};
+    const visibility::Light& light = under_->light;
+    const std::uint32_t row = sample_ / light.columns, column = sample_ % light.columns;
+    const glm::dvec3 step =
+        (glm::dvec3(light.center_u) - glm::dvec3(light.center)) * (2.0 / static_cast<double>(light.columns));
+    return tests::crossing_as_rounded({{ends[0].at, ends[1].at}, {ends[0].bound, ends[1].bound}}, grid.half_cells,
+                                      {static_cast<float>(row), static_cast<float>(column), grid.shift[row]},
+                                      tests::exact_crossing(p_, light.points[sample_], edge_, step));
+  }
+
+  [[nodiscard]] const tests::UnderALight& under() const { return *under_; }
+
+ private:
+  scenes::Scene scene_;
+  glm::vec3 p_{0};
+  std::uint32_t sample_ = 0;
+  std::array<glm::vec3, 2> edge_{};
+  std::optional<tests::UnderALight> under_;
+  bool is_placed_ = false;
+};
+
+class VectorCrossings : public tests::DeviceTest {};
+
+/// Every bit, where the place of a crossing as computed is on another side of a light sample than the crossing, by as
+/// much of the bound as can be found.
+TEST_F(VectorCrossings, OnTheWrongSideOfALightSample) {
+  const auto method = volumes::make_edge_scatter(device(), {{"engine", "native"}});
+  double used = 0;
+  for (std::uint32_t seed = 0; seed < 8; ++seed) {
+    std::mt19937 random(seed);
+    AimedCrossing aimed(tests::most_used(
+        random, 1500, [](const tests::Numbers& numbers) { return AimedCrossing(numbers).crossing().far_wrong(); }));
+    used = std::max(used, aimed.crossing().wrong());
+    const tests::UnderALight& under = aimed.under();
+    const tests::Masks masks = tests::run(*method, under.floats, under.light, under.samples);
+    EXPECT_TRUE(equals_truth(under.floats, under.light, under.samples, masks)) << "seed " << seed;
+  }
+  fmt::print("crossings: {:.1f} % of the bound used\n", 100 * used);
+  RecordProperty("percent_of_bound_crossing", fmt::format("{:.1f}", 100 * used));
+  EXPECT_LT(used, 1);
+  EXPECT_GT(used, 0.02) << "planted_faults cuts it to less";
 }
 
 }  // namespace

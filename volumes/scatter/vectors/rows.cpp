@@ -227,17 +227,17 @@ bool RowSum::cut_to_window(Ways& ways) {
   return true;
 }
 
-void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
+std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
   const int k = multiplicity(leaf, lane);
-  if (k == 0 || is_open_) return;
+  if (k == 0 || is_open_) return std::nullopt;
   Ways ways = ways_of(leaf, lane, ends);
-  if (!cut_to_window(ways)) return;
+  if (!cut_to_window(ways)) return std::nullopt;
   const auto& [a, b] = ways;
   const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
                error_up = std::max(a.error_up, b.error_up);
   if (!(lowest > 8 * error_up)) {  // it passes through p within rounding
     is_open_ = true;
-    return;
+    return std::nullopt;
   }
   const glm::dvec2 place_a = height_ / a.to.z * glm::dvec2(a.to), place_b = height_ / b.to.z * glm::dvec2(b.to);
   const double far = std::max(std::abs(place_a.x) + std::abs(place_a.y), std::abs(place_b.x) + std::abs(place_b.y));
@@ -245,7 +245,11 @@ void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
   const double off = 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
                           8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
   const glm::dvec2 from = foot_ + place_a, to = foot_ + place_b;
-  add({from.x, from.y, to.x, to.y, k}, off);
+  return Placed{{from.x, from.y, to.x, to.y, k}, off};
+}
+
+void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
+  if (const std::optional<Placed> placed = place(leaf, lane, ends)) add(placed->edge, placed->error);
 }
 
 /// `error`: of where its ends appear.

@@ -40,8 +40,14 @@ class RowSum {
   RowSum(const LightGrid& grid, const LightRegion& region, const visibility::SceneFloats& scene, float scale);
 
   void set_view_sample(const GridSample& at);
+  /// Where an edge appears on the light, or in a window of about twice the light what of it does.
+  struct Placed {
+    RowEdge edge;
+    double error = 0;  ///< no end is farther off, along either axis (bound place)
+  };
   /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
-  /// off by what float rounds.
+  /// off by what float rounds. Nothing: it changes nothing on the light, or is_open().
+  [[nodiscard]] std::optional<Placed> place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
   void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
   /// Rounding hides on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
@@ -74,7 +80,6 @@ class RowSum {
   [[nodiscard]] bool may_pass_p(const Ways& ways) const;
   [[nodiscard]] bool cut_to_window(Ways& ways);
   void add(RowEdge edge, double error);
-
   void add_outline();
 
   const LightGrid& grid_;
