@@ -33,6 +33,7 @@ struct LatticeRun {
   std::uint32_t count = 1;
   bool any_light = true;
   std::uint32_t first = 0;
+  std::uint64_t* open = nullptr;  ///< gets how many pairs more the method left to exact predicates, if given
 };
 
 /// A method for each layout of light samples: a method that is given another layout compiles its kernels again.
@@ -64,8 +65,10 @@ inline PairCounts expect_lattice_truth(MethodsByLayout& methods, const LatticeRu
     const visibility::Light rows = visibility::make_light(scene, 0, floats.origin, request);
     const visibility::ViewSamples samples = all_samples(scene, floats, soup.random());
     const visibility::Light light = i % 3 == 0 || !run_of.any_light ? rows : scattered(rows, i % 3 == 2);
-    const Masks masks = run(methods.of(light), floats, light, samples);
+    visibility::Method& method = methods.of(light);
+    const Masks masks = run(method, floats, light, samples);
     EXPECT_TRUE(equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed << " range " << run_of.range;
+    if (run_of.open != nullptr) *run_of.open += method.counters()["openPairs"];
   }
   return counts;
 }

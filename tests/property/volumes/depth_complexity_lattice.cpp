@@ -15,12 +15,29 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-class DepthLattice : public tests::DeviceTest, public testing::WithParamInterface<int> {};
+/// `most_open`: the share of pairs that may be left to exact predicates: 40.7, 22.8 and 14.5 % when this was written,
+/// where 22.8, 14.1 and 7.8 % of the pairs had a predicate that is zero.
+struct DepthRange {
+  int range;
+  double most_open;
+};
+std::ostream& operator<<(std::ostream& out, const DepthRange& of) {
+  return out << of.range;
+}
+class DepthLattice : public tests::DeviceTest, public testing::WithParamInterface<DepthRange> {};
 TEST_P(DepthLattice, EveryPairIsTheExactDecision) {
   tests::MethodsByLayout methods([&] { return make_depth_complexity(device(), {}); });
-  tests::expect_all_kinds(tests::expect_lattice_truth(methods, {GetParam(), 12}));
+  std::uint64_t open = 0;
+  const PairCounts counts = tests::expect_lattice_truth(methods, {GetParam().range, 12, true, 0, &open});
+  tests::expect_all_kinds(counts);
+  const double share = static_cast<double>(open) / static_cast<double>(counts.pairs);
+  fmt::print("{} of {} pairs open, {:.1f} %; {} with a zero\n", open, counts.pairs, 100 * share, counts.zero);
+  RecordProperty("percent_open", fmt::format("{:.1f}", 100 * share));
+  EXPECT_LT(share, GetParam().most_open);
 }
-INSTANTIATE_TEST_SUITE_P(Range, DepthLattice, testing::Values(1, 2, 4));
+INSTANTIATE_TEST_SUITE_P(Range, DepthLattice,
+                         testing::Values(DepthRange{1, 0.45}, DepthRange{2, 0.26}, DepthRange{4, 0.17}),
+                         [](const auto& it) { return std::to_string(it.param.range); });
 
 /// Without the validation layer, which takes most of the time.
 class DepthLatticeFull : public testing::TestWithParam<int> {};
@@ -29,9 +46,10 @@ TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
   const render::Device device(render::DeviceOptions{});
   tests::MethodsByLayout methods([&] { return make_depth_complexity(device, {}); });
   PairCounts counts;
+  std::uint64_t open = 0;
   for (std::uint32_t done = 0; done < kSoups && !HasFailure(); done += kAtOnce) {
-    counts += tests::expect_lattice_truth(methods, {GetParam(), kAtOnce, true, done});
-    fmt::print("range {}: {} soups, {} pairs\n", GetParam(), done + kAtOnce, counts.pairs);
+    counts += tests::expect_lattice_truth(methods, {GetParam(), kAtOnce, true, done, &open});
+    fmt::print("range {}: {} soups, {} pairs, {} of them open\n", GetParam(), done + kAtOnce, counts.pairs, open);
     std::fflush(stdout);
   }
   tests::expect_all_kinds(counts);
