@@ -25,16 +25,16 @@ struct UnderALight {
         scale(visibility::device_scale(floats)),
         device_light(visibility::make_device_light(light, scale)),
         grid(vectors::make_light_grid({device_light,
-                                      {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
-                                      true,
-                                      cells,
-                                      cells,
-                                      0,
-                                      1,
-                                      visibility::reach_of(floats, device_light, scale),
-                                      0,
-                                      scale,
-                                      light.points})) {}
+                                       {scaled(light.center), scaled(light.center_u), scaled(light.center_v)},
+                                       true,
+                                       cells,
+                                       cells,
+                                       0,
+                                       1,
+                                       visibility::reach_of(floats, device_light, scale),
+                                       0,
+                                       scale,
+                                       light.points})) {}
 
   [[nodiscard]] glm::dvec3 scaled(const glm::vec3& x) const { return glm::dvec3(x) * static_cast<double>(scale); }
 
