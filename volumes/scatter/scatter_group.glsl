@@ -3,18 +3,23 @@
 // The box of the group's view samples in each frame that edges are tested in.
 struct GroupBounds {
   vec3 middle, half_size;
+  vec3 in_grid_low, in_grid_high;                         // (across, along, axis) · (p - middle)
   vec2 foot_low, foot_high;
-  float height_low, height_high, away;
+  float height_high, away;
 };
+
+vec3 grid_way(vec3 d) { return vec3(dot(across, d), dot(along, d), dot(axis, d)); }
 
 GroupBounds bounds_of_group(bool on) {
   GroupBounds g;
   const vec3 lower = subgroupMin(on ? at.p : vec3(1e30)), upper = subgroupMax(on ? at.p : vec3(-1e30));
   g.middle = 0.5 * lower + 0.5 * upper;
   g.half_size = (0.5 * upper - 0.5 * lower) * (1.0 + 8.0 * kRound);
+  const vec3 in_grid = grid_way(at.p - g.middle);
+  g.in_grid_low = subgroupMin(on ? in_grid : vec3(1e30));
+  g.in_grid_high = subgroupMax(on ? in_grid : vec3(-1e30));
   g.foot_low = subgroupMin(on ? at.foot : vec2(1e30));
   g.foot_high = subgroupMax(on ? at.foot : vec2(-1e30));
-  g.height_low = subgroupMin(on ? at.height : 1e30);
   g.height_high = subgroupMax(on ? at.height : 0.0);
   g.away = subgroupMax(on ? length(from_center) : 0.0);
   return g;
@@ -22,6 +27,8 @@ GroupBounds bounds_of_group(bool on) {
 
 // Where x appears on the light for any view sample of the group: lower and upper (X, Y), if `bounded`. With h the height
 // of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so the corners bound it.
+// X − foot and H − h are ways, taken from the group's middle: h / (H − h) may be thousands, and feet are rounded over the
+// light.
 struct Range {
   vec2 low, high;
   bool bounded;
@@ -30,11 +37,12 @@ struct Range {
 Range range_of(vec3 x, GroupBounds g) {
   const vec3 from = x - push.center;
   const vec2 above = vec2(dot(across, from), dot(along, from)) + first_cell;
-  const float h = dot(axis, from), w_low = g.height_low - h, w_high = g.height_high - h;
+  const vec3 way = grid_way(x - g.middle);
+  const float h = dot(axis, from), w_low = g.in_grid_low.z - way.z, w_high = g.in_grid_high.z - way.z;
   Range range;
   range.bounded = w_low > 0.25 * w_high && w_low > 256.0 * kRound * push.reach;
   const float at_low = h / w_low, at_high = h / w_high;
-  const vec2 e0 = above - g.foot_high, e1 = above - g.foot_low;
+  const vec2 e0 = way.xy - g.in_grid_high.xy, e1 = way.xy - g.in_grid_low.xy;
   const vec2 p0 = e0 * at_low, p1 = e0 * at_high, p2 = e1 * at_low, p3 = e1 * at_high;
   const vec2 low = above + min(min(p0, p1), min(p2, p3)), high = above + max(max(p0, p1), max(p2, p3));
   const float far = length(x - g.middle) + length(g.half_size);
