@@ -4,41 +4,85 @@
 #include "render/bindings.hpp"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
 
 namespace penumbra::render {
 
-struct ComputePass::State {
-  Device::State* device = nullptr;
-  std::string name;
-  Bindings bindings;
-  vk::raii::Pipeline pipeline{nullptr};
+struct ComputePipelines {
+  /// What a pipeline is made from.
+  struct Key {
+    std::string name;
+    std::vector<std::uint32_t> constants;
+    bool full_subgroups = false;
+    std::vector<std::uint32_t> spirv;
+    bool operator<(const Key& other) const {
+      return std::tie(name, constants, full_subgroups, spirv) <
+             std::tie(other.name, other.constants, other.full_subgroups, other.spirv);
+    }
+  };
+  struct One {
+    std::uint32_t push_bytes = 0;
+    Bindings bindings;
+    vk::raii::Pipeline pipeline{nullptr};
+  };
+  std::map<Key, One> made;
 };
 
-ComputePass::ComputePass(const Device& device, const ComputePassOptions& options) try
-    : state_(std::make_unique<State>()) {
-  State& s = *state_;
-  s.device = &device.state();
-  s.name = options.name;
-  const ShaderInterface shader = reflect(options.spirv, options.name);
-  PENUMBRA_ASSERT(shader.push_bytes == options.push_bytes, "{}: the shader's push constants have {} bytes, C++'s {}",
-                  s.name, shader.push_bytes, options.push_bytes);
-  s.bindings = Bindings(*s.device, s.name, shader, vk::ShaderStageFlagBits::eCompute);
+namespace {
 
-  const vk::raii::Device& d = s.device->device;
+ComputePipelines::One make_pipeline(const Device& device, const ComputePassOptions& options) {
+  Device::State& state = device.state();
+  ComputePipelines::One made;
+  const ShaderInterface shader = reflect(options.spirv, options.name);
+  made.push_bytes = shader.push_bytes;
+  made.bindings = Bindings(state, options.name, shader, vk::ShaderStageFlagBits::eCompute);
+
+  const vk::raii::Device& d = state.device;
   const SpecializationConstants constants(options.constants);
   const vk::raii::ShaderModule module(d,
                                       vk::ShaderModuleCreateInfo({}, options.spirv.size_bytes(), options.spirv.data()));
   const vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup(device.limits().subgroup_size);
   const auto properties =
-      s.device->physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan13Properties>()
+      state.physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan13Properties>()
           .get<vk::PhysicalDeviceVulkan13Properties>();
   // A device whose subgroup size varies is pinned to the one that Limits states; one whose size is fixed need not be.
   const bool pin = options.full_subgroups && properties.minSubgroupSize != properties.maxSubgroupSize &&
                    (properties.requiredSubgroupSizeStages & vk::ShaderStageFlagBits::eCompute);
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", constants.get(),
                                                 pin ? &subgroup : nullptr);
-  s.pipeline = vk::raii::Pipeline(d, s.device->cache, vk::ComputePipelineCreateInfo({}, stage, s.bindings.layout()));
-  s.device->name(s.pipeline, s.name);
+  made.pipeline = vk::raii::Pipeline(d, state.cache, vk::ComputePipelineCreateInfo({}, stage, made.bindings.layout()));
+  state.name(made.pipeline, options.name);
+  return made;
+}
+
+/// The device's own, made if it has none. Drivers compile for a long time (on processors for tenths of a second), and a
+/// method is made again for every run of an error budget.
+const ComputePipelines::One& pipeline_of(const Device& device, const ComputePassOptions& options) {
+  auto& kept = device.state().compute_pipelines;
+  if (!kept) kept = {new ComputePipelines, [](ComputePipelines* all) { delete all; }};
+  ComputePipelines::Key key{
+      options.name, options.constants, options.full_subgroups, {options.spirv.begin(), options.spirv.end()}};
+  const auto found = kept->made.find(key);
+  if (found != kept->made.end()) return found->second;
+  return kept->made.emplace(std::move(key), make_pipeline(device, options)).first->second;
+}
+
+}  // namespace
+
+struct ComputePass::State {
+  Device::State* device = nullptr;
+  std::string name;
+  const ComputePipelines::One* pipeline = nullptr;
+};
+
+ComputePass::ComputePass(const Device& device, const ComputePassOptions& options) try
+    : state_(std::make_unique<State>(
+          State{.device = &device.state(), .name = options.name, .pipeline = &pipeline_of(device, options)})) {
+  PENUMBRA_ASSERT(state_->pipeline->push_bytes == options.push_bytes,
+                  "{}: the shader's push constants have {} bytes, C++'s {}", options.name, state_->pipeline->push_bytes,
+                  options.push_bytes);
 } catch (const vk::SystemError& error) {
   fail(error, fmt::format("building the pass {}", options.name));
 }
@@ -53,8 +97,8 @@ void ComputePass::record(Commands& commands, std::span<const std::byte> push, Bu
   if (groups == 0) return;
   Commands::State& c = commands.state();
   c.open_pass(s.name);
-  s.bindings.bind(c, vk::PipelineBindPoint::eCompute, push, buffers);
-  c.commands.bindPipeline(vk::PipelineBindPoint::eCompute, *s.pipeline);
+  s.pipeline->bindings.bind(c, vk::PipelineBindPoint::eCompute, push, buffers);
+  c.commands.bindPipeline(vk::PipelineBindPoint::eCompute, *s.pipeline->pipeline);
   const std::uint64_t limit = std::min<std::uint64_t>(s.device->limits.max_workgroup_count, 65535);
   const std::uint64_t y = (groups + limit - 1) / limit;
   const std::uint64_t x = (groups + y - 1) / y;

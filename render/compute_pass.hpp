@@ -23,6 +23,7 @@ struct ComputePassOptions {
 
 /// A compute pipeline whose bindings (set 0, storage and uniform texel buffers, binding 0 … n−1) and push-constant size
 /// are read from its SPIR-V and checked when it is built and when it is recorded. Records only: no allocation, no wait.
+/// The device keeps its pipeline: another pass made from the same is made at once.
 class ComputePass {
  public:
   ComputePass(const Device& device, const ComputePassOptions& options);

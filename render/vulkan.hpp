@@ -25,6 +25,9 @@ struct ValidationLog {
   std::vector<std::string> messages;
 };
 
+/// The compute pipelines that a device made and keeps (compute_pass.cpp).
+struct ComputePipelines;
+
 struct Device::State {
   std::unique_ptr<ValidationLog> log;
   vk::raii::Context context;
@@ -46,6 +49,7 @@ struct Device::State {
   bool debug_names = false;
   bool abandoned = false;  // see abandon()
   std::unique_ptr<opengl::Context> opengl;
+  std::unique_ptr<ComputePipelines, void (*)(ComputePipelines*)> compute_pipelines{nullptr, nullptr};
 
   void account(std::int64_t bytes) {
     allocated = static_cast<std::uint64_t>(static_cast<std::int64_t>(allocated) + bytes);
