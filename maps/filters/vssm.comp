@@ -58,22 +58,25 @@ float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
   return box.inside * sum / float(count.x * count.y) + (1.0 - box.inside);
 }
 
-// The share of the window that is lit; `blocker` the mean height of what is not, in t.
-float lit_share(LightView view, Box box, float t, uint s, out float blocker) {
-  // Lauritzen and McCool 2008: the layer that holds t knows nothing of heights beside it.
+// The share of the window that is lit; if `search`, `blocker` is the mean height of what is not, in t.
+float lit_share(LightView view, Box box, float t, uint s, bool search, out float blocker) {
+  // Lauritzen and McCool 2008: the layer that holds t knows nothing of heights beside it. One layer's mean is that of t.
   const float layers = float(own.count);
   const uint layer = kModel == kVariance ? min(uint(t * layers), own.count - 1) : 0;
-  const uint count = kModel == kVariance ? 3 : kModel == kExpVariance ? 5 : kModel == kFourier ? 4 * own.count + 1 : 2;
+  const uint of_lit = kModel == kVariance ? 2 : kModel == kExpVariance ? 4 : kModel == kFourier ? 2 * own.count : 1;
+  const uint of_heights = kModel == kVariance && own.count == 1 ? 0 : kModel == kFourier ? 2 * own.count + 1 : 1;
+  const uint count = of_lit + (search ? of_heights : 0);
 
-  float mean[5];
+  float mean[5] = float[](0.0, 0.0, 0.0, 0.0, 0.0);
   float lit = 0.5, blockers = 0.0;  // kFourier
-  for (uint i = 0; i < count; ++i) {
+  for (uint k = 0; k < count; ++k) {
+    const uint i = kModel == kFourier && !search ? k / 2 * 4 + k % 2 : k;
     uint function = i;
-    if (kModel == kVariance) function = i < 2 ? 2 * layer + i : own.count == 1 ? 0 : 2 * own.count;  // the last is t
+    if (kModel == kVariance) function = i < 2 ? 2 * layer + i : 2 * own.count;  // the last is t
     const float found = mean_over(function, box, log2_scale(i, t));
     if (kModel != kFourier) {
       mean[i] = found;
-    } else if (i == count - 1) {
+    } else if (i == 4 * own.count) {
       blockers += 0.5 * found;
     } else {
       // Annen et al. 2007 (Eisemann et al. 2009, equation 4.6): lit = 1/2 + 2 sum of sin(c_k (t_q - t)) / c_k, with heights
@@ -96,7 +99,7 @@ float lit_share(LightView view, Box box, float t, uint s, out float blocker) {
   } else if (kModel == kVariance) {
     const float off = mean[0] - 0.5, variance = mean[1] - off * off;
     lit = chebyshev(mean[0], max(variance, kLeastVariance * layers * layers), t * layers - float(layer));
-    height = mean[2];
+    height = own.count == 1 ? mean[0] : mean[2];
   } else if (kModel == kExpVariance) {
     const float least = kLeastVariance * own.exponent * own.exponent;
     lit = min(chebyshev(mean[0], max(mean[1] - mean[0] * mean[0], least), 1.0),
@@ -129,7 +132,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   float z = min(max(nearest[s], frame.smallest_near), height), lit = 1.0;
   for (uint window = 0; window < 2; ++window) {
     float blocker;
-    lit = lit_share(view, box_through(view, d, frame.half_box, z), t, s, blocker);
+    lit = lit_share(view, box_through(view, d, frame.half_box, z), t, s, window == 0, blocker);
     if (window == 0 && lit >= 1.0) return horizon;
     z = clamp(low + blocker * (high - low), nearest[s], height);
   }
