@@ -13,11 +13,34 @@ Code code_of(std::size_t factor, std::size_t value) {
   return static_cast<Code>(factor) << 10U | static_cast<Code>(value + 1);
 }
 constexpr unsigned kBits = 20;
+constexpr std::size_t factor_of(Code code) {
+  return static_cast<std::size_t>(code >> 10U & 1023U);
+}
 
-/// Calls `visit(code)` for each combination of `strength` chosen values; given `with`, only for those that contain this
-/// factor.
+bool apart(const Factor& a, const Factor& b) {
+  return !a.group.empty() && !b.group.empty() && a.group != b.group;
+}
+
+/// Which factors are in two groups, asked once.
+class Pairs {
+ public:
+  explicit Pairs(const std::vector<Factor>& factors) : count_(factors.size()) {
+    for (const Factor& a : factors) {
+      for (const Factor& b : factors) wanted_.push_back(!apart(a, b));
+    }
+  }
+  [[nodiscard]] bool wanted(std::size_t a, std::size_t b) const { return wanted_[a * count_ + b]; }
+
+ private:
+  std::size_t count_;
+  std::vector<bool> wanted_;
+};
+
+/// Calls `visit(code)` for each wanted combination of `strength` chosen values; given `with`, only for
+/// those that contain this factor.
 template <typename Visit>
-void for_each_combination(const Choices& row, std::size_t strength, std::optional<std::size_t> with, Visit visit) {
+void for_each_combination(const Pairs& pairs, const Choices& row, std::size_t strength, std::optional<std::size_t> with,
+                          Visit visit) {
   const auto has = [&](std::size_t i) { return row[i].has_value(); };
   const auto wanted = [&](std::size_t a, std::size_t b, std::size_t c) {
     return !with || *with == a || *with == b || *with == c;
@@ -25,14 +48,15 @@ void for_each_combination(const Choices& row, std::size_t strength, std::optiona
   for (std::size_t a = 0; a < row.size(); ++a) {
     if (!has(a)) continue;
     for (std::size_t b = a + 1; b < row.size(); ++b) {
-      if (!has(b)) continue;
+      if (!has(b) || !pairs.wanted(a, b)) continue;
       const Code two = code_of(a, *row[a]) << kBits | code_of(b, *row[b]);
       if (strength == 2) {
         if (wanted(a, b, b)) visit(two);
         continue;
       }
       for (std::size_t c = b + 1; c < row.size(); ++c) {
-        if (has(c) && wanted(a, b, c)) visit(two << kBits | code_of(c, *row[c]));
+        if (!has(c) || !pairs.wanted(a, c) || !pairs.wanted(b, c)) continue;
+        if (wanted(a, b, c)) visit(two << kBits | code_of(c, *row[c]));
       }
     }
   }
@@ -50,7 +74,7 @@ bool choose(const std::vector<Factor>& factors, std::size_t factor, std::size_t 
 class Generator {
  public:
   Generator(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed)
-      : factors_(factors), strength_(strength), allowed_(allowed) {
+      : factors_(factors), pairs_(factors), strength_(strength), allowed_(allowed) {
     for (const Factor& factor : factors) used_.emplace_back(factor.values.size(), 0);
     Choices row(factors.size());
     collect(row, 0, strength);
@@ -77,6 +101,7 @@ class Generator {
       return;
     }
     for (std::size_t factor = first; factor < factors_.size(); ++factor) {
+      if (!goes_with(row, factor)) continue;
       for (std::size_t value = 0; value < factors_[factor].values.size(); ++value) {
         Choices more = row;
         more[factor] = value;
@@ -85,13 +110,20 @@ class Generator {
     }
   }
 
+  [[nodiscard]] bool goes_with(const Choices& row, std::size_t factor) const {
+    for (std::size_t i = 0; i < factor; ++i) {
+      if (row[i] && !pairs_.wanted(i, factor)) return false;
+    }
+    return true;
+  }
+
   void add(const Choices& combination) {
     Choices seed = combination;
     for (std::size_t factor = 0; factor < seed.size(); ++factor) {
       if (combination[factor] && !choose(factors_, factor, *combination[factor], seed)) return;
     }
     if (!allowed_(seed)) return;
-    for_each_combination(combination, strength_, {}, [&](Code code) {
+    for_each_combination(pairs_, combination, strength_, {}, [&](Code code) {
       wanted_.emplace_back(seed, code);
       open_.insert(code);
     });
@@ -120,7 +152,7 @@ class Generator {
       row[factor] = value;
       if (!allowed_(row)) continue;
       std::size_t gain = 0;
-      for_each_combination(row, strength_, factor, [&](Code code) { gain += open_.contains(code) ? 1 : 0; });
+      for_each_combination(pairs_, row, strength_, factor, [&](Code code) { gain += open_.contains(code) ? 1 : 0; });
       const std::pair<std::size_t, std::size_t> now{gain, SIZE_MAX - used_[factor][value]};
       if (best && now <= best_gain) continue;
       best = value;
@@ -130,13 +162,14 @@ class Generator {
   }
 
   void cover(const Choices& row) {
-    for_each_combination(row, strength_, {}, [&](Code code) { open_.erase(code); });
+    for_each_combination(pairs_, row, strength_, {}, [&](Code code) { open_.erase(code); });
     for (std::size_t factor = 0; factor < row.size(); ++factor) {
       if (row[factor]) ++used_[factor][*row[factor]];
     }
   }
 
   const std::vector<Factor>& factors_;
+  Pairs pairs_;
   std::size_t strength_;
   const Allowed& allowed_;
   std::vector<std::pair<Choices, Code>> wanted_;
@@ -153,6 +186,23 @@ std::vector<Choices> covering_array(const std::vector<Factor>& factors, std::siz
 std::size_t uncovered_combinations(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,
                                    const std::vector<Choices>& rows) {
   return Generator(factors, strength, allowed).without(rows);
+}
+
+std::vector<std::set<std::string>> groups_with_news(const std::vector<Factor>& factors, std::size_t strength,
+                                                    const std::vector<Choices>& rows) {
+  const Pairs pairs(factors);
+  std::unordered_set<Code> seen;
+  std::vector<std::set<std::string>> news(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for_each_combination(pairs, rows[i], strength, {}, [&](Code code) {
+      if (!seen.insert(code).second) return;
+      for (Code rest = code; rest != 0; rest >>= kBits) {
+        const std::string& group = factors[factor_of(rest)].group;
+        if (!group.empty()) news[i].insert(group);
+      }
+    });
+  }
+  return news;
 }
 
 }  // namespace penumbra::tests

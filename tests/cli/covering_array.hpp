@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@ struct Factor {
   /// The factor means something only where another factor has a certain value: (that factor's index, below this one's;
   /// the value's index).
   std::optional<std::pair<std::size_t, std::size_t>> only_if = {};
+  /// Combinations of factors of two groups are not wanted; a factor of no group goes with all.
+  std::string group = {};
 };
 
 /// A choice for each factor: an index into its values, or nothing where the factor means nothing.
@@ -24,12 +27,17 @@ using Choices = std::vector<std::optional<std::size_t>>;
 /// Says whether choices, some of which may still be open, can go together.
 using Allowed = std::function<bool(const Choices&)>;
 
-/// Rows in which every combination of values of any `strength` (2 or 3) factors occurs, if it is allowed by itself: a
-/// greedy covering array (Cohen et al., The AETG system, 1997). The rows are the same on every machine.
+/// Rows in which every wanted combination of values of any `strength` (2 or 3) factors occurs, if it is allowed by
+/// itself: a greedy covering array (Cohen et al., The AETG system, 1997). The rows are the same on every machine.
 std::vector<Choices> covering_array(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed);
 
 /// How many combinations no row has: none, unless an allowed combination cannot be completed to an allowed row.
 std::size_t uncovered_combinations(const std::vector<Factor>& factors, std::size_t strength, const Allowed& allowed,
                                    const std::vector<Choices>& rows);
+
+/// For each row the groups with a combination, of their factors and those of no group, that no row before it has: all
+/// combinations still occur if a row is tried for these groups alone.
+std::vector<std::set<std::string>> groups_with_news(const std::vector<Factor>& factors, std::size_t strength,
+                                                    const std::vector<Choices>& rows);
 
 }  // namespace penumbra::tests

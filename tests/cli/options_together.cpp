@@ -1,14 +1,23 @@
 // Options together: a covering array of all options of `render` and `compare`, and of all methods with their own
-// options. Other tests try each option alone; here any two (quick) or three (full) of them meet. The program itself is
-// asked what there is, so a new method or option is tried without a change here.
+// options. Other tests try each option alone; here any two (quick) or three (full) of them meet. Of the quick ones two
+// options of one method meet in `compare`, and each with what all methods have in `render` as well; options of two
+// methods meet in the full ones. The program itself is asked what there is, so a new method or option is tried without
+// a change here.
 
 #include "tests/cli/options_together.hpp"
+
+#include "app/options.hpp"
+#include "base/error.hpp"
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace penumbra::tests {
 namespace {
@@ -17,6 +26,7 @@ using nlohmann::json;
 using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::ThrowsMessage;
 
 constexpr std::size_t kParts = 8;  // tests that share the rows, so that they run side by side
 const char* const kOn = "on";
@@ -39,10 +49,12 @@ class OptionsTogether : public ProgramTest {
     for (const char* flag : {"bits", "png", "stats", "verbose"}) factors_.push_back({flag, {"", kOn}});
   }
 
-  void add_options_of(const json& method, std::optional<std::pair<std::size_t, std::size_t>> only_if) {
+  /// `group_of` says in which group a factor of this name is (Factor::group).
+  void add_options_of(const json& method, std::optional<std::pair<std::size_t, std::size_t>> only_if,
+                      const std::function<std::string(const std::string& factor)>& group_of) {
     for (const json& option : method.at("options")) {
-      factors_.push_back({method.at("name").get<std::string>() + "." + option.at("name").get<std::string>(),
-                          values_to_try(option), only_if});
+      const std::string factor = method.at("name").get<std::string>() + "." + option.at("name").get<std::string>();
+      factors_.push_back({factor, values_to_try(option), only_if, group_of(factor)});
     }
   }
 
@@ -107,12 +119,15 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
     for (const json& one : table_.all()) method.values.push_back(one.at("name"));
     factors_.push_back(method);
     const std::size_t of_method = factors_.size() - 1;
-    for (std::size_t i = 0; i < table_.all().size(); ++i) add_options_of(table_.all()[i], {{of_method, i + 1}});
+    const auto group_of = [&](const std::string& factor) { return strength == 2 ? factor : std::string(); };
+    for (std::size_t i = 0; i < table_.all().size(); ++i) {
+      add_options_of(table_.all()[i], {{of_method, i + 1}}, group_of);
+    }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
     const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
     EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows), 0U);
     RecordProperty("rows", static_cast<int>(rows.size()));
-    for_rows(factors_, rows, GetParam(), kParts, [&](const Row& row) { render(row); });
+    for (std::size_t i = GetParam(); i < rows.size(); i += kParts) render(Row(factors_, rows[i]));
   }
 
  private:
@@ -176,12 +191,28 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     factors_.push_back({"max-rmse", {"", "0", "2"}});
     factors_.push_back({"runs", {"1", "2"}});
     factors_.push_back({"twice", {"", kOn}});
-    for (const json& method : table_.all()) add_options_of(method, {});
+    for (const json& method : table_.all()) {
+      const std::string name = method.at("name"), group = strength == 2 ? name : "";
+      if (!group.empty()) factors_.push_back({name, {kOn}, {}, group});
+      add_options_of(method, {}, [&](const std::string& /*factor*/) { return group; });
+    }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
     const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
     EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows), 0U);
     RecordProperty("rows", static_cast<int>(rows.size()));
-    for_rows(factors_, rows, GetParam(), kParts, [&](const Row& row) { compare(row); });
+    // A method need not be in a row that tells nothing new of it.
+    const std::vector<std::set<std::string>> news = groups_with_news(factors_, strength, rows);
+    for (std::size_t i = GetParam(); i < rows.size(); i += kParts) {
+      const Row row(factors_, rows[i]);
+      std::set<std::string> methods = news[i];
+      if (strength > 2) {
+        for (const json& method : table_.all()) {
+          if (table_.can_do(method, scene_of(row), row["pattern"])) methods.insert(method.at("name"));
+        }
+      }
+      if (methods.empty()) methods = {"raytrace"};
+      compare(row, methods);
+    }
   }
 
  private:
@@ -193,7 +224,7 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
       const auto has_option = [&](const json& option) {
         return row.has(name + "." + option.at("name").get<std::string>());
       };
-      if (!std::ranges::any_of(method.at("options"), has_option)) continue;
+      if (!row.has(name) && !std::ranges::any_of(method.at("options"), has_option)) continue;
       const LitScene any{"", "", {}};
       const LitScene& scene = row.has("scene") ? scene_of(row) : any;
       if (!table_.can_do(method, scene, row["pattern"])) return false;
@@ -202,11 +233,11 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     return true;
   }
 
-  [[nodiscard]] std::string methods_of(const Row& row) const {
+  [[nodiscard]] std::string entries_of(const Row& row, const std::set<std::string>& methods) const {
     std::vector<std::string> entries;
     for (const json& method : table_.all()) {
-      if (!table_.can_do(method, scene_of(row), row["pattern"])) continue;
       auto entry = method.at("name").get<std::string>();
+      if (!methods.contains(entry)) continue;
       for (const auto& [key, value] : options_of(row, method)) entry += fmt::format(":{}={}", key, value);
       entries.push_back(entry);
     }
@@ -214,11 +245,11 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     return fmt::format("{}", fmt::join(entries, ","));
   }
 
-  void compare(const Row& row) {
+  void compare(const Row& row, const std::set<std::string>& methods) {
     std::filesystem::remove_all(path("out"));
     std::vector<std::string> arguments = common_arguments(row);
     arguments.insert(arguments.begin(), "compare");
-    arguments.insert(arguments.end(), {"-o", path("out"), "--methods", methods_of(row)});
+    arguments.insert(arguments.end(), {"-o", path("out"), "--methods", entries_of(row, methods)});
     for (const char* option : {"reference", "reference-samples", "sample-pixels", "max-rmse", "runs"}) {
       if (!row[option].empty()) arguments.insert(arguments.end(), {std::string("--") + option, row[option]});
     }
@@ -271,6 +302,7 @@ INSTANTIATE_TEST_SUITE_P(Part, CompareThree, testing::Range<std::size_t>(0, kPar
 /// What cannot be done is refused with a documented code and a reason, whatever is wrong with it.
 TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
   scenes_ = write_lit_scenes(folder_, false);
+  std::size_t tried = 0;
   for (const json& method : table_.all()) {
     const auto name = method.at("name").get<std::string>();
     for (const LitScene& scene : scenes_) {
@@ -284,16 +316,21 @@ TEST_F(OptionsTogether, WhatCannotBeIsRefused) {
       expect_exit(outcome, can ? testing::Matcher<int>(2) : testing::Matcher<int>(AnyOf(2, 3)));
       EXPECT_FALSE(std::filesystem::exists(path("a.exr")));
     }
+    // Of each option one wrong value is given to the program, and all of them to what it reads them with.
     for (const json& option : method.at("options")) {
       const std::string key = option.at("name");
-      for (const char* value : {"", "no such value", "-1", "1e400", "nan"}) {
-        const std::vector<std::string> arguments = {
-            "compare", scenes_[0].file, "-o", path("out"), "--methods", fmt::format("{}:{}={}", name, key, value)};
+      const std::vector<std::string> wrong = {"", "no such value", "-1", "1e400", "nan"};
+      for (std::size_t i = 0; i < wrong.size(); ++i) {
+        const std::string entry = fmt::format("{}:{}={}", name, key, wrong[i]);
+        EXPECT_THAT([&] { app::parse_methods(entry); }, ThrowsMessage<UsageError>(HasSubstr(key))) << entry;
+        if (i != tried % wrong.size()) continue;
+        const std::vector<std::string> arguments = {"compare", scenes_[0].file, "-o", path("out"), "--methods", entry};
         SCOPED_TRACE(text_of(arguments));
         const Outcome outcome = run(arguments);
         expect_exit(outcome, 2);
         EXPECT_THAT(outcome.err, HasSubstr(key));
       }
+      ++tried;
     }
   }
 }
@@ -316,6 +353,31 @@ TEST(CoveringArray, HasEveryAllowedCombination) {
     // The check itself can fail.
     EXPECT_GT(uncovered_combinations(factors, strength, allowed, {rows.begin(), rows.end() - 1}), 0U);
   }
+}
+
+// Two groups of two factors, and one that goes with both: each group's nine pairs and six with `all`, in as many rows
+// as one group needs, and a group that has been seen whole has no news.
+TEST(CoveringArray, LeavesCombinationsOfTwoGroupsOut) {
+  std::vector<Factor> factors = {{"all", {"0", "1"}}};
+  for (const char* group : {"one", "two"}) {
+    for (const char* name : {"x", "y"}) factors.push_back({std::string(group) + name, {"0", "1", "2"}, {}, group});
+  }
+  factors.push_back({"alone", {"0", "1"}, {}, "three"});
+  const Allowed any = [](const Choices& /*row*/) { return true; };
+  const std::vector<Choices> rows = covering_array(factors, 2, any);
+  EXPECT_EQ(uncovered_combinations(factors, 2, any, rows), 0U);
+  EXPECT_LT(rows.size(), 13U);
+  const auto news = groups_with_news(factors, 2, rows);
+  std::map<std::string, std::set<std::pair<std::size_t, std::size_t>>> seen;
+  std::size_t third = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (news[i].contains("one")) seen["one"].emplace(*rows[i][1], *rows[i][2]);
+    if (news[i].contains("two")) seen["two"].emplace(*rows[i][3], *rows[i][4]);
+    third += news[i].contains("three") ? 1 : 0;
+  }
+  EXPECT_EQ(seen["one"].size(), 9U);
+  EXPECT_EQ(seen["two"].size(), 9U);
+  EXPECT_EQ(third, 4U) << "2 x 2 with `all`";
 }
 
 }  // namespace

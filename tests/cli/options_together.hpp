@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -63,9 +62,5 @@ void expect_whole_png(const std::string& path);
 void expect_whole_bits(const std::string& path);
 void expect_sane_stats(const nlohmann::json& stats);
 void expect_sane_metrics(const nlohmann::json& metrics);
-
-/// Calls the test on the `part`-th of `parts` equal shares of the rows.
-void for_rows(const std::vector<Factor>& factors, const std::vector<Choices>& rows, std::size_t part, std::size_t parts,
-              const std::function<void(const Row&)>& test);
 
 }  // namespace penumbra::tests

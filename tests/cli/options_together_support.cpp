@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 
 namespace penumbra::tests {
@@ -255,11 +256,6 @@ void expect_sane_metrics(const json& metrics) {
     EXPECT_LE(count("pairsDecided"), count("pairsDiffering"));
     EXPECT_EQ(count("pairsDecided"), count("pairsMethodRight") + count("pairsReferenceRight"));
   }
-}
-
-void for_rows(const std::vector<Factor>& factors, const std::vector<Choices>& rows, std::size_t part, std::size_t parts,
-              const std::function<void(const Row&)>& test) {
-  for (std::size_t i = part; i < rows.size(); i += parts) test(Row(factors, rows[i]));
 }
 
 }  // namespace penumbra::tests
