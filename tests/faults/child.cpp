@@ -44,6 +44,20 @@ uid_t stranger() {
   return 1'000'000'000 + static_cast<uid_t>(::getpid()) * 100 + serial++ % 100;
 }
 
+/// What is added to the environment. A sanitizer is told of what it could not stand: a library that is loaded before
+/// it, and that it cannot start the process that looks for leaks at the end.
+std::map<std::string, std::string> additions(const Conditions& conditions) {
+  std::map<std::string, std::string> added = conditions.environment;
+  if (!kSanitized) return added;
+  const char* own = std::getenv("ASAN_OPTIONS");
+  std::string options = own == nullptr ? "" : own;
+  if (added.contains("LD_PRELOAD")) options += ":verify_asan_link_order=0";
+  if (std::ranges::any_of(conditions.limits, [](const Limit& limit) { return limit.resource == RLIMIT_NPROC; }))
+    options += ":detect_leaks=0";
+  added["ASAN_OPTIONS"] = options;
+  return added;
+}
+
 /// After fork: only calls that are safe there.
 void set_stream(Stream stream, int number, int captured) {
   switch (stream) {
@@ -77,7 +91,7 @@ bool is_documented(int code) {
 Running::Running(const Conditions& conditions) : timeout_(conditions.timeout) {
   std::vector<std::string> arguments = conditions.arguments;
   arguments.insert(arguments.begin(), PENUMBRA_PROGRAM);
-  std::vector<std::string> environment = environment_with(conditions.environment);
+  std::vector<std::string> environment = environment_with(additions(conditions));
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   std::array<int, 2> out{}, err{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe");

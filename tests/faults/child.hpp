@@ -16,8 +16,8 @@
 
 namespace penumbra::tests {
 
-/// Built with a sanitizer, which has needs of its own: address space by the terabyte, threads and pipes, and to be
-/// loaded before any other library. What takes these away says nothing about the program then.
+/// Built with a sanitizer, which has needs of its own: address space by the terabyte, a pipe to ask whether memory can
+/// be read, and to start the threads of libraries. What takes these away says nothing about the program then.
 #if defined(PENUMBRA_SHADOW_MEMORY)
 inline constexpr bool kSanitized = true;
 #else

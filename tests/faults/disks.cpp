@@ -27,9 +27,6 @@ std::ostream& operator<<(std::ostream& stream, const DiskFault& fault) {
 
 class DiskFaults : public FaultTest, public testing::WithParamInterface<DiskFault> {
  protected:
-  void SetUp() override {
-    if (kSanitized) GTEST_SKIP() << "a sanitizer has to come first, and so has the library that makes calls fail";
-  }
   [[nodiscard]] Conditions job() const {
     return {.arguments = {"render", path("scene.json"), "-o", path("out.exr"), "--png", path("old.png"), "--bits",
                           path("out.bits"), "--stats", path("stats.json"), "--quiet"}};

@@ -53,7 +53,7 @@ TEST_F(MemoryFaults, APicturesOtherChannelsTakeNone) {
 }
 
 TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
-  if (kSanitized) GTEST_SKIP() << "the limit leaves a sanitizer no room";
+  if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
   constexpr rlim_t kGibi = 1u << 30;
   // Each of the eight meshes would fit. Nothing is made of a scene that does not fit as a whole: 92 bytes for a lone
   // triangle.

@@ -41,7 +41,7 @@ TEST_F(WaitFaults, ALimitThatIsNoneIs2) {
 class LongWaitFaults : public WaitFaults {};
 
 TEST_F(LongWaitFaults, ADeviceThatDoesNothingIs4) {
-  if (kSanitized) GTEST_SKIP() << "a sanitizer has to come first, and so has the library that makes threads deaf";
+  if (kSanitized) GTEST_SKIP() << "a sanitizer starts the driver's threads: the library that makes them deaf sees none";
   const Ending ending =
       run_under({.arguments = {"render", small_scene(), "-o", path("out.exr"), "--device", "cpu"},
                  .environment = {{"LD_PRELOAD", PENUMBRA_INTERPOSE}, {"PENUMBRA_FAULT_DEAF", "libvulkan_lvp"}}});
