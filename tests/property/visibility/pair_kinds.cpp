@@ -186,5 +186,19 @@ TEST_P(PairKinds, SunsAlongTheTree) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, PairKinds, testing::Range(0u, 6u));
 
+/// A triangle through which p is by less than double can tell: behind p it hides no sun, before p it does.
+TEST(PairKindsByAHair, WhatIsBehindPHidesNoSun) {
+  scenes::Scene scene;
+  scene.lights.emplace_back();
+  scene.lights[0].shape = scenes::Sun{{0, -1, 0}, 1};
+  const Light light = make_light(scene, 0, glm::dvec3(0), {1, 1, 1, SamplePattern::grid, 0});
+  ASSERT_TRUE(light.sun);
+  const std::array<glm::vec3, 3> triangle{glm::vec3(-1, 0, -1), glm::vec3(1, 0, -1), glm::vec3(0, 0, 2)};
+  for (const float hair : {0x1p-48F, 0x1p-60F, 0x1p-100F}) {
+    EXPECT_FALSE(segment_meets_triangle({0, hair, 0}, {0, 1, 0}, triangle, light).meets) << hair;
+    EXPECT_TRUE(segment_meets_triangle({0, -hair, 0}, {0, 1, 0}, triangle, light).meets) << hair;
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::visibility

@@ -221,6 +221,11 @@ TEST(Lights, InsideASphereNothingShines) {
   EXPECT_TRUE(in_front_of_light(light, {1.0f + 0x1.333334p-2f, 2.0f + 0x1.99999ap-2f, 3}));
   EXPECT_TRUE(in_front_of_light(light, {std::nextafter(1.5f, 2.0f), 2, 3}));
   EXPECT_FALSE(in_front_of_light(light, {std::nextafter(1.5f, 1.0f), 2, 3}));
+  // The radius is a double: nearer to it than floats are to one another.
+  for (const double off : {0x1p-34, 0x1p-48, 0x1p-52}) {
+    EXPECT_FALSE(in_front_of_light(light_of(scenes::Sphere{{0, 0, 0}, 1 + off}), {1, 0, 0})) << off;
+    EXPECT_TRUE(in_front_of_light(light_of(scenes::Sphere{{0, 0, 0}, 1 - off}), {1, 0, 0})) << off;
+  }
 }
 
 /// Directions: middle + tan(angle / 2) · disk, each rounded once.
