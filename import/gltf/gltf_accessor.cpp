@@ -153,6 +153,16 @@ const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int number
   return model.accessors[static_cast<std::size_t>(number)];
 }
 
+/// How many numbers its elements have together. Of one without a buffer view nothing else limits its count, and a
+/// product that overflows would allocate less than sparse entries then fill.
+std::size_t number_count(const tinygltf::Accessor& accessor, std::size_t components, const std::string& place) {
+  constexpr std::size_t kMost = std::numeric_limits<std::ptrdiff_t>::max() / sizeof(double);
+  if (accessor.count > kMost / components) {
+    throw InputError("{}/count: {} elements; no memory holds more than {}", place, accessor.count, kMost / components);
+  }
+  return accessor.count * components;
+}
+
 }  // namespace
 
 Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_list<int> types, const char* what) {
@@ -174,12 +184,12 @@ Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_
     }
   };
   if (accessor.bufferView < 0) {
-    numbers.values.resize(accessor.count * numbers.components, 0.0);
+    numbers.values.resize(number_count(accessor, numbers.components, place), 0.0);
   } else {
     // In this order: only a count that the buffer holds may be allocated.
     const ElementView view =
         view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, element_bytes});
-    numbers.values.resize(accessor.count * numbers.components);
+    numbers.values.resize(number_count(accessor, numbers.components, place));
     for (std::size_t i = 0; i < accessor.count; ++i) store(i, view.at(i));
   }
   apply_sparse(model, place, accessor, element_bytes, store);
@@ -220,7 +230,7 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int number
   const std::size_t bytes = component_bytes(place, accessor.componentType);
   std::vector<std::uint32_t> indices;
   if (accessor.bufferView < 0) {
-    indices.resize(accessor.count);
+    indices.resize(number_count(accessor, 1, place));
   } else {
     const ElementView view =
         view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, bytes});

@@ -67,9 +67,10 @@ std::size_t width_of(const tinygltf::Model& model, const tinygltf::Node& node, c
 }
 
 Channel read_channel(const tinygltf::Model& model, const tinygltf::AnimationSampler& sampler, std::string place,
-                     std::size_t width) {
+                     std::size_t width, bool rotates) {
   Channel channel;
   channel.place = std::move(place);
+  channel.rotates = rotates;
   channel.width = width;
   channel.interpolation = interpolation_of(sampler.interpolation, channel.place);
   channel.times = key_times(model, sampler.input, channel.place);
@@ -80,6 +81,12 @@ Channel read_channel(const tinygltf::Model& model, const tinygltf::AnimationSamp
   if (channel.values.size() != wanted) {
     throw InputError("{}/output: {} numbers for {} keys; expected {}", channel.place, channel.values.size(),
                      channel.times.size(), wanted);
+  }
+  const bool cubic = channel.interpolation == Interpolation::cubic;
+  for (std::size_t key = 0; rotates && key < channel.times.size(); ++key) {
+    const auto value = std::span(channel.values).subspan((cubic ? 3 * key + 1 : key) * width, width);
+    if (std::ranges::all_of(value, [](double x) { return x == 0; }))
+      throw InputError("{}/output: key {} is a quaternion of length 0", channel.place, key);
   }
   return channel;
 }
@@ -161,9 +168,8 @@ void pose_model(tinygltf::Model& model, double seconds, std::vector<std::string>
         throw InputError("{}: node {} has a matrix; what moves has translation, rotation and scale", target,
                          source.target_node);
       const std::string place = fmt::format("/animations/{}/samplers/{}", a, source.sampler);
-      Channel channel =
-          read_channel(model, element(animation.samplers, source.sampler, place, "sampler"), place, width);
-      channel.rotates = source.target_path == "rotation";
+      const Channel channel = read_channel(model, element(animation.samplers, source.sampler, place, "sampler"), place,
+                                           width, source.target_path == "rotation");
       if (!moved.emplace(source.target_node, source.target_path).second) {
         warnings.push_back(fmt::format("several animations move the {} of '{}'; the last in the file is shown",
                                        source.target_path, node.name));

@@ -120,6 +120,14 @@ std::string without_line_ends(std::string text) {
   return mesh::printable(text);
 }
 
+/// What tinygltf says against skins without inverse bind matrices, which glTF 2.0 allows (3.7.3.1): they are then
+/// identities. It reads the skin all the same.
+void forgive_default_binds(std::string& error) {
+  constexpr std::string_view kComplaint = "'inverseBindMatrices' property is missing in Skin.\n";
+  for (auto at = error.find(kComplaint); at != std::string::npos; at = error.find(kComplaint))
+    error.erase(at, kComplaint.size());
+}
+
 }  // namespace
 
 void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model) {
@@ -170,6 +178,7 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
       throw InputError("{}: /extensionsRequired: {} is not supported; export without compression", name, extension);
     }
   }
+  forgive_default_binds(error);
   // It goes on after some errors, and leaves out what it could not understand: nothing may go missing silently.
   if (!loaded || !error.empty()) {
     throw InputError("{}: {}", name, error.empty() ? "it is no glTF file" : without_line_ends(error));

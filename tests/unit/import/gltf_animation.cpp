@@ -153,6 +153,14 @@ TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
   EXPECT_EQ(scene.origin, glm::dvec3((51 - 1) / 2.0, (61 + 5) / 2.0, (70 + 1) / 2.0 - 1));
 }
 
+/// glTF 2.0, 3.7.3.1: without inverse bind matrices they are identities.
+TEST_F(GltfAnimation, SkinsNeedNoBindMatrices) {
+  Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
+  gltf.at("/skins/0").erase("inverseBindMatrices");
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 3)) << "where the knee is";
+  EXPECT_THAT(read(gltf).warnings, IsEmpty());
+}
+
 TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   const auto expect = [&](Gltf gltf, const std::string& what) { EXPECT_THAT(refusal(gltf), HasSubstr(what)); };
   Gltf gltf;
@@ -164,6 +172,9 @@ TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   gltf = {};
   gltf.animate(0, "translation", {1, 2}, {0, 0, 0, 0, 0, 0}, "QUADRATIC");
   expect(gltf, "expected LINEAR, STEP or CUBICSPLINE");
+  gltf = {};
+  gltf.animate(0, "rotation", {1, 2}, {0, 0, 0, 1, 0, 0, 0, 0});
+  expect(gltf, "/animations/0/samplers/0/output: key 1 is a quaternion of length 0");
   gltf = {};
   gltf.animate(0, "weights", {1, 2}, {0, 0});
   expect(gltf, "/animations/0/channels/0/target/path: \"weights\" of node 0 cannot be moved");

@@ -332,6 +332,28 @@ TEST_F(GltfReader, RefusesWhatDoesNotFitWithItsPlace) {
       "not finite after the transform of /nodes/0");
 }
 
+/// 3 · 6148914691236517206 is 2 modulo 2⁶⁴, 4 · 2⁶² is 0: what sparse entries then fill must be there.
+TEST_F(GltfReader, CountsThatOverflowAreRefused) {
+  const auto with_sparse = [](Gltf& gltf, std::size_t accessor, std::uint64_t count, const char* type) {
+    const std::size_t places = gltf.add_view(bytes_of(std::uint32_t{100000})),
+                      values = gltf.add_view(bytes_of(1.f, 2.f, 3.f, 4.f));
+    gltf.at("/accessors")[accessor] = {{"componentType", 5126},
+                                       {"count", count},
+                                       {"type", type},
+                                       {"sparse",
+                                        {{"count", 1},
+                                         {"indices", {{"bufferView", places}, {"componentType", 5125}}},
+                                         {"values", {{"bufferView", values}}}}}};
+  };
+  Gltf positions;
+  with_sparse(positions, 0, 6148914691236517206u, "VEC3");
+  EXPECT_THAT(refusal(positions), HasSubstr("/accessors/0/count: 6148914691236517206 elements"));
+  Gltf colors;
+  with_sparse(colors, 4, 4611686018427387904u, "VEC4");
+  colors.at("/meshes/0/primitives/0/attributes")["COLOR_0"] = 4;
+  EXPECT_THAT(refusal(colors), HasSubstr("/accessors/4/count: 4611686018427387904 elements"));
+}
+
 TEST_F(GltfReader, AMemoryBombCostsAMessage) {
   Gltf gltf;  // an accessor without a buffer view is all zeros: the file is small, the mesh is not
   gltf.at("/accessors/0") = {{"componentType", 5126}, {"count", 3000000000u}, {"type", "VEC3"}};
