@@ -1,11 +1,12 @@
 // Guennebaud, Barthe and Paulin 2007, "High-quality adaptive soft shadow mapping", as the course notes of Eisemann et
-// al. (2009, section 5.2.3.5) tell it: V of some pixels, and of the others by a pyramid of them. Departures: pixels are
-// left out by a fixed grid, not by an estimate of how wide a penumbra is on the screen; and V passes from pixel to
-// pixel of one object alone.
+// al. (2009, section 5.2.3.5) tell it: V of some pixels, fewer where penumbrae are wide on the screen, and of the
+// others by a pyramid of them. The notes do not say how the width is estimated; here it is done by nodes of the kernel
+// (penumbra_width.comp). Departure: V passes from pixel to pixel of one object alone.
 
 #include "maps/backprojection/subsampled.hpp"
 
 #include "base/assert.hpp"
+#include "maps/backprojection/penumbra_width.hpp"
 #include "visibility/receivers.hpp"
 
 #include <algorithm>
@@ -87,16 +88,19 @@ double between(const Level& coarse, const Place& at, const Node& node, double sp
 
 class Subsampled final : public visibility::Method {
  public:
-  Subsampled(std::unique_ptr<visibility::Method> method, std::uint32_t step)
-      : method_(std::move(method)), step_(step) {}
+  /// Without `widths` by a grid.
+  Subsampled(std::unique_ptr<visibility::Method> method, std::unique_ptr<visibility::Method> widths, std::uint32_t step)
+      : method_(std::move(method)), widths_(std::move(widths)), step_(step) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return method_->description(); }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     method_->prepare_mesh(scene);
+    if (widths_) widths_->prepare_mesh(scene);
   }
   void prepare_light(const visibility::Light& light) override {
     method_->prepare_light(light);
+    if (widths_) widths_->prepare_light(light);
     whole_.clear();
   }
   void prepare_view(const ViewSamples& samples) override;
@@ -112,13 +116,19 @@ class Subsampled final : public visibility::Method {
     counters["pixelsComputed"] = computed_.size();
     return counters;
   }
-  [[nodiscard]] std::uint64_t memory_bytes() const override { return method_->memory_bytes(); }
+  [[nodiscard]] std::uint64_t memory_bytes() const override {
+    return method_->memory_bytes() + (widths_ ? widths_->memory_bytes() : 0);
+  }
 
  private:
-  /// Puts a pixel into the picture that the method answers.
+  /// Each pixel's step; empty: all have step_.
+  [[nodiscard]] std::vector<std::uint32_t> steps();
+  /// Makes the picture that the method answers.
+  void choose_pixels();
+  /// Puts a pixel into it.
   void choose(std::uint32_t pixel);
 
-  std::unique_ptr<visibility::Method> method_;
+  std::unique_ptr<visibility::Method> method_, widths_;
   std::uint32_t step_;
   const visibility::SceneFloats* scene_ = nullptr;
   const ViewSamples* samples_ = nullptr;
@@ -139,23 +149,65 @@ void Subsampled::choose(std::uint32_t pixel) {
   few_.facing.push_back(samples_->facing[pixel]);
 }
 
+/// The method's V of all of its picture.
+std::vector<float> answers(visibility::Method& method, const ViewSamples& samples) {
+  std::vector<float> values(samples.size());
+  for (std::uint32_t row = 0; row < samples.height;) {
+    const std::uint32_t rows = std::min(method.max_tile_rows(), samples.height - row);
+    method.evaluate({row, rows});
+    method.read_visibility(
+        std::span(values).subspan(std::size_t{row} * samples.width, std::size_t{rows} * samples.width));
+    row += rows;
+  }
+  return values;
+}
+
+std::vector<std::uint32_t> Subsampled::steps() {
+  if (!widths_) return {};
+  const std::vector<float> widths = answers(*widths_, *samples_);
+  const double unit = 2 * samples_->camera.tan_half_fov / std::max(samples_->height, 1U);  // of a pixel, 1 away
+  std::vector<std::uint32_t> steps(widths.size(), 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (samples_->triangle[i] == ViewSamples::kBackground || std::isinf(widths[i])) continue;
+    // A surface seen at a slant shows less of its penumbrae's width.
+    const glm::vec3 way = samples_->eye - samples_->p[i];
+    const double slant =
+        static_cast<double>(std::abs(glm::dot(samples_->n[i], way)) / std::max(glm::length(way), 1e-30F));
+    const double pixels = static_cast<double>(widths[i]) * slant / (unit * static_cast<double>(samples_->depth[i]));
+    while (2 * steps[i] <= step_ && 2 * steps[i] * kPixelsAcross <= pixels) steps[i] *= 2;
+  }
+  return steps;
+}
+
 void Subsampled::prepare_view(const ViewSamples& samples) {
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_view before prepare_mesh", description().name);
   samples_ = &samples;
   whole_.clear();
+  if (widths_) {
+    widths_->prepare_view(samples);
+  } else {
+    choose_pixels();
+  }
+}
+
+void Subsampled::choose_pixels() {
+  const ViewSamples& samples = *samples_;
+  const std::vector<std::uint32_t> steps = this->steps();
   computed_.clear();
   few_ = {};
   few_.camera = samples.camera;
   few_.eye = samples.eye;
-  few_.width = (samples.width + step_ - 1) / step_;
-  // The grid's pixels stay neighbours; those of objects that fall through it follow, row by row.
+  few_.width = steps.empty() ? (samples.width + step_ - 1) / step_ : samples.width;
+  // A grid's pixels stay neighbours; those of objects that fall through it follow, row by row.
   std::set<std::uint32_t> shown;
   const auto object_of = [&](std::uint32_t pixel) {
     return scene_->object[static_cast<std::size_t>(samples.triangle[pixel])];
   };
-  for (std::uint32_t y = 0; y < samples.height; y += step_) {
-    for (std::uint32_t x = 0; x < samples.width; x += step_) {
+  const std::uint32_t every = steps.empty() ? step_ : 1;
+  for (std::uint32_t y = 0; y < samples.height; y += every) {
+    for (std::uint32_t x = 0; x < samples.width; x += every) {
       const std::uint32_t pixel = y * samples.width + x;
+      if (!steps.empty() && (x % steps[pixel] != 0 || y % steps[pixel] != 0)) continue;
       choose(pixel);
       if (visibility::is_receiver(*scene_, samples, pixel)) shown.insert(object_of(pixel));
     }
@@ -179,13 +231,8 @@ void Subsampled::evaluate(const visibility::Tile& tile) {
   tile_ = tile;
   // Pixels are filled in from all of the picture: whoever begins a picture anew gets it whole.
   if (!whole_.empty() && tile.first_row > 0) return;
-  std::vector<float> few(few_.size());
-  for (std::uint32_t row = 0; row < few_.height;) {
-    const std::uint32_t rows = std::min(method_->max_tile_rows(), few_.height - row);
-    method_->evaluate({row, rows});
-    method_->read_visibility(std::span(few).subspan(std::size_t{row} * few_.width, std::size_t{rows} * few_.width));
-    row += rows;
-  }
+  if (widths_) choose_pixels();
+  const std::vector<float> few = answers(*method_, few_);
   std::vector<KnownPixel> pixels(samples_->size());
   for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel) {
     if (!visibility::is_receiver(*scene_, *samples_, pixel)) continue;
@@ -242,9 +289,13 @@ void fill_in(std::span<KnownPixel> pixels, std::uint32_t width) {
   }
 }
 
-std::unique_ptr<visibility::Method> subsampled(std::unique_ptr<visibility::Method> method, std::uint32_t step) {
+std::unique_ptr<visibility::Method> subsampled(const render::Device& device, std::unique_ptr<visibility::Method> method,
+                                               const visibility::ParsedOptions& parsed,
+                                               const visibility::MethodOptions& options) {
+  const std::uint32_t step = parsed[kSubsample];
   if (step == 1) return method;
-  return std::make_unique<Subsampled>(std::move(method), step);
+  auto widths = parsed[kSubsampleBy] == SubsampleBy::penumbra ? make_penumbra_widths(device, options) : nullptr;
+  return std::make_unique<Subsampled>(std::move(method), std::move(widths), step);
 }
 
 }  // namespace penumbra::maps

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/device.hpp"
 #include "visibility/method.hpp"
 
 #include <cstdint>
@@ -12,12 +13,26 @@ namespace penumbra::maps {
 
 inline constexpr visibility::IntegerOption kSubsample{
     "subsample", 1, 64, 1,
-    "V of every so many pixels across and down, and of the others what pull-push makes of them; 1: of every pixel"};
+    "V of no more than every so many pixels across and down, and of the others what pull-push makes of them; 1: of "
+    "every pixel"};
+enum class SubsampleBy : std::uint8_t { penumbra, grid };
+inline constexpr visibility::ChoiceOption kSubsampleBy{
+    "subsampleBy",
+    {{"penumbra", SubsampleBy::penumbra}, {"grid", SubsampleBy::grid}},
+    SubsampleBy::penumbra,
+    "which pixels subsample leaves out: as many as penumbrae are wide on the screen, or the same everywhere"};
 
-/// The method itself for 1. Else it answers a picture of every `step`-th pixel of every `step`-th row, and of all
-/// pixels of objects of which that picture shows none; the others' V is filled in from pixels of the same object
-/// (fill_in).
-std::unique_ptr<visibility::Method> subsampled(std::unique_ptr<visibility::Method> method, std::uint32_t step);
+/// Pixels across the narrowest penumbra that are computed at least, by SubsampleBy::penumbra.
+inline constexpr double kPixelsAcross = 4;
+
+/// The method itself where `options` ask for every pixel. Else it answers a picture of the pixels in every step-th row
+/// and column, and of all pixels of objects of which that picture shows none; the others' V is filled in from pixels of
+/// the same object (fill_in). The step is kSubsample's, or each pixel's own: the largest power of two that is not above
+/// it, and leaves kPixelsAcross pixels across the narrowest penumbra there may be (penumbra_width.hpp); 1 where nothing
+/// can hide light, for the method sees that at once.
+std::unique_ptr<visibility::Method> subsampled(const render::Device& device, std::unique_ptr<visibility::Method> method,
+                                               const visibility::ParsedOptions& parsed,
+                                               const visibility::MethodOptions& options);
 
 /// A pixel's V if it was computed; which object it shows.
 struct KnownPixel {

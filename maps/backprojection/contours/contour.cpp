@@ -36,6 +36,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kSearch.description());
   description.options.push_back(kTraversal.description());
   description.options.push_back(kSubsample.description());
+  description.options.push_back(kSubsampleBy.description());
   return description;
 }
 
@@ -49,8 +50,8 @@ std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
                                                  const visibility::MethodOptions& options) {
   const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
   const ContourChoices choices{.search = parsed[kSearch], .traversal = parsed[kTraversal]};
-  return subsampled(make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
-                    parsed[kSubsample]);
+  return subsampled(device, make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+                    parsed, options);
 }
 
 }  // namespace penumbra::maps

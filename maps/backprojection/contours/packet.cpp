@@ -55,6 +55,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kHierarchy.description());
   description.options.push_back(kDivergence.description());
   description.options.push_back(kSubsample.description());
+  description.options.push_back(kSubsampleBy.description());
   return description;
 }
 
@@ -74,8 +75,8 @@ std::unique_ptr<visibility::Method> make_packet(const render::Device& device,
                                .packet_height = packet.height,
                                .divergence = parsed[kDivergence],
                                .sub_lights = parsed[kSubLights]};
-  return subsampled(make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
-                    parsed[kSubsample]);
+  return subsampled(device, make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+                    parsed, options);
 }
 
 }  // namespace penumbra::maps

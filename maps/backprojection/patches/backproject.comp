@@ -11,7 +11,7 @@
 #include "maps/backprojection/patches/fill.glsl"
 #include "maps/backprojection/patches/sphere.glsl"
 #define PYRAMID_BINDING 6
-#include "maps/backprojection/patches/search.glsl"
+#include "maps/backprojection/search.glsl"
 
 // Guennebaud, Barthe and Paulin 2006: V = 1 - the sum of what the patches of the kernel's texels cover of the light.
 

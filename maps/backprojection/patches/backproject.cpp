@@ -51,6 +51,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kLayers.description());
   description.options.push_back(kSearch.description());
   description.options.push_back(kSubsample.description());
+  description.options.push_back(kSubsampleBy.description());
   return description;
 }
 
@@ -76,7 +77,7 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   const gpu::BackprojectPush push{parsed[kFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kLayers]};
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
-  return subsampled(make_map_method(device, std::move(recipe), options), parsed[kSubsample]);
+  return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }
 
 }  // namespace penumbra::maps

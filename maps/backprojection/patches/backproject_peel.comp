@@ -10,7 +10,7 @@
 #include "maps/backprojection/light_table.glsl"
 #include "maps/backprojection/patches/fill.glsl"
 #define PYRAMID_BINDING 6
-#include "maps/backprojection/patches/search.glsl"
+#include "maps/backprojection/search.glsl"
 
 // Bavoil, Callahan and Silva 2006: as backproject, with several layers of the map. Of a texel's surfaces the deepest
 // that hides some of the light counts, and no other. Where a kernel has more texels than may be asked, every s-th of each

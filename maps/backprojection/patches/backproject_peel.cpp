@@ -50,6 +50,7 @@ visibility::MethodDescription describe() {
   description.options.push_back(kSamples.description());
   description.options.push_back(kSelect.description());
   description.options.push_back(kSubsample.description());
+  description.options.push_back(kSubsampleBy.description());
   return description;
 }
 
@@ -73,7 +74,7 @@ std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& 
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
-  return subsampled(make_map_method(device, std::move(recipe), options), parsed[kSubsample]);
+  return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }
 
 }  // namespace penumbra::maps

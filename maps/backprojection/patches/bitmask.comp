@@ -12,7 +12,7 @@
 #include "maps/backprojection/patches/sample_bands.glsl"
 #include "maps/backprojection/patches/fill.glsl"
 #define PYRAMID_BINDING 7
-#include "maps/backprojection/patches/search.glsl"
+#include "maps/backprojection/search.glsl"
 
 // Schwarz and Stamminger 2007, 2008: what texels hide is kept as a bit a light sample, so that occluders that overlap
 // count once. An occluder is a texel's rectangle, a quad between the centres of four texels that all hide light, a

@@ -1,6 +1,8 @@
 // V of few pixels for all: what is computed, what is filled in, and how far off that is.
 
+#include "maps/backprojection/penumbra_width.hpp"
 #include "maps/backprojection/subsampled.hpp"
+#include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/contour_scenes.hpp"
 
 #include <fmt/format.h>
@@ -23,8 +25,9 @@ scenes::Scene ball_and_speck() {
   return scene;
 }
 
-MethodOptions with(MethodOptions options, std::uint32_t step) {
+MethodOptions with(MethodOptions options, std::uint32_t step, const char* by = "grid") {
   options["subsample"] = std::to_string(step);
+  options["subsampleBy"] = by;
   return options;
 }
 
@@ -73,6 +76,76 @@ TEST_F(MapsSubsampled, TheErrorGrowsWithTheStep) {
     }
     last = off;
   }
+}
+
+// Two plates over a floor: where the light is partly hidden by the lower one, its penumbra is the narrow one; the width
+// is the light's, by the plate's distances to floor and light. Nothing in the kernel: no width.
+TEST_F(MapsSubsampled, TheNarrowestPenumbraIsThatOfTheFarthestCaster) {
+  const auto scene_of = [](bool high, bool low) {
+    scenes::Scene scene = bare_floor(1, 3);
+    if (high) add_quad(scene, {-0.5, 2.5, 0}, {0.8, 0, 0}, {0, 0, -0.8}).receives_shadow = false;
+    if (low) add_quad(scene, {1, 1, 0.3}, {0.3, 0, 0}, {0, 0, -0.3}).receives_shadow = false;
+    return scene;
+  };
+  const Stage stage = on_floor(scene_of(true, true), 24, light_samples(1));
+  const Masks truth = exact(stage), under_low = exact(on_floor(scene_of(false, true), 24, light_samples(1)));
+  const auto widths = run(*maps::make_penumbra_widths(device(), {{"size", "128"}, {"sublights", "2"}}), stage);
+  const float wide = 2 * 2.5F / 2.5F, narrow = 2 * 1.0F / 4.0F;
+  std::size_t none = 0, wides = 0, narrows = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    const float width = widths.visibility[i];
+    if (std::isinf(width)) {
+      ++none;
+      EXPECT_EQ(truth.visibility[i], 1) << i;
+    } else if (width > 1) {
+      ++wides;
+      EXPECT_NEAR(width, wide, 1e-5) << i;
+      EXPECT_EQ(under_low.visibility[i], 1) << i;
+    } else {
+      ++narrows;
+      EXPECT_NEAR(width, narrow, 1e-5) << i;
+    }
+  }
+  EXPECT_GT(none, 50U);
+  EXPECT_GT(wides, 50U);
+  EXPECT_GT(narrows, 10U);
+}
+
+// Where penumbrae are wide on the screen few pixels are computed, and all where they are narrow: the picture is nearer
+// to the whole one than by a grid.
+TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
+  std::vector<double> shares;
+  for (const double half : {0.3, 1.5}) {
+    scenes::Scene scene = ball_over_floor(half);
+    add_quad(scene, {1.6, 0.3, 1.5}, {0.4, 0, 0}, {0, 0.3, 0});
+    const Stage stage(scene, 200, 160, light_samples(1));
+    const MethodOptions options{{"size", "128"}};
+    const Masks whole = run(maps::make_packet, stage, options),
+                widths = run(*maps::make_penumbra_widths(device(), options), stage);
+    const auto receives = [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.samples, i); };
+    const auto error = [&](const Masks& few) {
+      return rmse(stage, receives,
+                  [&](std::size_t i) { return static_cast<double>(few.visibility[i] - whole.visibility[i]); });
+    };
+    const auto method = maps::make_packet(device(), with(options, 16, "penumbra"));
+    const Masks found = run(*method, stage);
+    EXPECT_EQ(run(*method, stage, 7).visibility, found.visibility) << "tiles change nothing";
+    const std::uint64_t computed = method->counters().at("pixelsComputed");
+    std::uint64_t lit = 0, shaded = 0, same = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!receives(i)) continue;
+      (std::isinf(widths.visibility[i]) ? lit : shaded) += 1;
+      same += found.visibility[i] == whole.visibility[i] ? 1 : 0;
+    }
+    EXPECT_GE(same, computed);
+    shares.push_back(static_cast<double>(computed - lit) / static_cast<double>(shaded));
+    const double off = error(found), by_grid = error(run(maps::make_packet, stage, with(options, 2)));
+    fmt::print("light of half {}: {:.2f} of {} pixels in shadow computed, RMSE {:.4f}; by a grid of 2 {:.4f}\n", half,
+               shares.back(), shaded, off, by_grid);
+    RecordProperty(fmt::format("half {}", half), fmt::format("{:.2f}, {:.4f}, {:.4f}", shares.back(), off, by_grid));
+    EXPECT_LT(off, by_grid);
+  }
+  EXPECT_LT(shares[1], shares[0]);
 }
 
 // Pull-push by hand: a constant stays one, nothing crosses from object to object, and a ramp comes back within its
