@@ -9,6 +9,8 @@
 #include "maps/backprojection/penumbra_width.hpp"
 #include "visibility/receivers.hpp"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <set>

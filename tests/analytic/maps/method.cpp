@@ -85,15 +85,15 @@ TEST_F(MapsMethod, MapsThatFitIntoNoBufferAreRefusedWithTheSizeThatDoes) {
 }
 
 TEST_F(MapsMethod, TheSameBytesTwiceAndInTiles) {
-  const Stage stage(parallel_square(), 40, 40, light_samples(40));
+  const Stage stage(parallel_square(), 24, 24, light_samples(40));
   for (const Factory& factory : all_) {
-    const auto method = factory(device(), {{"size", "256"}});
+    const auto method = factory(device(), {{"size", "128"}});
     const Masks first = run(*method, stage), again = run(*method, stage), tiled = run(*method, stage, 7);
     EXPECT_EQ(first.visibility, again.visibility);
     EXPECT_EQ(first.words, again.words);
     EXPECT_EQ(first.visibility, tiled.visibility);
     EXPECT_EQ(first.words, tiled.words);
-    EXPECT_GT(method->memory_bytes(), 256u * 256 * 4);
+    EXPECT_GT(method->memory_bytes(), 128u * 128 * 4);
     EXPECT_FALSE(method->counters().empty());
   }
 }
