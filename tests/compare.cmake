@@ -10,6 +10,7 @@ penumbra_test(compare
   unit/compare/picture.cpp
   unit/compare/report.cpp
   unit/compare/report_data.cpp
+  unit/compare/report_text.cpp
   unit/compare/stats.cpp
   unit/compare/surface.cpp
   unit/compare/visible_light.cpp

@@ -5,6 +5,7 @@ penumbra_test(import FULL ImportCorpus.*
   property/polygon_property.cpp
   unit/import/flat_light.cpp
   unit/import/gltf_animation.cpp
+  unit/import/gltf_lamps.cpp
   unit/import/gltf_reader.cpp
   unit/import/gltf_surfaces.cpp
   unit/import/input_file.cpp

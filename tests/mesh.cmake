@@ -13,6 +13,7 @@ penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
   unit/mesh/import_helper.cpp
   unit/mesh/corpus.cpp
   unit/mesh/diagnosis.cpp
+  unit/mesh/diagnosis_places.cpp
   unit/mesh/edge_graph.cpp
   unit/mesh/half_edge_view.cpp
   unit/mesh/import.cpp

@@ -90,6 +90,15 @@ std::vector<std::uint32_t> push_words(const Push& push) {
   return {words.begin(), words.end()};
 }
 
+/// One behind the other.
+template <typename Push, typename... More>
+std::vector<std::uint32_t> push_words(const Push& push, const More&... more) {
+  std::vector<std::uint32_t> words = push_words(push);
+  const std::vector<std::uint32_t> behind = push_words(more...);
+  words.insert(words.end(), behind.begin(), behind.end());
+  return words;
+}
+
 struct MapRecipe {
   /// Output::mask: the look-up answers for each light sample, from its own map or from the centre's; scalar: it gives
   /// V.

@@ -21,6 +21,7 @@
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/host/receivers.hpp"
+#include "maps/host/tile_visibility.hpp"
 #include "render/compute_pass.hpp"
 
 #include <glm/geometric.hpp>
@@ -52,7 +53,7 @@ constexpr visibility::ChoiceOption kForm{
 constexpr visibility::ChoiceOption kFilter{
     "filter", {{"linear", Filter::linear}, {"nearest", Filter::nearest}}, Filter::linear, "how V is read from its map"};
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict soft_shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a sum of texels, each projected onto the light; objects do not shade themselves", mesh);
 }
 
@@ -65,7 +66,9 @@ visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, co
                       .bias = {{"bias", "0"}}});
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription soft_shadow_map_description() {
   visibility::MethodDescription description{
       .name = "soft-shadow-map",
       .family = visibility::Family::image,
@@ -76,7 +79,7 @@ visibility::MethodDescription describe() {
           "and do not overlap",
       .lights = planar_lights(),
       .options = map_option_descriptions(kSize, kNoBias),
-      .verdict_on = verdict_on,
+      .verdict_on = soft_shadow_map_verdict,
       .repairs = repairs};
   for (const visibility::OptionDescription& option :
        {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
@@ -85,6 +88,8 @@ visibility::MethodDescription describe() {
   }
   return description;
 }
+
+namespace {
 
 /// Turns of one invocation's loop: drivers for processors end all loops of a workgroup after 65,535.
 constexpr std::uint32_t kMostTurns = 60000;
@@ -109,7 +114,7 @@ class SoftShadowMap final : public visibility::Method {
     return receivers_.max_rows(*device_, sizeof(std::uint32_t));
   }
   void evaluate(const visibility::Tile& tile) override;
-  void read_visibility(std::span<float> visibility) override;
+  void read_visibility(std::span<float> visibility) override { results_.read(visibility); }
 
   std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
@@ -148,13 +153,13 @@ class SoftShadowMap final : public visibility::Method {
   bool upright_ = false;  ///< a rectangle along its basis, without texture
   SoftScene parts_;
   Map receiver_map_;
-  std::uint32_t tile_pixels_ = 0;
-  std::unique_ptr<render::Buffer> occluders_, receiver_depths_, visible_, sums_, counts_, views_, results_;
+  TileVisibility results_;
+  std::unique_ptr<render::Buffer> occluders_, receiver_depths_, visible_, sums_, counts_, views_;
 };
 
 SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings)
     : device_(&device),
-      description_(describe()),
+      description_(soft_shadow_map_description()),
       map_(map),
       settings_(settings),
       occluder_maps_(device, map.size, map.rasteriser),
@@ -315,16 +320,14 @@ void SoftShadowMap::prepare_view(const visibility::ViewSamples& samples) {
 
 void SoftShadowMap::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", description_.name);
-  tile_pixels_ = tile.row_count * receivers_.width();
-  if (tile_pixels_ == 0) return;
-  std::vector<std::uint32_t> on_occluder(tile_pixels_, 0);
+  if (!results_.begin(*device_, tile, receivers_)) return;
+  std::vector<std::uint32_t> on_occluder(results_.pixels(), 0);
   for (std::size_t i = 0; i < on_occluder.size(); ++i) {
     const std::int32_t triangle = samples_->triangle[std::size_t{tile.first_row} * receivers_.width() + i];
     on_occluder[i] = triangle >= 0 && parts_.receivers[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
   }
   counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder, 1u));
-  render::grow(*device_, results_, "map visibility", on_occluder.size() * sizeof(std::uint32_t));
-  results_->write<std::uint32_t>(on_occluder);
+  results_.buffer().write<std::uint32_t>(on_occluder);
   const gpu::SoftLookupPush own{.size = settings_.receiver_size,
                                 .linear = settings_.filter == Filter::linear ? 1u : 0u};
   render::Commands commands(*device_);
@@ -335,25 +338,18 @@ void SoftShadowMap::evaluate(const visibility::Tile& tile) {
     push.first_receiver = part.first_receiver;
     push.receiver_count = part.count;
     push.first_result = part.first_result;
-    std::vector<std::uint32_t> words = push_words(push);
-    const std::vector<std::uint32_t> more = push_words(own);
-    words.insert(words.end(), more.begin(), more.end());
-    const std::vector<render::BufferReference> buffers{*part.receivers, *views_,   *receiver_depths_,
-                                                       *results_,       *visible_, light_table_.buffer()};
+    const std::vector<std::uint32_t> words = push_words(push, own);
+    const std::vector<render::BufferReference> buffers{*part.receivers,   *views_,   *receiver_depths_,
+                                                       results_.buffer(), *visible_, light_table_.buffer()};
     look_up_.record(commands, std::as_bytes(std::span(words)), buffers, part.groups());
   }
   times_.add(commands.submit());
 }
 
-void SoftShadowMap::read_visibility(std::span<float> visibility) {
-  PENUMBRA_ASSERT(visibility.size() == tile_pixels_, "{} values for a tile of {} pixels", visibility.size(),
-                  tile_pixels_);
-  if (!visibility.empty()) results_->read(visibility);
-}
-
 std::uint64_t SoftShadowMap::memory_bytes() const {
-  std::uint64_t bytes = occluder_maps_.memory_bytes() + receiver_maps_.memory_bytes() + receivers_.memory_bytes();
-  for (const auto* buffer : {&occluders_, &receiver_depths_, &visible_, &sums_, &counts_, &views_, &results_}) {
+  std::uint64_t bytes = occluder_maps_.memory_bytes() + receiver_maps_.memory_bytes() + receivers_.memory_bytes() +
+                        results_.memory_bytes();
+  for (const auto* buffer : {&occluders_, &receiver_depths_, &visible_, &sums_, &counts_, &views_}) {
     bytes += *buffer ? (*buffer)->bytes() : 0;
   }
   return bytes;
@@ -361,13 +357,9 @@ std::uint64_t SoftShadowMap::memory_bytes() const {
 
 }  // namespace
 
-visibility::MethodDescription soft_shadow_map_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_soft_shadow_map(const render::Device& device,
                                                          const visibility::MethodOptions& options) {
-  const visibility::MethodDescription description = describe();
+  const visibility::MethodDescription description = soft_shadow_map_description();
   const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
   const Settings settings{.receiver_size = parsed[kReceiverSize],
                           .passes = parsed[kPasses],

@@ -1,89 +1,17 @@
-// soft-shadow-map against closed forms, its two forms against each other, and the error curves of Atty et al. 2006.
+// soft-shadow-map against closed forms, and its two forms against each other and backproject.
 
-#include "tests/analytic/maps/parallel_square.hpp"
+#include "tests/analytic/maps/soft_shadow_map.hpp"
 
 #include "base/error.hpp"
 #include "maps/backprojection/patches/backproject.hpp"
-#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
-#include "reference/exact_method.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace penumbra::tests {
 namespace {
-
-using visibility::MethodOptions;
-
-class SoftShadowMap : public MapsTest {
- protected:
-  struct Run {
-    Masks picture;
-    std::uint64_t patches, fragments;
-  };
-  static Run soft(const Stage& stage, const MethodOptions& options = {}, std::uint32_t rows_at_once = 0) {
-    const auto method = maps::make_soft_shadow_map(device(), options);
-    Masks picture = run(*method, stage, rows_at_once);
-    const auto counters = method->counters();
-    return {std::move(picture), counters.at("patches"), counters.at("fragments")};
-  }
-  static bool on_object(const Stage& stage, std::size_t i, std::uint32_t object) {
-    return stage.samples.triangle[i] >= 0 &&
-           stage.floats.object[static_cast<std::size_t>(stage.samples.triangle[i])] == object;
-  }
-  /// View samples on the floor (object 0, at height 0) at these places.
-  static Stage on_floor(const scenes::Scene& scene, const std::vector<glm::dvec2>& places) {
-    return Stage(scene, static_cast<std::uint32_t>(places.size()), 1, light_samples(1),
-                 [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
-                   visibility::ViewSamples samples;
-                   samples.width = static_cast<std::uint32_t>(places.size());
-                   samples.height = 1;
-                   for (const glm::dvec2& place : places) {
-                     samples.triangle.push_back(0);
-                     samples.p.emplace_back(glm::dvec3(place.x, 0, place.y) - floats.origin);
-                     samples.n.emplace_back(0, 1, 0);
-                     samples.depth.push_back(1);
-                     samples.facing.push_back(1);
-                   }
-                   return samples;
-                 });
-  }
-  /// A floor of half-size 4, the light of half-size `half` 5 above it.
-  static scenes::Scene floor_and_light(double half) {
-    scenes::Scene scene;
-    add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});
-    scene.lights.push_back(ceiling_light(5, half));
-    scene.cameras.push_back(camera({0, 4, 7}, {0, 0.5, 0}, 60));
-    return scene;
-  }
-  static scenes::Scene ball(double half, double height = 2) {
-    scenes::Scene scene = floor_and_light(half);
-    add_object(scene, "sphere", sphere({0, height, 0}, 1, 16));
-    return scene;
-  }
-  /// The measure of the paper's section 5.2.1 over the floor: the sum of abs(V - V_ref) over the number of pixels in
-  /// umbra or penumbra; and the areas of the umbrae, found and true.
-  struct Measure {
-    double error, umbra, true_umbra;
-  };
-  static Measure measure(const Stage& stage, const Masks& found, const Masks& truth) {
-    Measure result{0, 0, 0};
-    double shaded = 0;
-    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      if (!on_object(stage, i, 0)) continue;
-      result.error += static_cast<double>(std::abs(found.visibility[i] - truth.visibility[i]));
-      shaded += truth.visibility[i] < 1 ? 1 : 0;
-      result.umbra += found.visibility[i] < 0.05F ? 1 : 0;
-      result.true_umbra += truth.visibility[i] < 0.05F ? 1 : 0;
-    }
-    result.error /= shaded;
-    return result;
-  }
-  static Masks exact(const Stage& stage) { return tests::run(*reference::make_exact({}), stage); }
-};
 
 // A parallel rectangle, and a small one beside it so that no texel's border lies on an edge. On either axis each edge
 // is off by half a texel at most, which is t f on the light.
@@ -219,70 +147,6 @@ TEST_F(SoftShadowMap, AWideKernelIsScatteredWhole) {
   EXPECT_EQ(gathered.picture.visibility, scattered.picture.visibility);
 }
 
-// Solids: the second pass adds what the centre does not see of them, at every pixel, and costs about as much as the
-// first.
-TEST_F(SoftShadowMap, TwoPassesAreDarkerEverywhereAndNearerToTheTruthForSolids) {
-  double small_light = 0;
-  for (const double half : {0.1, 0.25, 0.5, 1.0}) {
-    const Stage stage(ball(half), 64, 64, light_samples(1));
-    const Masks truth = exact(stage);
-    const Run one = soft(stage), two = soft(stage, {{"passes", "2"}});
-    for (std::size_t i = 0; i < stage.samples.size(); ++i)
-      EXPECT_LE(two.picture.visibility[i], one.picture.visibility[i]);
-    const Measure first = measure(stage, one.picture, truth), second = measure(stage, two.picture, truth);
-    const double work =
-        static_cast<double>(two.fragments + two.patches) / static_cast<double>(one.fragments + one.patches);
-    fmt::print("light half {}: error {:.4f} in one pass, {:.4f} in two; work {:.2f}; umbra {} and {} of {}\n", half,
-               first.error, second.error, work, first.umbra, second.umbra, first.true_umbra);
-    EXPECT_LT(second.error, first.error);
-    // Twice the patches; but those of the far side have smaller penumbrae.
-    EXPECT_EQ(two.patches, 2 * one.patches);
-    EXPECT_GT(work, 1.0);
-    EXPECT_LT(work, 2.0);
-    if (half == 0.1) small_light = first.error;
-    if (half == 0.5) {
-      EXPECT_GT(first.error, 2 * small_light);
-    }
-    if (half == 0.25) {  // umbrae are neither dramatically over- nor underestimated
-      EXPECT_GT(second.umbra, 0.8 * second.true_umbra);
-      EXPECT_LT(second.umbra, 1.25 * second.true_umbra);
-    }
-  }
-}
-
-// A thin solid: both sides at about the same depth, and twice the work.
-TEST_F(SoftShadowMap, TwoPassesOverAThinSolidCostTwice) {
-  scenes::Scene scene = floor_and_light(0.5);
-  add_quad(scene, {0, 2, 0}, {1, 0, 0}, {0, 0, 1});
-  add_quad(scene, {0, 1.95, 0}, {1, 0, 0}, {0, 0, 1});
-  const Stage stage(scene, 16, 16, light_samples(1));
-  const Run one = soft(stage), two = soft(stage, {{"passes", "2"}});
-  const double work = static_cast<double>(two.fragments) / static_cast<double>(one.fragments);
-  fmt::print("thin solid: work of two passes {:.3f}\n", work);
-  EXPECT_GT(work, 1.85);
-  EXPECT_LT(work, 2.0);
-}
-
-// What is left of the error beyond some resolution is the silhouette; it grows as the solid nears the light.
-TEST_F(SoftShadowMap, TheErrorStopsFallingWithResolutionAndGrowsTowardTheLight) {
-  const Stage stage(ball(0.5), 64, 64, light_samples(1));
-  const Masks truth = exact(stage);
-  const auto error = [&](const char* size) {
-    return measure(stage, soft(stage, {{"size", size}}).picture, truth).error;
-  };
-  const double coarse = error("100"), fine = error("200");
-  fmt::print("size 100: error {:.4f}, 200: {:.4f}\n", coarse, fine);
-  EXPECT_GT(fine, 0.8 * coarse);
-  double last = 0;
-  for (const double height : {1.2, 2.0, 2.8, 3.4}) {
-    const Stage near(ball(0.5, height), 64, 64, light_samples(1));
-    const double found = measure(near, soft(near).picture, exact(near)).error;
-    fmt::print("sphere at {}: error {:.4f}\n", height, found);
-    EXPECT_GT(found, 0.9 * last);
-    last = found;
-  }
-}
-
 TEST_F(SoftShadowMap, WorkDependsOnTexelsAndNotOnTriangles) {
   scenes::Scene one = floor_and_light(0.5), many = floor_and_light(0.5);
   add_quad(one, {0, 2, 0}, {1, 0, 0}, {0, 0, 1});
@@ -330,40 +194,6 @@ TEST_F(SoftShadowMap, ATinyLightCastsTheHardShadow) {
     EXPECT_EQ(found.picture.visibility[i], shaded ? 0.0F : 1.0F);
   }
   EXPECT_GT(dark, 50U);
-}
-
-// The paper's figure 23: small lights need large maps, for large ones small maps do as well.
-TEST_F(SoftShadowMap, LargeLightsDoWithSmallMaps) {
-  double last = 1e9;
-  for (const double half : {0.05, 0.25, 1.0}) {
-    const Stage stage(ball(half), 64, 64, light_samples(1));
-    const Masks truth = exact(stage);
-    const auto error = [&](const char* size) {
-      return measure(stage, soft(stage, {{"size", size}}).picture, truth).error;
-    };
-    const double coarse = error("24"), fine = error("192"), gain = coarse / fine;
-    fmt::print("light half {}: error {:.4f} of 24^2 texels, {:.4f} of 192^2, {:.2f} times\n", half, coarse, fine, gain);
-    EXPECT_LT(gain, last);
-    last = gain;
-  }
-}
-
-// Errors of aligned edges add up, those of others cancel (5.1.1).
-TEST_F(SoftShadowMap, ATurnedSquareIsNearerToTheTruthThanTheWorstAlignedOne) {
-  const auto error = [&](double degrees, double shift) {
-    const double angle = degrees * std::numbers::pi / 180;
-    scenes::Scene scene = floor_and_light(0.5);
-    add_quad(scene, {shift, 2, shift}, {std::cos(angle), 0, std::sin(angle)}, {-std::sin(angle), 0, std::cos(angle)});
-    add_quad(scene, {-2.2, 2, -2.2}, {0.1, 0, 0}, {0, 0, 0.1});  // holds the window
-    add_quad(scene, {2.2, 2, 2.2}, {0.1, 0, 0}, {0, 0, 0.1});
-    const Stage stage(scene, 64, 64, light_samples(1));
-    return measure(stage, soft(stage, {{"size", "42"}, {"receiverSize", "512"}}).picture, exact(stage)).error;
-  };
-  double worst = 0;
-  for (int i = 0; i < 4; ++i) worst = std::max(worst, error(0, 4.6 / 40 * i / 4));
-  const double turned = error(30, 0);
-  fmt::print("error of a square: turned {:.4f}, aligned at worst {:.4f}\n", turned, worst);
-  EXPECT_LT(turned, worst);
 }
 
 /// Places that the receivers' map of a floor of half-size 4, 5 below the light, has texels at.

@@ -1,136 +1,16 @@
-#include "compare/error_picture.hpp"
 #include "compare/report.hpp"
-#include "compare/report_parts.hpp"
+
+#include "tests/unit/compare/report_inputs.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 namespace penumbra::compare {
 namespace {
-
-std::size_t occurrences(const std::string& text, const std::string& word) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
-  return count;
-}
-
-Image8 picture(std::uint8_t value) {
-  return {2, 2, std::vector<Color8>(4, {value, value, value})};
-}
-
-MethodResult result_of(const std::string& entry) {
-  MethodResult result;
-  result.entry = entry;
-  result.stats.scene = "bunny.json";
-  result.stats.method = entry;
-  result.stats.device = "llvmpipe";
-  result.stats.width = result.stats.height = 512;
-  result.stats.light_samples = 256;
-  result.stats.sample_pattern = "rows";
-  result.stats.seconds.light = 0.5;
-  result.stats.seconds.evaluate = 1.5;
-  result.stats.passes = {{"test & count", 1234.0}};
-  result.stats.counters = {{"candidates", 1234567}};
-  result.error = VisibilityError{0.0012, 0.0034, 0.05, 0.5, 0.001, -0.0002};
-  result.all_lights_error = result.error;
-  result.lights = {{"key", 200000, 0, result.error, {}, {}, {}}};
-  return result;
-}
-
-ReportInput input_with(std::size_t method_count) {
-  ReportInput in;
-  in.version = "1.2.3";
-  in.arguments = {"compare", "scenes/my scene.json", "-o", "out"};
-  in.scene = {{"Triangles", "69 666"}};
-  in.metrics.reference = result_of("raytrace").stats;
-  in.metrics.reference.seconds.evaluate = 3.5;
-  in.metrics.judged_pixels = 200000;
-  in.reference.description.name = "raytrace";
-  in.lights.push_back({.name = "key"});
-  in.reference.beauty = picture(10);
-  in.reference.lights.push_back({.visibility = picture(10)});
-  for (std::size_t i = 0; i < method_count; ++i) {
-    in.metrics.methods.push_back(result_of("method-" + std::to_string(i)));
-    ReportEntry entry;
-    entry.description.name = "method-" + std::to_string(i);
-    entry.beauty = picture(static_cast<std::uint8_t>(20 + i));
-    entry.lights.push_back({.visibility = entry.beauty, .error = entry.beauty});
-    in.methods.push_back(entry);
-  }
-  in.error_limit = 0.5;
-  return in;
-}
-
-/// The first tag that is not closed where it should be; "" if all are.
-std::string unbalanced_tag(const std::string& html) {
-  const std::vector<std::string> kVoid{"meta", "img", "input", "br", "!DOCTYPE"};
-  std::vector<std::string> open;
-  bool in_script = false;  // whose text is no markup until it ends
-  std::size_t at = 0;
-  while ((at = html.find('<', at)) != std::string::npos) {
-    if (in_script && html.compare(at, 9, "</script>") != 0) {
-      ++at;
-      continue;
-    }
-    const std::size_t end = html.find('>', at);
-    if (end == std::string::npos) return html.substr(at, 40);
-    const bool closing = html[at + 1] == '/';
-    const std::size_t first = at + (closing ? 2 : 1);
-    const std::string name = html.substr(first, html.find_first_of(" />\n", first) - first);
-    in_script = !closing && name == "script";
-    const bool alone = html[end - 1] == '/' || std::find(kVoid.begin(), kVoid.end(), name) != kVoid.end();
-    if (closing) {
-      if (open.empty() || open.back() != name) return "/" + name;
-      open.pop_back();
-    } else if (!alone) {
-      open.push_back(name);
-    }
-    at = end + 1;
-  }
-  return open.empty() ? "" : open.back();
-}
-
-/// With numbers for the script: 2 × 2 pixels, masks of four light samples, `lights` lights.
-ReportInput touchable_input(std::size_t method_count, std::size_t light_count = 1) {
-  ReportInput in = input_with(method_count);
-  in.metrics.reference.width = in.metrics.reference.height = 2;
-  in.lights.clear();
-  for (std::size_t i = 0; i < light_count; ++i) {
-    ReportLight& light = in.lights.emplace_back();
-    light.name = "light " + std::to_string(i);
-    light.packed_classes = "Q0xBU1M=";
-    light.samples = {{-0.5, -0.5}, {0.5, -0.5}, {-0.5, 0.5}, {0.5, 0.5}};
-  }
-  const auto fill = [&](ReportEntry& entry, bool has_error) {
-    entry.packed_beauty = "QkVBVVRZ";
-    entry.lights.resize(light_count);
-    for (ReportLightView& view : entry.lights) {
-      view.visibility = picture(10);
-      if (has_error) view.error = picture(20);
-      view.packed_visibility = "Vg==";
-      view.packed_masks = "TQ==";
-    }
-  };
-  fill(in.reference, false);
-  for (ReportEntry& entry : in.methods) fill(entry, true);
-  for (MethodResult& result : in.metrics.methods) {
-    result.lights.resize(light_count, result.lights.front());
-    for (std::size_t i = 0; i < light_count; ++i) result.lights[i].name = in.lights[i].name;
-  }
-  return in;
-}
-
-nlohmann::json data_of(const std::string& html) {
-  const std::string begin = "<script type=\"application/json\" id=\"report-data\">";
-  const std::size_t first = html.find(begin) + begin.size();
-  return nlohmann::json::parse(html.substr(first, html.find("</script>", first) - first));
-}
 
 TEST(Report, IsOneWellFormedPageWithoutNetwork) {
   for (const std::size_t count : {0u, 1u, 2u, 8u}) {
@@ -315,15 +195,6 @@ TEST(Report, GivesASpeedOnlyBetweenAnswersToTheSameQuestion) {
   EXPECT_TRUE(says_faster(in));
 }
 
-TEST(Report, ErrorScaleHasNumbers) {
-  const std::string legend = error_legend_html(0.2);
-  for (const char* text : {">−0.2<", ">−0.05<", ">−0.0125<", ">0<", ">+0.0125<", ">+0.05<", ">+0.2<"}) {
-    EXPECT_NE(legend.find(text), std::string::npos) << text;
-  }
-  // A quarter of the limit stands half way along its arm.
-  EXPECT_NE(legend.find("left:75.0%\">+0.05<"), std::string::npos) << legend;
-}
-
 TEST(Report, MissingThingsAreLeftOut) {
   ReportInput in = input_with(2);
   in.reference.beauty.reset();
@@ -377,49 +248,6 @@ TEST(Report, SaysEachWarningOnce) {
   const std::string html = report_html(in);
   EXPECT_EQ(occurrences(html, "2 faces skipped"), 1u);
   EXPECT_EQ(occurrences(html, "<li>"), 4u);
-}
-
-TEST(ReportText, Numbers) {
-  EXPECT_EQ(count_text(7), "7");
-  EXPECT_EQ(count_text(1000), "1\u202f000");
-  EXPECT_EQ(count_text(123456), "123\u202f456");
-  EXPECT_EQ(seconds_text(std::nullopt), "–");
-  EXPECT_EQ(seconds_text(0.0), "0");
-  EXPECT_EQ(seconds_text(0.0000123), "12.3 µs");
-  EXPECT_EQ(seconds_text(0.0123), "12.3 ms");
-  EXPECT_EQ(seconds_text(0.9996), "1 s");
-  EXPECT_EQ(seconds_text(1.234), "1.23 s");
-  EXPECT_EQ(seconds_text(1234.5), "1234 s");
-  EXPECT_EQ(bytes_text(512), "512 bytes");
-  EXPECT_EQ(bytes_text(12 * 1024 * 1024 + 300 * 1024), "12.3 MiB");
-  EXPECT_EQ(speed_text(1.0, 2.1), "2.10× faster");
-  EXPECT_EQ(speed_text(3.0, 1.0), "3.00× slower");
-  EXPECT_EQ(speed_text(1.0, 1.0), "as fast");
-  EXPECT_EQ(speed_text(0.01, 1.5), "150× faster");
-  EXPECT_EQ(speed_text(0.0, 1.0), "–");
-  EXPECT_EQ(signed_text(-0.0), "0");
-}
-
-TEST(ReportText, ShellQuoting) {
-  EXPECT_EQ(shell_text(std::vector<std::string>{"compare", "a b", "it's", "", "k=v", "$x"}),
-            R"(compare 'a b' 'it'\''s' '' k=v '$x')");
-}
-
-TEST(ReportText, SceneInWords) {
-  scenes::Scene scene;
-  scene.name = "bunny.json";
-  scene.soup.triangles.resize(69668);
-  for (int i = 0; i < 10; ++i) scene.objects.emplace_back().name = "o" + std::to_string(i);
-  scene.lights = {{"key", scenes::Rectangle{{0.5, 5, 0.5}, {1, 0, 0}, {0, 0, 2}}},
-                  {"rim", scenes::Disk{{2, 5, 0}, {0, -1, 0}, 0.4}, {1, 2, 3}, true}};
-  scene.cameras = {{"main", {4, 3, 5}, {0, 0.8, 0}, {0, 1, 0}, 45}};
-  const auto facts = describe_scene(scene, 0);
-  ASSERT_EQ(facts.size(), 7u);
-  EXPECT_EQ(facts[1].value, "69\u202f668");
-  EXPECT_EQ(facts[2].value, "o0, o1, o2, o3, o4, o5, o6, o7 and 2 more");
-  EXPECT_EQ(facts[3].value, "a rectangle of 2 × 4 at (0.5, 5, 0.5), radiance (10, 10, 10)");
-  EXPECT_EQ(facts[4].value, "a disk of radius 0.4 at (2, 5, 0), radiance (1, 2, 3), from both sides");
-  EXPECT_EQ(facts[5].value, "at (4, 3, 5), looking at (0, 0.8, 0), 45° high");
 }
 
 TEST(Report, FileIsTheWholePage) {

@@ -1,7 +1,7 @@
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "mesh/import.hpp"
-#include "tests/unit/import/gltf_file.hpp"
+#include "tests/unit/import/gltf_reader.hpp"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -18,22 +18,6 @@ using test::bytes_of;
 using test::Gltf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-
-class GltfReader : public test::FileTest {
- protected:
-  Scene read(Gltf& gltf) const { return read_gltf(write("scene.glb", gltf.glb())); }
-  std::string refusal(Gltf& gltf) const {
-    const auto path = write("scene.glb", gltf.glb());
-    const std::string message = test::input_error([&] { read_gltf(path); });
-    EXPECT_THAT(message, HasSubstr(path.string()));
-    return message;
-  }
-  static std::vector<glm::dvec3> corners(const Scene& scene, std::size_t triangle) {
-    std::vector<glm::dvec3> all;
-    for (const std::uint32_t index : scene.soup.triangles[triangle]) all.push_back(scene.soup.positions[index]);
-    return all;
-  }
-};
 
 TEST_F(GltfReader, ReadsWhatBlenderWrites) {
   Gltf gltf;
@@ -180,98 +164,6 @@ TEST_F(GltfReader, PutsInACameraButNoLight) {
   }
   gltf.at("/scenes/0/nodes") = {0, 2};
   EXPECT_THAT(refusal(gltf), ::testing::AllOf(HasSubstr("no light"), HasSubstr("Blender")));
-}
-
-/// A lamp of KHR_lights_punctual at node 0, which stays a mesh, too.
-Gltf with_lamp(const json& lamp) {
-  Gltf gltf;
-  gltf.at("/scenes/0/nodes") = {0, 2};
-  gltf.document["extensions"] = {{"KHR_lights_punctual", {{"lights", {lamp}}}}};
-  gltf.document["extensionsUsed"].push_back("KHR_lights_punctual");
-  gltf.at("/nodes/0")["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
-  gltf.at("/nodes/0")["translation"] = {1, 2, 3};
-  gltf.at("/nodes/0")["scale"] = {2, 2, 2};
-  gltf.at("/nodes/0")["rotation"] = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // −Z becomes −Y
-  return gltf;
-}
-
-/// Units of the extension: lux of what faces a sun is π sin²(angle / 2) times its radiance, candela of a sphere π r²
-/// times.
-TEST_F(GltfReader, LampsBecomeSunsAndSpheres) {
-  Gltf directional =
-      with_lamp({{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0.25}}, {"extras", {{"angle", 60}}}});
-  const Scene sunny = read(directional);
-  ASSERT_EQ(sunny.lights.size(), 1u);
-  EXPECT_THAT(sunny.warnings, ::testing::IsEmpty());
-  EXPECT_EQ(sunny.lights[0].name, "Body");
-  const auto& sun = std::get<Sun>(sunny.lights[0].shape);
-  EXPECT_EQ(sun.angle, 60);
-  EXPECT_LT(glm::distance(sun.direction, glm::dvec3(0, -1, 0)), 1e-15);
-  EXPECT_LT(glm::distance(sunny.lights[0].radiance * M_PI / 4.0, glm::dvec3(3, 1.5, 0.75)), 1e-14);
-
-  Gltf point = with_lamp({{"type", "point"}, {"intensity", 40}, {"extras", {{"radius", 0.5}}}});
-  const Scene lit = read(point);
-  const auto& sphere = std::get<Sphere>(lit.lights.at(0).shape);
-  EXPECT_EQ(sphere.center, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(sphere.radius, 0.5) << "a node's scale is none of its lamp's";
-  EXPECT_FALSE(sphere.cone);
-  EXPECT_NEAR(lit.lights[0].radiance.x, 40 / (M_PI * 0.25), 1e-12);
-
-  Gltf spot = with_lamp({{"type", "spot"},
-                         {"intensity", 40},
-                         {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}},
-                         {"range", 10}});
-  spot.at("/nodes/0")["extras"] = {{"radius", 0.25}};
-  const Scene shown = read(spot);
-  const auto& round = std::get<Sphere>(shown.lights.at(0).shape);
-  EXPECT_EQ(round.radius, 0.25);
-  ASSERT_TRUE(round.cone);
-  EXPECT_LT(glm::distance(round.cone->direction, glm::dvec3(0, -1, 0)), 1e-15);
-  EXPECT_NEAR(round.cone->inner, 0.25 * 180 / M_PI, 1e-12);
-  EXPECT_NEAR(round.cone->outer, 0.5 * 180 / M_PI, 1e-12);
-  EXPECT_THAT(shown.warnings, Contains(HasSubstr("range of 1 lamps ignored")));
-}
-
-TEST_F(GltfReader, LampsWithoutASizeTakeTheUsersOrAWarning) {
-  for (const auto& [type, option] : {std::pair("point", "--lamp-radius"), {"directional", "--sun-angle"}}) {
-    Gltf gltf = with_lamp({{"type", type}, {"intensity", 2}});
-    const Scene scene = read(gltf);
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr(option)));
-    const auto path = write("lamp.glb", gltf.glb());
-    const Scene chosen = read_gltf(path, {.lamp_radius = 1.0 / 3, .sun_angle = 0});
-    EXPECT_THAT(chosen.warnings, ::testing::IsEmpty());
-    if (type == std::string("point")) {
-      EXPECT_EQ(std::get<Sphere>(scene.lights.at(0).shape).radius, kLampRadius);
-      EXPECT_EQ(std::get<Sphere>(chosen.lights.at(0).shape).radius, 1.0 / 3) << "to the last bit";
-    } else {
-      EXPECT_EQ(std::get<Sun>(scene.lights.at(0).shape).angle, kSunAngle);
-      EXPECT_EQ(std::get<Sun>(chosen.lights.at(0).shape).angle, 0);
-      EXPECT_EQ(chosen.lights[0].radiance, glm::dvec3(2)) << "of a point its irradiance";
-    }
-  }
-}
-
-TEST_F(GltfReader, LampsThatAreNoneAreRefused) {
-  const auto expect = [&](const json& lamp, const std::string& what) {
-    Gltf gltf = with_lamp(lamp);
-    EXPECT_THAT(refusal(gltf), HasSubstr(what));
-  };
-  expect({{"type", "area"}}, "/extensions/KHR_lights_punctual/lights/0/type: \"area\"");
-  expect({{"type", "point"}, {"intensity", -1}}, "/lights/0/intensity");
-  expect({{"type", "point"}, {"color", {1, -1, 0}}}, "/lights/0/color");
-  expect({{"type", "point"}, {"extras", {{"radius", 0}}}}, "/nodes/0: the lamp's radius is 0");
-  expect({{"type", "point"}, {"extras", {{"radius", "big"}}}}, "/lights/0/extras/radius: expected a number");
-  expect({{"type", "directional"}, {"extras", {{"angle", 180}}}}, "/nodes/0: the sun's angle is 180");
-  expect({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.5}}}}, "/lights/0/spot");
-  expect({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}, "/lights/0/spot");
-  Gltf gltf = with_lamp({{"type", "point"}});
-  gltf.at("/nodes/0/extensions/KHR_lights_punctual/light") = 7;
-  EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extensions/KHR_lights_punctual/light"));
-}
-
-TEST_F(GltfReader, ALampThatIsOffIsNoLight) {
-  Gltf gltf = with_lamp({{"type", "point"}, {"intensity", 0}, {"extras", {{"radius", 1}}}});
-  EXPECT_THAT(refusal(gltf), HasSubstr("no light"));
 }
 
 TEST_F(GltfReader, BuffersMayBeExternalButNotOutside) {

@@ -1,10 +1,10 @@
 // Edge scatter on a processor: where a group's edges appear to one of its view samples. Inside volumes/ only.
 
-#if defined(PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP
-#undef PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP
+#if defined(PENUMBRA_VOLUMES_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VOLUMES_PROJECTION_INL_HPP
+#undef PENUMBRA_VOLUMES_PROJECTION_INL_HPP
 #else
-#define PENUMBRA_VOLUMES_NATIVE_PROJECTION_INL_HPP
+#define PENUMBRA_VOLUMES_PROJECTION_INL_HPP
 #endif
 
 #include "engines/vectors/vectors-inl.hpp"

@@ -1,0 +1,104 @@
+#pragma once
+
+#include "maps/host/caster_maps.hpp"
+#include "maps/host/light_basis.hpp"
+#include "maps/host/map_fit.hpp"
+#include "maps/host/map_view.shared.h"
+#include "maps/host/options.hpp"
+#include "maps/sampling/light_tree.hpp"
+#include "render/buffer.hpp"
+#include "render/compute_pass.hpp"
+#include "visibility/method.hpp"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// Which points of a light adaptive-light takes maps from, and how they count.
+struct AdaptiveChoices {
+  std::uint32_t levels, most_maps;
+  double epsilon, gamma;
+  LightTree::Shape form;
+  PointWeights weights;
+  bool share_of_map;  ///< epsilon is a share of a map's texels; else of all that is compared
+};
+
+/// Where maps are compared: receivers on the device, and how many of them there are in all.
+struct ComparedReceivers {
+  struct Part {
+    const render::Buffer* receivers;
+    std::uint32_t count;
+  };
+  std::vector<Part> parts;
+  std::uint64_t count = 0;
+};
+
+/// Maps of a light's points, more where two of them differ (Schwärzler, sections 3.3.1 to 3.3.3), and their weights.
+/// They are whole, and views(), weights() and the maps may be asked, after refine().
+class AdaptiveMaps {
+ public:
+  AdaptiveMaps(const render::Device& device, const MapOptions& map, const AdaptiveChoices& choices);
+
+  void set_scene(const visibility::SceneFloats& scene);
+  /// No point of this light has a map yet. Borrows it.
+  void set_light(const visibility::Light& light);
+  /// Begins again, for other receivers.
+  void restart();
+  /// Adds light points until no cell's maps differ by too much.
+  void refine(const ComparedReceivers& places);
+  [[nodiscard]] bool refined() const { return refined_; }
+  /// What the map of the light's centre holds, as receivers; until refine() is done.
+  [[nodiscard]] ComparedReceivers centre_texels();
+
+  [[nodiscard]] std::uint32_t point_count() const { return static_cast<std::uint32_t>(views_used_.size()); }
+  /// Points whose maps are in one buffer.
+  [[nodiscard]] std::uint32_t maps_per_buffer() const { return maps_per_buffer_; }
+  [[nodiscard]] const render::Buffer& views() const { return *views_; }
+  /// With the map of this point.
+  [[nodiscard]] const render::Buffer& maps_of(std::uint32_t point) const { return *maps_[point / maps_per_buffer_]; }
+  [[nodiscard]] const render::Buffer& weights() const { return *weights_; }
+  [[nodiscard]] float total_weight() const { return total_; }
+  /// What is the same in all look-ups of this light.
+  [[nodiscard]] gpu::LookupPush push() const;
+
+  std::vector<visibility::PassTime> take_pass_times() { return times_.take(); }
+  void add(const std::vector<visibility::PassTime>& times) { times_.add(times); }
+  [[nodiscard]] const std::map<std::string, std::uint64_t>& counters() const { return counters_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const;
+
+ private:
+  [[nodiscard]] std::size_t view_of(const glm::uvec2& point) const;
+  /// Renders the maps of points that have none yet.
+  void add_maps();
+  /// At how many places the maps of each pair differ.
+  std::vector<std::uint32_t> compare(std::span<const LightTree::Pair> pairs, const ComparedReceivers& places);
+  void weigh();
+
+  const render::Device* device_;
+  MapOptions map_;
+  AdaptiveChoices choices_;
+  CasterMaps casters_;
+  render::ComputePass compare_;
+  visibility::PassTimes times_;
+  std::map<std::string, std::uint64_t> counters_;
+  const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::Light* light_ = nullptr;
+  LightBasis basis_;
+  std::optional<LightTree> tree_;
+  bool refined_ = false;
+  FittedViews grid_;                        ///< of all points that the tree can have
+  std::vector<gpu::LightView> views_used_;  ///< of those that it has, in its order
+  std::uint32_t maps_per_buffer_ = 1;
+  float total_ = 0;  ///< of the weights
+  std::vector<std::unique_ptr<render::Buffer>> maps_;
+  std::vector<render::Buffer> texels_;
+  std::unique_ptr<render::Buffer> views_, weights_, counts_;
+};
+
+}  // namespace penumbra::maps
