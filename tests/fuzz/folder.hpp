@@ -27,7 +27,7 @@ class Folder {
 
   /// The file of that name, with `data` in it.
   [[nodiscard]] std::filesystem::path write(const std::string& name, std::span<const std::uint8_t> data) const {
-    const auto file = std::filesystem::path(path_) / name;
+    std::filesystem::path file = std::filesystem::path(path_) / name;
     std::ofstream(file, std::ios::binary)
         .write(reinterpret_cast<const char*>(data.data()), static_cast<std::streamsize>(data.size()));
     return file;
