@@ -33,8 +33,8 @@ function(penumbra_seldom)
   endforeach()
 endfunction()
 
-# penumbra_join(target [APART file…]): files are compiled ten at a time, as one. Not those in APART: what is compiled once a
-# vector target, what owns a hidden type, what has a name inside that another file has, too.
+# penumbra_join(target [APART file…]): files are compiled ten at a time, as one. Not those in APART (what owns a hidden type,
+# what has a name inside that another file has, too), nor what Highway compiles once a vector target.
 function(penumbra_join target)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
@@ -42,6 +42,14 @@ function(penumbra_join target)
     # With more to inline, g++ 12 warns falsely of what it thinks std::string and std::optional do (as in GCC bugs 105651 and
     # 80635). Where files are compiled alone these warnings stay errors.
     target_compile_options(${target} PRIVATE "$<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds;-Wno-maybe-uninitialized>")
+    get_target_property(sources ${target} SOURCES)
+    list(FILTER sources INCLUDE REGEX "^[^/$][^$]*\\.cpp$")
+    foreach(source ${sources})
+      file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/${source} once_a_target REGEX "hwy/foreach_target\\.h" LIMIT_COUNT 1)
+      if(once_a_target)
+        list(APPEND ARG_APART ${source})
+      endif()
+    endforeach()
     set_source_files_properties(${ARG_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()

@@ -69,7 +69,7 @@ class Exact final : public visibility::Method {
   std::atomic<std::uint64_t> view_samples_ = 0, triangles_ = 0, edges_ = 0;
 };
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict exact_method_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::exact,
       visibility::reason_with("the area of what the triangles leave of the light, whatever is wrong with the mesh",
@@ -89,7 +89,7 @@ Exact::Exact(const visibility::MethodOptions& options) {
   description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
                          LightKind::polygon,   LightKind::sphere, LightKind::sun};
   description_.exact_area = visibility::ExactArea{description_.lights};
-  description_.verdict_on = verdict_on;
+  description_.verdict_on = exact_method_verdict;
   description_.options = {kSweep.description()};
   arithmetic_ = visibility::parse_options(description_, options)[kSweep];
 }

@@ -117,7 +117,7 @@ class RayTraced final : public visibility::Method {
   Counts counts_;
 };
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict ray_traced_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with("rays in single precision: a pair within rounding of an edge may be wrong (measured: "
                                   "at most 2 in 100,000)",
@@ -138,7 +138,7 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
   description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
                          LightKind::polygon,   LightKind::sphere, LightKind::sun};
-  description_.verdict_on = verdict_on;
+  description_.verdict_on = ray_traced_verdict;
   description_.options = {kPacket.description()};
   width_ = visibility::parse_options(description_, options)[kPacket];
 }

@@ -30,7 +30,7 @@ namespace {
 using pairs::Footprint, pairs::LightPixels;
 using visibility::LightKind;
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict alias_free_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::approximate,
       visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
@@ -40,7 +40,7 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
 constexpr visibility::RealOption kPerPixel{"perPixel", 0.125, 64, 1,
                                            "view samples that a light pixel has on average: a matter of time alone"};
 
-visibility::MethodDescription describe() {
+visibility::MethodDescription describe_alias_free() {
   return {.name = "alias-free",
           .family = visibility::Family::geometry,
           .paper = "Aila and Laine 2004; Johnson, Lee, Burns and Mark 2005",
@@ -49,7 +49,7 @@ visibility::MethodDescription describe() {
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
                      LightKind::sun},
           .options = {kPerPixel.description()},
-          .verdict_on = verdict_on};
+          .verdict_on = alias_free_verdict};
 }
 
 /// How the light's centre sees: through a face of a cube, or along a sun's direction.
@@ -150,7 +150,7 @@ Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners
 class AliasFree final : public visibility::Method {
  public:
   explicit AliasFree(const visibility::MethodOptions& options)
-      : description_(describe()), per_pixel_(visibility::parse_options(description_, options)[kPerPixel]) {}
+      : description_(describe_alias_free()), per_pixel_(visibility::parse_options(description_, options)[kPerPixel]) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void prepare_mesh(const visibility::SceneFloats& scene) override {

@@ -1,15 +1,13 @@
 #include "vsm/box_planes.hpp"
 
+#include "engines/pairs/blocked_samples.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace penumbra::vsm {
-namespace {
 
-/// As in engines/pairs/blocked_samples.cpp: a determinant of three differences, per product of their lengths.
-constexpr double kDeterminant = 0x1p-46;
-
-}  // namespace
+using pairs::kDeterminant;
 
 BoxPlanes::BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& tree, const LightTree::Node& light)
     : corners_(corners), off_(tree.box.off), sun_(tree.box.sun) {

@@ -30,14 +30,14 @@ using visibility::LightKind;
 constexpr std::uint32_t kSubtrees = 256;  // of view samples, about: what cores share out
 constexpr std::uint32_t kLeafWords = 8;   // of masks, tried at once against a leaf's view samples
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict hierarchical_penumbra_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
           visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
-visibility::MethodDescription describe() {
+visibility::MethodDescription describe_hierarchical_penumbra() {
   return {.name = "hierarchical-penumbra",
           .family = visibility::Family::geometry,
           .paper = "Laine and Aila 2005",
@@ -46,7 +46,7 @@ visibility::MethodDescription describe() {
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sun},
           .on_request = true,
           .options = {},
-          .verdict_on = verdict_on};
+          .verdict_on = hierarchical_penumbra_verdict};
 }
 
 PlaceBox around(const PlaceBox& a, const PlaceBox& b) {
@@ -59,7 +59,8 @@ struct BoxCounts {
 
 class HierarchicalPenumbra final : public pairs::PairMethod {
  public:
-  explicit HierarchicalPenumbra(const visibility::MethodOptions& options) : PairMethod(describe(), "cast penumbrae") {
+  explicit HierarchicalPenumbra(const visibility::MethodOptions& options)
+      : PairMethod(describe_hierarchical_penumbra(), "cast penumbrae") {
     visibility::parse_options(description(), options);
   }
 

@@ -15,7 +15,7 @@
 namespace penumbra::vsm {
 namespace {
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict view_sample_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
           visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
@@ -42,7 +42,7 @@ const visibility::MethodDescription& view_sample_description() {
       .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
                  visibility::LightKind::polygon},
       .options = {engines::kEngine.description(), kVariant.description()},
-      .verdict_on = verdict_on,
+      .verdict_on = view_sample_verdict,
   };
   return description;
 }

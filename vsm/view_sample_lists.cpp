@@ -27,7 +27,7 @@ namespace {
 
 using pairs::PairCounts;
 
-constexpr double kPerPixel = 2;  // view samples a light pixel, on average
+constexpr double kListPerPixel = 2;  // view samples a light pixel, on average
 
 class ViewSampleLists final : public pairs::PairMethod {
  public:
@@ -54,7 +54,7 @@ void ViewSampleLists::block(std::span<const std::uint32_t> pixels, std::map<std:
   std::vector<std::uint32_t> outside;
   for (const double side : {1.0, -1.0}) {
     if (side < 0 && !light().two_sided) continue;
-    FarPlane plane(box, side, reach, pixels, samples().p, kPerPixel);
+    FarPlane plane(box, side, reach, pixels, samples().p, kListPerPixel);
     outside.insert(outside.end(), plane.outside().begin(), plane.outside().end());
     if (plane.empty()) continue;
     counters["longestList"] = std::max<std::uint64_t>(counters["longestList"], plane.light_pixels().longest_list());

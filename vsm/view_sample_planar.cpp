@@ -29,7 +29,7 @@ using pairs::PairCounts;
 using visibility::LightKind;
 
 constexpr double kPerTexel = 1;
-constexpr double kDeterminant = 0x1p-46;  // as in engines/pairs/blocked_samples.cpp
+using pairs::kDeterminant;
 
 enum class Lookup : std::uint8_t { exact, nearest };
 constexpr visibility::ChoiceOption kLookup{

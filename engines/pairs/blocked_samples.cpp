@@ -81,12 +81,6 @@ namespace {
 
 HWY_EXPORT(in_all_here);
 
-// A determinant of three differences, each right to 2⁻⁵³ of itself in each coordinate, has three such errors, and
-// rounds six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ · 6
-// of that product (visibility/certain_meeting.cpp). Here one row is itself a sum, w + (o − p), with three roundings
-// more of no more than |w| + |o − p|: still fewer than 2⁻⁴⁶ of the product with that in place of the row's length.
-constexpr double kDeterminant = 0x1p-46;
-
 /// Is it certain that all, or that none, of a box's w are in a half-space?
 struct BoxSide {
   bool all = false, none = false;

@@ -12,6 +12,13 @@
 
 namespace penumbra::pairs {
 
+/// How far, per product of its rows' lengths, a determinant of three differences may be off.
+/// A determinant of three differences, each right to 2⁻⁵³ of itself in each coordinate, has three such errors, and
+/// rounds six products of three, each at most the product of the rows' lengths, and their sums: fewer than 16 · 2⁻⁵³ ·
+/// 6 of that product (visibility/certain_meeting.cpp). Here one row is itself a sum, w + (o − p), with three roundings
+/// more of no more than |w| + |o − p|: still fewer than 2⁻⁴⁶ of the product with that in place of the row's length.
+inline constexpr double kDeterminant = 0x1p-46;
+
 /// How often what was decided how.
 struct PairCounts {
   std::uint64_t triangles = 0;  ///< (view sample, triangle) tried

@@ -11,11 +11,13 @@
 namespace penumbra::maps {
 namespace {
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict convolution_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("all blockers in one plane at their mean height, whatever their own", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription convolution_description() {
   visibility::MethodDescription description{
       .name = "convolution",
       .family = visibility::Family::image,
@@ -24,27 +26,22 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on,
+      .verdict_on = convolution_verdict,
       .repairs = slice_repairs};
   description.options.push_back(kSliceFilter.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription convolution_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_convolution(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
-  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const visibility::ParsedOptions parsed = visibility::parse_options(convolution_description(), options);
   const SliceOptions slices{.rule = SliceRule::one_plane,
                             .count = 1,
                             .rasteriser = parsed[kRasteriser],
                             .depth = parsed[kDepth],
                             .bias = parsed[kBias]};
-  return make_map_method(device, slice_recipe(device, describe(), slices, parsed[kSliceFilter]), options);
+  return make_map_method(device, slice_recipe(device, convolution_description(), slices, parsed[kSliceFilter]),
+                         options);
 }
 
 }  // namespace penumbra::maps

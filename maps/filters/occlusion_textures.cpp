@@ -13,11 +13,13 @@ namespace {
 
 constexpr visibility::IntegerOption kSlices{"slices", 1, gpu::kMostSlices, 8, "slices parallel to the light"};
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict occlusion_textures_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("slices, each taken to be flat, and a product in place of their union", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription occlusion_textures_description() {
   visibility::MethodDescription description{.name = "occlusion-textures",
                                             .family = visibility::Family::image,
                                             .paper = "Eisemann, Décoret 2006",
@@ -27,28 +29,23 @@ visibility::MethodDescription describe() {
                                                 "rectangle light in the far plane of a slice",
                                             .lights = planar_lights(),
                                             .options = single_map_option_descriptions(),
-                                            .verdict_on = verdict_on,
+                                            .verdict_on = occlusion_textures_verdict,
                                             .repairs = slice_repairs};
   description.options.push_back(kSlices.description());
   description.options.push_back(kSliceFilter.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription occlusion_textures_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_occlusion_textures(const render::Device& device,
                                                             const visibility::MethodOptions& options) {
-  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const visibility::ParsedOptions parsed = visibility::parse_options(occlusion_textures_description(), options);
   const SliceOptions slices{.rule = SliceRule::equal,
                             .count = parsed[kSlices],
                             .rasteriser = parsed[kRasteriser],
                             .depth = parsed[kDepth],
                             .bias = parsed[kBias]};
-  return make_map_method(device, slice_recipe(device, describe(), slices, parsed[kSliceFilter]), options);
+  return make_map_method(device, slice_recipe(device, occlusion_textures_description(), slices, parsed[kSliceFilter]),
+                         options);
 }
 
 }  // namespace penumbra::maps

@@ -20,11 +20,13 @@ constexpr visibility::IntegerOption kWindow{"window", 1, 64, 7, "texels on a sid
 constexpr auto kReceiverPlane = visibility::flag_option(
     "receiverPlane", true, "compare each texel with the receiver's plane; off: with the receiver's own depth");
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict pcf_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription pcf_description() {
   visibility::MethodDescription description{
       .name = "pcf",
       .family = visibility::Family::image,
@@ -33,21 +35,15 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on,
+      .verdict_on = pcf_verdict,
       .repairs = pcf_repairs};
   description.options.push_back(kWindow.description());
   description.options.push_back(kReceiverPlane.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription pcf_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = describe(), .look_up_name = "pcf look-up", .look_up = shaders::kPcfComp};
+  MapRecipe recipe{.description = pcf_description(), .look_up_name = "pcf look-up", .look_up = shaders::kPcfComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const gpu::PcfPush push{parsed[kWindow], parsed[kReceiverPlane] ? 1U : 0U};
   // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window

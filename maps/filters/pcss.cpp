@@ -20,11 +20,13 @@ namespace {
 constexpr visibility::IntegerOption kBlockerSamples{"blockerSamples", 1, 1024, 64, "taps of the blocker search"};
 constexpr visibility::IntegerOption kFilterSamples{"filterSamples", 1, 1024, 64, "taps of the filter"};
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict pcss_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("one map, and one mean height for all that shades a pixel", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription pcss_description() {
   visibility::MethodDescription description{
       .name = "pcss",
       .family = visibility::Family::image,
@@ -35,21 +37,15 @@ visibility::MethodDescription describe() {
           "the light and cover the search window or none of it",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on,
+      .verdict_on = pcss_verdict,
       .repairs = filter_repairs};
   description.options.push_back(kBlockerSamples.description());
   description.options.push_back(kFilterSamples.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription pcss_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_pcss(const render::Device& device, const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = describe(), .look_up_name = "pcss look-up", .look_up = shaders::kPcssComp};
+  MapRecipe recipe{.description = pcss_description(), .look_up_name = "pcss look-up", .look_up = shaders::kPcssComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const std::uint32_t blocker_samples = parsed[kBlockerSamples], filter_samples = parsed[kFilterSamples];
   recipe.products.push_back(std::make_unique<NearestCaster>(device));

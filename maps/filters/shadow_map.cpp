@@ -12,11 +12,13 @@
 namespace penumbra::maps {
 namespace {
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, its edges off by up to half a texel", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription shadow_map_description() {
   return {.name = "shadow-map",
           .family = visibility::Family::image,
           .paper = "Williams 1978",
@@ -24,21 +26,17 @@ visibility::MethodDescription describe() {
           .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
           .lights = planar_lights(),
           .options = single_map_option_descriptions(),
-          .verdict_on = verdict_on,
+          .verdict_on = shadow_map_verdict,
           .repairs = filter_repairs};
-}
-
-}  // namespace
-
-visibility::MethodDescription shadow_map_description() {
-  return describe();
 }
 
 std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device,
                                                     const visibility::MethodOptions& options) {
-  return make_map_method(
-      device, {.description = describe(), .look_up_name = "shadow map look-up", .look_up = shaders::kShadowMapComp},
-      options);
+  return make_map_method(device,
+                         {.description = shadow_map_description(),
+                          .look_up_name = "shadow map look-up",
+                          .look_up = shaders::kShadowMapComp},
+                         options);
 }
 
 }  // namespace penumbra::maps

@@ -1,5 +1,6 @@
 #include "maps/filters/slice_recipe.hpp"
 
+#include "maps/filters/horizon.hpp"
 #include "maps/filters/occlusion_textures.comp.spv.hpp"
 #include "maps/filters/occlusion_textures.shared.h"
 #include "maps/products/light_shape.hpp"
@@ -9,13 +10,6 @@
 #include <utility>
 
 namespace penumbra::maps {
-namespace {
-
-/// Points of the light that say how much of it is above a receiver's horizon.
-constexpr std::uint32_t kHorizonSamples = 64;
-
-}  // namespace
-
 MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
                        const SliceOptions& options, PrefilterKind filter) {
   MapRecipe recipe{.description = std::move(description),

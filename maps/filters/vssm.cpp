@@ -8,6 +8,7 @@
 #include "maps/filters/vssm.shared.h"
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
+#include "maps/filters/horizon.hpp"
 #include "maps/filters/repairs.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/products/map_frame.hpp"
@@ -50,14 +51,13 @@ constexpr auto kFallback =
 constexpr visibility::RealOption kLeak{"leak", 0, 0.99, 0,
                                        "V below this is black, and the rest is stretched over 0 … 1"};
 
-/// Points of the light that say how much of it is above a receiver's horizon.
-constexpr std::uint32_t kHorizonSamples = 64;
-
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict vssm_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("one map, one mean height for all that shades a pixel, and a bound in place of a count", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription vssm_description() {
   visibility::MethodDescription description{.name = "vssm",
                                             .family = visibility::Family::image,
                                             .paper = "Yang 2010, Annen 2008",
@@ -68,7 +68,7 @@ visibility::MethodDescription describe() {
                                                 "parallel to a rectangle light",
                                             .lights = planar_lights(),
                                             .options = single_map_option_descriptions(),
-                                            .verdict_on = verdict_on,
+                                            .verdict_on = vssm_verdict,
                                             .repairs = vssm_repairs};
   for (const auto& option :
        {kMoments.description(), kFilter.description(), kLayers.description(), kTerms.description(),
@@ -77,6 +77,8 @@ visibility::MethodDescription describe() {
   }
   return description;
 }
+
+namespace {
 
 /// What each texel is made into; vssm.comp knows their order.
 std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, float exponent) {
@@ -126,12 +128,8 @@ std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, f
 
 }  // namespace
 
-visibility::MethodDescription vssm_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, const visibility::MethodOptions& options) {
-  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const visibility::ParsedOptions parsed = visibility::parse_options(vssm_description(), options);
   const Moments moments = parsed[kMoments];
   std::uint32_t model = gpu::kVariance;
   gpu::VssmPush push{.count = 1,
@@ -150,7 +148,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
     model = gpu::kExpVariance;
     push.exponent /= 2;
   }
-  MapRecipe recipe{.description = describe(),
+  MapRecipe recipe{.description = vssm_description(),
                    .look_up_name = "vssm look-up",
                    .look_up = shaders::kVssmComp,
                    .constants = {static_cast<std::uint32_t>(parsed[kFilter]), model}};

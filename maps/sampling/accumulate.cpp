@@ -12,11 +12,13 @@
 namespace penumbra::maps {
 namespace {
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict accumulate_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("each pair within half a texel of a shadow's edge may be wrong", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription accumulate_description() {
   return {.name = "accumulate",
           .family = visibility::Family::image,
           .paper = "Heckbert and Herf 1997",
@@ -26,20 +28,14 @@ visibility::MethodDescription describe() {
               "triangles that can be rasterised",
           .lights = planar_lights(),
           .options = map_option_descriptions(),
-          .verdict_on = verdict_on,
+          .verdict_on = accumulate_verdict,
           .repairs = sampling_repairs};
-}
-
-}  // namespace
-
-visibility::MethodDescription accumulate_description() {
-  return describe();
 }
 
 std::unique_ptr<visibility::Method> make_accumulate(const render::Device& device,
                                                     const visibility::MethodOptions& options) {
   return make_map_method(device,
-                         {.description = describe(),
+                         {.description = accumulate_description(),
                           .points = MapPoints::light_samples,
                           .look_up_name = "accumulate look-up",
                           .look_up = shaders::kAccumulateComp},

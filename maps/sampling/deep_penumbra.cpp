@@ -18,13 +18,15 @@ namespace penumbra::maps {
 namespace {
 
 constexpr visibility::RealOption kBound{"bound", 0, 0.5, 0.01, "how far V may be off to save steps of depth"};
-constexpr visibility::IntegerOption kSize = map_size(256);
+constexpr visibility::IntegerOption kDeepSize = map_size(256);
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict deep_penumbra_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("V of the light samples along the rays of one map, off by a texel beside them", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription deep_penumbra_description() {
   visibility::MethodDescription description{
       .name = "deep-penumbra",
       .family = visibility::Family::image,
@@ -33,23 +35,18 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps and bound 0 the share of light samples that are visible",
       .lights = planar_lights(),
       .on_request = true,
-      .options = map_option_descriptions(kSize),
-      .verdict_on = verdict_on,
+      .options = map_option_descriptions(kDeepSize),
+      .verdict_on = deep_penumbra_verdict,
       .repairs = sampling_repairs};
   description.options.push_back(kBound.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription deep_penumbra_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_deep_penumbra(const render::Device& device,
                                                        const visibility::MethodOptions& options) {
-  MapRecipe recipe{
-      .description = describe(), .look_up_name = "deep-penumbra look-up", .look_up = shaders::kDeepPenumbraComp};
+  MapRecipe recipe{.description = deep_penumbra_description(),
+                   .look_up_name = "deep-penumbra look-up",
+                   .look_up = shaders::kDeepPenumbraComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   recipe.products.push_back(std::make_unique<PenumbraEvents>(device, parsed[kBound]));
   recipe.products.push_back(std::make_unique<SamplePoints>(device));

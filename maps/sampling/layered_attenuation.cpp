@@ -18,17 +18,19 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::RealOption kEpsilon{"epsilon", 0, 1, 0.02,
-                                          "depths that differ by no more than this share of them are one surface"};
+constexpr visibility::RealOption kSameDepth{"epsilon", 0, 1, 0.02,
+                                            "depths that differ by no more than this share of them are one surface"};
 constexpr visibility::ChoiceOption kNeighbours = visibility::flag_option(
     "neighbours", true, "looks for a receiver that its own texel knows nothing of in the eight around");
-constexpr visibility::IntegerOption kSize = map_size(256);
+constexpr visibility::IntegerOption kLayeredSize = map_size(256);
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict layered_attenuation_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("light samples counted on the surfaces that they see, off by a texel beside them", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription layered_attenuation_description() {
   visibility::MethodDescription description{
       .name = "layered-attenuation",
       .family = visibility::Family::image,
@@ -37,27 +39,21 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps and small epsilon the share of light samples that are visible",
       .lights = planar_lights(),
       .on_request = true,
-      .options = map_option_descriptions(kSize),
-      .verdict_on = verdict_on,
+      .options = map_option_descriptions(kLayeredSize),
+      .verdict_on = layered_attenuation_verdict,
       .repairs = sampling_repairs};
-  description.options.push_back(kEpsilon.description());
+  description.options.push_back(kSameDepth.description());
   description.options.push_back(kNeighbours.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription layered_attenuation_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Device& device,
                                                              const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = describe(),
+  MapRecipe recipe{.description = layered_attenuation_description(),
                    .look_up_name = "layered-attenuation look-up",
                    .look_up = shaders::kLayeredAttenuationComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const double epsilon = parsed[kEpsilon];
+  const double epsilon = parsed[kSameDepth];
   const bool neighbours = parsed[kNeighbours];
   auto layers = std::make_unique<LayeredDepth>(device, epsilon);
   recipe.push_words = sizeof(gpu::AttenuationPush) / sizeof(std::uint32_t);

@@ -41,7 +41,7 @@ constexpr visibility::ChoiceOption kCounterBits{"counter-bits",
                                                 16U,
                                                 "forest: of a packed counter; where it overflows, pairs are exact"};
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::exact,
       visibility::reason_with(
@@ -250,7 +250,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
           "plane passes through the light, too bright elsewhere",
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
       .options = {kVariant.description(), kCrop.description(), kCounterBits.description()},
-      .verdict_on = verdict_on};
+      .verdict_on = depth_complexity_verdict};
   parse(description, options);
   return description;
 }

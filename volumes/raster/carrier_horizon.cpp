@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "visibility/pair_truth.hpp"
 #include "volumes/raster/volume_count.shared.h"
+#include "volumes/raster/small_vectors.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -15,10 +16,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostSamples = 32;
-
-double norm1(const glm::dvec3& v) {
-  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
 
 /// Off by less than 2⁻⁴⁰ of itself and of the coordinates.
 double distance_to_rim(const glm::vec3& p, const std::array<glm::vec3, 3>& corners) {

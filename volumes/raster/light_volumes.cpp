@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "volumes/edges/silhouette_pass.hpp"
 #include "volumes/raster/volume_count.shared.h"
+#include "volumes/raster/small_vectors.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -31,10 +32,6 @@ struct Agreement {
     return true;
   }
 };
-
-double norm1(const glm::dvec3& v) {
-  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
 
 void look_at_determinant(Agreement& signs, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   signs.look(glm::dot(a, glm::cross(b, c)), gpu::kDeterminantError * norm1(a) * norm1(b) * norm1(c));

@@ -17,19 +17,19 @@ namespace {
 /// An eighth of a pixel is what callers may rely on. The rest is for the rasteriser: corners snap to a grid of at least
 /// 2⁴ places a pixel (Vulkan's minimum of subPixelPrecisionBits), so move by up to √2/32 = 0.045, and are floats, off
 /// by less than 0.01 in pictures up to 2¹⁵ pixels wide.
-constexpr double kPad = 0.25;
+constexpr double kBoxPad = 0.25;
 
 /// x and y in units of w, which is the distance along the view axis (of a direction: its part along it).
-struct Polygon {
+struct SeenPolygon {
   std::array<glm::dvec3, 8> corners;
   std::size_t size = 0;
   void add(const glm::dvec3& corner) { corners[size++] = corner; }
 };
 
 /// The part where `limit` · w + `sign` · corner[axis] ≥ 0. Each plane adds at most one corner.
-Polygon clip(const Polygon& polygon, int axis, double sign, double limit) {
+SeenPolygon cut_to_side(const SeenPolygon& polygon, int axis, double sign, double limit) {
   const auto inside = [&](const glm::dvec3& v) { return limit * v.z + sign * v[axis]; };
-  Polygon out;
+  SeenPolygon out;
   for (std::size_t i = 0; i < polygon.size; ++i) {
     const glm::dvec3 &from = polygon.corners[i], &to = polygon.corners[(i + 1) % polygon.size];
     const double d = inside(from), e = inside(to);
@@ -39,12 +39,12 @@ Polygon clip(const Polygon& polygon, int axis, double sign, double limit) {
   return out;
 }
 
-struct Points {
+struct SeenCorners {
   std::array<glm::dvec2, 8> at;
   std::size_t size = 0;
 };
 
-ScreenBox box_along(const Points& points, const glm::dvec2& u, double& area) {
+ScreenBox box_along(const SeenCorners& points, const glm::dvec2& u, double& area) {
   const glm::dvec2 v(-u.y, u.x);
   glm::dvec2 lower(std::numeric_limits<double>::infinity()), upper = -lower;
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -52,14 +52,14 @@ ScreenBox box_along(const Points& points, const glm::dvec2& u, double& area) {
     lower = glm::min(lower, q);
     upper = glm::max(upper, q);
   }
-  lower -= kPad;
-  upper += kPad;
+  lower -= kBoxPad;
+  upper += kBoxPad;
   area = (upper.x - lower.x) * (upper.y - lower.y);
   const auto corner = [&](double x, double y) { return glm::vec2(x * u + y * v); };
   return {{corner(lower.x, lower.y), corner(upper.x, lower.y), corner(lower.x, upper.y), corner(upper.x, upper.y)}};
 }
 
-ScreenBox smallest_box(const Points& points) {
+ScreenBox smallest_box(const SeenCorners& points) {
   double least = 0;
   ScreenBox best = box_along(points, {1, 0}, least);
   for (std::size_t i = 0; i < points.size; ++i) {
@@ -92,7 +92,7 @@ glm::dvec2 BoxFinder::project(const glm::dvec3& x) const {
 }
 
 std::optional<ScreenBox> BoxFinder::around(std::span<const FaceCorner> polygon) const {
-  Polygon clipped;
+  SeenPolygon clipped;
   double reach = 0;
   for (const FaceCorner& corner : polygon) {
     const glm::dvec3 d = corner.infinite ? corner.at : corner.at - eye_;
@@ -101,16 +101,16 @@ std::optional<ScreenBox> BoxFinder::around(std::span<const FaceCorner> polygon) 
   }
   // In double a corner is off by 8 · 2⁻⁵³ · reach · a (a: the longer of across_ and upward_, at least 1, forward_'s
   // length). At a depth of more than 1e-9 · reach · a its projection, up to two of these over the depth, times up to
-  // 16384 pixels, is off by less than a thirtieth of a pixel: kPad has room for that beside the eighth that is
+  // 16384 pixels, is off by less than a thirtieth of a pixel: kBoxPad has room for that beside the eighth that is
   // promised.
   const double least_depth = 1e-9 * reach * glm::max(1.0, glm::max(glm::length(across_), glm::length(upward_)));
   // A pixel more than the screen on every side: what appears there can still come within an eighth of one.
   const glm::dvec2 limit = 1.0 + 1.0 / half_;
   for (int axis = 0; axis < 2 && clipped.size > 0; ++axis) {
-    clipped = clip(clip(clipped, axis, 1, limit[axis]), axis, -1, limit[axis]);
+    clipped = cut_to_side(cut_to_side(clipped, axis, 1, limit[axis]), axis, -1, limit[axis]);
   }
   if (clipped.size == 0) return std::nullopt;
-  Points points;
+  SeenCorners points;
   points.size = clipped.size;
   for (std::size_t i = 0; i < clipped.size; ++i) {
     const glm::dvec3& corner = clipped.corners[i];
@@ -121,6 +121,12 @@ std::optional<ScreenBox> BoxFinder::around(std::span<const FaceCorner> polygon) 
     points.at[i] = half_ + glm::dvec2(corner.x, -corner.y) / corner.z * half_;
   }
   return smallest_box(points);
+}
+
+bool BoxFinder::appears_at(const glm::dvec3& x, const glm::dvec2& there) const {
+  constexpr double kMost = 1.0 / 16;
+  const glm::dvec2 offset = glm::abs(project(x) - there);
+  return offset.x <= kMost && offset.y <= kMost;  // not for NaN
 }
 
 }  // namespace penumbra::volumes

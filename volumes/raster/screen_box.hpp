@@ -35,6 +35,9 @@ class BoxFinder {
 
   /// Where x appears, in pixels; only for what is in front of the eye.
   [[nodiscard]] glm::dvec2 project(const glm::dvec3& x) const;
+  /// Whether x appears within a sixteenth of a pixel of there, along either axis: boxes and footprints have room for an
+  /// eighth.
+  [[nodiscard]] bool appears_at(const glm::dvec3& x, const glm::dvec2& there) const;
 
  private:
   glm::dvec3 eye_, across_, upward_, forward_;  // of a frustum of half-width and half-height 1

@@ -17,6 +17,7 @@
 #include "visibility/tree/triangle_tree.hpp"
 #include "volumes/raster/light_volumes.hpp"
 #include "volumes/raster/screen_box.hpp"
+#include "volumes/raster/small_vectors.hpp"
 #include "volumes/raster/volume_count.frag.spv.hpp"
 #include "volumes/raster/volume_count.shared.h"
 #include "volumes/raster/volume_face.vert.spv.hpp"
@@ -36,8 +37,6 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-constexpr double kMostOffset = 1.0 / 16;  // pixels along either axis; screen boxes have room for an eighth
-
 enum FaceKind : std::uint32_t { kSide = 0, kFan = 1, kCap = 2 };
 
 render::RasterPass make_pass(const render::Device& device, const char* name, FaceKind kind, CountVariant variant) {
@@ -54,22 +53,14 @@ gpu::VolumeFace face_of(const VolumeEdge& edge) {
   return {edge.a, edge.b, edge.a, edge.multiplicity, 0, {}};
 }
 
-void store(double (&to)[3], const glm::dvec3& from) {
-  for (int i = 0; i < 3; ++i) to[i] = from[i];
-}
-
 /// Does p appear where its pixel is, and does the place where the line from p to l meets the carrier's plane? Rounding
 /// p moved it off both; next to the camera, or under grazing light, that can be pixels.
 bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& carrier, const glm::vec3& p,
                       const glm::vec3& l, const glm::dvec2& center) {
-  const auto near = [&](const glm::dvec3& x) {
-    const glm::dvec2 offset = glm::abs(boxes.project(x) - center);
-    return offset.x <= kMostOffset && offset.y <= kMostOffset;  // not for NaN
-  };
   const glm::dvec3 a = carrier[0], to_light = glm::dvec3(l) - glm::dvec3(p);
   const glm::dvec3 normal = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
   const double s = glm::dot(normal, glm::dvec3(p) - a) / glm::dot(normal, to_light);
-  return near(p) && near(glm::dvec3(p) - to_light * s);
+  return boxes.appears_at(p, center) && boxes.appears_at(glm::dvec3(p) - to_light * s, center);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "render/raster_pass.hpp"
 #include "volumes/wedges/light_hull.hpp"
 #include "volumes/raster/screen_box.hpp"
+#include "volumes/raster/small_vectors.hpp"
 #include "volumes/raster/wedge_footprint.vert.spv.hpp"
 
 #include <glm/common.hpp>
@@ -22,12 +23,7 @@ namespace {
 using visibility::Tile;
 using visibility::ViewSamples;
 
-constexpr double kMostOffset = 1.0 / 16;  // pixels along either axis; footprints have room for an eighth
 constexpr std::uint32_t kFanVertices = 3 * (Footprint::kMost - 2);
-
-void store(double (&to)[3], const glm::dvec3& from) {
-  for (int i = 0; i < 3; ++i) to[i] = from[i];
-}
 
 }  // namespace
 
@@ -91,8 +87,7 @@ gpu::WedgePush wedge_push(const visibility::Light& light) {
 bool appears_in_place(const visibility::PinholeCamera& camera, const glm::vec3& p, std::size_t pixel) {
   const glm::dvec2 center(static_cast<double>(pixel % camera.width) + 0.5,
                           static_cast<double>(pixel / camera.width) + 0.5);
-  const glm::dvec2 offset = glm::abs(BoxFinder(camera).project(p) - center);
-  return offset.x <= kMostOffset && offset.y <= kMostOffset;  // not for NaN
+  return BoxFinder(camera).appears_at(p, center);
 }
 
 struct WedgeRaster::State {

@@ -10,7 +10,7 @@
 namespace penumbra::volumes {
 namespace {
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict hard_volume_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::approximate,
       visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
@@ -23,7 +23,9 @@ constexpr visibility::ChoiceOption kVariant{
     CountVariant::z_fail,
     "count volumes beyond the surface, or between it and the camera: wrong when the camera is in shadow"};
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription hard_volume_description() {
   using visibility::LightKind;
   return {.name = "hard-volume",
           .family = visibility::Family::geometry,
@@ -32,13 +34,16 @@ visibility::MethodDescription describe() {
           .exact_for = "the hard shadow of the light's centre, of any triangle soup (z-fail)",
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
           .options = {kVariant.description()},
-          .verdict_on = verdict_on};
+          .verdict_on = hard_volume_verdict};
 }
+
+namespace {
 
 class HardVolume final : public visibility::Method {
  public:
   HardVolume(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(describe()), count_(device, visibility::parse_options(description_, options)[kVariant]) {}
+      : description_(hard_volume_description()),
+        count_(device, visibility::parse_options(description_, options)[kVariant]) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void prepare_mesh(const visibility::SceneFloats& scene) override { count_.prepare_mesh(scene); }
@@ -77,10 +82,6 @@ class HardVolume final : public visibility::Method {
 };
 
 }  // namespace
-
-visibility::MethodDescription hard_volume_description() {
-  return describe();
-}
 
 std::unique_ptr<visibility::Method> make_hard_volume(const render::Device& device,
                                                      const visibility::MethodOptions& options) {

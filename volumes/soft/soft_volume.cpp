@@ -57,7 +57,7 @@ constexpr visibility::ChoiceOption kTests{
     WedgeTests::both,
     "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"};
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict soft_volume_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
               "the silhouettes of the light's centre stand for all of them, and layers that overlap are added", mesh,
@@ -67,7 +67,9 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription soft_volume_description() {
   return {.name = "soft-volume",
           .family = visibility::Family::geometry,
           .paper = "Assarsson and Akenine-Möller 2003",
@@ -78,8 +80,10 @@ visibility::MethodDescription describe() {
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse},
           .options = {kSplit.description(), kTable.description(), kConstruction.description(), kWedges.description(),
                       kTests.description()},
-          .verdict_on = verdict_on};
+          .verdict_on = soft_volume_verdict};
 }
+
+namespace {
 
 /// The light, or one of the parts it is cut in.
 struct LightPart {
@@ -106,7 +110,7 @@ struct LightPart {
 class SoftVolume final : public visibility::Method {
  public:
   SoftVolume(const render::Device& device, const visibility::ParsedOptions& options)
-      : description_(describe()),
+      : description_(soft_volume_description()),
         device_(&device),
         split_(options[kSplit]),
         table_(options[kTable]),
@@ -320,13 +324,9 @@ std::map<std::string, std::uint64_t> SoftVolume::counters() const {
 
 }  // namespace
 
-visibility::MethodDescription soft_volume_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_soft_volume(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
-  return std::make_unique<SoftVolume>(device, visibility::parse_options(describe(), options));
+  return std::make_unique<SoftVolume>(device, visibility::parse_options(soft_volume_description(), options));
 }
 
 }  // namespace penumbra::volumes

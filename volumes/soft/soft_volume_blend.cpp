@@ -31,16 +31,18 @@ using visibility::ViewSamples;
 
 constexpr std::size_t kMostOccluders = 32;  // each has passes of its own; further objects share the last
 
-constexpr auto kWedges = wedges_option("where silhouettes and wedges are built for each light, object by object");
+constexpr auto kBlendWedges = wedges_option("where silhouettes and wedges are built for each light, object by object");
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict soft_volume_blend_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
               "the silhouettes of the light's centre stand for all of them, and boxes say how objects overlap", mesh,
               {{mesh.boundary_edges.count, "boundary edges: what is not closed counts triangle by triangle"}})};
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription soft_volume_blend_description() {
   return {.name = "soft-volume-blend",
           .family = visibility::Family::geometry,
           .paper = "Forest, Barthe and Paulin 2006",
@@ -48,9 +50,11 @@ visibility::MethodDescription describe() {
           .exact_for = "what soft-volume is exact for, if boxes around occluders on a quarter of the light are apart",
           .lights = {LightKind::rectangle},
           .textures = false,
-          .options = {kWedges.description()},
-          .verdict_on = verdict_on};
+          .options = {kBlendWedges.description()},
+          .verdict_on = soft_volume_blend_verdict};
 }
+
+namespace {
 
 /// An object, as a scene in which nothing else casts shadow.
 struct Occluder {
@@ -102,9 +106,9 @@ Cover cover_of(std::span<const std::int64_t> words, std::uint32_t quarter, std::
 class SoftVolumeBlend final : public visibility::Method {
  public:
   SoftVolumeBlend(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(describe()),
+      : description_(soft_volume_blend_description()),
         device_(&device),
-        wedges_on_(visibility::parse_options(description_, options)[kWedges]),
+        wedges_on_(visibility::parse_options(description_, options)[kBlendWedges]),
         raster_(device, {"blended wedges", shaders::kSoftVolumeBlendFrag, {}, gpu::kBlendWords, false}) {}
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -290,10 +294,6 @@ Cover blend(const Cover& there, const Cover& added) {
   result.box = {std::min(there.box[0], added.box[0]), std::min(there.box[1], added.box[1]),
                 std::max(there.box[2], added.box[2]), std::max(there.box[3], added.box[3])};
   return result;
-}
-
-visibility::MethodDescription soft_volume_blend_description() {
-  return describe();
 }
 
 std::unique_ptr<visibility::Method> make_soft_volume_blend(const render::Device& device,

@@ -24,7 +24,7 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict wedge_ramp_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::approximate,
       visibility::reason_with(
@@ -32,7 +32,9 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
           mesh, {{mesh.boundary_edges.count, "boundary edges: what is not closed counts triangle by triangle"}})};
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription wedge_ramp_description() {
   return {.name = "wedge-ramp",
           .family = visibility::Family::geometry,
           .paper = "Akenine-Möller and Assarsson 2002",
@@ -41,13 +43,15 @@ visibility::MethodDescription describe() {
           .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse},
           .textures = false,
           .options = {},
-          .verdict_on = verdict_on};
+          .verdict_on = wedge_ramp_verdict};
 }
+
+namespace {
 
 class WedgeRamp final : public visibility::Method {
  public:
   WedgeRamp(const render::Device& device, const visibility::MethodOptions& options)
-      : description_(describe()),
+      : description_(wedge_ramp_description()),
         count_(device, CountVariant::z_fail, Layers::one_a_solid),
         raster_(device, {"wedge ramps", shaders::kWedgeRampFrag, {}}) {
     visibility::parse_options(description_, options);
@@ -141,10 +145,6 @@ void WedgeRamp::evaluate(const Tile& tile) {
 }
 
 }  // namespace
-
-visibility::MethodDescription wedge_ramp_description() {
-  return describe();
-}
 
 std::unique_ptr<visibility::Method> make_wedge_ramp(const render::Device& device,
                                                     const visibility::MethodOptions& options) {

@@ -21,7 +21,9 @@ constexpr visibility::ChoiceOption kTraversal{
     "how contours are found, always the same ones: in every cell of a kernel, below a node of the searched pyramid (or "
     "of an MSSM) over it, or below a min-max pyramid's root"};
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription contour_description() {
   visibility::MethodDescription description{
       .name = "contour",
       .family = visibility::Family::image,
@@ -40,17 +42,12 @@ visibility::MethodDescription describe() {
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription contour_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_contour(const render::Device& device,
                                                  const visibility::MethodOptions& options) {
-  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const visibility::ParsedOptions parsed = visibility::parse_options(contour_description(), options);
   const ContourChoices choices{.search = parsed[kSearch], .traversal = parsed[kTraversal]};
-  return subsampled(device, make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+  return subsampled(device,
+                    make_map_method(device, contour_recipe(device, contour_description(), choices, parsed), options),
                     parsed, options);
 }
 

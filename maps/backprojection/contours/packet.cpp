@@ -39,7 +39,9 @@ constexpr visibility::RealOption kDivergence{
     "divergence", 0, 1, 0.8,
     "a packet whose pixels are more likely than this to have different contours is done pixel by pixel"};
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription packet_description() {
   visibility::MethodDescription description{
       .name = "packet",
       .family = visibility::Family::image,
@@ -59,15 +61,9 @@ visibility::MethodDescription describe() {
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription packet_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_packet(const render::Device& device,
                                                 const visibility::MethodOptions& options) {
-  const visibility::ParsedOptions parsed = visibility::parse_options(describe(), options);
+  const visibility::ParsedOptions parsed = visibility::parse_options(packet_description(), options);
   const Extent packet = parsed[kPacket];
   const ContourChoices choices{.search = Search::mssm,
                                .traversal = parsed[kHierarchy] ? Traversal::hierarchy : Traversal::flat,
@@ -75,7 +71,8 @@ std::unique_ptr<visibility::Method> make_packet(const render::Device& device,
                                .packet_height = packet.height,
                                .divergence = parsed[kDivergence],
                                .sub_lights = parsed[kSubLights]};
-  return subsampled(device, make_map_method(device, contour_recipe(device, describe(), choices, parsed), options),
+  return subsampled(device,
+                    make_map_method(device, contour_recipe(device, packet_description(), choices, parsed), options),
                     parsed, options);
 }
 

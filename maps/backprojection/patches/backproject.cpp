@@ -21,21 +21,23 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr auto kFill = fill_option(gpu::kFillEdges);
+constexpr auto kPatchFill = fill_option(gpu::kFillEdges);
 constexpr visibility::ChoiceOption kForm{
     "form",
     {{"patch", gpu::kFormPatch}, {"sphere", gpu::kFormSphere}},
     gpu::kFormPatch,
     "rectangles on the light, or bounding spheres before the disk of the light's area (without fill)"};
-constexpr visibility::IntegerOption kLayers{
+constexpr visibility::IntegerOption kDeepestLayers{
     "layers", 1, 16, 1, "layers of surfaces that are asked, of which the deepest that hides some of the light counts"};
-constexpr auto kSearch = search_option(Search::hsm);
+constexpr auto kPatchSearch = search_option(Search::hsm);
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict backproject_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the surfaces that the light's centre sees, as patches whose shadows are added up", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription backproject_description() {
   visibility::MethodDescription description{
       .name = "backproject",
       .family = visibility::Family::image,
@@ -44,37 +46,33 @@ visibility::MethodDescription describe() {
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on,
+      .verdict_on = backproject_verdict,
       .repairs = backproject_repairs};
-  description.options.push_back(kFill.description());
+  description.options.push_back(kPatchFill.description());
   description.options.push_back(kForm.description());
-  description.options.push_back(kLayers.description());
-  description.options.push_back(kSearch.description());
+  description.options.push_back(kDeepestLayers.description());
+  description.options.push_back(kPatchSearch.description());
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription backproject_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_backproject(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
-  MapRecipe recipe{
-      .description = describe(), .look_up_name = "backproject look-up", .look_up = shaders::kBackprojectComp};
+  MapRecipe recipe{.description = backproject_description(),
+                   .look_up_name = "backproject look-up",
+                   .look_up = shaders::kBackprojectComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
-  recipe.layers.count = parsed[kLayers] + (parsed[kDepth] == DepthUse::first ? 0 : 1);
+  recipe.layers.count = parsed[kDeepestLayers] + (parsed[kDepth] == DepthUse::first ? 0 : 1);
   recipe.products.push_back(std::make_unique<NearestCaster>(device));
   recipe.products.push_back(std::make_unique<LightTable>(device));
-  const Search search = parsed[kSearch];
+  const Search search = parsed[kPatchSearch];
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
-  const gpu::BackprojectPush push{parsed[kFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kLayers]};
+  const gpu::BackprojectPush push{parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u,
+                                  parsed[kDeepestLayers]};
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);

@@ -19,7 +19,7 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 3, "layers of surfaces that are asked"};
+constexpr visibility::IntegerOption kPeeledLayers{"layers", 1, 16, 3, "layers of surfaces that are asked"};
 constexpr visibility::IntegerOption kSamples{
     "samples", 0, 1048576, 121, "texels that a receiver asks at most, evenly spread over its kernel; 0: all"};
 constexpr visibility::ChoiceOption<std::uint32_t, 2> kSelect{
@@ -29,11 +29,13 @@ constexpr visibility::ChoiceOption<std::uint32_t, 2> kSelect{
     "of a texel's surfaces in front of the receiver the deepest that hides some of the light, or the deepest"};
 constexpr auto kPeelDepth = depth_option(DepthUse::midpoint);
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict backproject_peel_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the surfaces nearest to the light's centre, as patches whose shadows are added up", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription backproject_peel_description() {
   visibility::MethodDescription description{
       .name = "backproject-peel",
       .family = visibility::Family::image,
@@ -44,9 +46,9 @@ visibility::MethodDescription describe() {
           "parallel to the light",
       .lights = planar_lights(),
       .options = single_map_option_descriptions(DepthUse::midpoint),
-      .verdict_on = verdict_on,
+      .verdict_on = backproject_peel_verdict,
       .repairs = peel_repairs};
-  description.options.push_back(kLayers.description());
+  description.options.push_back(kPeeledLayers.description());
   description.options.push_back(kSamples.description());
   description.options.push_back(kSelect.description());
   description.options.push_back(kSubsample.description());
@@ -54,18 +56,13 @@ visibility::MethodDescription describe() {
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription backproject_peel_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_backproject_peel(const render::Device& device,
                                                           const visibility::MethodOptions& options) {
-  MapRecipe recipe{
-      .description = describe(), .look_up_name = "backproject-peel look-up", .look_up = shaders::kBackprojectPeelComp};
+  MapRecipe recipe{.description = backproject_peel_description(),
+                   .look_up_name = "backproject-peel look-up",
+                   .look_up = shaders::kBackprojectPeelComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const gpu::PeelLookPush push{parsed[kLayers], parsed[kSamples], parsed[kSelect]};
+  const gpu::PeelLookPush push{parsed[kPeeledLayers], parsed[kSamples], parsed[kSelect]};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
   recipe.layers.count = push.layers + (parsed[kPeelDepth] == DepthUse::first ? 0 : 1);

@@ -31,21 +31,23 @@ constexpr visibility::ChoiceOption kOccluder{"occluder",
                                              "a texel's rectangle; a quad between four centres; with a triangle where "
                                              "three of them hide; of a level, the rectangle "
                                              "around what there is"};
-constexpr auto kFill = fill_option(gpu::kFillNone);
-constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 1, "layers of surfaces that are asked"};
+constexpr auto kBitmaskFill = fill_option(gpu::kFillNone);
+constexpr visibility::IntegerOption kJoinedLayers{"layers", 1, 16, 1, "layers of surfaces that are asked"};
 constexpr visibility::IntegerOption kLevel{"level", 0, 6, 0, "blocks of 2^level texels a side are one texel"};
 constexpr visibility::IntegerOption kBudget{
     "budget", 0, 1u << 28, 0,
     "texels of a face that a receiver may look at; where there are more, coarser levels stand for them; 0: no limit"};
 constexpr auto kBlend =
     visibility::flag_option("blend", true, "with a budget: pass from one level to the next without steps");
-constexpr auto kSearch = search_option(Search::mssm);
+constexpr auto kBitmaskSearch = search_option(Search::mssm);
 
-visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
+visibility::MeshVerdict bitmask_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the surfaces that the light's centre sees, each pair decided by their texels", mesh);
 }
 
-visibility::MethodDescription describe() {
+}  // namespace
+
+visibility::MethodDescription bitmask_description() {
   visibility::MethodDescription description{
       .name = "bitmask",
       .family = visibility::Family::image,
@@ -57,29 +59,29 @@ visibility::MethodDescription describe() {
       .lights = planar_lights(),
       .on_request = true,
       .options = single_map_option_descriptions(),
-      .verdict_on = verdict_on,
+      .verdict_on = bitmask_verdict,
       .repairs = bitmask_repairs};
-  for (const auto& option : {kOccluder.description(), kFill.description(), kLayers.description(), kLevel.description(),
-                             kBudget.description(), kBlend.description(), kSearch.description()}) {
+  for (const auto& option :
+       {kOccluder.description(), kBitmaskFill.description(), kJoinedLayers.description(), kLevel.description(),
+        kBudget.description(), kBlend.description(), kBitmaskSearch.description()}) {
     description.options.push_back(option);
   }
   return description;
 }
 
-}  // namespace
-
-visibility::MethodDescription bitmask_description() {
-  return describe();
-}
-
 std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
                                                  const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = describe(), .look_up_name = "bitmask look-up", .look_up = shaders::kBitmaskComp};
+  MapRecipe recipe{
+      .description = bitmask_description(), .look_up_name = "bitmask look-up", .look_up = shaders::kBitmaskComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const Search search = parsed[kSearch];
-  const gpu::BitmaskPush push{
-      parsed[kOccluder], parsed[kFill],           parsed[kLayers], parsed[kLevel], search == Search::none ? 0u : 1u,
-      parsed[kBudget],   parsed[kBlend] ? 1u : 0u};
+  const Search search = parsed[kBitmaskSearch];
+  const gpu::BitmaskPush push{parsed[kOccluder],
+                              parsed[kBitmaskFill],
+                              parsed[kJoinedLayers],
+                              parsed[kLevel],
+                              search == Search::none ? 0u : 1u,
+                              parsed[kBudget],
+                              parsed[kBlend] ? 1u : 0u};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
   recipe.layers.count = push.layers + (parsed[kDepth] == DepthUse::first ? 0 : 1);

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cmath>
+
+namespace penumbra::volumes {
+
+inline double norm1(const glm::dvec3& v) {
+  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+/// Into push constants, which have three doubles where C++ has a vector of them.
+inline void store(double (&to)[3], const glm::dvec3& from) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+
+}  // namespace penumbra::volumes
