@@ -155,6 +155,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
   PENUMBRA_ASSERT(descriptor_ >= 0, "write after commit to {}", path_.string());
+  settled_ = false;
   const std::uint64_t quota = disk_quota();
   while (!bytes.empty()) {
     const std::uint64_t room = quota - std::min(quota, written_);
@@ -172,9 +173,15 @@ void AtomicFile::write(std::string_view text) {
   write(std::as_bytes(std::span(text)));
 }
 
+void AtomicFile::settle() {
+  PENUMBRA_ASSERT(descriptor_ >= 0, "settle after commit of {}", path_.string());
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);  // EINVAL: a file system without fsync
+  settled_ = true;
+}
+
 void AtomicFile::commit() {
   PENUMBRA_ASSERT(descriptor_ >= 0, "second commit of {}", path_.string());
-  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno);  // EINVAL: a file system without fsync
+  if (!settled_) settle();
   // Again, in case somebody put something else there meanwhile (rename itself refuses only folders).
   refuse_what_is_no_regular_file(path_, destination_);
   give_name();

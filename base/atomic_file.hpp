@@ -38,6 +38,9 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
+  /// Flushes what was written to the disk: after it commit() only gives the name. For several files that shall all appear
+  /// or none: write and settle each, then commit each.
+  void settle();
   void commit();
 
  private:
@@ -52,6 +55,7 @@ class AtomicFile {
   std::filesystem::path temporary_;    ///< empty while the file has no name, and once committed
   int descriptor_ = -1;
   std::uint64_t written_ = 0;
+  bool settled_ = false;
 };
 
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);

@@ -82,11 +82,17 @@ void add_vector_channels(ExrImage& image, const std::string& layer, std::span<co
 }
 
 void write_exr(const std::filesystem::path& path, const ExrImage& image) {
+  AtomicFile file(path);  // first, so that a place that cannot be written is told before any work
+  write_exr(file, image);
+  file.commit();
+}
+
+void write_exr(AtomicFile& file, const ExrImage& image) {
+  const std::filesystem::path& path = file.path();
   if (image.width == 0 || image.height == 0 || image.width > kLargestExrSide || image.height > kLargestExrSide) {
     throw ResourceError("cannot write \"{}\": {}x{} pixels; an OpenEXR image has 1 to {} a side", path.string(),
                         image.width, image.height, kLargestExrSide);
   }
-  AtomicFile file(path);  // first, so that a place that cannot be written is told before any work
   Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [name, value] : image.attributes) {
@@ -135,7 +141,6 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
     throw ResourceError("cannot write \"{}\": OpenEXR says: {}", path.string(), error.what());
   }
   file.write(stream.bytes());
-  file.commit();
 }
 
 ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/atomic_file.hpp"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
@@ -43,6 +45,8 @@ void add_vector_channels(ExrImage& image, const std::string& layer, std::span<co
 /// bytes: no date, no owner. A name that OpenEXR cannot hold (empty, over 255 bytes, with a zero byte) is an
 /// InputError, a file that cannot be written a ResourceError.
 void write_exr(const std::filesystem::path& path, const ExrImage& image);
+/// Appends it to a file that the caller commits.
+void write_exr(AtomicFile& file, const ExrImage& image);
 
 /// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers.
 struct ExrFile {

@@ -293,12 +293,15 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (frame_.number) attributes["penumbra.frame"] = fmt::format("{}", *frame_.number);
 
   progress_.clear();
-  if (bits_) bits_->commit();
-  bits_.reset();
-  // The larger file first: what has no room leaves nothing.
-  write_picture(files.picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
+  // All are on the disk before the first has its name: what has no room leaves nothing.
+  AtomicFile picture(files.picture);
+  write_picture(picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
+  picture.settle();
+  std::optional<AtomicFile> png, stats_file;
   if (!files.png.empty()) {
-    write_png(files.png, to_srgb(session().width, session().height, sum, std::exp2(stops)));
+    png.emplace(files.png);
+    png->write(encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops))));
+    png->settle();
   }
   compare::Stats stats = make_stats(session(), lights, run_);
   stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
@@ -310,7 +313,16 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   seconds.beauty = std::max(run_.times.read - bits_seconds_, 0.0);
   seconds.write = write.seconds() + bits_seconds_;
   seconds.total = read_ahead_seconds_ + busy_seconds_ + write.seconds();
-  if (!files.stats.empty()) write_file_atomically(files.stats, compare::json_text(compare::to_json(stats)));
+  if (!files.stats.empty()) {
+    stats_file.emplace(files.stats);
+    stats_file->write(compare::json_text(compare::to_json(stats)));
+    stats_file->settle();
+  }
+  if (bits_) bits_->commit();
+  bits_.reset();
+  picture.commit();
+  if (png) png->commit();
+  if (stats_file) stats_file->commit();
   return stats;
 }
 

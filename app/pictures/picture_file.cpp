@@ -140,6 +140,12 @@ std::vector<std::string> layer_names(std::span<const visibility::Light> lights) 
 }
 
 void write_picture(const std::filesystem::path& path, const PictureContent& content) {
+  AtomicFile file(path);
+  write_picture(file, content);
+  file.commit();
+}
+
+void write_picture(AtomicFile& file, const PictureContent& content) {
   const Session& session = content.session;
   const LabelledLights& all = content.lights;
   const MethodLabel& label = all.label(0);
@@ -201,7 +207,7 @@ void write_picture(const std::filesystem::path& path, const PictureContent& cont
   const Cryptomatte materials("CryptoMaterial", surfaces.materials, surfaces.material);
   objects.add_to(image);
   materials.add_to(image);
-  write_exr(path, image);
+  write_exr(file, image);
 }
 
 }  // namespace penumbra::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/output.hpp"
+#include "base/atomic_file.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -29,5 +30,7 @@ struct PictureContent {
 
 /// OUT.exr: all channels (README, "What comes out") and header attributes.
 void write_picture(const std::filesystem::path& path, const PictureContent& content);
+/// Appends it to a file that the caller commits.
+void write_picture(AtomicFile& file, const PictureContent& content);
 
 }  // namespace penumbra::app
