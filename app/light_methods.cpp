@@ -60,11 +60,14 @@ LightMethod choose(const Light& light, const MethodWish& wish) {
   MethodOptions options = options_for(method, wish);
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
   if (!wish.samples && !chosen.description.gives_area()) {
-    chosen.note = wish.method.empty()
-                      ? fmt::format("light \"{}\" ({}): no method gives its exact area; {} with {} light samples",
-                                    light.name, visibility::name_of(light.kind), method.name, light.sample_count())
-                      : fmt::format("light \"{}\": {} does not give its exact area; {} light samples", light.name,
-                                    method.name, light.sample_count());
+    const std::string through =
+        light.filtered_by.empty() ? "" : fmt::format(" through \"{}\" (alphaMode MASK or BLEND)", light.filtered_by);
+    chosen.note =
+        wish.method.empty()
+            ? fmt::format("light \"{}\" ({}): no method gives its exact area{}; {} with {} light samples", light.name,
+                          visibility::name_of(light.kind), through, method.name, light.sample_count())
+            : fmt::format("light \"{}\": {} does not give its exact area{}; {} light samples", light.name, method.name,
+                          through, light.sample_count());
   }
   return chosen;
 }

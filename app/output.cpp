@@ -67,6 +67,8 @@ void BeautyAccumulator::add(const TileResult& result) {
   compare::LightVisibility seen;
   seen.form_factors = result.form_factors;
   seen.masks = result.masks;
+  seen.transmittances = result.transmittances;
+  seen.dimmed = result.dimmed;
   if (result.masks.empty() && (result.form_factors.empty() || !looks_.normals.empty()))
     seen.visibility = result.visibility;
   const std::size_t first_pixel = std::size_t{result.tile.first_row} * session_.width;

@@ -3,6 +3,8 @@
 #include "app/process/interrupt.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/memory.hpp"
+#include "visibility/alpha/alpha_filter.hpp"
+#include "visibility/masks/visible_share.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -73,6 +75,13 @@ class Host {
           mesh_ = &floats;
           times.mesh += watch.seconds();
         }
+        if (const visibility::SceneFloats& floats = session_.floats_for(light);
+            !plan_.lights[light].filtered_by.empty() && filtered_ != &floats) {
+          watch.restart();
+          filter_.emplace(floats);
+          filtered_ = &floats;
+          times.mesh += watch.seconds();
+        }
         watch.restart();
         method_.prepare_light(plan_.lights[light]);
         times.lights[light].light = watch.seconds();
@@ -84,7 +93,7 @@ class Host {
       rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
-        times.lights[light].evaluate += evaluate(tile);
+        times.lights[light].evaluate += evaluate(tile) + filter(light, tile);
         watch.restart();
         if (last) read(light, tile, result);
         times.read += watch.seconds();
@@ -93,7 +102,12 @@ class Host {
       if (last) {
         // Counters start again with each light; what is wanted is their sum.
         for (const auto& [name, count] : method_.counters()) result.counters[name] += count;
+        if (!plan_.lights[light].filtered_by.empty()) {
+          result.counters["maskPairs"] += alpha_counts_.mask_pairs;
+          result.counters["blendPairs"] += alpha_counts_.blend_pairs;
+        }
       }
+      alpha_counts_ = {};
     }
     return times;
   }
@@ -114,7 +128,9 @@ class Host {
   /// Masks of a tile are read back into memory of the host: a quarter of a GiB is plenty, and never more than it.
   [[nodiscard]] std::uint32_t most_rows_to_read(const Light& light) const {
     constexpr std::uint64_t kMostBytes = 1u << 28;
-    const std::uint64_t row_bytes = std::uint64_t{4} * session_.width * light.words_per_mask();
+    std::uint64_t row_bytes = std::uint64_t{4} * session_.width * light.words_per_mask();
+    if (!light.filtered_by.empty() && filter_->dims(light))
+      row_bytes += std::uint64_t{4} * session_.width * light.sample_count();
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostBytes / row_bytes, 1, session_.height));
   }
 
@@ -125,31 +141,68 @@ class Host {
     return watch.seconds();
   }
 
+  /// What lets light through. Gives the seconds that it took, reading masks left out.
+  double filter(std::size_t light_index, const Tile& tile) {
+    const Light& light = plan_.lights[light_index];
+    transmittances_.clear();
+    dimmed_.clear();
+    if (light.filtered_by.empty()) return 0;
+    const MayExitAtOnce at_once;
+    const std::size_t count = std::size_t{tile.row_count} * session_.width;
+    masks_.resize(count * light.words_per_mask());
+    method_.read_masks(masks_);
+    const Stopwatch watch;
+    if (filter_->dims(light)) {
+      transmittances_.resize(count * light.sample_count());
+      dimmed_.resize(count);
+    }
+    const visibility::AlphaCounts counts = filter_->filter(
+        session_.samples, light, std::size_t{tile.first_row} * session_.width, {masks_, transmittances_, dimmed_});
+    alpha_counts_.mask_pairs += counts.mask_pairs;
+    alpha_counts_.blend_pairs += counts.blend_pairs;
+    return watch.seconds();
+  }
+
+  /// V of masks that filter() has changed.
+  void share_filtered(const Light& light, std::span<float> values) {
+    visibility::visible_shares(light, masks_, values);
+    const std::size_t words = light.words_per_mask(), pairs = light.sample_count();
+    for (std::size_t i = 0; i < dimmed_.size(); ++i) {
+      if (dimmed_[i] != 0)
+        values[i] = visibility::dimmed_share(light, std::span(masks_).subspan(i * words, words),
+                                             std::span(transmittances_).subspan(i * pairs, pairs));
+    }
+  }
+
   void read(std::size_t light_index, const Tile& tile, MethodRun& result) {
     const Light& light = plan_.lights[light_index];
     const std::size_t first = std::size_t{tile.first_row} * session_.width;
     const std::size_t count = std::size_t{tile.row_count} * session_.width;
     const std::span<const PixelClass> classes = std::span(session_.classes[light_index]).subspan(first, count);
     const std::span<float> values = std::span(result.visibility[light_index]).subspan(first, count);
-    method_.read_visibility(values);
+    if (light.filtered_by.empty())
+      method_.read_visibility(values);
+    else
+      share_filtered(light, values);
     for (std::size_t i = 0; i < count; ++i) {
       if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
       if (classes[i] == PixelClass::unlit) values[i] = 0.0f;
     }
-    masks_.clear();
     if (method_.description().output == Output::mask) read_masks(light, classes);
     form_factors_.clear();
     if (method_.description().output == Output::radiance) {
       form_factors_.resize(count);
       method_.read_form_factors(form_factors_);
     }
-    if (sink_) sink_({light_index, tile, values, masks_, form_factors_});
+    if (sink_) sink_({light_index, tile, values, masks_, transmittances_, dimmed_, form_factors_});
   }
 
   void read_masks(const Light& light, std::span<const PixelClass> classes) {
     const std::size_t words = light.words_per_mask();
-    masks_.resize(classes.size() * words);
-    method_.read_masks(masks_);
+    if (light.filtered_by.empty()) {
+      masks_.resize(classes.size() * words);
+      method_.read_masks(masks_);
+    }
     const std::uint32_t rest = light.sample_count() % 32;
     const std::uint32_t last_word = rest == 0 ? 0xffffffffu : (1u << rest) - 1;
     for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -166,7 +219,12 @@ class Host {
   const RunPlan& plan_;
   const TileSink& sink_;
   Progress& progress_;
-  const visibility::SceneFloats* mesh_;  // that the method has
+  const visibility::SceneFloats* mesh_;                // that the method has
+  const visibility::SceneFloats* filtered_ = nullptr;  // that filter_ has
+  std::optional<visibility::AlphaFilter> filter_;
+  visibility::AlphaCounts alpha_counts_;  // of the light at hand
+  std::vector<float> transmittances_;     // of the tile last evaluated, as filter() left it
+  std::vector<std::uint8_t> dimmed_;
   std::vector<std::uint32_t> masks_;
   std::vector<glm::dvec3> form_factors_;
 };

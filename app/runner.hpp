@@ -20,6 +20,9 @@ struct TileResult {
   visibility::Tile tile;
   std::span<const float> visibility;     ///< V of each pixel of the tile; NaN: not evaluated (RunPlan::pixels)
   std::span<const std::uint32_t> masks;  ///< words_per_mask() words a pixel; empty for a method without masks
+  /// Of a light that meets translucent surfaces (visibility::FilteredMasks); else empty.
+  std::span<const float> transmittances;
+  std::span<const std::uint8_t> dimmed;
   /// Method::read_form_factors as read; empty unless the method's output is radiance. Pixels that lie in the light by
   /// rule have none: beauty knows theirs.
   std::span<const glm::dvec3> form_factors;
@@ -70,7 +73,8 @@ void add_run(MethodRun& to, MethodRun&& other);
 /// Runs a method on a session: mesh once, then light and tiles, and reads the last run's result. In one place for every
 /// method stand the host's rules: background, pixels that carry a light's body, and receivers with receivesShadow =
 /// false are visible from every light sample, and those that the light does not light (a mesh's `lights`) from none.
-/// Where a light has casters of its own, the method gets the scene in which nothing else casts.
+/// Where a light has casters of its own, the method gets the scene in which nothing else casts. What lets light through
+/// takes its part of masks after the method (visibility::AlphaFilter), in the time of `evaluate`.
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress);
 

@@ -68,8 +68,12 @@ void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64
 bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
   const auto alike = [](const scenes::Object& one, const scenes::Object& other) {
     return one.casts_shadow == other.casts_shadow && one.receives_shadow == other.receives_shadow &&
-           one.emits == other.emits;
+           one.emits == other.emits && one.alpha == other.alpha && one.picture == other.picture;
   };
+  const bool filters = std::ranges::any_of(
+      a.objects, [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; });
+  if (filters && (a.looks.places != b.looks.places || a.looks.colors != b.looks.colors || a.pictures != b.pictures))
+    return false;
   return a.origin == b.origin && a.soup.positions == b.soup.positions && a.soup.triangles == b.soup.triangles &&
          a.soup.object == b.soup.object && std::ranges::equal(a.objects, b.objects, alike);
 }
@@ -175,6 +179,14 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
     progress.advance();
   }
   session_.receiver_seconds = receivers.seconds();
+}
+
+visibility::ViewSamples SessionMaker::look_at(visibility::ViewSamples samples) {
+  std::swap(session_.samples, samples);
+  session_.classes.clear();
+  for (const visibility::Light& light : session_.lights)
+    session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
+  return samples;
 }
 
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time) {

@@ -59,6 +59,8 @@ class SessionMaker {
   /// discarded one.
   void show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress);
   [[nodiscard]] const Session& session() const { return session_; }
+  /// Puts other view samples of the same camera in the place of the session's. Returns those.
+  visibility::ViewSamples look_at(visibility::ViewSamples samples);
   /// Gives it away: this object is of no more use.
   Session take() { return std::move(session_); }
 

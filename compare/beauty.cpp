@@ -30,7 +30,12 @@ glm::dvec3 radiance_at(const visibility::Light& light, const glm::vec3& p) {
 glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const LightVisibility& seen, std::size_t pixel,
                           std::size_t words, bool bent) {
   if (!seen.form_factors.empty() && (!bent || seen.visibility.empty())) return seen.form_factors[pixel];
-  if (!seen.masks.empty()) return light.visible(at, seen.masks.subspan(pixel * words, words));
+  if (!seen.masks.empty()) {
+    const std::size_t pairs = light.light().sample_count();
+    const bool dimmed = !seen.dimmed.empty() && seen.dimmed[pixel] != 0;
+    return light.visible(at, seen.masks.subspan(pixel * words, words),
+                         dimmed ? seen.transmittances.subspan(pixel * pairs, pairs) : std::span<const float>());
+  }
   const double share = seen.visibility[pixel];
   return share == 0 ? glm::dvec3(0) : share * light.unshadowed(at);
 }

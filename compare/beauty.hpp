@@ -19,6 +19,9 @@ struct LightVisibility {
   std::span<const std::uint32_t> masks = {};
   std::span<const float> visibility = {};
   std::span<const glm::dvec3> form_factors = {};  ///< Method::read_form_factors
+  /// With masks of dimmed light: of each pair, and which pixels have any (visibility::FilteredMasks).
+  std::span<const float> transmittances = {};
+  std::span<const std::uint8_t> dimmed = {};
 };
 
 /// What is shaded, and from where the light comes.

@@ -2,6 +2,7 @@
 #include "compare/surface.hpp"
 
 #include "base/image.hpp"
+#include "scenes/texel_number.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -20,24 +21,14 @@ namespace {
 using scenes::Picture;
 using scenes::PictureUse;
 
-/// A texel's number along one side, of any integer.
-std::size_t wrapped(double texel, std::uint32_t size, PictureUse::Wrap wrap) {
-  const double count = size;
-  if (wrap == PictureUse::Wrap::clamp) return static_cast<std::size_t>(std::clamp(texel, 0.0, count - 1));
-  const double period = wrap == PictureUse::Wrap::mirror ? 2 * count : count;
-  double at = texel - period * std::floor(texel / period);
-  if (at >= count) at = period - 1 - at;  // mirrored
-  return static_cast<std::size_t>(std::clamp(at, 0.0, count - 1));
-}
-
 glm::dvec3 texel_at(const Picture& picture, const PictureUse& use, double x, double y) {
   static const std::array<double, 256> kLinear = [] {
     std::array<double, 256> values{};
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear_of_srgb(static_cast<double>(i) / 255);
     return values;
   }();
-  const auto& texel =
-      picture.texels[wrapped(y, picture.height, use.wrap_t) * picture.width + wrapped(x, picture.width, use.wrap_s)];
+  const auto& texel = picture.texels[scenes::texel_number(y, picture.height, use.wrap_t) * picture.width +
+                                     scenes::texel_number(x, picture.width, use.wrap_s)];
   return {kLinear[texel[0]], kLinear[texel[1]], kLinear[texel[2]]};
 }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 
 namespace penumbra::compare {
 namespace {
@@ -81,6 +82,17 @@ std::uint32_t find_bit(Mask mask, std::uint32_t from, std::uint32_t end, bool wa
   return end;
 }
 
+/// That of all light samples in the mask, if it is one.
+std::optional<float> shared_transmittance(Mask mask, std::span<const float> transmittances) {
+  std::optional<float> shared;
+  for (std::size_t j = 0; j < transmittances.size(); ++j) {
+    if ((mask[j / 32] >> j % 32 & 1u) == 0) continue;
+    if (shared && *shared != transmittances[j]) return std::nullopt;
+    shared = transmittances[j];
+  }
+  return shared ? shared : std::optional(1.0F);  // of none: there is nothing to dim
+}
+
 std::vector<std::uint32_t> full_mask(std::uint32_t sample_count) {
   std::vector<std::uint32_t> mask((sample_count + 31) / 32, 0xffffffffu);
   if (sample_count % 32 != 0) mask.back() = (1u << sample_count % 32) - 1;
@@ -107,8 +119,14 @@ glm::dvec3 VisibleLight::unshadowed(const LitPoint& at) const {
   return of_samples(at, whole, all_);
 }
 
-glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask) const {
+glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask, std::span<const float> transmittances) const {
   PENUMBRA_ASSERT(mask.size() == all_.size(), "{} words of {}", mask.size(), all_.size());
+  if (!transmittances.empty()) {
+    const std::optional<float> shared = shared_transmittance(mask, transmittances);
+    if (shared) return static_cast<double>(*shared) * visible(at, mask);
+    const double whole = at.seen.shines() ? at.seen.whole() : 0;
+    return whole > 0 ? of_samples(at, whole, mask, transmittances) : glm::dvec3(0);
+  }
   bool some = false, all = true;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     const std::uint32_t bits = mask[i] & all_[i];
@@ -166,7 +184,8 @@ glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) co
   return glm::dvec3(known > 0 ? whole * (of_cells(at.seen, mask) / known) : 0.0);
 }
 
-glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask) const {
+glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask,
+                                    std::span<const float> transmittances) const {
   std::vector<glm::vec3> facing;  // a sphere's points
   if (light_->kind == LightKind::sphere) {
     facing.resize(light_->sample_count());
@@ -179,9 +198,11 @@ glm::dvec3 VisibleLight::of_samples(const LitPoint& at, double whole, Mask mask)
   glm::dvec3 colored(0);
   for (std::size_t word = 0; word < all_.size(); ++word) {
     const std::size_t i = word * kBlock;
-    const auto weight = weigh(from, at.seen.normal(), {&points.x[i], &points.y[i], &points.z[i]});
+    auto weight = weigh(from, at.seen.normal(), {&points.x[i], &points.y[i], &points.z[i]});
     const std::uint32_t bits = mask[word] & all_[word];
     all += sum_of(weight, all_[word]);
+    const std::size_t dimmed = std::min(transmittances.size() - std::min(transmittances.size(), i), kBlock);
+    for (std::size_t j = 0; j < dimmed; ++j) weight[j] *= double{transmittances[i + j]};
     if (light_->texture) {
       colored += sum_of(weight, bits, &light_->sample_colors[i]);
     } else {

@@ -42,8 +42,10 @@ class VisibleLight {
 
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
   [[nodiscard]] glm::dvec3 unshadowed(const LitPoint& at) const;
-  /// `mask`: words_per_mask() words; bits beyond the last sample are ignored.
-  [[nodiscard]] glm::dvec3 visible(const LitPoint& at, std::span<const std::uint32_t> mask) const;
+  /// `mask`: words_per_mask() words; bits beyond the last sample are ignored. `transmittances`: of each light sample,
+  /// by which its light is multiplied (as `texel` above; cells that share one keep their closed form); empty: 1.
+  [[nodiscard]] glm::dvec3 visible(const LitPoint& at, std::span<const std::uint32_t> mask,
+                                   std::span<const float> transmittances = {}) const;
 
  private:
   /// Light points one coordinate after the other, filled up to whole blocks of 32.
@@ -55,7 +57,8 @@ class VisibleLight {
   [[nodiscard]] double of_cells(const visibility::UnshadowedLight& seen, std::span<const std::uint32_t> mask) const;
   [[nodiscard]] double cell_border(std::uint32_t row, std::uint32_t column) const;
   [[nodiscard]] glm::dvec3 of_runs(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;
-  [[nodiscard]] glm::dvec3 of_samples(const LitPoint& at, double whole, std::span<const std::uint32_t> mask) const;
+  [[nodiscard]] glm::dvec3 of_samples(const LitPoint& at, double whole, std::span<const std::uint32_t> mask,
+                                      std::span<const float> transmittances = {}) const;
 
   const visibility::Light* light_;
   Points points_;                   ///< not of a sphere

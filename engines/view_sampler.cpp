@@ -2,6 +2,7 @@
 
 #include "engines/engine_choice.hpp"
 #include "engines/vectors/scan_conversion.hpp"
+#include "visibility/tree/view_walk.hpp"
 
 namespace penumbra::engines {
 
@@ -10,7 +11,8 @@ ViewSampler::ViewSampler(const render::Device& device, const visibility::SceneFl
 }
 
 visibility::ViewSamples ViewSampler::find(const visibility::PinholeCamera& camera) {
-  return buffer_ ? buffer_->render(camera) : vectors::scan_view_samples(scene_, camera);
+  if (camera.half_height) return visibility::walk_view_samples(scene_, camera);
+  return look_through(scene_, camera, buffer_ ? buffer_->render(camera) : vectors::scan_view_samples(scene_, camera));
 }
 
 }  // namespace penumbra::engines

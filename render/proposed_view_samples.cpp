@@ -126,7 +126,7 @@ visibility::ViewSamples proposed_view_samples(const opengl::Context& context, co
         const std::uint32_t x = pairs[i] % camera.width, y = row + pairs[i] / camera.width;
         const std::uint32_t triangle = band.first_triangle + pairs[i + 1];
         if (scene.plane[triangle] == visibility::SceneFloats::kNoPlane) continue;
-        const auto t = visibility::cover(camera, camera.direction(x, y), scene.corners(triangle));
+        const auto t = visibility::cover(camera.ray(x, y), scene.corners(triangle));
         if (!t) continue;
         Winner& best = winners[std::size_t{y} * camera.width + x];
         const std::uint32_t rank = ranks[triangle];

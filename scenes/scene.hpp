@@ -23,6 +23,8 @@ struct Picture {
   std::string file;                                 ///< its name, for people
   std::uint32_t width = 0, height = 0;              ///< texels
   std::vector<std::array<std::uint8_t, 4>> texels;  ///< red green blue (sRGB), alpha; row by row from the top left
+
+  bool operator==(const Picture&) const = default;
 };
 
 /// How a picture lies on an object; its places are VertexLooks::places.
@@ -31,6 +33,8 @@ struct PictureUse {
   std::uint32_t picture = 0;  ///< index into Scene::pictures
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
   bool nearest = false;  ///< the nearest texel; else bilinear
+
+  bool operator==(const PictureUse&) const = default;
 };
 
 /// What lets light through a surface (glTF 2.0, 3.9.4): its alpha is factor × picture × vertices.
@@ -38,6 +42,8 @@ struct Alpha {
   enum class Mode : std::uint8_t { opaque, mask, blend };
   Mode mode = Mode::opaque;
   double factor = 1, cutoff = 0.5;
+
+  bool operator==(const Alpha&) const = default;
 };
 
 /// One mesh of the scene. Its triangles are those of Scene::soup whose `object` is its index.

@@ -17,7 +17,8 @@ set(may_visibility scenes mesh/diagnosis mesh base)
 set(may_visibility/tree visibility scenes mesh base)
 set(may_visibility/lights visibility/tree visibility scenes mesh base)
 set(may_visibility/masks visibility base)
-set(all_visibility visibility/masks visibility/lights visibility/tree visibility)
+set(may_visibility/alpha visibility/tree visibility scenes mesh base)
+set(all_visibility visibility/alpha visibility/masks visibility/lights visibility/tree visibility)
 set(may_areas ${all_visibility} scenes mesh base)
 set(may_render/opengl base)
 set(may_render render/opengl ${all_visibility} scenes mesh base)
@@ -56,7 +57,7 @@ list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility visibility/tree visibility/lights
-    visibility/masks areas render/opengl render engines/device engines/vectors engines/pairs engines
+    visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map selftest reference compare

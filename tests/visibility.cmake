@@ -4,6 +4,7 @@ penumbra_test(visibility
   SOURCES
   property/visibility/signed_crossings.cpp
   property/visibility/signed_crossings_sum.cpp
+  property/visibility/alpha.cpp
   property/visibility/invariance.cpp
   property/visibility/pair_kinds.cpp
   property/visibility/pair_truth.cpp

@@ -82,6 +82,9 @@ struct Light {
   /// For each object of the scene, 1: it casts no shadow of this light. Empty: none such. Methods need not look: the
   /// host gives them a scene in which these cast none (cast_for).
   std::vector<std::uint8_t> unshaded_by = {};
+  /// An object with holes, or translucent, that casts shadow of this light; empty: there is none. Its part of the
+  /// shadow is the host's business, light sample by light sample (visibility/alpha/).
+  std::string filtered_by = {};
   /// For each object, 1: this light does not light it, V = 0. Empty: none such. The host's business, too.
   std::vector<std::uint8_t> unlit = {};
 

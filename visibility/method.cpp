@@ -56,6 +56,14 @@ void check_light(const MethodDescription& description, const Light& light) {
         "raytrace take any",
         light.name, description.name, name_of(light.pattern));
   }
+  if (!light.filtered_by.empty() && description.output != Output::mask) {
+    throw InputError(
+        "light \"{}\": its light passes through \"{}\" (alphaMode MASK or BLEND), which is asked light sample by light "
+        "sample; method {}{} answers with {} alone. Take a method whose output is a mask (--method: edge-scatter, "
+        "view-sample, raytrace; `penumbra methods` has all)",
+        light.name, light.filtered_by, description.name, description.gives_area() ? ", as asked for," : "",
+        description.gives_area() ? "areas" : "V");
+  }
   if (std::find(can.begin(), can.end(), light.kind) != can.end()) return;
   std::string kinds;
   for (const LightKind kind : can) kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));

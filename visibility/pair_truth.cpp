@@ -223,6 +223,19 @@ PairTruth decide_pair(const SceneFloats& scene, const ViewSamples& samples, std:
     if (meeting.meets && !meeting.zero_predicate) return {PairOutcome::blocked, false};
     truth.zero_predicate |= meeting.zero_predicate;
   }
+  if (truth.outcome != PairOutcome::visible) return truth;
+  for (const std::uint32_t triangle : scene.alphas.casters) {
+    if (alpha_mode(scene, triangle) != scenes::Alpha::Mode::mask || !may_filter(scene, light, carrier, triangle))
+      continue;
+    const std::array<glm::vec3, 3> mask = scene.corners(triangle);
+    if (!boxes_touch(p, l, mask, light)) continue;
+    const Meeting meeting = segment_meets_triangle(p, l, mask, light);
+    truth.zero_predicate |= meeting.zero_predicate;
+    if (!meeting.meets) continue;
+    truth.by_mask = true;
+    const glm::dvec3 shares = shares_on_line(glm::dvec3(p), way_to(light, p, l), mask);
+    if (transmittance_at(scene, triangle, shares) == 0) truth.outcome = PairOutcome::blocked;
+  }
   return truth;
 }
 

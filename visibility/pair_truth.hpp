@@ -59,6 +59,7 @@ enum class PairOutcome : std::uint8_t {
 struct PairTruth {
   PairOutcome outcome = PairOutcome::visible;
   bool zero_predicate = false;
+  bool by_mask = false;  ///< decided by the texels of a surface with holes: nothing that stops all light is in between
 };
 
 /// Condition (1): l strictly on the viewer's side of the carrier's plane; `facing` is ViewSamples::facing (+1: the
@@ -76,6 +77,11 @@ bool in_front_of_light(const Light& light, const glm::vec3& p);
 inline bool may_occlude(const SceneFloats& scene, const Light& light, std::uint32_t carrier, std::uint32_t triangle) {
   return scene.casts_shadow[triangle] != 0 && scene.plane[triangle] != scene.plane[carrier] &&
          scene.emits[triangle] != light.index;
+}
+
+/// The same of a triangle that lets light through (SurfaceAlphas::casters).
+inline bool may_filter(const SceneFloats& scene, const Light& light, std::uint32_t carrier, std::uint32_t triangle) {
+  return scene.plane[triangle] != scene.plane[carrier] && scene.emits[triangle] != light.index;
 }
 
 /// The truth of a pair (docs/definitions.md): the last judge. Tries every triangle whose box the segment's box

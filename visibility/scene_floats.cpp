@@ -133,6 +133,7 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
     }
   });
   floats.object = scene.soup.object;
+  floats.alphas = make_surface_alphas(scene);
   floats.plane = plane_ids(floats);
 
   const std::size_t count = floats.triangles.size();
@@ -141,7 +142,10 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
   floats.emits.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const scenes::Object& object = scene.objects.at(floats.object[i]);
-    floats.casts_shadow[i] = object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane;
+    const bool casts = object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane;
+    const bool lets_through = object.alpha.mode != scenes::Alpha::Mode::opaque;
+    floats.casts_shadow[i] = casts && !lets_through;
+    if (casts && lets_through) floats.alphas.casters.push_back(static_cast<std::uint32_t>(i));
     floats.receives_shadow[i] = object.receives_shadow;
     floats.emits[i] = object.emits ? static_cast<std::int32_t>(*object.emits) : -1;
   }
@@ -154,6 +158,7 @@ SceneFloats cast_for(const SceneFloats& scene, const Light& light) {
   for (std::size_t i = 0; i < linked.triangles.size(); ++i) {
     if (light.unshaded_by[linked.object[i]] != 0) linked.casts_shadow[i] = 0;
   }
+  std::erase_if(linked.alphas.casters, [&](std::uint32_t i) { return light.unshaded_by[linked.object[i]] != 0; });
   return linked;
 }
 

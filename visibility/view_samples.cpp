@@ -28,23 +28,22 @@ struct PlaneHit {
   double eye_height = 0;  // normal · (eye − a): positive if the normal points to the viewer's side
 };
 
-std::optional<PlaneHit> meet_plane(const PinholeCamera& camera, const glm::dvec3& direction,
-                                   const std::array<glm::vec3, 3>& corners) {
+std::optional<PlaneHit> meet_plane(const ViewRay& ray, const std::array<glm::vec3, 3>& corners) {
   const glm::dvec3 a = corners[0], b = corners[1], c = corners[2];
   PlaneHit hit;
   hit.normal = glm::cross(b - a, c - a);
-  hit.eye_height = glm::dot(hit.normal, camera.eye - a);
-  const double descent = -glm::dot(hit.normal, direction);
+  hit.eye_height = glm::dot(hit.normal, ray.start - a);
+  const double descent = -glm::dot(hit.normal, ray.direction);
   if (descent == 0) return std::nullopt;
   hit.t = hit.eye_height / descent;
   if (!(hit.t > 0) || !std::isfinite(hit.t)) return std::nullopt;
   return hit;
 }
 
-/// Which side of the sorted triangle's plane the eye is on: exact; if the eye is exactly on the plane (seen edge-on,
+/// Which side of the sorted triangle's plane the ray's start is on: exact; if it is exactly on the plane (seen edge-on,
 /// covered by rounding alone), the side that rounding saw it on.
-std::int8_t facing_of(const PinholeCamera& camera, const std::array<glm::vec3, 3>& corners, double eye_height) {
-  const Side side = side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), camera.eye);
+std::int8_t facing_of(const ViewRay& ray, const std::array<glm::vec3, 3>& corners, double eye_height) {
+  const Side side = side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), ray.start);
   if (side != Side::on) return static_cast<std::int8_t>(side);
   return eye_height > 0 ? std::int8_t{1} : std::int8_t{-1};
 }
@@ -119,19 +118,23 @@ glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
   return forward + (across(x) * right + upward(y) * up) * tan_half_fov;
 }
 
+ViewRay PinholeCamera::ray(std::uint32_t x, std::uint32_t y) const {
+  if (!half_height) return {eye, direction(x, y)};
+  return {eye + (across(x) * right + upward(y) * up) * *half_height, forward};
+}
+
 PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width,
                           std::uint32_t height) {
-  if (camera.height) {
-    throw InputError("camera \"{}\" is orthographic, which is not supported; choose a perspective one (--camera)",
-                     camera.name);
-  }
   const glm::dvec3 view = camera.target - camera.eye;
   const double distance = glm::length(view);
   if (!(distance > 0) || !std::isfinite(distance)) {
     throw InputError("camera \"{}\": eye ({}, {}, {}) and target must be two different finite points", camera.name,
                      camera.eye.x, camera.eye.y, camera.eye.z);
   }
-  if (!(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
+  if (camera.height && !(*camera.height > 0 && std::isfinite(*camera.height))) {
+    throw InputError("camera \"{}\": an orthographic picture {} high; it must be above 0", camera.name, *camera.height);
+  }
+  if (!camera.height && !(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
     throw InputError("camera \"{}\": vertical field of view is {} degrees; it must be between 0 and 180", camera.name,
                      camera.vertical_fov);
   }
@@ -152,25 +155,33 @@ PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin
   if (glm::length(right) < 0x1p-16 * glm::length(camera.up))
     result.right = glm::normalize(result.right - glm::dot(result.right, result.forward) * result.forward);
   result.up = glm::cross(result.right, result.forward);
-  result.tan_half_fov = std::tan(glm::radians(camera.vertical_fov) / 2);
+  if (camera.height)
+    result.half_height = *camera.height / 2;
+  else
+    result.tan_half_fov = std::tan(glm::radians(camera.vertical_fov) / 2);
   result.width = width;
   result.height = height;
   return result;
 }
 
-std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direction,
-                            const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a = glm::dvec3(corners[0]) - camera.eye, b = glm::dvec3(corners[1]) - camera.eye,
-                   c = glm::dvec3(corners[2]) - camera.eye;
+std::optional<double> cover(const ViewRay& ray, const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a = glm::dvec3(corners[0]) - ray.start, b = glm::dvec3(corners[1]) - ray.start,
+                   c = glm::dvec3(corners[2]) - ray.start;
   // On which side of the ray each edge passes. The sorted vertices make a→b, b→c and a→c the edges' one direction,
   // whatever triangle they belong to; going around the triangle takes a→c backwards.
-  const double ab = glm::dot(direction, glm::cross(a, b)), bc = glm::dot(direction, glm::cross(b, c)),
-               ca = -glm::dot(direction, glm::cross(a, c));
+  const double ab = glm::dot(ray.direction, glm::cross(a, b)), bc = glm::dot(ray.direction, glm::cross(b, c)),
+               ca = -glm::dot(ray.direction, glm::cross(a, c));
   const bool left = ab >= 0 && bc >= 0 && ca >= 0, right = ab <= 0 && bc <= 0 && ca <= 0;
   if (left == right) return std::nullopt;  // neither; or all zero: edge-on or without area
-  const std::optional<PlaneHit> hit = meet_plane(camera, direction, corners);
+  const std::optional<PlaneHit> hit = meet_plane(ray, corners);
   if (!hit) return std::nullopt;
   return hit->t;
+}
+
+bool may_carry(const SceneFloats& scene, std::uint32_t triangle, const ViewRay& ray) {
+  const scenes::Alpha::Mode mode = alpha_mode(scene, triangle);
+  if (mode != scenes::Alpha::Mode::mask) return mode == scenes::Alpha::Mode::opaque;
+  return transmittance_at(scene, triangle, shares_on_line(ray.start, ray.direction, scene.corners(triangle))) == 0;
 }
 
 ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera& camera,
@@ -193,15 +204,15 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
     const std::array<glm::vec3, 3> corners = scene.corners(static_cast<std::uint32_t>(triangle));
     const auto x = static_cast<std::uint32_t>(pixel % camera.width),
                y = static_cast<std::uint32_t>(pixel / camera.width);
-    const glm::dvec3 direction = camera.direction(x, y);
-    const std::optional<PlaneHit> hit = meet_plane(camera, direction, corners);
-    const glm::vec3 p = hit ? glm::vec3(camera.eye + hit->t * direction) + 0.0f : glm::vec3(0);
+    const ViewRay ray = camera.ray(x, y);
+    const std::optional<PlaneHit> hit = meet_plane(ray, corners);
+    const glm::vec3 p = hit ? glm::vec3(ray.start + hit->t * ray.direction) + 0.0f : glm::vec3(0);
     if (!hit || !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       triangle = ViewSamples::kBackground;  // a rasteriser's proposal that the ray only meets at infinity: edge-on
       return;
     }
     samples.p[pixel] = p;
-    samples.facing[pixel] = facing_of(camera, corners, hit->eye_height);
+    samples.facing[pixel] = facing_of(ray, corners, hit->eye_height);
     samples.n[pixel] = glm::vec3(glm::normalize(hit->normal * static_cast<double>(samples.facing[pixel]))) + 0.0f;
     samples.depth[pixel] = static_cast<float>(hit->t);
   });
@@ -209,14 +220,15 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
 }
 
 std::int32_t carrier_of(const SceneFloats& scene, const PinholeCamera& camera, std::uint32_t x, std::uint32_t y) {
-  const glm::dvec3 direction = camera.direction(x, y);
+  const ViewRay ray = camera.ray(x, y);
   double nearest = std::numeric_limits<double>::infinity();
   std::int32_t carrier = ViewSamples::kBackground;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.plane[i] == SceneFloats::kNoPlane) continue;
-    const std::optional<double> t = cover(camera, direction, scene.corners(i));
+    const std::optional<double> t = cover(ray, scene.corners(i));
     if (!t || *t > nearest) continue;
     if (*t == nearest && !scene.comes_before(i, static_cast<std::uint32_t>(carrier))) continue;
+    if (!may_carry(scene, i, ray)) continue;
     nearest = *t;
     carrier = static_cast<std::int32_t>(i);
   }

@@ -13,18 +13,27 @@
 
 namespace penumbra::visibility {
 
-/// A pinhole camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is
+/// What a pixel's centre looks along: start + t · direction, t > 0.
+struct ViewRay {
+  glm::dvec3 start, direction;
+};
+
+/// A camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is
 /// eye + t · (forward + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)), all unit vectors:
-/// t is the distance along the view axis.
+/// t is the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) ·
+/// up) · half_height) + t · forward.
 struct PinholeCamera {
   glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   double tan_half_fov = 1;
+  std::optional<double> half_height = {};  ///< of an orthographic camera, in place of the field of view
   std::uint32_t width = 0, height = 0;
 
   /// The factors of `right` and `up` in a ray, before the one of the field of view.
   [[nodiscard]] double across(std::uint32_t x) const;
   [[nodiscard]] double upward(std::uint32_t y) const;
+  /// Of a perspective camera.
   [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
+  [[nodiscard]] ViewRay ray(std::uint32_t x, std::uint32_t y) const;
 };
 
 /// Throws InputError when eye and target coincide or `up` is parallel to the view direction.
@@ -48,11 +57,14 @@ struct ViewSamples {
   [[nodiscard]] std::size_t size() const { return triangle.size(); }
 };
 
-/// Does the pixel's ray from the camera meet the closed triangle (sorted vertices) in front of the eye, and at which t?
+/// Does the pixel's ray meet the closed triangle (sorted vertices) beyond its start, and at which t?
 /// Double arithmetic on the scene floats; each edge's sign is computed from its end points in lexicographic order, so
 /// two triangles that share an edge never leave a crack. Triangles of zero area or seen edge-on cover nothing.
-std::optional<double> cover(const PinholeCamera& camera, const glm::dvec3& direction,
-                            const std::array<glm::vec3, 3>& corners);
+std::optional<double> cover(const ViewRay& ray, const std::array<glm::vec3, 3>& corners);
+
+/// Is there something of the triangle's surface where the ray meets its plane? Not where a surface with holes has one,
+/// and nothing translucent: such surfaces carry no view sample (docs/definitions.md).
+bool may_carry(const SceneFloats& scene, std::uint32_t triangle, const ViewRay& ray);
 
 /// Fills p, n and depth from the carrying triangle of each pixel (kBackground where there is none). The definition:
 /// intersection of the pixel's ray with the triangle's plane in double from its sorted vertices; p rounded once.

@@ -60,6 +60,11 @@ class Comparison {
     session_ = open_session(run, devices_, options.runs, progress);
     files_.refuse_inputs(session_.scene.sources);
     progress.clear();
+    for (const scenes::Object& object : session_.scene.objects) {
+      if (object.alpha.mode != scenes::Alpha::Mode::blend) continue;
+      session_.warnings.push_back(fmt::format(
+          "\"{}\" is translucent: pictures here show what is behind it (render composites it over that)", object.name));
+    }
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
     for (const Light& light : session_.lights) check_light(reference_.description, light);
     if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/exr.hpp"
 #include "base/png.hpp"
+#include "visibility/alpha/panes.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -96,15 +97,15 @@ PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, std::size_t 
       beauty_(lights, std::vector<glm::dvec3>(std::size_t{width} * height, glm::dvec3(0))),
       alpha_(std::size_t{width} * height, 0) {}
 
-void PictureMean::add(const visibility::ViewSamples& samples, std::span<const std::vector<float>> visibility,
+void PictureMean::add(std::span<const float> alpha, std::span<const std::vector<float>> visibility,
                       std::span<const std::vector<glm::vec3>> beauty, std::uint32_t side) {
-  PENUMBRA_ASSERT(
-      samples.width == width_ * side && samples.height == height_ * side && visibility.size() == visibility_.size(),
-      "{}x{} view samples of {} lights for {}x{} blocks of {} of {}", samples.width, samples.height, visibility.size(),
-      width_, height_, side, visibility_.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const std::size_t x = i % samples.width / side, y = i / samples.width / side, pixel = y * width_ + x;
-    alpha_[pixel] += samples.triangle[i] == visibility::ViewSamples::kBackground ? 0 : 1;
+  const std::size_t width = std::size_t{width_} * side;
+  PENUMBRA_ASSERT(alpha.size() == width * height_ * side && visibility.size() == visibility_.size(),
+                  "{} view samples of {} lights for {}x{} blocks of {} of {}", alpha.size(), visibility.size(), width_,
+                  height_, side, visibility_.size());
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    const std::size_t x = i % width / side, y = i / width / side, pixel = y * width_ + x;
+    alpha_[pixel] += double{alpha[i]};
     for (std::size_t light = 0; light < visibility.size(); ++light) {
       visibility_[light][pixel] += double{visibility[light][i]};
       if (!beauty[light].empty()) beauty_[light][pixel] += glm::dvec3(beauty[light][i]);
@@ -209,17 +210,26 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
     check_bits(chosen_.front().description, lit().lights.front());
     bits_.emplace(bits, lit(), lit().lights.front());
   }
-  beauty_.emplace(lit(), lit().lights);
+  BeautyAccumulator beauty(lit(), lit().lights);
+  run_ = run_lights(beauty, bits_ ? &*bits_ : nullptr);
+  beauty_ = beauty.parts();
+  alpha_.clear();
+  for (const std::int32_t triangle : lit().samples.triangle)
+    alpha_.push_back(triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f);
+  add_panes();
+}
+
+MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
   for (const std::vector<std::size_t>& lights : same_methods(chosen_)) {
     Kept& kept = method_for(chosen_[lights.front()]);
     MethodRun run = run_method(
         *kept.method, lit(), {.lights = lit().lights, .only = lights, .prepared = kept.prepared},
         [&](const TileResult& tile) {
-          beauty_->add(tile);
-          if (!bits_ || tile.light != 0) return;
+          beauty.add(tile);
+          if (bits == nullptr || tile.light != 0) return;
           const Stopwatch watch;
-          bits_->add(tile);
+          bits->add(tile);
           bits_seconds_ += watch.seconds();
         },
         progress_);
@@ -227,7 +237,41 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
     add_run(all, std::move(run));
   }
   view_seconds_ += all.times.view;
-  run_ = std::move(all);
+  return all;
+}
+
+void FrameRenderer::add_panes() {
+  const Stopwatch find;
+  const visibility::Panes panes(lit().floats, lit().samples);
+  view_seconds_ += find.seconds();
+  if (panes.depth() == 0) return;
+  const std::size_t pixels = alpha_.size();
+  std::vector<double> through(pixels, 1.0);
+  std::vector<std::vector<glm::dvec3>> over(beauty_.size(), std::vector<glm::dvec3>(pixels, glm::dvec3(0)));
+  const auto add = [&](std::size_t pixel, double share, std::span<const std::vector<glm::vec3>> beauty) {
+    for (std::size_t light = 0; light < over.size(); ++light) {
+      if (!beauty[light].empty()) over[light][pixel] += share * glm::dvec3(beauty[light][pixel]);
+    }
+  };
+  visibility::ViewSamples behind;
+  for (std::size_t number = 0; number < panes.depth(); ++number) {
+    visibility::PaneLayer layer = panes.layer(number);
+    visibility::ViewSamples before = lit_maker().look_at(std::move(layer.samples));
+    if (behind.size() == 0) behind = std::move(before);
+    BeautyAccumulator beauty(lit(), lit().lights);
+    add_times(run_, run_lights(beauty, nullptr));
+    for (std::size_t i = 0; i < pixels; ++i) {
+      add(i, through[i] * double{layer.alpha[i]}, beauty.parts());
+      through[i] *= 1 - double{layer.alpha[i]};
+    }
+  }
+  lit_maker().look_at(std::move(behind));
+  for (std::size_t i = 0; i < pixels; ++i) {
+    add(i, through[i], beauty_);
+    alpha_[i] = static_cast<float>(1 - through[i] * (1 - double{alpha_[i]}));
+  }
+  for (std::size_t light = 0; light < over.size(); ++light)
+    beauty_[light].assign(over[light].begin(), over[light].end());
 }
 
 void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
@@ -236,7 +280,6 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   frame_ = frame;
   load_seconds_ = read_ahead_seconds_ = read_seconds;
   device_seconds_ = view_seconds_ = bits_seconds_ = 0;
-  beauty_.reset();
   bits_.reset();
   mean_.reset();
   run_ = {};
@@ -266,7 +309,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     MethodRun before = std::exchange(run_, {});
     run_methods({});
     if (!mean_) mean_.emplace(lit().width / side, lit().height / side, lit().lights.size());
-    mean_->add(lit().samples, run_.visibility, beauty_->parts(), side);
+    mean_->add(alpha_, run_.visibility, beauty_, side);
     add_times(run_, before);
   };
   if (frame_.moments.empty()) add(scene);
@@ -282,9 +325,9 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
   const LabelledLights lights{session().lights, labels_};
-  const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty() : beauty_->parts();
+  const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty() : std::move(beauty_);
   const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility() : std::move(run_.visibility);
-  const std::vector<float> alpha = mean_ ? mean_->alpha() : std::vector<float>();
+  const std::vector<float> alpha = mean_ ? mean_->alpha() : std::move(alpha_);
   const std::vector<glm::vec3> sum = sum_of(beauty, session().pixel_count());
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops)) stops = std::log2(auto_exposure(session(), sum));

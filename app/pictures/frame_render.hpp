@@ -55,7 +55,7 @@ class PictureMean {
   /// Of so many lights and pixels.
   PictureMean(std::uint32_t width, std::uint32_t height, std::size_t lights);
   /// A picture of `side` times the width and height: each block counts as much as any other block of any picture.
-  void add(const visibility::ViewSamples& samples, std::span<const std::vector<float>> visibility,
+  void add(std::span<const float> alpha, std::span<const std::vector<float>> visibility,
            std::span<const std::vector<glm::vec3>> beauty, std::uint32_t side);
 
   [[nodiscard]] std::vector<std::vector<float>> visibility() const;
@@ -97,10 +97,15 @@ class FrameRenderer {
 
   void choose_methods();
   void run_methods(const std::filesystem::path& bits);
+  /// What the chosen methods make of the view samples that are looked at; `bits` may be null.
+  MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
+  /// Composites translucent surfaces (BLEND), each shaded by view samples of its own, over what is behind them.
+  void add_panes();
   void show(SessionMaker& maker, scenes::Scene scene);
   void render_mean(scenes::Scene scene);
   /// What methods look at: the picture's session, or that of more view samples a pixel.
   [[nodiscard]] const Session& lit() const { return fine_ ? fine_->session() : maker_.session(); }
+  [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? *fine_ : maker_; }
   Kept& method_for(const LightMethod& wanted);
   void say_warnings();
 
@@ -120,8 +125,9 @@ class FrameRenderer {
   std::vector<MethodLabel> labels_;
   std::vector<std::string> notes_;
   MethodRun run_;
-  std::optional<BeautyAccumulator> beauty_;
-  std::optional<PictureMean> mean_;  // nothing: the picture is that of one moment and of pixels' centres
+  std::vector<std::vector<glm::vec3>> beauty_;  // of each light
+  std::vector<float> alpha_;                    // of each pixel
+  std::optional<PictureMean> mean_;             // nothing: the picture is that of one moment and of pixels' centres
   std::optional<BitsOutput> bits_;
   double read_ahead_seconds_ = 0, load_seconds_ = 0, device_seconds_ = 0, view_seconds_ = 0, bits_seconds_ = 0,
          busy_seconds_ = 0;

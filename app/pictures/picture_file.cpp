@@ -115,11 +115,16 @@ CameraMatrices matrices_of(const Session& session) {
   // OpenGL's projection, with the far plane at infinity and, for want of one, the near plane at 1.
   const double aspect = static_cast<double>(session.width) / session.height;
   glm::dmat4 projection(0);
-  projection[0][0] = 1 / (aspect * camera.tan_half_fov);
-  projection[1][1] = 1 / camera.tan_half_fov;
+  const double half = camera.half_height.value_or(camera.tan_half_fov);
+  projection[0][0] = 1 / (aspect * half);
+  projection[1][1] = 1 / half;
   projection[2][2] = -1;
-  projection[2][3] = -1;
-  projection[3][2] = -2;
+  if (camera.half_height) {  // no plane is far: depth stays a length
+    projection[3][3] = 1;
+  } else {
+    projection[2][3] = -1;
+    projection[3][2] = -2;
+  }
   return {glm::mat4(to_camera), glm::mat4(projection * to_camera)};
 }
 

@@ -113,6 +113,9 @@ class WedgesCommand : public Command {
     visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
     if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
+    if (!light.filtered_by.empty())
+      spdlog::warn("\"{}\" lets light through (alphaMode MASK or BLEND): wedges are of what stops all light",
+                   light.filtered_by);
     if (light.sun) {
       throw InputError("light \"{}\" is a sun; wedges are of lights in the scene: take another (--light)", light.name);
     }

@@ -37,6 +37,10 @@ struct TriangleTree {
   template <typename Visit>
   void for_each_near(const glm::vec3& lower, const glm::vec3& upper, Visit&& visit) const;
 
+  /// Calls `visit(triangle)` for each triangle in a leaf whose box the volume touches: `volume.touches(lower, upper)`.
+  template <typename Volume, typename Visit>
+  void for_each_in(const Volume& volume, Visit&& visit) const;
+
   /// Does `visit(triangle)` hold for one of the triangles in the leaves whose boxes the segment p→l touches? Stops at
   /// the first. Boxes are taken a little larger than they are (2⁻⁴⁰ of the segment), which outweighs double rounding.
   template <typename Visit>
@@ -139,6 +143,14 @@ class RayInBox : private LineAndBox {
            enter <= leave;
   }
 };
+
+template <typename Volume, typename Visit>
+void TriangleTree::for_each_in(const Volume& volume, Visit&& visit) const {
+  static_cast<void>(any_touched(volume, [&](std::uint32_t triangle) {
+    visit(triangle);
+    return false;
+  }));
+}
 
 template <typename Visit>
 bool TriangleTree::any_along(const glm::dvec3& p, const glm::dvec3& l, Visit&& visit) const {

@@ -4,6 +4,8 @@
 
 #include "volumes/raster/screen_box.hpp"
 
+#include "base/error.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -83,7 +85,16 @@ BoxFinder::BoxFinder(const visibility::PinholeCamera& camera)
       across_(camera.right / (camera.tan_half_fov * camera.width / camera.height)),
       upward_(camera.up / camera.tan_half_fov),
       forward_(camera.forward),
-      half_(0.5 * camera.width, 0.5 * camera.height) {}
+      half_(0.5 * camera.width, 0.5 * camera.height) {
+  require_perspective(camera);
+}
+
+void require_perspective(const visibility::PinholeCamera& camera) {
+  if (!camera.half_height) return;
+  throw InputError(
+      "the camera is orthographic; methods that draw shadow volumes look from a point. Take another camera (--camera) "
+      "or method (edge-scatter, view-sample and raytrace look from anywhere)");
+}
 
 glm::dvec2 BoxFinder::project(const glm::dvec3& x) const {
   const glm::dvec3 d = x - eye_;

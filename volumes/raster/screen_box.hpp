@@ -23,6 +23,9 @@ struct ScreenBox {
   std::array<glm::vec2, 4> corners;
 };
 
+/// Throws InputError for a camera that looks from no point: what is drawn here is drawn in perspective.
+void require_perspective(const visibility::PinholeCamera& camera);
+
 /// Where the rasteriser has to look for the pixels of a face. It only proposes: shaders decide (volumes/README.md,
 /// Counting).
 class BoxFinder {

@@ -41,6 +41,7 @@ std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const ViewSample
   static_assert(std::size(gpu::WedgeFace{}.corners) == Footprint::kMost);
   const Receivers receivers(samples, tests == WedgeTests::both ? std::optional(center) : std::nullopt);
   if (receivers.empty()) return {};
+  require_perspective(samples.camera);
   const FootprintFinder finder(samples.camera, receivers, tests);
   std::vector<std::size_t> first(wedges.edges.size() + 1, wedges.wedges.size());
   for (std::size_t i = wedges.wedges.size(); i-- > 0;) first[wedges.wedges[i].source] = i;
