@@ -1,6 +1,7 @@
 // The scene in words.
 #include "compare/report.hpp"
 #include "compare/report_parts.hpp"
+#include "compare/scene_words.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -48,6 +49,17 @@ std::string texture_text(const scenes::AreaLight& light) {
 
 }  // namespace
 
+std::string words_of(const scenes::AreaLight& light) {
+  return fmt::format("{}, radiance {}{}{}", std::visit(ShapeText{}, light.shape), text_of(light.radiance),
+                     texture_text(light), light.two_sided ? ", from both sides" : "");
+}
+
+std::string words_of(const scenes::Camera& camera) {
+  return fmt::format("at {}, looking at {}, {}", text_of(camera.eye), text_of(camera.target),
+                     camera.height ? fmt::format("orthographic, {:.4g} high", *camera.height)
+                                   : fmt::format("{:.4g}° high", camera.vertical_fov));
+}
+
 std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera) {
   constexpr std::size_t kNamed = 8;  // objects named before the rest is only counted
   std::string objects;
@@ -57,13 +69,9 @@ std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t c
   std::vector<ReportFact> facts{
       {"Scene", scene.name}, {"Triangles", count_text(scene.soup.triangles.size())}, {"Objects", objects}};
   for (const scenes::AreaLight& light : scene.lights) {
-    facts.push_back({fmt::format("Light “{}”", light.name),
-                     fmt::format("{}, radiance {}{}{}", std::visit(ShapeText{}, light.shape), text_of(light.radiance),
-                                 texture_text(light), light.two_sided ? ", from both sides" : "")});
+    facts.push_back({fmt::format("Light “{}”", light.name), words_of(light)});
   }
-  const scenes::Camera& c = scene.cameras.at(camera);
-  facts.push_back(
-      {"Camera", fmt::format("at {}, looking at {}, {:.4g}° high", text_of(c.eye), text_of(c.target), c.vertical_fov)});
+  facts.push_back({"Camera", words_of(scene.cameras.at(camera))});
   facts.push_back({"Picture", fmt::format("{} × {} pixels", scene.width, scene.height)});
   return facts;
 }

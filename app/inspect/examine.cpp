@@ -37,6 +37,7 @@ LightKind kind_of(const scenes::AreaLight& light) {
 InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) {
   scenes::Scene scene = scenes::read_scene(file, {.allow_outside = allow_outside, .needs_light = false});
   InspectedMesh mesh;
+  mesh.scene = facts_of(scene);
   mesh.soup = std::move(scene.soup);
   for (const scenes::Object& object : scene.objects) mesh.objects.push_back(object.name);
   mesh.notes = std::move(scene.warnings);
@@ -86,8 +87,7 @@ std::optional<SilhouetteCounts> count_silhouettes(const mesh::MeshView& mesh, co
   return counts;
 }
 
-std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis,
-                                       const std::vector<InspectedMesh::Light>& lights) {
+std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis, const InspectedMesh& mesh) {
   std::vector<MethodVerdict> verdicts;
   for (const visibility::MethodDescription* method : all_methods()) {
     PENUMBRA_ASSERT(method->verdict_on != nullptr, "method {} says nothing of meshes", method->name);
@@ -96,7 +96,12 @@ std::vector<MethodVerdict> verdicts_on(const mesh::Diagnosis& diagnosis,
       verdict = {visibility::Verdict::refused,
                  fmt::format("scenes hold coordinates up to {:g}; scale it down", scenes::kLargestCoordinate)};
     }
-    for (const InspectedMesh::Light& light : lights) {
+    if (mesh.scene && !mesh.scene->filter.empty() && method->output != visibility::Output::mask) {
+      verdict = {
+          visibility::Verdict::refused,
+          fmt::format("light passes through \"{}\", which is asked light sample by light sample", mesh.scene->filter)};
+    }
+    for (const InspectedMesh::Light& light : mesh.lights) {
       if (std::ranges::find(method->lights, light.kind) != method->lights.end()) continue;
       verdict = {visibility::Verdict::refused,
                  fmt::format("it cannot do the scene's light \"{}\", a {}", light.name, name_of(light.kind))};
@@ -122,7 +127,7 @@ ObjectReport examine_part(std::string name, const mesh::TriangleSoup& soup, cons
   report.name = std::move(name);
   report.diagnosis = mesh::diagnose(view, options);
   report.silhouettes = count_silhouettes(view, report.diagnosis, options.weld);
-  report.verdicts = verdicts_on(report.diagnosis, mesh.lights);
+  report.verdicts = verdicts_on(report.diagnosis, mesh);
   return report;
 }
 
@@ -151,6 +156,7 @@ FileReport examine(const std::filesystem::path& file, const InspectedMesh& mesh,
   FileReport report;
   report.file = file;
   report.notes = mesh.notes;
+  report.scene = mesh.scene;
   report.source_face = mesh.soup.source_face;
   report.total = examine_part(file.filename().string(), mesh.soup, mesh, options, progress);
   if (mesh.objects.size() == 1) {  // all together is then this one

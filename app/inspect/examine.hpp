@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/inspect/scene_facts.hpp"
 #include "app/process/progress.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/triangle_soup.hpp"
@@ -24,7 +25,8 @@ struct InspectedMesh {
     std::string name;
     visibility::LightKind kind;
   };
-  std::vector<Light> lights;  ///< a scene's
+  std::vector<Light> lights;             ///< a scene's
+  std::optional<SceneFacts> scene = {};  ///< nothing: a mesh file
 };
 
 /// Reads .json, .gltf and .glb as scenes (glTF: with or without a light), anything else as a mesh. Throws InputError.
@@ -55,6 +57,7 @@ struct FileReport {
   std::filesystem::path file;
   std::string error;  ///< why it could not be read; the rest is then empty
   std::vector<std::string> notes;
+  std::optional<SceneFacts> scene = {};    ///< nothing: a mesh file
   std::vector<std::uint32_t> source_face;  ///< for each triangle, the face's number in its file
   std::vector<ObjectReport> objects;
   ObjectReport total;  ///< of all triangles together, as one soup

@@ -76,10 +76,12 @@ ordered_json file_json(const FileReport& file, std::size_t list_limit) {
     json.update(object_json(file, object, list_limit));
     objects.push_back(std::move(json));
   }
-  return {{"file", file.file.string()},
-          {"notes", file.notes},
-          {"objects", objects},
-          {"total", object_json(file, file.total, list_limit)}};
+  ordered_json json = {{"file", file.file.string()},
+                       {"notes", file.notes},
+                       {"objects", objects},
+                       {"total", object_json(file, file.total, list_limit)}};
+  if (file.scene) json["scene"] = facts_json(*file.scene);
+  return json;
 }
 
 ordered_json repair_json(const RepairReport& repaired) {

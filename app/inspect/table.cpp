@@ -141,6 +141,7 @@ std::string object_rows(const FileReport& file) {
 std::string report_table(const FileReport& file, std::size_t list_limit) {
   std::string text = fmt::format("{}\n", file.file.string());
   for (const std::string& note : file.notes) text += fmt::format("  note: {}\n", wrapped(note, 8));
+  if (file.scene) text += facts_table(*file.scene);
   if (file.objects.size() > 1) text += object_rows(file);
   text += all_rows(file.total, list_limit);
   text += "  what each method makes of it\n";
