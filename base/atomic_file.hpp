@@ -38,8 +38,8 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Flushes what was written to the disk: after it commit() only gives the name. For several files that shall all appear
-  /// or none: write and settle each, then commit each.
+  /// Flushes what was written to the disk: after it commit() only gives the name. For several files that shall all
+  /// appear or none: write and settle each, then commit each.
   void settle();
   void commit();
 

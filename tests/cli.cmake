@@ -1,6 +1,7 @@
 # The program as a user meets it: exit codes, messages, files.
 penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   SOURCES
+  cli/alpha.cpp
   cli/bad_input.cpp
   cli/compare.cpp
   cli/covering_array.cpp

@@ -81,10 +81,11 @@ set(kept_tiny_gltf import scenes/formats)
 set(kept_valijson scenes/formats)
 set(kept_OpenEXR base)
 set(kept_png base)
+set(kept_jpeglib base)
 set(kept_CLI app)
 set(kept_gmpxx volumes areas)
 set(kept_hwy engines/vectors engines/pairs volumes/scatter vsm)
-set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR png CLI gmpxx hwy)
+set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR png jpeglib CLI gmpxx hwy)
 
 # room_of(folder result): the innermost room that the folder is, or lies in; empty if none.
 function(room_of folder result)

@@ -23,8 +23,8 @@ struct SceneFloats {
                                       ///< +0), so that nothing computed from them depends on winding or first vertex
   std::vector<std::uint32_t> object;  ///< for each triangle
   std::vector<std::uint32_t> plane;   ///< for each triangle: equal numbers ⇔ exactly coplanar (kNoPlane: zero area)
-  std::vector<std::uint8_t> casts_shadow;  ///< for each triangle: false for objects that cast none, for zero-area
-                                           ///< triangles, and for those that let light through (`alphas`)
+  std::vector<std::uint8_t> casts_shadow;     ///< for each triangle: false for objects that cast none, for zero-area
+                                              ///< triangles, and for those that let light through (`alphas`)
   std::vector<std::uint8_t> receives_shadow;  ///< for each triangle
   std::vector<std::int32_t> emits;            ///< for each triangle: the light it is the body of, or −1
   glm::vec3 lower{0}, upper{0};               ///< bounding box of positions

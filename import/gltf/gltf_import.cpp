@@ -2,12 +2,14 @@
 
 #include "base/error.hpp"
 #include "import/gltf/flat_light.hpp"
-#include "import/gltf/gltf_accessor.hpp"
 #include "import/gltf/gltf_animation.hpp"
+#include "import/gltf/gltf_camera.hpp"
 #include "import/gltf/gltf_deform.hpp"
+#include "import/gltf/gltf_extras.hpp"
 #include "import/gltf/gltf_load.hpp"
 #include "import/gltf/gltf_losses.hpp"
 #include "import/gltf/gltf_nodes.hpp"
+#include "import/gltf/gltf_primitive.hpp"
 #include "import/gltf/gltf_surface.hpp"
 #include "import/gltf/punctual_lights.hpp"
 #include "import/gltf/sphere_light.hpp"
@@ -17,7 +19,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -35,25 +36,6 @@ std::string unique_name(std::set<std::string>& taken, const std::string& wanted)
   std::string name = wanted;
   for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}.{}", wanted, i);
   return name;
-}
-
-/// The triangles of a primitive as indices into its vertices, wound as glTF 2.0, 3.7.2.1 says; `leftover` counts the
-/// indices at the end that make no triangle.
-std::vector<mesh::Triangle> assemble(int mode, std::span<const std::uint32_t> v, std::uint64_t& leftover) {
-  std::vector<mesh::Triangle> triangles;
-  if (mode == TINYGLTF_MODE_TRIANGLES) {
-    for (std::size_t i = 0; i + 2 < v.size(); i += 3) triangles.push_back({v[i], v[i + 1], v[i + 2]});
-    leftover += v.size() % 3;
-    return triangles;
-  }
-  for (std::size_t i = 0; i + 2 < v.size(); ++i) {
-    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
-      triangles.push_back({v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
-    else
-      triangles.push_back({v[i + 1], v[i + 2], v[0]});
-  }
-  if (v.size() < 3) leftover += v.size();
-  return triangles;
 }
 
 constexpr std::array<std::string_view, 5> kUnderstood{"KHR_materials_emissive_strength", "KHR_materials_transmission",
@@ -96,7 +78,7 @@ class GltfImport {
       throw InputError(
           "there are no triangles in the scene ({} primitives of points or lines, {} without POSITION, {} with "
           "fewer than three vertices)",
-          points_and_lines_, without_positions_, without_triangles_);
+          skipped_.points_and_lines, skipped_.without_positions, skipped_.without_triangles);
     }
     if (scene_.lights.empty() && purpose_ == Purpose::lit_scene) {
       throw InputError(
@@ -105,8 +87,15 @@ class GltfImport {
           "Punctual Lights (area lamps are lost in glTF){}",
           refused_lights_.empty() ? "" : "; emissive but no light: " + refused_lights_);
     }
-    if (scene_.cameras.empty() && !is_mesh()) add_camera_that_sees_all();
+    if (scene_.cameras.empty() && !is_mesh()) {
+      scene_.cameras.push_back(camera_that_sees_all(scene_.soup.positions));
+      scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
+    }
     complete_looks();
+    for (const std::string& name : faint_) {
+      if (scene_.lights.size() > 1)
+        losses_.mention("shines faintly, and shows that alone: the light of others on it is left out", name);
+    }
     add_warnings();
     if (!is_mesh()) losses_.report(lenient_, scene_.warnings);
     return std::move(scene_);
@@ -121,6 +110,7 @@ class GltfImport {
                        model_.meshes.size());
     }
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
+    flags_ = flags_of(node, mesh);
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
       const std::string place = fmt::format("/meshes/{}/primitives/{}", node.mesh, i);
       add_primitive(mesh.primitives[i], node, placed, place,
@@ -130,40 +120,9 @@ class GltfImport {
 
   void add_primitive(const tinygltf::Primitive& primitive, const tinygltf::Node& node, const PlacedNode& placed,
                      const std::string& place, const std::string& name) {
-    const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-    if (mode > TINYGLTF_MODE_TRIANGLE_FAN) throw InputError("{}/mode: {}; expected 0 to 6", place, mode);
-    if (mode < TINYGLTF_MODE_TRIANGLES) {
-      ++points_and_lines_;
-      return;
-    }
-    if (primitive.extensions.contains("KHR_draco_mesh_compression")) {
-      throw InputError("{}: KHR_draco_mesh_compression is not supported; export without compression", place);
-    }
-    const auto attribute = primitive.attributes.find("POSITION");
-    if (attribute == primitive.attributes.end()) {
-      ++without_positions_;
-      return;
-    }
-    std::vector<glm::dvec3> positions = read_positions(model_, attribute->second);
-    std::vector<std::uint32_t> indices;
-    if (primitive.indices >= 0) {
-      indices = read_indices(model_, primitive.indices);
-    } else {
-      if (positions.size() > std::numeric_limits<std::uint32_t>::max())
-        throw InputError("{}: too many vertices", place);
-      for (std::size_t i = 0; i < positions.size(); ++i) indices.push_back(static_cast<std::uint32_t>(i));
-    }
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-      if (indices[i] >= positions.size()) {
-        throw InputError("{}: index {} at /accessors/{} names vertex {}, but there are only {}", place, i,
-                         primitive.indices, indices[i], positions.size());
-      }
-    }
-    std::vector<mesh::Triangle> triangles = assemble(mode, indices, leftover_indices_);
-    if (triangles.empty()) {
-      ++without_triangles_;
-      return;
-    }
+    std::optional<PrimitiveMesh> mesh = read_primitive(model_, primitive, place, skipped_);
+    if (!mesh) return;
+    std::vector<glm::dvec3>& positions = mesh->positions;
     std::optional<std::vector<glm::dmat4>> skinned;
     if (purpose_ != Purpose::rest) {
       morph(model_, node, primitive, "POSITION", place, positions);
@@ -179,16 +138,13 @@ class GltfImport {
     switch (opacity_of(look, scene_.pictures)) {
       case Opacity::gone:
         return;
-      case Opacity::neither:
-        losses_.refuse(look.alpha.mode == Alpha::Mode::mask
-                           ? "has holes (alphaMode MASK), which are not supported: whole faces would cast shadows"
-                           : "is translucent (alphaMode BLEND), which is not supported: it would cast full shadows",
-                       own_name);
-        break;
       case Opacity::solid:
+        look.alpha = {};
+        break;
+      case Opacity::neither:
         break;
     }
-    add_object({positions, skinned, look}, std::move(triangles), placed, {place, own_name});
+    add_object({positions, skinned, look}, std::move(mesh->triangles), placed, {place, own_name});
   }
 
   /// A primitive's vertices as they were modelled; of skinned ones also what takes each into the world.
@@ -240,12 +196,26 @@ class GltfImport {
     }
     Object object;
     object.name = named.name;
+    object.casts_shadow = flags_.casts_shadow;
+    object.receives_shadow = flags_.receives_shadow;
     object.color = vertices.look.color;
     object.material = vertices.look.material;
     object.picture = vertices.look.picture;
     object.alpha = vertices.look.alpha;
     object.emits = add_light(vertices.look, named.name, placed, first_position, first_triangle);
+    if (object.emits && !flags_.body) return remove_from(first_position, first_triangle);
     scene_.objects.push_back(std::move(object));
+  }
+
+  /// The triangles that were added last were there to say where a light is.
+  void remove_from(std::size_t position, std::size_t triangle) {
+    mesh::TriangleSoup& soup = scene_.soup;
+    soup.positions.resize(position);
+    soup.triangles.resize(triangle);
+    soup.source_face.resize(triangle);
+    soup.object.resize(triangle);
+    const auto shorten = [position](auto& list) { list.resize(std::min(list.size(), position)); };
+    shorten(scene_.looks.normals), shorten(scene_.looks.colors), shorten(scene_.looks.places);
   }
 
   /// What the vertex that was added last looks like.
@@ -315,6 +285,7 @@ class GltfImport {
     light.name = unique_name(light_names_, name);
     light.radiance = radiance;
     light.two_sided = look.two_sided && !std::holds_alternative<Sphere>(light.shape);
+    if (std::max({radiance.x, radiance.y, radiance.z}) < 1 && look.color != glm::dvec3(0)) faint_.push_back(name);
     scene_.lights.push_back(std::move(light));
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
   }
@@ -327,51 +298,9 @@ class GltfImport {
   }
 
   void add_camera(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
-    if (static_cast<std::size_t>(node.camera) >= model_.cameras.size()) {
-      throw InputError("/nodes/{}/camera: camera {} does not exist; there are {}", placed.number, node.camera,
-                       model_.cameras.size());
-    }
-    const tinygltf::Camera& source = model_.cameras[static_cast<std::size_t>(node.camera)];
-    const bool perspective = source.type == "perspective";
-    const double angle = source.perspective.yfov, height = 2 * source.orthographic.ymag;
-    if (perspective && !(angle > 0 && angle < glm::radians(180.0))) {
-      throw InputError("/cameras/{}/perspective/yfov: {}; expected more than 0 and less than pi", node.camera, angle);
-    }
-    if (!perspective && !(height > 0 && std::isfinite(height))) {
-      throw InputError("/cameras/{}/orthographic/ymag: {}; expected a length above 0", node.camera, height / 2);
-    }
-    // A camera looks along −Z of its node, with +Y up (glTF 2.0, 3.10).
-    const glm::dvec3 forward(placed.to_world * glm::dvec4(0, 0, -1, 0)), up(placed.to_world * glm::dvec4(0, 1, 0, 0));
-    if (!(glm::length(glm::cross(forward, up)) > 0)) {
-      throw InputError("/nodes/{}: its transform squashes the camera flat", placed.number);
-    }
-    Camera camera;
+    Camera camera = camera_of(model_, node, placed);
     camera.name = unique_name(camera_names_, name);
-    camera.eye = glm::dvec3(placed.to_world[3]);
-    camera.target = camera.eye + glm::normalize(forward);
-    camera.up = glm::normalize(up);
-    if (perspective)
-      camera.vertical_fov = glm::degrees(angle);
-    else
-      camera.height = height;
-    const double aspect = perspective ? source.perspective.aspectRatio : 2 * source.orthographic.xmag / height;
-    if (aspect > 0 && std::isfinite(aspect)) camera.aspect = aspect;
     scene_.cameras.push_back(std::move(camera));
-  }
-
-  /// From above the front right, at the distance at which the bounding sphere just fits into the picture.
-  void add_camera_that_sees_all() {
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
-    for (const glm::dvec3& p : scene_.soup.positions) low = glm::min(low, p), high = glm::max(high, p);
-    Camera camera;
-    camera.name = "synthesised";
-    camera.target = (low + high) / 2.0;
-    const double radius = glm::distance(low, high) / 2;
-    const double distance =
-        std::max(radius, std::numeric_limits<float>::min() * 1.0) / std::sin(glm::radians(camera.vertical_fov) / 2);
-    camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.5, 0.5, 1));
-    scene_.cameras.push_back(camera);
-    scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
   }
 
   void add_warnings() {
@@ -379,10 +308,10 @@ class GltfImport {
       if (number > 0) scene_.warnings.push_back(fmt::format("{} {}", number, what));
     };
     if (!is_mesh()) lamps_.add_warnings(scene_.warnings);
-    count(points_and_lines_, "primitives of points or lines skipped");
-    count(without_positions_, "primitives without POSITION skipped");
-    count(without_triangles_, "primitives with fewer than three vertices skipped");
-    count(leftover_indices_, "indices at the end of primitives skipped: they make no whole triangle");
+    count(skipped_.points_and_lines, "primitives of points or lines skipped");
+    count(skipped_.without_positions, "primitives without POSITION skipped");
+    count(skipped_.without_triangles, "primitives with fewer than three vertices skipped");
+    count(skipped_.leftover_indices, "indices at the end of primitives skipped: they make no whole triangle");
     count(emissive_, "emissive objects are no lights here: those are the scene's");
     for (const std::string& extension : model_.extensionsUsed) {
       if (std::ranges::find(kUnderstood, extension) != kUnderstood.end()) continue;
@@ -401,8 +330,10 @@ class GltfImport {
   SurfaceReader surfaces_;
   std::set<std::string> object_names_, camera_names_, light_names_;
   std::string refused_lights_;
-  std::uint64_t points_and_lines_ = 0, without_positions_ = 0, without_triangles_ = 0, leftover_indices_ = 0,
-                emissive_ = 0;
+  std::vector<std::string> faint_;  // emitters whose base colour would show beside their own light
+  SkippedPrimitives skipped_;
+  ObjectFlags flags_;  // of the mesh at hand
+  std::uint64_t emissive_ = 0;
 };
 
 /// Does anything but nodes move vertices?

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/image.hpp"
+#include "base/jpeg.hpp"
 #include "base/png.hpp"
 #include "import/gltf/gltf_accessor.hpp"
 
@@ -67,11 +68,19 @@ PictureUse::Wrap wrap_of(int mode) {
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? PictureUse::Wrap::mirror : PictureUse::Wrap::repeat;
 }
 
-/// What KHR_texture_transform does to coordinates, but for its rotation.
+/// What KHR_texture_transform does to coordinates.
 struct TextureTransform {
   glm::dvec2 offset{0}, scale{1};
-  double rotation = 0;
+  double rotation = 0;   ///< radians
   int coordinates = -1;  ///< its own set; −1: none
+
+  /// Scaled, then turned counter-clockwise about (0, 0) as the picture is seen, v down, then moved: what Blender's
+  /// exporter means and browsers show. (The extension's page has the matrix of it by rows.)
+  [[nodiscard]] glm::dvec2 operator()(const glm::dvec2& uv) const {
+    const glm::dvec2 scaled = scale * uv;
+    const double c = std::cos(rotation), s = std::sin(rotation);
+    return offset + glm::dvec2(c * scaled.x + s * scaled.y, c * scaled.y - s * scaled.x);
+  }
 };
 
 TextureTransform transform_of(const tinygltf::TextureInfo& info) {
@@ -138,7 +147,7 @@ Look SurfaceReader::read(const tinygltf::Primitive& primitive, const std::string
     if (places) {
       for (std::size_t i = 0; i < vertices; ++i) {
         const glm::dvec2 uv(places->values[2 * i], places->values[2 * i + 1]);
-        look.places.push_back(transform.offset + transform.scale * uv);
+        look.places.push_back(transform(uv));
       }
     } else {
       look.places.assign(vertices, transform.offset);  // glTF 2.0 leaves it open; the coordinates are then taken as 0
@@ -198,8 +207,7 @@ void SurfaceReader::read_picture(const tinygltf::Primitive& primitive, const std
   if (info.index < 0) return;
   const std::string place = fmt::format("/materials/{}/pbrMetallicRoughness/baseColorTexture", primitive.material);
   std::string why_not;
-  if (transform_of(info).rotation != 0) why_not = "it is turned (KHR_texture_transform)";
-  const auto picture = why_not.empty() ? picture_of(info.index, place, why_not) : std::nullopt;
+  const auto picture = picture_of(info.index, place, why_not);
   if (!picture) {
     const std::string what = fmt::format("is shown without its picture: {}", why_not);
     // A picture may have an alpha that cuts holes.
@@ -237,13 +245,15 @@ std::optional<std::uint32_t> SurfaceReader::picture_of(int texture, const std::s
       const std::span<const unsigned char> bytes =
           image.bufferView >= 0 ? read_view(model_, image.bufferView, fmt::format("/images/{}", number)) : image.image;
       if (bytes.empty()) throw InputError("it cannot be read");
-      RgbaImage decoded = decode_rgba_png(std::as_bytes(bytes), kLargestPictureSide);
+      const std::span<const std::byte> file = std::as_bytes(bytes);
+      RgbaImage decoded = looks_like_jpeg(file) ? decode_rgba_jpeg(file, kLargestPictureSide)
+                                                : decode_rgba_png(file, kLargestPictureSide);
       known->second = static_cast<std::uint32_t>(pictures_.size());
       pictures_.push_back({name, decoded.width, decoded.height, std::move(decoded.pixels)});
     } catch (const InputError& error) {
       unreadable_[number] = fmt::format(
-          "\"{}\": {} (PNG is what is read; in Blender's exporter, Images: Automatic keeps "
-          "what an image was, so save it as PNG)",
+          "\"{}\": {} (PNG and JPEG are what is read; in Blender's exporter, Images: Automatic writes "
+          "one of them)",
           name, error.what());
     }
   }

@@ -44,25 +44,34 @@ class GlbBuilder {
     return glb_.add_material(std::move(material));
   }
 
-  /// A node with a mesh of its own.
+  /// A node with a mesh of its own; `extras` as import/gltf/gltf_extras.hpp reads them.
   void add_mesh(const std::string& name, const std::vector<glm::vec3>& positions,
-                const std::vector<std::uint32_t>& indices, int material) {
+                const std::vector<std::uint32_t>& indices, int material, tinygltf::Value::Object extras = {}) {
     PENUMBRA_ASSERT(!positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
     tinygltf::Mesh mesh;
     mesh.name = name;
     mesh.primitives.push_back(
         glb_.primitive(TINYGLTF_MODE_TRIANGLES, glb_.add_positions(positions), indices, material));
+    if (!extras.empty()) mesh.extras = tinygltf::Value(std::move(extras));
     glb_.add_root(glb_.add_mesh_node(std::move(mesh)));
   }
 
   void add_camera(const Camera& camera, double aspect) {
     tinygltf::Camera gltf;
     gltf.name = camera.name;
-    gltf.type = "perspective";
-    gltf.perspective.yfov = camera.vertical_fov * std::numbers::pi / 180;
-    gltf.perspective.aspectRatio = aspect;
-    gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
-    gltf.perspective.zfar = 0;  // none
+    if (camera.height) {
+      gltf.type = "orthographic";
+      gltf.orthographic.ymag = *camera.height / 2;
+      gltf.orthographic.xmag = aspect * gltf.orthographic.ymag;
+      gltf.orthographic.znear = 0;
+      gltf.orthographic.zfar = 1e6 * *camera.height;  // glTF wants one; nothing here reads it
+    } else {
+      gltf.type = "perspective";
+      gltf.perspective.yfov = camera.vertical_fov * std::numbers::pi / 180;
+      gltf.perspective.aspectRatio = aspect;
+      gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
+      gltf.perspective.zfar = 0;  // none
+    }
     // A glTF camera looks along its −Z with +Y up.
     const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
     const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back)), up = glm::cross(back, right);
@@ -137,7 +146,10 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
     }
   }
   const AreaLight* light = object.emits ? &scene.lights[*object.emits] : nullptr;
-  glb.add_mesh(object.name, positions, indices, glb.add_material(object.name, object.color, light));
+  tinygltf::Value::Object extras;
+  if (!object.casts_shadow) extras["castsShadow"] = tinygltf::Value(false);
+  if (!object.receives_shadow) extras["receivesShadow"] = tinygltf::Value(false);
+  glb.add_mesh(object.name, positions, indices, glb.add_material(object.name, object.color, light), std::move(extras));
 }
 
 /// The light's outline, counter-clockwise seen from where it emits to; empty for a sphere or sun.
@@ -174,7 +186,8 @@ void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
   const std::vector<glm::vec3> positions(points.begin(), points.end());
   std::vector<std::uint32_t> fan;
   for (std::uint32_t i = 1; i + 1 < points.size(); ++i) fan.insert(fan.end(), {0, i, i + 1});
-  glb.add_mesh(light.name, positions, fan, glb.add_material(light.name, glm::dvec3(0.8), &light));
+  glb.add_mesh(light.name, positions, fan, glb.add_material(light.name, glm::dvec3(0.8), &light),
+               {{"body", tinygltf::Value(false)}});
 }
 
 }  // namespace
@@ -198,8 +211,6 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
     glb.add_camera(camera, static_cast<double>(scene.width) / scene.height);
   }
   for (const Object& object : scene.objects) {
-    if (!object.casts_shadow || !object.receives_shadow)
-      notes.push_back(fmt::format("mesh \"{}\": glTF has no shadow flags; left out", object.name));
     if (object.lit_by)
       notes.push_back(fmt::format("mesh \"{}\": glTF cannot say which lights light it; left out", object.name));
   }

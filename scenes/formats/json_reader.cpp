@@ -44,6 +44,7 @@ Camera read_camera(const json& value, const Place& place, std::string fallback_n
   camera.target = read_vector(value["target"]);
   if (value.contains("up")) camera.up = read_vector(value["up"]);
   camera.vertical_fov = value.value("verticalFov", camera.vertical_fov);
+  if (value.contains("orthographicHeight")) camera.height = value["orthographicHeight"].get<double>();
   check_camera(camera, place.str());
   return camera;
 }

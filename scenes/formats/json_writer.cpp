@@ -19,7 +19,10 @@ void write_camera(const Camera& camera, TextStream& text) {
   text.print(R"({{"name": {}, "eye": )", quoted(camera.name)).array(camera.eye);
   text.print(R"(, "target": )").array(camera.target);
   text.print(R"(, "up": )").array(camera.up);
-  text.print(R"(, "verticalFov": )").number(camera.vertical_fov).print("}}");
+  if (camera.height)
+    text.print(R"(, "orthographicHeight": )").number(*camera.height).print("}}");
+  else
+    text.print(R"(, "verticalFov": )").number(camera.vertical_fov).print("}}");
 }
 
 void write_shape(const Rectangle& rectangle, TextStream& text) {

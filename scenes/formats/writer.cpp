@@ -4,6 +4,8 @@
 #include "scenes/light_texture.hpp"
 #include "scenes/formats/writers.hpp"
 
+#include <fmt/ranges.h>
+
 #include <cmath>
 
 namespace penumbra::scenes {
@@ -60,6 +62,20 @@ void TextStream::flush() {
   buffer_.clear();
 }
 
+/// What no format that is written here has a place for.
+void note_looks(const Scene& scene, Notes& notes) {
+  std::vector<std::string> filled, pictured;
+  for (const Object& object : scene.objects) {
+    if (object.alpha.mode != Alpha::Mode::opaque) filled.push_back(fmt::format("\"{}\"", object.name));
+    if (object.picture) pictured.push_back(fmt::format("\"{}\"", object.name));
+  }
+  if (!filled.empty())
+    notes.push_back(
+        fmt::format("alpha is left out: {} will be solid, and cast whole shadows", fmt::join(filled, ", ")));
+  if (!pictured.empty()) notes.push_back(fmt::format("pictures are left out: {}", fmt::join(pictured, ", ")));
+  if (!scene.looks.colors.empty()) notes.emplace_back("colours of vertices are left out");
+}
+
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   void (*write)(const Scene&, AtomicFile&, Notes&) = extension == ".json"  ? write_json
@@ -70,6 +86,7 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
   AtomicFile output(file);
   Notes notes;
   write(scene, output, notes);
+  note_looks(scene, notes);
   // The scene comes last: where it is, what it names is.
   for (std::size_t i = 0; extension == ".json" && i < scene.lights.size(); ++i) {
     if (scene.lights[i].texture) write_texture(*scene.lights[i].texture, texture_file(file, i));

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 namespace penumbra::scenes {
 namespace {
 
@@ -45,7 +47,7 @@ Gltf textured() {
 
 TEST_F(GltfSurfaces, HavePicturesWithPlaces) {
   Gltf gltf = textured();
-  Scene scene = read(gltf);
+  const Scene scene = read(gltf);
   EXPECT_THAT(scene.warnings, IsEmpty());
   ASSERT_EQ(scene.pictures.size(), 1u);
   EXPECT_EQ(scene.pictures[0].file, "leaf");
@@ -61,10 +63,10 @@ TEST_F(GltfSurfaces, HavePicturesWithPlaces) {
   gltf.at("/materials/0/pbrMetallicRoughness/baseColorTexture")["extensions"] = {
       {"KHR_texture_transform", {{"offset", {0.25, 0.5}}, {"scale", {2, 3}}}}};
   EXPECT_EQ(read(gltf).looks.places[2], glm::dvec2(1.25, 3.5));
-  gltf.at("/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform")["rotation"] = 1;
-  scene = read(gltf);
-  EXPECT_FALSE(scene.objects[0].picture);
-  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("'Body'"), HasSubstr("without its picture"))));
+  gltf.at("/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform")["rotation"] =
+      std::numbers::pi / 2;
+  // (0.5, 1) scaled is (1, 3), turned by a right angle (3, -1).
+  EXPECT_LT(glm::distance(read(gltf).looks.places[2], glm::dvec2(3.25, -0.5)), 1e-12);
 }
 
 TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
@@ -85,25 +87,24 @@ TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
   EXPECT_EQ(scene.looks.normals.back(), glm::vec3(0));
 }
 
-/// What stops all light, or none, is done right; what lies between is refused by name.
-TEST_F(GltfSurfaces, LetLightThroughOrAreRefused) {
+/// What stops all light is plain geometry, what stops none is not there; what lies between keeps its alpha.
+TEST_F(GltfSurfaces, LetLightThrough) {
   Gltf gltf;
   auto& material = gltf.at("/materials/0");
   material["alphaMode"] = "MASK";
-  EXPECT_EQ(read(gltf).objects.size(), 2u) << "an alpha of 1 is solid";
+  ASSERT_EQ(read(gltf).objects.size(), 2u);
+  EXPECT_EQ(read(gltf).objects[0].alpha, Alpha()) << "an alpha of 1 is solid";
   material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.3};
   const Scene gone = read(gltf);
   ASSERT_EQ(gone.objects.size(), 1u) << "below the cutoff of 0.5 there is nothing";
   EXPECT_EQ(gone.objects[0].name, "Lamp");
   EXPECT_EQ(mesh::import_mesh(write("scene.glb", gltf.glb())).soup.triangles.size(), 2u) << "as a mesh, too";
   material["alphaCutoff"] = 0.25;
-  EXPECT_EQ(read(gltf).objects.size(), 2u);
+  EXPECT_EQ(read(gltf).objects[0].alpha, Alpha());
   material["alphaMode"] = "BLEND";
-  EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("'Body' is translucent"), HasSubstr("--lenient")));
-  const Scene lenient = read(gltf, true);
-  EXPECT_EQ(lenient.objects[0].alpha.mode, Alpha::Mode::blend);
-  EXPECT_EQ(lenient.objects[0].alpha.factor, 0.3);
-  EXPECT_THAT(lenient.warnings, Contains(HasSubstr("'Body' is translucent")));
+  const Scene pane = read(gltf);
+  EXPECT_EQ(pane.objects[0].alpha, (Alpha{Alpha::Mode::blend, 0.3, 0.25}));
+  EXPECT_THAT(pane.warnings, IsEmpty());
   material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0};
   EXPECT_EQ(read(gltf).objects.size(), 1u);
   material["alphaMode"] = "DITHER";
@@ -125,7 +126,7 @@ TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   EXPECT_EQ(read(gltf).objects.size(), 2u);
   gltf.at("/meshes/0/primitives/0/attributes")["COLOR_0"] =
       gltf.add_floats("VEC4", {1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1});
-  EXPECT_THAT(refusal(gltf), HasSubstr("'Body' has holes"));
+  EXPECT_EQ(read(gltf).objects[0].alpha, (Alpha{Alpha::Mode::mask, 1, 0.5})) << "a vertex has 0";
   gltf.at("/meshes/0/primitives/0/attributes").erase("COLOR_0");
   gltf.at("/images/0")["bufferView"] = 0;
   EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("'Body'"), HasSubstr("PNG")));
@@ -143,6 +144,40 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPicture) {
   EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("mean"))));
   gltf.at("/images/0")["bufferView"] = 0;
   EXPECT_THAT(refusal(gltf), HasSubstr("'Lamp' would shine without its emissive picture"));
+}
+
+/// Custom properties of an object, or of its mesh, say what glTF has no words for.
+TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
+  Gltf gltf;
+  gltf.at("/meshes/0")["extras"] = {{"castsShadow", 0}, {"receivesShadow", false}};
+  gltf.at("/nodes/0")["extras"] = {{"receivesShadow", true}, {"unknown", "word"}};
+  const Scene scene = read(gltf);
+  EXPECT_FALSE(scene.objects[0].casts_shadow);
+  EXPECT_TRUE(scene.objects[0].receives_shadow) << "the object's own word comes first";
+  EXPECT_TRUE(scene.objects[1].casts_shadow);
+  gltf.at("/nodes/1")["extras"] = {{"body", false}};
+  const Scene bodiless = read(gltf);
+  ASSERT_EQ(bodiless.objects.size(), 1u);
+  EXPECT_EQ(bodiless.lights.size(), 1u);
+  EXPECT_EQ(bodiless.soup.triangles.size(), 1u);
+  EXPECT_EQ(bodiless.soup.positions.size(), 3u);
+  gltf.at("/nodes/1/extras/body") = "no";
+  EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("\"Lamp\""), HasSubstr("extras/body")));
+}
+
+/// A sign that glows shows nothing of the light on it: said, where there is another light.
+TEST_F(GltfSurfaces, FaintEmittersAreNamed) {
+  Gltf gltf;
+  gltf.at("/materials/1")["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 0.02;
+  EXPECT_THAT(read(gltf).warnings, IsEmpty()) << "there is no other light";
+  gltf.at("/nodes").push_back({{"name", "Key"}, {"mesh", 2}});
+  gltf.at("/meshes").push_back(nlohmann::json(gltf.at("/meshes/1")));
+  gltf.at("/meshes/2/primitives/0/material") = 2;
+  gltf.at("/materials").push_back(nlohmann::json(gltf.at("/materials/1")));
+  gltf.at("/materials/2")["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 20;
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
+  EXPECT_THAT(read(gltf).warnings,
+              ::testing::ElementsAre(AllOf(HasSubstr("'Lamp' shines faintly"), HasSubstr("others"))));
 }
 
 TEST_F(GltfSurfaces, CamerasHaveTheirShape) {

@@ -1,0 +1,100 @@
+// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode` nothing has one.
+#include "base/jpeg.hpp"
+
+#include "base/error.hpp"
+
+#include <array>
+#include <cstdio>  // jpeglib.h takes it for granted
+
+#include <jpeglib.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <utility>
+#include <vector>
+
+namespace penumbra {
+namespace {
+
+constexpr std::size_t kChannels = 3;
+
+/// All that outlives a longjmp.
+struct JpegDecoder {
+  JpegDecoder() = default;
+  JpegDecoder(const JpegDecoder&) = delete;
+  JpegDecoder& operator=(const JpegDecoder&) = delete;
+  ~JpegDecoder() { jpeg_destroy_decompress(&jpeg); }
+
+  jpeg_error_mgr errors{};
+  jpeg_decompress_struct jpeg{};
+  std::jmp_buf escape{};
+  std::array<char, JMSG_LENGTH_MAX> message{};
+  std::uint32_t width = 0, height = 0, largest_side = 0;
+  std::vector<JSAMPLE> row;
+  JSAMPROW rows = nullptr;
+  RgbaImage image;
+};
+
+void fail(j_common_ptr jpeg) {
+  auto& decoder = *static_cast<JpegDecoder*>(jpeg->client_data);
+  jpeg->err->format_message(jpeg, decoder.message.data());
+  std::longjmp(decoder.escape, 1);
+}
+
+/// Warnings are of damaged data, behind which libjpeg would invent the rest.
+void fail_on_warning(j_common_ptr jpeg, int level) {
+  if (level < 0) fail(jpeg);
+}
+
+/// False: `message` says why not, unless the size is the reason.
+bool decode(JpegDecoder& decoder, std::span<const std::byte> bytes) {
+  if (setjmp(decoder.escape) != 0) return false;
+  jpeg_create_decompress(&decoder.jpeg);
+  decoder.jpeg.client_data = &decoder;
+  jpeg_mem_src(&decoder.jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&decoder.jpeg, TRUE);
+  decoder.width = decoder.jpeg.image_width;
+  decoder.height = decoder.jpeg.image_height;
+  if (std::max(decoder.width, decoder.height) > decoder.largest_side) return false;
+  decoder.jpeg.out_color_space = JCS_RGB;
+  jpeg_start_decompress(&decoder.jpeg);
+  decoder.row.resize(kChannels * decoder.width);
+  decoder.image.pixels.reserve(std::size_t{decoder.width} * decoder.height);
+  decoder.rows = decoder.row.data();
+  while (decoder.jpeg.output_scanline < decoder.jpeg.output_height) {
+    jpeg_read_scanlines(&decoder.jpeg, &decoder.rows, 1);
+    for (std::size_t x = 0; x < decoder.width; ++x) {
+      const JSAMPLE* texel = &decoder.row[kChannels * x];
+      decoder.image.pixels.push_back({texel[0], texel[1], texel[2], 255});
+    }
+  }
+  jpeg_finish_decompress(&decoder.jpeg);
+  return true;
+}
+
+}  // namespace
+
+bool looks_like_jpeg(std::span<const std::byte> bytes) {
+  constexpr std::array kBegin{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}};
+  return bytes.size() >= kBegin.size() && std::equal(kBegin.begin(), kBegin.end(), bytes.begin());
+}
+
+RgbaImage decode_rgba_jpeg(std::span<const std::byte> bytes, std::uint32_t largest_side) {
+  if (!looks_like_jpeg(bytes)) throw InputError("not a JPEG picture");
+  JpegDecoder decoder;
+  decoder.largest_side = largest_side;
+  decoder.jpeg.err = jpeg_std_error(&decoder.errors);
+  decoder.errors.error_exit = fail;
+  decoder.errors.emit_message = fail_on_warning;
+  decoder.jpeg.client_data = &decoder;
+  if (!decode(decoder, bytes)) {
+    if (decoder.message[0] == '\0')
+      throw InputError("{}x{} pixels; at most {} a side", decoder.width, decoder.height, largest_side);
+    throw InputError("a damaged or unusual JPEG picture: {}", decoder.message.data());
+  }
+  decoder.image.width = decoder.width;
+  decoder.image.height = decoder.height;
+  return std::move(decoder.image);
+}
+
+}  // namespace penumbra

@@ -1,0 +1,62 @@
+#include "import/gltf/gltf_camera.hpp"
+
+#include "base/error.hpp"
+
+#include <tiny_gltf.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace penumbra::scenes {
+
+Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed) {
+  if (static_cast<std::size_t>(node.camera) >= model.cameras.size()) {
+    throw InputError("/nodes/{}/camera: camera {} does not exist; there are {}", placed.number, node.camera,
+                     model.cameras.size());
+  }
+  const tinygltf::Camera& source = model.cameras[static_cast<std::size_t>(node.camera)];
+  const bool perspective = source.type == "perspective";
+  const double angle = source.perspective.yfov, height = 2 * source.orthographic.ymag;
+  if (perspective && !(angle > 0 && angle < glm::radians(180.0))) {
+    throw InputError("/cameras/{}/perspective/yfov: {}; expected more than 0 and less than pi", node.camera, angle);
+  }
+  if (!perspective && !(height > 0 && std::isfinite(height))) {
+    throw InputError("/cameras/{}/orthographic/ymag: {}; expected a length above 0", node.camera, height / 2);
+  }
+  // A camera looks along −Z of its node, with +Y up (glTF 2.0, 3.10).
+  const glm::dvec3 forward(placed.to_world * glm::dvec4(0, 0, -1, 0)), up(placed.to_world * glm::dvec4(0, 1, 0, 0));
+  if (!(glm::length(glm::cross(forward, up)) > 0)) {
+    throw InputError("/nodes/{}: its transform squashes the camera flat", placed.number);
+  }
+  Camera camera;
+  camera.eye = glm::dvec3(placed.to_world[3]);
+  camera.target = camera.eye + glm::normalize(forward);
+  camera.up = glm::normalize(up);
+  if (perspective)
+    camera.vertical_fov = glm::degrees(angle);
+  else
+    camera.height = height;
+  const double aspect = perspective ? source.perspective.aspectRatio : 2 * source.orthographic.xmag / height;
+  if (aspect > 0 && std::isfinite(aspect)) camera.aspect = aspect;
+  return camera;
+}
+
+Camera camera_that_sees_all(std::span<const glm::dvec3> positions) {
+  glm::dvec3 low = positions.front(), high = low;
+  for (const glm::dvec3& p : positions) low = glm::min(low, p), high = glm::max(high, p);
+  Camera camera;
+  camera.name = "synthesised";
+  camera.target = (low + high) / 2.0;
+  const double radius = glm::distance(low, high) / 2;
+  const double distance =
+      std::max(radius, std::numeric_limits<float>::min() * 1.0) / std::sin(glm::radians(camera.vertical_fov) / 2);
+  camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.5, 0.5, 1));
+  return camera;
+}
+
+}  // namespace penumbra::scenes

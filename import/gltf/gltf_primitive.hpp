@@ -1,0 +1,35 @@
+#pragma once
+
+#include "mesh/triangle_soup.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tinygltf {
+class Model;
+struct Primitive;
+}  // namespace tinygltf
+
+namespace penumbra::scenes {
+
+/// What of a file's primitives makes no triangles.
+struct SkippedPrimitives {
+  std::uint64_t points_and_lines = 0, without_positions = 0, without_triangles = 0;
+  std::uint64_t leftover_indices = 0;  ///< at the end of primitives
+};
+
+/// A primitive as it was modelled.
+struct PrimitiveMesh {
+  std::vector<glm::dvec3> positions;
+  std::vector<mesh::Triangle> triangles;  ///< not empty; indices into positions
+};
+
+/// Nothing for one without triangles, which is counted. Throws InputError, with places that begin with `place`.
+std::optional<PrimitiveMesh> read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                            const std::string& place, SkippedPrimitives& skipped);
+
+}  // namespace penumbra::scenes

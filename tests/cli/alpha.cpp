@@ -1,0 +1,227 @@
+// `render` and `compare` of glTF surfaces with holes (alphaMode MASK) and translucent ones (BLEND).
+#include "tests/cli/program.hpp"
+
+#include "base/exr.hpp"
+#include "tests/unit/import/gltf_file.hpp"
+#include "tests/unit/textured_lights_support.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A floor of 8 × 8 at y = 0 that a plane of 2 × 2 at y = 5 lights, seen from above through a camera that is beside
+/// the card or pane "Card" of 4 × 4 at y = 2.
+class AlphaSurfaces : public ProgramTest {
+ protected:
+  AlphaSurfaces() {
+    gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // its front down
+    gltf.at("/meshes").push_back(
+        {{"primitives", {{{"attributes", {{"POSITION", 2}}}, {"indices", 3}, {"material", 0}}}}});
+    gltf.at("/meshes").push_back(
+        {{"primitives",
+          {{{"attributes", {{"POSITION", 2}, {"TEXCOORD_0", gltf.add_floats("VEC2", {0, 1, 1, 1, 0, 0, 1, 0})}}},
+            {"indices", 3},
+            {"material", 2}}}}});
+    gltf.at("/nodes/0") = {{"name", "Floor"}, {"mesh", 2}, {"scale", {4, 1, 4}}};
+    gltf.at("/nodes").push_back({{"name", "Card"}, {"mesh", 3}, {"translation", {0, 2, 0}}, {"scale", {2, 1, 2}}});
+    gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
+    gltf.at("/materials/0/pbrMetallicRoughness/baseColorFactor") = {0.5, 0.5, 0.5, 1};
+    gltf.at("/materials").push_back({{"name", "Leaf"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+    look_from_under_the_card();
+  }
+  /// Straight down from between floor and card, so that the picture is the floor beneath it.
+  void look_from_under_the_card() {
+    gltf.at("/nodes/2") = {
+        {"name", "Camera"}, {"camera", 0}, {"translation", {0, 1.5, 0}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}};
+  }
+  void look_from_above() { gltf.at("/nodes/2")["translation"] = {0, 4, 0}; }
+  void translucent(double alpha) {
+    gltf.at("/materials/2")["alphaMode"] = "BLEND";
+    gltf.at("/materials/2/pbrMetallicRoughness")["baseColorFactor"] = {0.25, 0.25, 0.25, alpha};
+  }
+  /// Opaque where x > 0.
+  void half_a_card() {
+    const auto png = png_file(2, 1, 8, 6, {tests::bytes_of({255, 255, 255, 0, 255, 255, 255, 255})});
+    gltf.document["images"] = {{{"mimeType", "image/png"}, {"bufferView", gltf.add_view(png)}}};
+    gltf.document["textures"] = {{{"source", 0}}};
+    gltf.at("/materials/2")["alphaMode"] = "MASK";
+    gltf.at("/materials/2/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
+  }
+  Outcome render(const std::vector<std::string>& more = {}, const std::string& out = "out.exr") {
+    write("scene.glb", gltf.glb());
+    std::vector<std::string> arguments = {"render", path("scene.glb"), "-o", path(out), "--size", "33x21"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] ExrFile picture(const std::string& name = "out.exr") const { return read_exr(path(name)); }
+
+  test::Gltf gltf;
+};
+
+TEST_F(AlphaSurfaces, PanesDimLightAndShadow) {
+  gltf.at("/scenes/0/nodes") = {0, 1, 2};
+  ASSERT_EQ(render({"--light-samples", "64"}, "open.exr").code, 0);
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
+  translucent(0.3);
+  const Outcome outcome = render({"--stats", path("stats.json")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("\"Card\""), HasSubstr("256 light samples")));
+  const ExrFile open = picture("open.exr"), dim = picture();
+  for (std::size_t i = 0; i < dim.floats.at("V").size(); ++i) {
+    EXPECT_NEAR(dim.floats.at("V")[i], 0.7f, 1e-6f);
+    EXPECT_EQ(dim.floats.at("A")[i], 1);
+    EXPECT_NEAR(dim.floats.at("R")[i] / open.floats.at("R")[i], 0.7f, 1e-6f) << "the whole light, one factor";
+  }
+  const json stats = json::parse(read("stats.json"));
+  EXPECT_EQ(stats.at("lights").at(0).at("quantity"), "count");
+  EXPECT_EQ(stats.at("counters").at("blendPairs"), 33 * 21 * 256);
+  EXPECT_EQ(stats.at("counters").at("maskPairs"), 0);
+}
+
+/// Seen from above a pane is composited over what it dims: α its own light + (1 − α) the floor's; all else is of the
+/// floor.
+TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
+  look_from_above();
+  gltf.at("/scenes/0/nodes") = {1, 2, 3};
+  ASSERT_EQ(render({"--light-samples", "64"}, "card.exr").code, 0) << "a solid card";
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
+  translucent(0.4);
+  gltf.at("/materials/2/pbrMetallicRoughness/baseColorFactor") = {1, 1, 1, 0.4};
+  ASSERT_EQ(render({"--light-samples", "64", "--method", "raytrace"}).code, 0);
+  ASSERT_EQ(render({"--light-samples", "64"}, "default.exr").code, 0);
+  gltf.at("/nodes/3/translation") = {0, -1, 0};  // below the floor
+  ASSERT_EQ(render({"--light-samples", "64"}, "floor.exr").code, 0);
+  const ExrFile card = picture("card.exr"), floor = picture("floor.exr"), both = picture();
+  for (const char* name : {"Z", "P.Y", "N.Y"}) {
+    EXPECT_EQ(both.floats.at(name), floor.floats.at(name)) << name;
+  }
+  for (std::size_t i = 0; i < both.floats.at("R").size(); ++i) {
+    EXPECT_EQ(both.floats.at("A")[i], 1);
+    EXPECT_NEAR(both.floats.at("V")[i], 0.6f, 1e-6f) << "of the floor";
+    const float expected = 0.4f * card.floats.at("R")[i] + 0.6f * 0.6f * floor.floats.at("R")[i];
+    EXPECT_NEAR(both.floats.at("R")[i], expected, 1e-5f * expected);
+  }
+  EXPECT_EQ(picture("default.exr").floats.at("R"), both.floats.at("R")) << "the same masks, by another method";
+}
+
+/// The half of a card that its texels leave is a rectangle: the shadow is that of one made of triangles.
+TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
+  half_a_card();
+  const std::vector<std::string> samples = {"--light-samples", "256", "--bits", path("mask.bits")};
+  const Outcome outcome = render(samples);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  gltf.at("/materials/2").erase("alphaMode");
+  gltf.at("/materials/2/pbrMetallicRoughness").erase("baseColorTexture");
+  gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {1, 2, 0}}, {"scale", {1, 1, 2}}};
+  ASSERT_EQ(render({"--light-samples", "256", "--bits", path("half.bits")}, "half.exr").code, 0);
+  const auto mask = picture().floats.at("V"), half = picture("half.exr").floats.at("V");
+  std::size_t penumbra = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) penumbra += half[i] > 0 && half[i] < 1 ? 1 : 0;
+  EXPECT_GT(penumbra, mask.size() / 4);
+  // Where the edge passes exactly through a light sample a texel's border and an edge are read each in its own way.
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) different += mask[i] != half[i] ? 1 : 0;
+  EXPECT_LE(different, mask.size() / 100);
+  // Through the hole the floor is seen, and only there.
+  look_from_above();
+  half_a_card();
+  gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {0, 2, 0}}, {"scale", {2, 1, 2}}};
+  ASSERT_EQ(render({"--light-samples", "16"}).code, 0);
+  const ExrFile seen = picture();
+  for (std::size_t x = 0; x < 33; ++x) {
+    if (x == 16) continue;
+    EXPECT_FLOAT_EQ(seen.floats.at("P.Y")[10 * 33 + x], x > 16 ? 2.0f : 0.0f) << x;
+  }
+}
+
+/// Every method whose output is a mask gives the same bits; the others are refused by name.
+TEST_F(AlphaSurfaces, MethodsDoItOrAreRefused) {
+  half_a_card();
+  ASSERT_EQ(render({"--light-samples", "64", "--method", "raytrace", "--bits", path("raytrace.bits")}).code, 0);
+  for (const char* method : {"edge-scatter", "view-sample", "depth-complexity"}) {
+    ASSERT_EQ(render({"--light-samples", "64", "--method", method, "--bits", path("other.bits")}).code, 0) << method;
+    EXPECT_EQ(read("other.bits"), read("raytrace.bits")) << method;
+  }
+  for (const std::vector<std::string>& refused : {std::vector<std::string>{"--method", "exact"},
+                                                  {"--method", "pcss"},
+                                                  {"--method", "soft-volume"},
+                                                  {"--method", "edge-scatter", "--method-option", "rows=exact"}}) {
+    const Outcome outcome = render(refused);
+    EXPECT_EQ(outcome.code, 3) << refused[1];
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("\"Card\""), HasSubstr(refused[1]), HasSubstr("raytrace")));
+  }
+  const Outcome outcome = run({"compare", path("scene.glb"), "-o", path("dir"), "--size", "16x12", "--methods",
+                               "geometry", "--reference-samples", "same", "--light-samples", "64", "--runs", "1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const json metrics = json::parse(read("dir/metrics.json"));
+  EXPECT_THAT(metrics.at("methods").dump(), Not(HasSubstr("soft-volume")));
+  for (const json& method : metrics.at("methods")) EXPECT_EQ(method.at("pairsDiffering"), 0) << method.at("method");
+}
+
+TEST_F(AlphaSurfaces, OrthographicCamerasRender) {
+  gltf.at("/cameras/0") = {{"type", "orthographic"},
+                           {"orthographic", {{"xmag", 3.3}, {"ymag", 2.1}, {"znear", 0}, {"zfar", 9}}}};
+  look_from_above();
+  const Outcome outcome = render({"--light-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const ExrFile seen = picture();
+  for (std::size_t x = 0; x < 33; ++x) {
+    const float at = 0.2f * (static_cast<float>(x) + 0.5f) - 3.3f;
+    EXPECT_NEAR(seen.floats.at("P.X")[10 * 33 + x], at, 1e-5f);
+    if (std::abs(std::abs(at) - 2) < 0.01f) continue;  // on the card's edge
+    EXPECT_FLOAT_EQ(seen.floats.at("Z")[10 * 33 + x], std::abs(at) < 2 ? 2.0f : 4.0f) << "a solid card";
+  }
+  EXPECT_NEAR(seen.matrices.at("worldToNDC")[0][0], 1 / 3.3, 1e-6);
+  const Outcome volume = render({"--method", "soft-volume"});
+  EXPECT_EQ(volume.code, 3);
+  EXPECT_THAT(volume.err, HasSubstr("orthographic"));
+  ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("copy.json")}).code, 0);
+  ASSERT_EQ(run({"convert", path("copy.json"), "-o", path("again.glb")}).code, 0);
+  for (const char* copy : {"copy.json", "again.glb"}) {
+    ASSERT_EQ(run({"render", path(copy), "-o", path("copy.exr"), "--size", "33x21", "--light-samples", "16"}).code, 0);
+    EXPECT_EQ(picture("copy.exr").floats.at("Z"), seen.floats.at("Z")) << copy;
+  }
+}
+
+TEST_F(AlphaSurfaces, InspectListsWhatTheSceneHas) {
+  half_a_card();
+  gltf.animate(3, "translation", {0, 2}, {0, 2, 0, 1, 2, 0});
+  gltf.at("/nodes").push_back({{"name", "Star"}, {"mesh", 4}});
+  gltf.at("/meshes").push_back(json(gltf.at("/meshes/1")));
+  gltf.at("/meshes/4/primitives/0/attributes/POSITION") =
+      gltf.add_floats("VEC3", {-1, 0, 1, 1, 0, 1, -1, 0, -1, 1, 1, -1});  // not flat
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+  write("scene.glb", gltf.glb());
+  const Outcome outcome = run({"inspect", path("scene.glb")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("light     \"Lamp\": a rectangle of 2 × 2"), HasSubstr("its body is \"Lamp\""),
+                    HasSubstr("camera    \"Camera\""), HasSubstr("material  \"Leaf\": picture"),
+                    HasSubstr("holes where alpha is below 0.5"), HasSubstr("animation from 0 s to 2 s")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("'Star' is emissive, but no area light"), HasSubstr("it is not flat")));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("pcss +refused +light passes through \"Card\""));
+  const json scene = json::parse(run({"inspect", path("scene.glb"), "--json", "-"}).out).at("scene");
+  EXPECT_EQ(scene.at("lights").at(0).at("name"), "Lamp");
+  EXPECT_EQ(scene.at("materials").at(2).at("alpha"), "mask");
+  EXPECT_EQ(scene.at("animation").at("last"), 2);
+}
+
+TEST_F(AlphaSurfaces, ConversionSaysWhatItFills) {
+  half_a_card();
+  write("scene.glb", gltf.glb());
+  const Outcome outcome = run({"convert", path("scene.glb"), "-o", path("copy.json")});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("alpha is left out: \"Card\""), HasSubstr("pictures are left out")));
+}
+
+}  // namespace
+}  // namespace penumbra::tests

@@ -1,0 +1,86 @@
+#include "base/jpeg.hpp"
+
+#include "base/error.hpp"
+
+#include <cstdio>  // jpeglib.h takes it for granted
+
+#include <jpeglib.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+namespace penumbra {
+namespace {
+
+/// Columns of red and of what is not, at full quality and without fewer samples of colour.
+std::vector<std::byte> encoded(std::uint32_t width, std::uint32_t height, J_COLOR_SPACE colors) {
+  jpeg_error_mgr errors{};
+  jpeg_compress_struct jpeg{};
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &data, &size);
+  jpeg.image_width = width;
+  jpeg.image_height = height;
+  jpeg.input_components = colors == JCS_GRAYSCALE ? 1 : colors == JCS_CMYK ? 4 : 3;
+  jpeg.in_color_space = colors;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, 100, TRUE);
+  for (int i = 0; i < jpeg.num_components; ++i) jpeg.comp_info[i].h_samp_factor = jpeg.comp_info[i].v_samp_factor = 1;
+  jpeg_start_compress(&jpeg, TRUE);
+  const auto components = static_cast<std::size_t>(jpeg.input_components);
+  std::vector<JSAMPLE> row(components * width);
+  for (std::size_t x = 0; x < width; ++x) {
+    for (std::size_t c = 0; c < components; ++c) row[components * x + c] = c == 0 && x < 8 ? 250 : 20;
+  }
+  JSAMPROW rows = row.data();
+  while (jpeg.next_scanline < jpeg.image_height) jpeg_write_scanlines(&jpeg, &rows, 1);
+  jpeg_finish_compress(&jpeg);
+  jpeg_destroy_compress(&jpeg);
+  const auto* first = reinterpret_cast<const std::byte*>(data);
+  std::vector<std::byte> bytes(first, first + size);
+  std::free(data);
+  return bytes;
+}
+
+std::string refusal(std::span<const std::byte> bytes, std::uint32_t largest = 100) {
+  try {
+    decode_rgba_jpeg(bytes, largest);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Jpeg, DecodesColoursAndGrey) {
+  for (const J_COLOR_SPACE colors : {JCS_RGB, JCS_GRAYSCALE}) {
+    const RgbaImage image = decode_rgba_jpeg(encoded(16, 9, colors), 16);
+    ASSERT_EQ(image.width, 16u);
+    ASSERT_EQ(image.height, 9u);
+    ASSERT_EQ(image.pixels.size(), 144u);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      const bool bright = i % 16 < 8;
+      EXPECT_NEAR(image.pixels[i][0], bright ? 250 : 20, 2) << i;
+      EXPECT_NEAR(image.pixels[i][1], bright && colors == JCS_GRAYSCALE ? 250 : 20, 2) << i;
+      EXPECT_EQ(image.pixels[i][3], 255);
+    }
+  }
+}
+
+TEST(Jpeg, RefusesWhatItCannotDecode) {
+  std::vector<std::byte> bytes = encoded(16, 16, JCS_RGB);
+  EXPECT_TRUE(looks_like_jpeg(bytes));
+  EXPECT_EQ(refusal(bytes, 15), "16x16 pixels; at most 15 a side");
+  EXPECT_NE(refusal(std::span(bytes).first(bytes.size() / 2)).find("damaged"), std::string::npos);
+  EXPECT_NE(refusal(std::span(bytes).first(3)).find("damaged"), std::string::npos);
+  EXPECT_NE(refusal(encoded(8, 8, JCS_CMYK)).find("unusual"), std::string::npos);
+  bytes[0] = std::byte{0};
+  EXPECT_EQ(refusal(bytes), "not a JPEG picture");
+  EXPECT_FALSE(looks_like_jpeg({}));
+}
+
+}  // namespace
+}  // namespace penumbra
