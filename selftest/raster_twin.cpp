@@ -144,7 +144,8 @@ void RasterTwin::find(std::uint32_t x, std::uint32_t y, std::vector<Surface>& su
 
 namespace {
 
-/// Of surfaces of which those count that may be behind `possible`, and surely count that are behind `certain`.
+/// Of surfaces of which those count that may be behind `possible`, and surely count that are behind `certain`; what is
+/// found is behind the former.
 Judged judge(std::span<const Surface> surfaces, double found, double possible, double certain, double nothing) {
   double limit = kInfinity;  // the nearest is no farther
   for (const Surface& s : surfaces) {
@@ -157,7 +158,7 @@ Judged judge(std::span<const Surface> surfaces, double found, double possible, d
   for (const Surface& s : surfaces) {
     if (!(s.high > possible) || s.low > limit) continue;
     result.settled = result.settled && s.sure && s.low > certain;
-    right = right || (found != nothing && found >= s.low && found <= s.high && found <= limit);
+    right = right || (found != nothing && found > possible && found >= s.low && found <= s.high && found <= limit);
     if (s.depth < nearest) {
       nearest = s.depth;
       result.allowed = std::max(s.high - s.depth, s.depth - s.low);
