@@ -1,4 +1,4 @@
-// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode` nothing has one.
+// libjpeg reports errors by longjmp, which may not jump over destructors: in `decode_jpeg` nothing has one.
 #include "base/jpeg.hpp"
 
 #include "base/error.hpp"
@@ -16,7 +16,7 @@
 namespace penumbra {
 namespace {
 
-constexpr std::size_t kChannels = 3;
+constexpr std::size_t kJpegChannels = 3;
 
 /// All that outlives a longjmp.
 struct JpegDecoder {
@@ -35,19 +35,19 @@ struct JpegDecoder {
   RgbaImage image;
 };
 
-void fail(j_common_ptr jpeg) {
+void jpeg_failed(j_common_ptr jpeg) {
   auto& decoder = *static_cast<JpegDecoder*>(jpeg->client_data);
   jpeg->err->format_message(jpeg, decoder.message.data());
   std::longjmp(decoder.escape, 1);
 }
 
 /// Warnings are of damaged data, behind which libjpeg would invent the rest.
-void fail_on_warning(j_common_ptr jpeg, int level) {
-  if (level < 0) fail(jpeg);
+void jpeg_warned(j_common_ptr jpeg, int level) {
+  if (level < 0) jpeg_failed(jpeg);
 }
 
 /// False: `message` says why not, unless the size is the reason.
-bool decode(JpegDecoder& decoder, std::span<const std::byte> bytes) {
+bool decode_jpeg(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   if (setjmp(decoder.escape) != 0) return false;
   jpeg_create_decompress(&decoder.jpeg);
   decoder.jpeg.client_data = &decoder;
@@ -58,13 +58,13 @@ bool decode(JpegDecoder& decoder, std::span<const std::byte> bytes) {
   if (std::max(decoder.width, decoder.height) > decoder.largest_side) return false;
   decoder.jpeg.out_color_space = JCS_RGB;
   jpeg_start_decompress(&decoder.jpeg);
-  decoder.row.resize(kChannels * decoder.width);
+  decoder.row.resize(kJpegChannels * decoder.width);
   decoder.image.pixels.reserve(std::size_t{decoder.width} * decoder.height);
   decoder.rows = decoder.row.data();
   while (decoder.jpeg.output_scanline < decoder.jpeg.output_height) {
     jpeg_read_scanlines(&decoder.jpeg, &decoder.rows, 1);
     for (std::size_t x = 0; x < decoder.width; ++x) {
-      const JSAMPLE* texel = &decoder.row[kChannels * x];
+      const JSAMPLE* texel = &decoder.row[kJpegChannels * x];
       decoder.image.pixels.push_back({texel[0], texel[1], texel[2], 255});
     }
   }
@@ -84,10 +84,10 @@ RgbaImage decode_rgba_jpeg(std::span<const std::byte> bytes, std::uint32_t large
   JpegDecoder decoder;
   decoder.largest_side = largest_side;
   decoder.jpeg.err = jpeg_std_error(&decoder.errors);
-  decoder.errors.error_exit = fail;
-  decoder.errors.emit_message = fail_on_warning;
+  decoder.errors.error_exit = jpeg_failed;
+  decoder.errors.emit_message = jpeg_warned;
   decoder.jpeg.client_data = &decoder;
-  if (!decode(decoder, bytes)) {
+  if (!decode_jpeg(decoder, bytes)) {
     if (decoder.message[0] == '\0')
       throw InputError("{}x{} pixels; at most {} a side", decoder.width, decoder.height, largest_side);
     throw InputError("a damaged or unusual JPEG picture: {}", decoder.message.data());
