@@ -112,7 +112,8 @@ const std::vector<TableRow>& table() {
       on_device<vsm::view_sample_description, vsm::make_view_sample>(vsm::view_sample_on_vectors),
 #endif
 #ifdef PENUMBRA_HAS_VOLUMES
-      on_device<volumes::depth_complexity_description, volumes::make_depth_complexity>(),
+      on_device<volumes::depth_complexity_description, volumes::make_depth_complexity>(
+          volumes::depth_complexity_on_vectors),
       on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
       on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
       on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),

@@ -143,6 +143,19 @@ std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Devi
   return apart;
 }
 
+std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Light& light) {
+  const visibility::PointBounds around = light.sun ? visibility::PointBounds() : visibility::point_bounds(light);
+  std::uint32_t apart = 0;
+  for (std::size_t i = 0; i < closed.parts.size(); ++i) {
+    const Box& box = closed.parts[i].box;
+    bool is_apart = light.sun.has_value();
+    for (int axis = 0; axis < 3; ++axis)
+      is_apart = is_apart || box.upper[axis] < around.lower[axis] || box.lower[axis] > around.upper[axis];
+    if (is_apart) apart |= 1U << (i + 1);
+  }
+  return apart;
+}
+
 std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const SceneFloats& scene,
                                            const visibility::DeviceLight& frame, float scale) {
   std::vector<std::uint8_t> dispensable(scene.triangles.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/lights/device_light.hpp"
 
@@ -39,6 +40,8 @@ ClosedParts find_closed_parts(const visibility::SceneFloats& scene);
 /// Bit k: the box of part k (from 1) is certainly apart from the light's. Only these parts have dispensable triangles.
 /// `frame` is scaled by `scale`.
 std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::DeviceLight& frame, float scale);
+/// Likewise of a sphere, and of a sun, which is apart from all.
+std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Light& light);
 
 /// For each triangle that certainly has the whole light in front, wound by `turn`, and so is dispensable to view
 /// samples outside its part (docs/view-sample.md, "Closed casters"): the part's number, else 0.

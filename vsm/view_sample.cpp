@@ -5,12 +5,12 @@
 #include "base/error.hpp"
 #include "engines/engine_by_light.hpp"
 #include "engines/engine_choice.hpp"
-#include "visibility/lights/device_light.hpp"
 #include "vsm/vectors/view_sample_vectors.hpp"
 #include "vsm/view_sample_lists.hpp"
 #include "vsm/view_sample_vulkan.hpp"
 
 #include <utility>
+#include <vector>
 
 namespace penumbra::vsm {
 namespace {
@@ -28,22 +28,33 @@ constexpr visibility::ChoiceOption kVariant{"variant",
                                             Variant::tree,
                                             "tree: find pairs by a hierarchy of triangles; sintorn: as published, view "
                                             "samples in lists of light pixels, on the "
-                                            "processor, suns too"};
+                                            "processor, all but spheres"};
+
+bool is_planar_light(const visibility::Light& light) {
+  return visibility::is_planar(light.kind);
+}
 
 }  // namespace
 
-const visibility::MethodDescription& view_sample_description() {
-  static const visibility::MethodDescription description{
+visibility::MethodDescription view_sample_description(const visibility::MethodOptions& given) {
+  using visibility::LightKind;
+  visibility::MethodDescription description{
       .name = "view-sample",
       .family = visibility::Family::geometry,
       .paper = "Eisemann and Décoret 2007; Sintorn, Eisemann and Assarsson 2008",
       .output = visibility::Output::mask,
       .exact_for = "every pair of view sample and light sample, for any triangle soup",
-      .lights = {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
-                 visibility::LightKind::polygon},
+      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
+                 LightKind::sun},
       .options = {engines::kEngine.description(), kVariant.description()},
       .verdict_on = view_sample_verdict,
   };
+  const visibility::ParsedOptions options = visibility::parse_options(description, given);
+  const bool published = options[kVariant] == Variant::sintorn,
+             on_device = options[engines::kEngine] == engines::Engine::vulkan;
+  std::erase_if(description.lights, [&](LightKind kind) {
+    return (published && kind == LightKind::sphere) || (on_device && !visibility::is_planar(kind));
+  });
   return description;
 }
 
@@ -54,20 +65,21 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Device& devic
     if (options[engines::kEngine] == engines::Engine::vulkan) {
       throw UsageError("view-sample: variant=sintorn runs on the processor; leave engine=vulkan out");
     }
-    visibility::MethodDescription description = view_sample_description();
-    description.lights.push_back(visibility::LightKind::sun);
-    return make_view_sample_lists(std::move(description));
+    return make_view_sample_lists(view_sample_description(given));
   }
-  if (!engines::runs_on_vectors(device, options[engines::kEngine])) return make_vulkan_view_sample(device);
-  return engines::make_engine_by_light({[] { return make_view_sample_on_vectors(view_sample_description()); },
-                                        [&device] { return make_vulkan_view_sample(device); }, visibility::has_rows});
+  const auto native = [] { return make_view_sample_on_vectors(view_sample_description()); };
+  if (engines::runs_on_vectors(device, options[engines::kEngine])) return native();
+  if (options[engines::kEngine] == engines::Engine::vulkan) return make_vulkan_view_sample(device);
+  return engines::make_engine_by_light(
+      {[&device] { return make_vulkan_view_sample(device); }, native, is_planar_light});
 }
 
 bool view_sample_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
                             const visibility::Light& light) {
   const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
-  return options[kVariant] == Variant::sintorn ||
-         (engines::runs_on_vectors(device, options[engines::kEngine]) && visibility::has_rows(light));
+  const engines::Engine engine = options[engines::kEngine];
+  return options[kVariant] == Variant::sintorn || engines::runs_on_vectors(device, engine) ||
+         (engine == engines::Engine::automatic && !is_planar_light(light));
 }
 
 }  // namespace penumbra::vsm

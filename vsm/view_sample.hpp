@@ -8,9 +8,10 @@
 namespace penumbra::vsm {
 
 /// `view-sample`: triangle-bitmask view-sample mapping for arbitrary receivers (Eisemann-Décoret 2007, Sintorn et al.
-/// 2008) of planar lights, one- and two-sided, any 1 … 4096 light samples, any triangle soup; no bias, no adjacency.
-/// Every bit is the truth of its pair (visibility/pair_truth.hpp): float arithmetic with error bounds on the device,
-/// the few open questions by exact predicates on the host. The device must outlive it.
+/// 2008) of every light (spheres and suns on the processor's vector units alone), one- and two-sided, any 1 … 4096
+/// light samples, any triangle soup; no bias, no adjacency. Every bit is the truth of its pair
+/// (visibility/pair_truth.hpp): float arithmetic with error bounds, the few open questions by exact predicates. The
+/// device must outlive it.
 std::unique_ptr<visibility::Method> make_view_sample(const render::Device& device,
                                                      const visibility::MethodOptions& options);
 
@@ -18,7 +19,7 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Device& devic
 bool view_sample_on_vectors(const render::Device& device, const visibility::MethodOptions& options,
                             const visibility::Light& light);
 
-/// What it is; needs no device.
-const visibility::MethodDescription& view_sample_description();
+/// What it is with these options; needs no device.
+visibility::MethodDescription view_sample_description(const visibility::MethodOptions& options = {});
 
 }  // namespace penumbra::vsm

@@ -30,6 +30,17 @@ class ViewSampleMapping final : public device::MaskMethod {
         resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
         lists_(device, view_sample_description().name) {}
 
+  void prepare_light(const visibility::Light& light) override {
+    if (!visibility::is_planar(light.kind)) {
+      throw InputError(
+          "light \"{}\" is a {}: view-sample with engine=vulkan does planar lights (rectangle, disk, ellipse, "
+          "polygon); "
+          "without engine=vulkan it does every light",
+          light.name, visibility::name_of(light.kind));
+    }
+    MaskMethod::prepare_light(light);
+  }
+
  private:
   device::TriangleNotes note_triangles() override {
     if (scene().triangles.size() >> kPartShift != 0) {

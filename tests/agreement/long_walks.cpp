@@ -59,7 +59,7 @@ TEST_F(LongWalks, OverEdgesEndWithTheSameBits) {
   const LongWalk walk(device(), 250'000);
   const std::uint64_t scattered = expect_same_bits(*tests::kEdgeScatter.make(device(), {}), walk.stage, walk.expected);
   const std::uint64_t counted =
-      expect_same_bits(*volumes::make_depth_complexity(device(), {}), walk.stage, walk.expected);
+      expect_same_bits(*tests::kDepthComplexity.make(device(), {}), walk.stage, walk.expected);
   if (device().info().name.starts_with("llvmpipe")) {
     EXPECT_GT(scattered, 0U) << "this driver's loops are no longer too short: more triangles";
     EXPECT_GT(counted, 0U);
@@ -69,7 +69,7 @@ TEST_F(LongWalks, OverEdgesEndWithTheSameBits) {
 // Turns run out while edges are counted at light samples, not in a hierarchy: pixels go to the host, whole.
 TEST_F(LongWalks, OverLightSamplesEndWithTheSameBits) {
   const LongWalk walk(device(), 4'000, 32);
-  const auto method = volumes::make_depth_complexity(device(), {});
+  const auto method = tests::kDepthComplexity.make(device(), {});
   expect_same_bits(*method, walk.stage, walk.expected);
   if (device().info().name.starts_with("llvmpipe")) {
     EXPECT_GT(method->counters().at("openPairs"), 1024U * walk.stage.samples.size() / 2)

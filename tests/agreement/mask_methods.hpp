@@ -33,7 +33,7 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Device& devic
   return vsm::make_view_sample(device, options);
 }
 inline constexpr MaskMethod kViewSample{"view_sample", make_view_sample<false>, true};
-inline constexpr MaskMethod kNativeViewSample{"native_view_sample", make_view_sample<true>, false};
+inline constexpr MaskMethod kNativeViewSample{"native_view_sample", make_view_sample<true>, true};
 template <bool kNative>
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
                                                       const visibility::MethodOptions& given) {
@@ -47,16 +47,23 @@ inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_
 /// Its path for light samples that form no rows.
 inline constexpr MaskMethod kNativeEdgeScatterPoints{"native_edge_scatter_points", make_edge_scatter<true>, true, true};
 
-inline std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
-                                                                 const visibility::MethodOptions& options) {
+template <bool kNative>
+std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
+                                                          const visibility::MethodOptions& given) {
+  visibility::MethodOptions options = given;
+  options["engine"] = kNative ? "native" : "vulkan";
   return volumes::make_depth_complexity(device, options);
 }
-inline constexpr MaskMethod kDepthComplexity{"depth_complexity", make_depth_complexity, false};
+inline constexpr MaskMethod kDepthComplexity{"depth_complexity", make_depth_complexity<false>, false};
+inline constexpr MaskMethod kNativeDepthComplexity{"native_depth_complexity", make_depth_complexity<true>, true};
 
 /// The two fast methods, each on both engines.
 inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter};
 /// All methods that promise every bit.
-inline constexpr std::array kAllMaskMethods{kViewSample,        kNativeViewSample,        kEdgeScatter,
-                                            kNativeEdgeScatter, kNativeEdgeScatterPoints, kDepthComplexity};
+inline constexpr std::array kAllMaskMethods{kViewSample,           kNativeViewSample,        kEdgeScatter,
+                                            kNativeEdgeScatter,    kNativeEdgeScatterPoints, kDepthComplexity,
+                                            kNativeDepthComplexity};
+/// Those that do spheres and suns.
+inline constexpr std::array kConeMethods{kNativeEdgeScatter, kNativeViewSample, kNativeDepthComplexity};
 
 }  // namespace penumbra::tests

@@ -121,6 +121,31 @@ TEST_F(AgreementOn, LightsOneAfterTheOther) {
   }
 }
 
+// Spheres and suns, wide and thin, above closed meshes and open ones.
+TEST_F(AgreementOn, SpheresAndSuns) {
+  mesh::SphereShape ball;
+  ball.center = {0.3, 0.8, 0.2};
+  ball.radius = 0.5;
+  scenes::Scene round = tests::with_a_floor(mesh::make_sphere(ball));
+  round.name = "ball";
+  for (scenes::Scene scene : {round, scenes::read_scene(PENUMBRA_SCENES "/fusion.json"),
+                              scenes::read_scene(PENUMBRA_SCENES "/self-shadow.json")}) {
+    const glm::dvec3 center = std::get<scenes::Rectangle>(scene.lights[0].shape).center;
+    for (const scenes::LightShape& shape :
+         {scenes::LightShape(scenes::Sphere{center, 0.4}), scenes::LightShape(scenes::Sphere{center, 0.01}),
+          scenes::LightShape(scenes::Sun{-center, 12}), scenes::LightShape(scenes::Sun{-center, 0.5})}) {
+      scene.lights[0].shape = shape;
+      for (const tests::MaskMethod& method : tests::kConeMethods) {
+        const tests::Differences found = tests::BothMethods(device(), method).on(scene, 64);
+        tests::print(fmt::format("{} {} {}", method.name, scene.name, shape.index()), found);
+        EXPECT_GT(found.pairs, 0U);
+        EXPECT_LE(static_cast<double>(found.differing), 2e-4 * static_cast<double>(found.pairs_all));
+        EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
+      }
+    }
+  }
+}
+
 // Triangles smaller than pixels: smaller blocks of pixels have lists of their own.
 TEST_F(AgreementOn, MeshesFinerThanPixels) {
   mesh::KnotShape knot;

@@ -325,9 +325,9 @@ TEST_F(Compare, GroupsLeaveOutWhatCannotDoTheLight) {
   const Outcome all = run(
       {"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "all", "--light-samples", "16"});
   EXPECT_EQ(all.code, 0) << all.err;
-  EXPECT_THAT(all.err, HasSubstr("view-sample is left out"));
+  EXPECT_THAT(all.err, HasSubstr("view-sample-planar is left out"));
   const Outcome named =
-      run({"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "view-sample"});
+      run({"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "view-sample-planar"});
   EXPECT_EQ(named.code, 3);
   EXPECT_THAT(named.err, HasSubstr("bulb"));
 }

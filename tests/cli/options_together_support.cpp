@@ -155,11 +155,19 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
     return (exact && on_device) || (on_device && !in_rows) ||
            (on_device && !std::ranges::all_of(scene.lights, is_rectangle));
   }
-  if (method == "view-sample") return is("engine", "vulkan") && is("variant", "sintorn");
+  const auto is_planar = [](const std::string& kind) { return kind != "sphere" && kind != "sun"; };
+  const bool all_planar = std::ranges::all_of(scene.lights, is_planar);
+  if (method == "view-sample") {
+    const bool on_device = is("engine", "vulkan"), sintorn = is("variant", "sintorn");
+    return (on_device && (sintorn || !all_planar)) || (sintorn && std::ranges::count(scene.lights, "sphere") > 0);
+  }
   if (method == "depth-complexity") {
-    const bool forest = is("variant", "forest");
+    const bool forest = is("variant", "forest"), on_device = forest || is("variant", "laine") || is("crop", "off"),
+               searches = is("search", "kd-tree") || is("search", "hemicube");
     return (forest && (options.contains("crop") || row["light-samples"] == "5x7")) ||
-           (!forest && options.contains("counter-bits"));
+           (!forest && options.contains("counter-bits")) || (on_device && is("engine", "native")) ||
+           ((on_device || is("engine", "vulkan") || searches) && !all_planar) ||
+           (searches && (on_device || is("engine", "vulkan")));
   }
   if (method == "soft-shadow-map") return is("form", "scatter") && is("precision", "fp16");
   return false;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 namespace penumbra::fuzz {
 namespace {
@@ -77,9 +78,10 @@ std::vector<SoupMethods::Variant>& SoupMethods::variants_for(const visibility::L
     }
     variants.push_back({fmt::format("view-sample:engine={}", engine), vsm::make_view_sample(device, options)});
   }
-  for (const char* crop : {"on", "off"}) {
-    variants.push_back(
-        {fmt::format("depth-complexity:crop={}", crop), volumes::make_depth_complexity(device, {{"crop", crop}})});
+  for (const auto& [option, value] :
+       {std::pair("engine", "native"), std::pair("engine", "vulkan"), std::pair("crop", "off")}) {
+    variants.push_back({fmt::format("depth-complexity:{}={}", option, value),
+                        volumes::make_depth_complexity(device, {{option, value}})});
   }
   return variants;
 }

@@ -60,10 +60,11 @@ PairCounts expect_cone_truth(visibility::Method& method, const ConeRun& run) {
 }
 
 using Shape = scenes::LightShape (*)(tests::LatticeSoup&, int);
-class ConeLattices : public tests::DeviceTest, public testing::WithParamInterface<std::tuple<int, Shape>> {
+class ConeLattices : public tests::DeviceTest,
+                     public testing::WithParamInterface<std::tuple<int, Shape, tests::MaskMethod>> {
  protected:
   static PairCounts look(std::uint32_t first, std::uint32_t count) {
-    const auto method = tests::kNativeEdgeScatter.make(device(), {});
+    const auto method = std::get<2>(GetParam()).make(device(), {});
     return expect_cone_truth(*method, {std::get<1>(GetParam()), std::get<0>(GetParam()), first, count});
   }
   static void expect_all_kinds(const PairCounts& counts) {
@@ -77,22 +78,24 @@ class ConeLattices : public tests::DeviceTest, public testing::WithParamInterfac
 TEST_P(ConeLattices, EveryPairIsTheExactDecision) {
   expect_all_kinds(look(0, 60));
 }
-/// 60,000 soups of each kind of light.
+/// 60,000 soups of each kind of light for each method.
 TEST_P(ConeLattices, TensOfThousandsFull) {
   PairCounts counts;
   for (std::uint32_t done = 0; done < 20'000 && !HasFailure(); done += 1000) {
     counts += look(1000 + done, 1000);
-    fmt::print("range {}: {} soups, {} pairs, {} of them by a zero\n", std::get<0>(GetParam()), done + 1000,
-               counts.pairs, counts.zero);
+    fmt::print("{}, range {}: {} soups, {} pairs, {} of them by a zero\n", std::get<2>(GetParam()).name,
+               std::get<0>(GetParam()), done + 1000, counts.pairs, counts.zero);
     std::fflush(stdout);
   }
   expect_all_kinds(counts);
 }
 INSTANTIATE_TEST_SUITE_P(Lights, ConeLattices,
-                         testing::Combine(testing::Values(1, 2, 4), testing::Values(&sphere_of, &sun_of)),
+                         testing::Combine(testing::Values(1, 2, 4), testing::Values(&sphere_of, &sun_of),
+                                          testing::ValuesIn(tests::kConeMethods)),
                          [](const auto& it) {
                            const bool sphere = std::get<1>(it.param) == &sphere_of;
-                           return fmt::format("{}_{}", sphere ? "spheres" : "suns", std::get<0>(it.param));
+                           return fmt::format("{}_{}_{}", std::get<2>(it.param).name, sphere ? "spheres" : "suns",
+                                              std::get<0>(it.param));
                          });
 
 }  // namespace

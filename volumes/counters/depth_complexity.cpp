@@ -7,10 +7,13 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "engines/engine_by_light.hpp"
+#include "engines/engine_choice.hpp"
 #include "render/compute_pass.hpp"
 #include "volumes/counters/count_edges.comp.spv.hpp"
 #include "volumes/counters/depth_complexity.shared.h"
 #include "volumes/counters/packed_counters.hpp"
+#include "volumes/counters/vectors/depth_complexity_vectors.hpp"
 #include "volumes/edges/edge_method.hpp"
 
 #include <fmt/ranges.h>
@@ -18,6 +21,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <vector>
 
 namespace penumbra::volumes {
 namespace {
@@ -33,6 +37,13 @@ constexpr visibility::ChoiceOption kVariant{
     Variant::soup,
     "soup: signed multiplicities, any mesh; laine: silhouettes and one reference ray, closed meshes; forest: "
     "silhouettes of the light's centre and hard volumes, at most 16 light samples"};
+constexpr visibility::ChoiceOption kSearch{
+    "search",
+    {{"hierarchy", Search::hierarchy}, {"kd-tree", Search::kd_tree}, {"hemicube", Search::hemicube}},
+    Search::hierarchy,
+    "soup, on the processor: how edges are found. kd-tree: over receivers (Lehtinen); hemicube: a grid around the "
+    "light "
+    "(Laine); both for planar lights. The masks are the same"};
 constexpr auto kCrop = visibility::flag_option(
     "crop", true,
     "soup, laine: leave out edges that are no silhouettes as seen from a group of view samples; V is the same");
@@ -54,16 +65,36 @@ visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
             "triangles without area, which cast nothing, and where variant=laine is only approximate"}})};
 }
 
+/// What vector units can do: variant=soup, which leaves out edges that are no silhouettes.
+bool can_be_native(const visibility::ParsedOptions& options) {
+  return options[kVariant] == Variant::soup && options[kCrop];
+}
+
 /// Throws UsageError where the chosen variant does not have an option that is given.
 visibility::ParsedOptions parse(const visibility::MethodDescription& description,
                                 const visibility::MethodOptions& given) {
   visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool forest = options[kVariant] == Variant::forest;
+  if (options[engines::kEngine] == engines::Engine::vectors && !can_be_native(options)) {
+    throw UsageError("depth-complexity: variant={} and crop=off run on the Vulkan device: leave engine=native out",
+                     options[kVariant] == Variant::soup ? "laine, forest" : kVariant.name_of(options[kVariant]));
+  }
+  if (options[kSearch] != Search::hierarchy &&
+      (!can_be_native(options) || options[engines::kEngine] == engines::Engine::vulkan)) {
+    throw UsageError(
+        "depth-complexity: search={} is on the processor, of variant=soup with crop=on: leave engine=vulkan, "
+        "variant and crop out",
+        kSearch.name_of(options[kSearch]));
+  }
   if (forest ? options.given(kCrop) : options.given(kCounterBits)) {
     throw UsageError("depth-complexity: variant={} has no option {}", kVariant.name_of(options[kVariant]),
                      forest ? kCrop.name() : kCounterBits.name());
   }
   return options;
+}
+
+bool is_planar_light(const visibility::Light& light) {
+  return visibility::is_planar(light.kind);
 }
 
 class DepthComplexity final : public EdgeMethod, public DepthCounters {
@@ -78,6 +109,17 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
     if (edges().edge_count() <= kMostEdges) return;
     throw ResourceError("depth-complexity counts up to {} edges without overflow; this scene has {}", kMostEdges,
                         edges().edge_count());
+  }
+
+  void prepare_light(const visibility::Light& light) override {
+    if (!is_planar_light(light)) {
+      throw InputError(
+          "light \"{}\" is a {}: depth-complexity on the Vulkan device (engine=vulkan, variant=laine, crop=off) does "
+          "planar "
+          "lights (rectangle, disk, ellipse, polygon); without these options it does every light",
+          light.name, visibility::name_of(light.kind));
+    }
+    EdgeMethod::prepare_light(light);
   }
 
   void evaluate(const visibility::Tile& tile) override {
@@ -248,10 +290,15 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
           "the same for closed meshes whose triangles all have an area, approximate for others; variant=forest: the "
           "same where no occluding triangle's "
           "plane passes through the light, too bright elsewhere",
-      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon},
-      .options = {kVariant.description(), kCrop.description(), kCounterBits.description()},
+      .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
+                 LightKind::sun},
+      .options = {engines::kEngine.description(), kVariant.description(), kSearch.description(), kCrop.description(),
+                  kCounterBits.description()},
       .verdict_on = depth_complexity_verdict};
-  parse(description, options);
+  const visibility::ParsedOptions parsed = parse(description, options);
+  if (parsed[engines::kEngine] == engines::Engine::vulkan || !can_be_native(parsed) ||
+      parsed[kSearch] != Search::hierarchy)
+    std::erase_if(description.lights, [](LightKind kind) { return !visibility::is_planar(kind); });
   return description;
 }
 
@@ -259,7 +306,24 @@ std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& 
                                                           const visibility::MethodOptions& given) {
   const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
   if (options[kVariant] == Variant::forest) return make_packed_counters(device, options[kCounterBits]);
-  return std::make_unique<DepthComplexity>(device, options[kVariant], options[kCrop], false);
+  const auto on_device = [&device, variant = options[kVariant], crops = options[kCrop]] {
+    return std::make_unique<DepthComplexity>(device, variant, crops, false);
+  };
+  const auto native = [search = options[kSearch]] {
+    return make_depth_complexity_on_vectors(depth_complexity_description(), search);
+  };
+  const engines::Engine engine = options[engines::kEngine];
+  if (!can_be_native(options) || engine == engines::Engine::vulkan) return on_device();
+  if (options[kSearch] != Search::hierarchy || engines::runs_on_vectors(device, engine)) return native();
+  return engines::make_engine_by_light({on_device, native, is_planar_light});
+}
+
+bool depth_complexity_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
+                                 const visibility::Light& light) {
+  const visibility::ParsedOptions options = parse(depth_complexity_description(), given);
+  const engines::Engine engine = options[engines::kEngine];
+  return can_be_native(options) && (options[kSearch] != Search::hierarchy || engines::runs_on_vectors(device, engine) ||
+                                    (engine == engines::Engine::automatic && !is_planar_light(light)));
 }
 
 std::unique_ptr<DepthCounters> make_depth_counters(const render::Device& device) {

@@ -10,8 +10,9 @@
 
 namespace penumbra::volumes {
 
-/// `depth-complexity`: an integer counter for each light sample: how many triangles are between p and it. Any planar
-/// light, one- and two-sided, any pattern of light samples. docs/depth-complexity.md.
+/// `depth-complexity`: an integer counter for each light sample: how many triangles are between p and it. Any
+/// light (spheres and suns on the processor's vector units alone), one- and two-sided, any pattern of light samples.
+/// docs/depth-complexity.md.
 ///
 /// variant=soup (default; ours): signed multiplicities and a certified reference; any triangle soup, every bit the
 /// truth of its pair. variant=laine (Laine et al. 2005): silhouettes count ±1 and one reference ray a view sample gives
@@ -22,6 +23,10 @@ namespace penumbra::volumes {
 /// equal, and it is slower (Lehtinen et al. 2006).
 std::unique_ptr<visibility::Method> make_depth_complexity(const render::Device& device,
                                                           const visibility::MethodOptions& options);
+
+/// Are this light's shadows computed on the processor, though the method is given a device?
+bool depth_complexity_on_vectors(const render::Device& device, const visibility::MethodOptions& options,
+                                 const visibility::Light& light);
 
 /// What it is; needs no device.
 /// Throws UsageError for options that are not its own or exclude each other.

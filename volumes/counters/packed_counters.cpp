@@ -95,7 +95,7 @@ bool touches(const std::array<glm::vec3, 3>& corners, const glm::vec3& center, c
 class PackedCounters final : public DepthCounters {
  public:
   PackedCounters(const render::Device& device, std::uint32_t bits)
-      : description_(depth_complexity_description()),
+      : description_(depth_complexity_description({{"variant", "forest"}})),
         device_(&device),
         bits_(bits),
         count_(device, CountVariant::z_fail) {}

@@ -161,7 +161,62 @@ class CarefulTest {
   Open& open_;
 };
 
+/// The light as p sees it: the way to (s, t) is middle + s u + t v, or off that by no more than `off`.
+struct SeenLight {
+  glm::dvec3 middle{0}, u{0}, v{0};
+  double off = 0;
+};
+SeenLight seen_light(const CarefulInput& input) {
+  if (const auto& cones = input.in.grid.cones) {
+    const vectors::LightCone& cone = cones->of[input.at.cone];
+    return {cone.middle, cone.u, cone.v, static_cast<double>(cones->deviation)};
+  }
+  const visibility::DeviceLight& light = input.in.device_light;
+  return {glm::dvec3(light.center) - glm::dvec3(input.at.p), glm::dvec3(light.u), glm::dvec3(light.v),
+          static_cast<double>(light.deviation)};
+}
+
+/// From s and t to cells; floats, which places are, round those.
+CellPlanes::Plane in_cells(const LightGrid& grid, const glm::dvec3& f, double error) {
+  const glm::dvec2 half(grid.half_cells), first(grid.first_cell);
+  const double per_x = f.x / half.x, per_y = f.y / half.y, at = f.z - first.x * per_x - first.y * per_y;
+  const double size = std::abs(f.x) + std::abs(f.y) + std::abs(f.z);
+  if (!(size > 0)) return {.near = 1};
+  const double near = error / size + 64 * static_cast<double>(kRound);
+  return {static_cast<float>(at / size), static_cast<float>(per_x / size), static_cast<float>(per_y / size),
+          static_cast<float>(1.001 * near)};
+}
+
 }  // namespace
+
+CellPlanes planes_in_cells(const CarefulInput& input) {
+  const auto& [middle, u, v, off] = seen_light(input);
+  const Corners corners = corners_of(input);
+  const glm::dvec3 p(input.at.p), pa = glm::dvec3(corners[0]) - p, pb = glm::dvec3(corners[1]) - p,
+                                  pc = glm::dvec3(corners[2]) - p;
+  const glm::dvec3 ab = pb - pa, ac = pc - pa, n = glm::cross(ab, ac);
+  const double reach = size1(middle) + size1(u) + size1(v);
+  const auto plane = [&](const glm::dvec3& normal, double from, double sizes, double lengths) {
+    return in_cells(input.in.grid, {glm::dot(normal, u), glm::dot(normal, v), glm::dot(normal, middle) - from},
+                    off * size1(normal) + kSlack * sizes * lengths);
+  };
+  // The differences of differences are right to the lengths of what they are differences of.
+  const double side = glm::dot(n, pa), far = size1(pa) + size1(pb) + size1(pc), sizes = far * far;
+  const bool at_infinity = input.in.light.sun.has_value();
+  CellPlanes planes{{plane(glm::cross(pa, pb), 0, size1(pa) * size1(pb), reach),
+                     plane(glm::cross(pb, pc), 0, size1(pb) * size1(pc), reach),
+                     plane(glm::cross(pc, pa), 0, size1(pc) * size1(pa), reach),
+                     plane(n, at_infinity ? 0 : side, sizes, at_infinity ? reach : reach + far)}};
+  if (std::abs(side) > kSlack * sizes * far) planes.side = side > 0 ? 1 : -1;
+  return planes;
+}
+
+std::optional<bool> hides(const CarefulInput& input, const glm::vec3& l) {
+  const glm::dvec3 p(input.at.p);
+  const Corners corners = corners_of(input);
+  if (input.in.light.sun) return visibility::ray_certainly_meets(p, glm::dvec3(l), corners);
+  return visibility::certainly_meets(p, glm::dvec3(l) * static_cast<double>(input.in.scale), corners);
+}
 
 void Blocked::reset(std::uint32_t rows, std::uint32_t columns) {
   words_per_row_ = (columns + 63) / 64;

@@ -13,8 +13,8 @@
 #define HWY_TARGET_INCLUDE "vsm/vectors/pairs.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "engines/vectors/hull-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
+#include "vsm/vectors/project-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::vsm::HWY_NAMESPACE {
@@ -23,42 +23,10 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-constexpr std::size_t kGroup = 16;   // view samples that sort out triangles together
-constexpr std::size_t kChunk = 256;  // triangles between two looks whether anything is left to hide
-
-V column(const TriangleTable& table, std::size_t field, std::size_t i) {
-  return hn::Load(D(), table[field] + i);
-}
-
-/// Triangles that the hull may meet.
-M hull_meets(const Hull& hull, const TriangleTable& table, std::size_t i) {
-  std::array<Corners, 3> corners;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    corners[corner] = {column(table, kCornerA + 3 * corner, i), column(table, kCornerA + 3 * corner + 1, i),
-                       column(table, kCornerA + 3 * corner + 2, i)};
-  }
-  return meets(hull, corners);
-}
-
-/// Triangles of the cluster that the group's hull may meet.
-void sort_out(const PairInput& in, std::span<const ClusterSample> group, TriangleTable& near) {
-  const Hull hull = hull_of(in.grid, in.cluster, group);
-  near.count = 0;
-  near.reserve(in.triangles.count);
-  for (std::size_t i = 0; i < in.triangles.count; i += hn::Lanes(D())) {
-    const M kept = hn::And(first_lanes(in.triangles.count - i), hull_meets(hull, in.triangles, i));
-    const std::size_t more = hn::CountTrue(D(), kept);
-    if (more == 0) continue;
-    for (std::size_t field = 0; field < kTriangleFields; ++field) {
-      hn::CompressStore(column(in.triangles, field, i), kept, D(), near[field] + near.count);
-    }
-    near.count += more;
-  }
-}
-
 class SampleTest {
  public:
-  SampleTest(const PairInput& in, PairScratch& scratch, const ClusterSample& at) : in_(in), s_(scratch), at_(at) {}
+  SampleTest(const PairInput& in, PairScratch& scratch, const ClusterSample& at)
+      : in_(in), s_(scratch), at_(at), project_(in, scratch, at) {}
 
   /// Returns whether anything is hidden or open. Stops where all is hidden.
   bool operator()() {
@@ -70,7 +38,7 @@ class SampleTest {
       s_.again.clear();
       s_.asked.clear();
       s_.survivors.count = 0;
-      for (std::size_t i = begin; i < end; i += hn::Lanes(D())) project(i, end);
+      for (std::size_t i = begin; i < end; i += hn::Lanes(D())) project_(i, end);
       std::size_t landed = 0;
       for (std::size_t i = 0; i < s_.survivors.count; i += hn::Lanes(D())) landed = convert(i, landed);
       for (std::size_t i = 0; i < landed; ++i) {
@@ -93,71 +61,6 @@ class SampleTest {
 
  private:
   static constexpr std::uint32_t kRowUnit = 4096;  // more than columns
-
-  void look_again(M which, V triangle) {
-    HWY_ALIGN std::uint32_t numbers[hn::MaxLanes(D())];
-    const hn::RebindToUnsigned<D> words;
-    hn::Store(hn::BitCast(words, triangle), words, numbers);
-    for_each_lane(which, [&](std::size_t lane) { s_.again.push_back(numbers[lane]); });
-  }
-
-  /// Where triangles appear on the light; keeps those that may reach a row.
-  void project(std::size_t i, std::size_t end) {
-    const D d;
-    const LightGrid& grid = in_.grid;
-    const TriangleTable& near = s_.near;
-    const M live = hn::AndNot(same_bits(column(near, kTrianglePlane, i), bits(at_.plane)), first_lanes(end - i));
-    const V wa = hn::Sub(set(at_.in_grid.z), column(near, kCornerA + 2, i)),
-            wb = hn::Sub(set(at_.in_grid.z), column(near, kCornerB + 2, i)),
-            wc = hn::Sub(set(at_.in_grid.z), column(near, kCornerC + 2, i));
-    const V least = hn::Min(wa, hn::Min(wb, wc)), most = hn::Max(wa, hn::Max(wb, wc));
-    const V far = hn::Add(column(near, kTriangleFar, i), set(at_.far));
-    const V triangle = hn::BitCast(d, numbers_from(i));
-    const M clear = hn::And(hn::Gt(least, hn::Mul(set(256 * kRound), far)),
-                            hn::Lt(most, set(at_.height - 128 * kRound * grid.reach - grid.deviation)));
-    const M unclear = hn::AndNot(clear, live);
-    if (!hn::AllFalse(d, unclear)) {
-      if (!has_hull_) hull_ = hull_of(in_.grid, in_.cluster, std::span(&at_, 1));
-      has_hull_ = true;
-      look_again(hn::And(unclear, hull_meets(hull_, near, i)), triangle);
-    }
-    const V height = set(at_.height), foot_x = set(at_.foot.x), foot_y = set(at_.foot.y);
-    const V qa = hn::Div(height, wa), qb = hn::Div(height, wb), qc = hn::Div(height, wc);
-    const auto x_of = [&](std::size_t corner, V q) {
-      return hn::MulAdd(q, hn::Sub(column(near, corner, i), set(at_.in_grid.x)), foot_x);
-    };
-    const auto y_of = [&](std::size_t corner, V q) {
-      return hn::MulAdd(q, hn::Sub(column(near, corner + 1, i), set(at_.in_grid.y)), foot_y);
-    };
-    const V ax = x_of(kCornerA, qa), bx = x_of(kCornerB, qb), cx = x_of(kCornerC, qc);
-    const V ay = y_of(kCornerA, qa), by = y_of(kCornerB, qb), cy = y_of(kCornerC, qc);
-    const V low_x = hn::Min(ax, hn::Min(bx, cx)), high_x = hn::Max(ax, hn::Max(bx, cx));
-    const V low_y = hn::Min(ay, hn::Min(by, cy)), high_y = hn::Max(ay, hn::Max(by, cy));
-    // (bound X)
-    const V from_foot = hn::Add(hn::Max(hn::Sub(high_x, foot_x), hn::Sub(foot_x, low_x)),
-                                hn::Max(hn::Sub(high_y, foot_y), hn::Sub(foot_y, low_y)));
-    const V way = hn::Mul(far, hn::Mul(hn::Max(qa, hn::Max(qb, qc)), set(1.0001F / at_.height)));
-    const V error = hn::MulAdd(way, hn::MulAdd(set(at_.on_grid.per_reach), from_foot, set(at_.on_grid.per_way)),
-                               hn::MulAdd(set(at_.on_grid.per_foot), from_foot, set(at_.on_grid.fixed)));
-    const V last_row = set(static_cast<float>(grid.rows) - 1), right = set(static_cast<float>(grid.columns) - 0.5F);
-    const V first = hn::Max(hn::Ceil(hn::Sub(low_y, error)), set(0)),
-            last = hn::Min(hn::Floor(hn::Add(high_y, error)), last_row);
-    const M before = hn::And(hn::Le(hn::Sub(low_x, error), right), hn::Ge(hn::Add(high_x, error), set(-0.5F)));
-    const M kept = hn::And(hn::And(live, clear), hn::And(before, hn::Le(first, last)));
-    const std::size_t more = hn::CountTrue(d, kept);
-    if (more == 0) return;
-    SurvivorTable& out = s_.survivors;
-    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
-    store(kX0, ax);
-    store(kY0, ay);
-    store(kX1, bx);
-    store(kY1, by);
-    store(kX2, cx);
-    store(kY2, cy);
-    store(kError, error);
-    store(kTriangle, triangle);
-    out.count += more;
-  }
 
   struct LightPoints {
     V x, y;
@@ -245,15 +148,14 @@ class SampleTest {
       row = hn::Add(row, set(1));
     }
     open = hn::And(open, used);
-    if (!hn::AllFalse(d, open)) look_again(open, column_of(kTriangle));
+    if (!hn::AllFalse(d, open)) project_.look_again(open, column_of(kTriangle));
     return landed;
   }
 
   const PairInput& in_;
   PairScratch& s_;
   const ClusterSample& at_;
-  Hull hull_;
-  bool has_hull_ = false;
+  Projection project_;
 };
 
 /// Rows of columns to the mask's columns of rows.
@@ -309,11 +211,7 @@ void test_pairs_here(const PairInput& in, PairScratch& scratch, OpenJudge& judge
     scratch.to.resize(4096);
     scratch.row_and_from.resize(4096);
   }
-  for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
-    const auto group = in.samples.subspan(first, std::min(kGroup, in.samples.size() - first));
-    sort_out(in, group, scratch.near);
-    for (std::size_t i = 0; i < group.size(); ++i) test_sample(in, scratch, group[i], judge, masks[first + i]);
-  }
+  for_each_in_groups(in, scratch, [&](std::size_t i) { test_sample(in, scratch, in.samples[i], judge, masks[i]); });
 }
 
 }  // namespace

@@ -10,8 +10,10 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +28,7 @@ using vectors::Hull;
 using vectors::kRound;
 using vectors::kWide;
 using vectors::LightGrid;
+using vectors::LightTiles;
 using vectors::Open;
 using vectors::OpenJudge;
 using vectors::SampleMask;
@@ -50,6 +53,7 @@ struct PairInput {
   const Cluster& cluster;
   std::span<const ClusterSample> samples;
   const TriangleTable& triangles;
+  std::span<const glm::vec3> p;  ///< of the picture's view samples, as stored
 };
 
 /// Which light samples are hidden from one view sample: rows of columns.
@@ -86,7 +90,12 @@ struct PairScratch {
   struct Asked {
     std::uint32_t triangle, row, column;
   };
-  std::vector<Asked> asked;                    // light samples within the error of an edge of a triangle
+  std::vector<Asked> asked;  // light samples within the error of an edge of a triangle
+  struct AskedSlot {
+    std::uint32_t triangle, slot;
+  };
+  std::vector<AskedSlot> asked_slots;          // likewise, of those in tiles
+  std::vector<glm::vec3> light_points;         // of a sphere, as one view sample sees it; empty: not computed
   std::vector<std::int32_t> row_and_from, to;  // spans of columns
   Blocked blocked;
   Open open;
@@ -104,7 +113,24 @@ void test_carefully(const CarefulInput& input, Blocked& blocked, Open& open);
 /// One light sample of it.
 void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open);
 
-/// `masks`: one for each view sample; of its bits all or none are written.
+/// Does the triangle hide light sample l, as stored (of a sphere: as this view sample sees it)? Nothing: double is not
+/// certain.
+std::optional<bool> hides(const CarefulInput& input, const glm::vec3& l);
+
+/// One triangle for one view sample and light samples in tiles, in double, wherever it is: four functions of a place in
+/// cells, at + x per_x + y per_y, each divided by what it is at most and known to ±near. It hides the light samples
+/// where all four have the sign of p's side of its plane, 1 or −1; 0: within rounding, either.
+struct CellPlanes {
+  struct Plane {
+    float at = 0, per_x = 0, per_y = 0, near = 0;
+  };
+  std::array<Plane, 4> planes;
+  int side = 0;
+};
+CellPlanes planes_in_cells(const CarefulInput& input);
+
+/// `masks`: one for each view sample; of its bits all or none are written. test_tiles: light samples in tiles.
+void test_tiles(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 void test_pairs(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 
 }  // namespace penumbra::vsm

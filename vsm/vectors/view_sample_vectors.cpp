@@ -55,7 +55,8 @@ class VectorViewSample final : public vectors::MaskMethod {
 
  private:
   bool prepare_casters() override {
-    apart_ = parts_apart_from(closed_, device_light(), scale());
+    apart_ = visibility::is_planar(light().kind) ? parts_apart_from(closed_, device_light(), scale())
+                                                 : parts_apart_from(closed_, light());
     return false;
   }
 
@@ -84,8 +85,13 @@ class VectorViewSample final : public vectors::MaskMethod {
     }
     scratch.samples.clear();
     for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
-    test_pairs({grid, light(), device_light(), scale(), triangles(), cluster, scratch.samples, scratch.triangles},
-               scratch, judge, masks);
+    const PairInput input{grid,    light(),         device_light(),    scale(),    triangles(),
+                          cluster, scratch.samples, scratch.triangles, samples().p};
+    if (grid.tiles) {
+      test_tiles(input, scratch, judge, masks);
+    } else {
+      test_pairs(input, scratch, judge, masks);
+    }
   }
 
   /// Bit k: all these view samples are outside of part k, which does not carry them. On the floats as they are: exact.

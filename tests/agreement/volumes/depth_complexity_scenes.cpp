@@ -21,8 +21,15 @@ class DepthScenesBase : public tests::DeviceTest, public testing::WithParamInter
     render::VisibilityBuffer view(device(), floats);
     const visibility::ViewSamples samples =
         view.render(visibility::make_camera(scene.cameras[0], floats.origin, size, size));
-    const auto soup = volumes::make_depth_complexity(device(), {});
+    const auto soup = volumes::make_depth_complexity(device(), {{"engine", "vulkan"}});
     const tests::Masks masks = tests::run(*soup, floats, light, samples);
+    const auto native = volumes::make_depth_complexity(device(), {{"engine", "native"}});
+    EXPECT_EQ(tests::differing_bits(masks, tests::run(*native, floats, light, samples)), 0U);
+    for (const char* search : {"kd-tree", "hemicube"}) {
+      const auto searched = volumes::make_depth_complexity(device(), {{"search", search}});
+      EXPECT_EQ(tests::differing_bits(masks, tests::run(*searched, floats, light, samples)), 0U) << search;
+      EXPECT_GT(searched->counters()["candidateEdges"], 0U) << search;
+    }
     const auto mapped = tests::map_view_samples(device(), floats, light, samples);
     EXPECT_EQ(tests::differing_bits(masks, mapped), 0U);
     EXPECT_EQ(masks.visibility, mapped.visibility);

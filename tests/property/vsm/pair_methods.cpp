@@ -29,10 +29,9 @@ struct PairMethodUnderTest {
 };
 /// view-sample with variant=sintorn, which needs no device.
 std::unique_ptr<visibility::Method> make_sintorn(const visibility::MethodOptions& options) {
-  visibility::MethodDescription description = vsm::view_sample_description();
-  visibility::parse_options(description, options);
-  description.lights.push_back(visibility::LightKind::sun);
-  return vsm::make_view_sample_lists(std::move(description));
+  visibility::MethodOptions all = options;
+  all["variant"] = "sintorn";
+  return vsm::make_view_sample_lists(vsm::view_sample_description(all));
 }
 /// Every plane is a receiver of its own, and the map is coarse, so that much is left open.
 std::unique_ptr<visibility::Method> make_planes(const visibility::MethodOptions& options) {

@@ -1,19 +1,14 @@
-// Edge scatter on a processor: its lists and what becomes of them. The rest is vectors::MaskMethod.
+// Edge scatter on a processor: what becomes of its lists (VectorEdges).
 
 #include "volumes/scatter/vectors/edge_scatter_vectors.hpp"
 
 #include "areas/form_factor_sum.hpp"
 #include "base/assert.hpp"
-#include "engines/vectors/horizon.hpp"
-#include "engines/vectors/mask_method.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
-#include "volumes/edges/edge_sides.hpp"
-#include "volumes/scatter/vectors/cut.hpp"
+#include "volumes/scatter/vectors/vector_edges.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
-#include "volumes/scatter/vectors/scatter.hpp"
 
 #include <glm/common.hpp>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <optional>
 #include <utility>
@@ -21,124 +16,13 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Leaves of triangles between a region and the light's corner from which on neighbouring pixels see other edges.
-constexpr std::size_t kDense = 1024;
-constexpr std::size_t kGroup = 16, kDenseGroup = 8;  // view samples
-
-/// Finds each cluster's edges and triangles.
-class VectorEdges : public vectors::MaskMethod {
- public:
-  /// `exact_area`: not of light samples but of the light.
-  VectorEdges(visibility::MethodDescription given, bool exact_area)
-      : MaskMethod(std::move(given), "scatter edges"), exact_area_(exact_area), sides_(description().name) {}
-
-  void prepare_mesh(const visibility::SceneFloats& scene) override {
-    MaskMethod::prepare_mesh(scene);
-    sides_.prepare_mesh(scene);
-    whole_ = CutEdges(wide_edges(sides_.records(std::nullopt), scale()));
-    without_body_.reset();
-    front_ = &whole_;
-  }
-  [[nodiscard]] std::uint64_t memory_bytes() const override {
-    return MaskMethod::memory_bytes() + bytes_of(whole_.tree()) + bytes_of(back_.tree()) +
-           (without_body_ ? bytes_of(without_body_->edges.tree()) : 0);
-  }
-
- private:
-  bool prepare_casters() override {
-    LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
-    front_->restore();
-    if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
-      without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
-    }
-    front_ = edges.has_body ? &without_body_->edges : &whole_;
-    back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
-    const std::int32_t without = edges.has_body ? light().index : -1;
-    for (auto* side : {&edges.front, &edges.back}) {
-      if (*side) (*side)->window = window_;
-    }
-    if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_});
-    if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_});
-    touch_ = exact_area_ || !visibility::is_planar(light().kind) ? visibility::LightTouch()
-                                                                 : visibility::find_touch(scene(), tree(), light());
-    return edges.front.has_value() && !exact_area_;  // whose edges stay whole
-  }
-  vectors::Blocks begin_region(const LightGrid& grid, const Cluster& all) override {
-    Scratch& scratch = scratch_.local();
-    find_edge_roots({grid, edges_of(grid), all}, scratch.edges, scratch.edge_roots);
-    find_triangle_roots({grid, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
-    scratch.dense =
-        count_leaves({grid, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
-    scratch.dense_regions += scratch.dense ? 1 : 0;
-    return scratch.dense ? vectors::Blocks::small : vectors::Blocks::usual;
-  }
-  void do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
-                  std::span<SampleMask> masks) final {
-    Scratch& scratch = scratch_.local();
-    if (scratch.edge_roots.empty() && scratch.triangle_roots.empty())
-      return do_unoccluded(grid, view_samples, judge, masks);
-    const Cluster cluster = make_cluster(grid, view_samples);
-    find_triangles({grid, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
-                   scratch.triangles);
-    find_edges({grid, edges_of(grid), cluster}, scratch.edge_roots, scratch.stack, scratch.edges);
-    scratch.listed += scratch.edges.count;
-    if (scratch.edges.count + scratch.triangles.count == 0) return do_unoccluded(grid, view_samples, judge, masks);
-    scratch.samples.clear();
-    for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
-    do_occluded({grid, touch_, edges_of(grid), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
-                 scratch.dense ? kDenseGroup : kGroup, exact_area_, cut_edges(grid).ends(), front_->plane_of_light()},
-                judge, masks);
-  }
-
-  [[nodiscard]] const CutEdges& cut_edges(const LightGrid& grid) const {
-    return grid.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
-  }
-  [[nodiscard]] const WideEdgeTree& edges_of(const LightGrid& grid) const { return cut_edges(grid).tree(); }
-  /// View samples with nothing between them and the light.
-  virtual void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
-                             std::span<SampleMask> masks) = 0;
-  virtual void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) = 0;
-
- protected:
-  void count(std::map<std::string, std::uint64_t>& counters) override {
-    if (!touch_.samples.empty()) counters["touchedSamples"] = touch_.samples.size();
-    for (Scratch& scratch : scratch_) {
-      counters["listedEdges"] += std::exchange(scratch.listed, 0);
-      counters["denseRegions"] += std::exchange(scratch.dense_regions, 0);
-    }
-  }
-
-  bool exact_area_;
-  LightWindow window_;  // of the light that is being prepared
-  visibility::LightTouch touch_;
-  EdgeSides sides_;
-  CutEdges whole_;
-  struct WithoutBody {
-    std::int32_t light;
-    CutEdges edges;
-  };
-  std::optional<WithoutBody> without_body_;  // what casts shadow of the last light with a body
-  CutEdges* front_ = &whole_;                // one of these
-  CutEdges back_;                            // a copy, where the light's plane cuts and it emits to both sides
-
- protected:
-  tbb::enumerable_thread_specific<Scratch> scratch_;
-};
-
 /// Light samples.
 class VectorEdgeScatter final : public VectorEdges {
  public:
-  explicit VectorEdgeScatter(visibility::MethodDescription given) : VectorEdges(std::move(given), false) {}
+  explicit VectorEdgeScatter(visibility::MethodDescription given)
+      : VectorEdges(std::move(given), "scatter edges", false) {}
 
  private:
-  void do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
-                     std::span<SampleMask> masks) override {
-    Open& open = scratch_.local().open;
-    for (std::size_t i = 0; i < view_samples.size(); ++i) {
-      reset_open(grid, touch_, view_samples[i], open);
-      see_all(grid, view_samples[i], open, judge, masks[i]);
-    }
-  }
   void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
     scatter(input, scratch_.local(), judge, masks);
   }
@@ -147,7 +31,7 @@ class VectorEdgeScatter final : public VectorEdges {
 /// rows=exact: shares of the light, and their form factors on request.
 class VectorEdgeRows final : public VectorEdges {
  public:
-  explicit VectorEdgeRows(visibility::MethodDescription given) : VectorEdges(std::move(given), true) {}
+  explicit VectorEdgeRows(visibility::MethodDescription given) : VectorEdges(std::move(given), "scatter edges", true) {}
 
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     VectorEdges::prepare_mesh(scene);

@@ -18,6 +18,7 @@
 
 #include "engines/vectors/vectors-inl.hpp"
 #include "volumes/scatter/vectors/projection-inl.hpp"
+#include "volumes/scatter/vectors/special-inl.hpp"
 #include "volumes/scatter/vectors/upward-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,40 +46,13 @@ class PointScatter {
   /// Whether the depth may change anywhere on the light, or something is open.
   bool operator()(const ClusterSample& at) {
     at_ = &at;
-    const auto special = [&](const SpecialEdges& edges) { precisely(edges); };
+    const auto special = [&](const SpecialEdges& edges) { place_special(in_, s_, at, edges, judge_); };
     Projection{in_, at, s_.lists, s_.crossing}(special);
     for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) add(i);
     return s_.crossing.count > 0 || s_.open.any();
   }
 
  private:
-  /// Edges of the group that are not for vectors: placed by themselves, they join the others.
-  void precisely(const SpecialEdges& edges) {
-    HWY_ALIGN float k[hn::MaxLanes(D())];
-    std::uint8_t open[8] = {};
-    hn::Store(edges.multiplicity.k, D(), k);
-    hn::StoreMaskBits(D(), edges.multiplicity.open, open);
-    for_each_lane(edges.which, [&](std::size_t lane) {
-      const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
-      const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
-      const std::optional<float> sure =
-          is_open ? exact_multiplicity(in_.edges, edge, *at_, judge_) : std::optional(k[lane]);
-      if (!sure) s_.open.pixel = true;
-      if (!sure) return;
-      const auto placed = place_edge({in_, *at_, edge, *sure, edges.settled, std::nullopt}, s_.open);
-      if (!placed) return;
-      CrossingTable& out = s_.crossing;
-      out[kX0][out.count] = placed->a().x;
-      out[kY0][out.count] = placed->a().y;
-      out[kX1][out.count] = placed->b().x;
-      out[kY1][out.count] = placed->b().y;
-      out[kK][out.count] = *sure;
-      out[kError][out.count] = std::max(placed->error_near, placed->error_far);
-      out[kEdge][out.count] = std::bit_cast<float>(edges.settled ? edge : edge | kUnsettled);
-      ++out.count;
-    });
-  }
-
   void add(std::size_t first) {
     UpwardEdges edges;
     const M beside = turn_upward(in_.grid, s_.crossing, first, edges);

@@ -1,0 +1,53 @@
+// Edge scatter on a processor: a group's edges that are not for vectors, where light samples form no rows. Inside
+// volumes/ only.
+
+#if defined(PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP
+#undef PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP
+#else
+#define PENUMBRA_VOLUMES_VECTORS_SPECIAL_INL_HPP
+#endif
+
+#include "volumes/scatter/vectors/precise.hpp"
+#include "volumes/scatter/vectors/projection-inl.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+/// Placed by themselves, they join the others in the table of crossings.
+[[maybe_unused]] void place_special(const ScatterInput& in, Scratch& s, const ClusterSample& at,
+                                    const SpecialEdges& edges, OpenJudge& judge) {
+  HWY_ALIGN float k[hn::MaxLanes(D())];
+  std::uint8_t open[8] = {};
+  hn::Store(edges.multiplicity.k, D(), k);
+  hn::StoreMaskBits(D(), edges.multiplicity.open, open);
+  for_each_lane(edges.which, [&](std::size_t lane) {
+    const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
+    const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
+    const std::optional<float> sure = is_open ? exact_multiplicity(in.edges, edge, at, judge) : std::optional(k[lane]);
+    if (!sure) s.open.pixel = true;
+    if (!sure) return;
+    const auto placed = place_edge({in, at, edge, *sure, edges.settled, std::nullopt}, s.open);
+    if (!placed) return;
+    CrossingTable& out = s.crossing;
+    out[kX0][out.count] = placed->a().x;
+    out[kY0][out.count] = placed->a().y;
+    out[kX1][out.count] = placed->b().x;
+    out[kY1][out.count] = placed->b().y;
+    out[kK][out.count] = *sure;
+    out[kError][out.count] = std::max(placed->error_near, placed->error_far);
+    out[kEdge][out.count] = std::bit_cast<float>(edges.settled ? edge : edge | kUnsettled);
+    ++out.count;
+  });
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // once a target

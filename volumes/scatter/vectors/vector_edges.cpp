@@ -1,0 +1,98 @@
+#include "volumes/scatter/vectors/vector_edges.hpp"
+
+#include "engines/vectors/horizon.hpp"
+
+#include <utility>
+
+namespace penumbra::volumes {
+namespace {
+
+/// Leaves of triangles between a region and the light's corner from which on neighbouring pixels see other edges.
+constexpr std::size_t kDense = 1024;
+constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples
+
+}  // namespace
+
+void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
+  MaskMethod::prepare_mesh(scene);
+  sides_.prepare_mesh(scene);
+  whole_ = CutEdges(wide_edges(sides_.records(std::nullopt), scale()));
+  without_body_.reset();
+  front_ = &whole_;
+}
+
+std::uint64_t VectorEdges::memory_bytes() const {
+  return MaskMethod::memory_bytes() + bytes_of(whole_.tree()) + bytes_of(back_.tree()) +
+         (without_body_ ? bytes_of(without_body_->edges.tree()) : 0);
+}
+
+bool VectorEdges::prepare_casters() {
+  LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
+  front_->restore();
+  if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
+    without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
+  }
+  front_ = edges.has_body ? &without_body_->edges : &whole_;
+  back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
+  const std::int32_t without = edges.has_body ? light().index : -1;
+  for (auto* side : {&edges.front, &edges.back}) {
+    if (*side) (*side)->window = window_;
+  }
+  if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_});
+  if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_});
+  touch_ = exact_area_ || !visibility::is_planar(light().kind) ? visibility::LightTouch()
+                                                               : visibility::find_touch(scene(), tree(), light());
+  return edges.front.has_value() && !exact_area_;  // whose edges stay whole
+}
+
+vectors::Blocks VectorEdges::begin_region(const LightGrid& grid, const Cluster& all) {
+  Scratch& scratch = scratch_.local();
+  find_edge_roots({grid, edges_of(grid), all}, scratch.edges, scratch.edge_roots);
+  find_triangle_roots({grid, triangles(), all, all.corner}, scratch.triangles, scratch.triangle_roots);
+  scratch.dense =
+      count_leaves({grid, triangles(), all, all.corner}, scratch.triangle_roots, scratch.stack, kDense) == kDense;
+  scratch.dense_regions += scratch.dense ? 1 : 0;
+  return scratch.dense ? vectors::Blocks::small : vectors::Blocks::usual;
+}
+
+void VectorEdges::do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                             std::span<SampleMask> masks) {
+  Scratch& scratch = scratch_.local();
+  const std::vector<std::uint32_t>& roots = edge_roots(grid, view_samples);
+  if (roots.empty() && scratch.triangle_roots.empty()) return do_unoccluded(grid, view_samples, judge, masks);
+  const Cluster cluster = make_cluster(grid, view_samples);
+  find_triangles({grid, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
+                 scratch.triangles);
+  find_edges({grid, edges_of(grid), cluster}, roots, scratch.stack, scratch.edges);
+  scratch.listed += scratch.edges.count;
+  if (scratch.edges.count + scratch.triangles.count == 0) return do_unoccluded(grid, view_samples, judge, masks);
+  scratch.samples.clear();
+  for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
+  do_occluded(
+      {grid, touch_, edges_of(grid), triangles(), cluster, scratch.samples, scratch.edges, scratch.triangles,
+       scratch.dense ? kDenseEdgeGroup : kEdgeGroup, exact_area_, cut_edges(grid).ends(), front_->plane_of_light()},
+      judge, masks);
+}
+
+const std::vector<std::uint32_t>& VectorEdges::edge_roots(const LightGrid&, std::span<const GridSample>) {
+  return scratch_.local().edge_roots;
+}
+
+void VectorEdges::do_unoccluded(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
+                                std::span<SampleMask> masks) {
+  Open& open = scratch_.local().open;
+  for (std::size_t i = 0; i < view_samples.size(); ++i) {
+    reset_open(grid, touch_, view_samples[i], open);
+    see_all(grid, view_samples[i], open, judge, masks[i]);
+  }
+}
+
+void VectorEdges::count(std::map<std::string, std::uint64_t>& counters) {
+  if (!touch_.samples.empty()) counters["touchedSamples"] = touch_.samples.size();
+  for (Scratch& scratch : scratch_) {
+    counters["listedEdges"] += std::exchange(scratch.listed, 0);
+    counters["denseRegions"] += std::exchange(scratch.dense_regions, 0);
+  }
+}
+
+}  // namespace penumbra::volumes
