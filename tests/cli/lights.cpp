@@ -9,11 +9,14 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 
 namespace penumbra::tests {
 namespace {
 
+using nlohmann::json;
 using testing::HasSubstr;
 
 constexpr const char* kRectangle = R"("rectangle": {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]})";
@@ -77,6 +80,27 @@ TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
   EXPECT_EQ(render({"--method", "raytrace", "--bits", path("out.bits")}).code, 2);
   EXPECT_EQ(render({"--method", "raytrace", "--sun-angle", "180"}).code, 2);
   EXPECT_EQ(render({"--method", "raytrace", "--lamp-radius", "0"}).code, 2);
+}
+
+/// The shipped scene of seven kinds: each light by itself, its area without being asked for.
+TEST_F(LightKinds, ShippedLightsHaveExactAreas) {
+  const json scene = json::parse(std::ifstream(PENUMBRA_SCENES "/lights.json"));
+  std::vector<std::string> kinds;
+  for (const json& light : scene.at("lights")) {
+    const auto name = light.at("name").get<std::string>();
+    const Outcome outcome = run({"render", PENUMBRA_SCENES "/lights.json", "-o", path("out.exr"), "--size", "24x24",
+                                 "--light", name, "--stats", path("stats.json")});
+    ASSERT_EQ(outcome.code, 0) << name << outcome.err;
+    const json stats = json::parse(read("stats.json"));
+    EXPECT_EQ(stats.at("lights").at(0).at("quantity"), "area") << name;
+    const std::vector<float> v = read_exr(path("out.exr")).floats.at("V");
+    EXPECT_GT(std::ranges::count_if(v, [](float share) { return share > 0 && share < 1; }), 20) << name;
+    for (const char* kind : {"rectangle", "disk", "ellipse", "polygon", "sphere", "sun"}) {
+      if (light.contains(kind)) kinds.emplace_back(light.contains("texture") ? "window" : kind);
+    }
+  }
+  EXPECT_THAT(kinds,
+              testing::UnorderedElementsAre("rectangle", "window", "disk", "ellipse", "polygon", "sphere", "sun"));
 }
 
 TEST_F(LightKinds, BitsOfASunHoldDirections) {
