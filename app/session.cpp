@@ -85,19 +85,18 @@ std::vector<std::vector<std::uint8_t>> casters_of(const std::vector<visibility::
   return all;
 }
 
-/// Lights with the same casters share a scene.
+/// Lights in whose light the same triangles cast shadows share a scene, however their casters are named.
 void link_casters(Session& session) {
   session.linked.clear();
   session.linked_of.clear();
-  std::vector<const std::vector<std::uint8_t>*> known;
   for (const visibility::Light& light : session.lights) {
     std::optional<std::size_t>& own = session.linked_of.emplace_back();
     if (light.unshaded_by.empty()) continue;
-    const auto same = std::ranges::find_if(known, [&](const auto* other) { return *other == light.unshaded_by; });
-    own = static_cast<std::size_t>(same - known.begin());
-    if (same != known.end()) continue;
-    known.push_back(&light.unshaded_by);
-    session.linked.push_back(cast_for(session.floats, light));
+    visibility::SceneFloats linked = cast_for(session.floats, light);
+    if (linked.casts_shadow == session.floats.casts_shadow) continue;
+    const auto same = std::ranges::find(session.linked, linked.casts_shadow, &visibility::SceneFloats::casts_shadow);
+    own = static_cast<std::size_t>(same - session.linked.begin());
+    if (same == session.linked.end()) session.linked.push_back(std::move(linked));
   }
 }
 
