@@ -21,6 +21,7 @@
 #include "volumes/counters/depth_complexity.hpp"
 #include "volumes/scatter/edge_scatter.hpp"
 #include "volumes/soft/hard_volume.hpp"
+#include "volumes/soft/soft_irregular.hpp"
 #include "volumes/soft/soft_volume.hpp"
 #include "volumes/soft/soft_volume_blend.hpp"
 #include "volumes/soft/wedge_ramp.hpp"
@@ -116,6 +117,7 @@ const std::vector<TableRow>& table() {
           volumes::depth_complexity_on_vectors),
       on_device<volumes::soft_volume_description, volumes::make_soft_volume>(),
       on_device<volumes::soft_volume_blend_description, volumes::make_soft_volume_blend>(),
+      on_processor<volumes::make_soft_irregular>(),
       on_device<volumes::wedge_ramp_description, volumes::make_wedge_ramp>(),
       on_device<volumes::hard_volume_description, volumes::make_hard_volume>(),
 #endif

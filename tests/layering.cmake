@@ -29,7 +29,7 @@ set(may_engines engines/device engines/vectors render ${all_visibility} scenes m
 set(may_volumes/wedges ${all_visibility} scenes/formats scenes mesh base)
 set(may_volumes/edges engines/device render ${all_visibility} scenes mesh base)
 set(may_volumes/raster volumes/edges volumes/wedges render ${all_visibility} scenes mesh base)
-set(may_volumes/soft volumes/raster volumes/edges volumes/wedges render ${all_visibility} scenes mesh base)
+set(may_volumes/soft engines/pairs volumes/raster volumes/edges volumes/wedges render ${all_visibility} scenes mesh base)
 set(may_volumes/scatter areas volumes/edges engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
 set(may_volumes/counters volumes/scatter volumes/raster volumes/edges volumes/wedges engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
 set(may_vsm engines engines/device engines/vectors engines/pairs render ${all_visibility} scenes mesh base)

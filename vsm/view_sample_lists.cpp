@@ -9,9 +9,9 @@
 
 #include "vsm/view_sample_lists.hpp"
 
+#include "engines/pairs/far_plane.hpp"
 #include "engines/pairs/list_raster.hpp"
 #include "engines/pairs/pair_method.hpp"
-#include "vsm/far_plane.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -42,7 +42,7 @@ class ViewSampleLists final : public pairs::PairMethod {
     }
   }
   void block(std::span<const std::uint32_t> pixels, std::map<std::string, std::uint64_t>& counters) override;
-  void rasterise(FarPlane& plane, std::map<std::string, std::uint64_t>& counters);
+  void rasterise(pairs::FarPlane& plane, std::map<std::string, std::uint64_t>& counters);
 
   std::vector<std::uint32_t> casters_;
 };
@@ -54,7 +54,7 @@ void ViewSampleLists::block(std::span<const std::uint32_t> pixels, std::map<std:
   std::vector<std::uint32_t> outside;
   for (const double side : {1.0, -1.0}) {
     if (side < 0 && !light().two_sided) continue;
-    FarPlane plane(box, side, reach, pixels, samples().p, kListPerPixel);
+    pairs::FarPlane plane(box, side, reach, pixels, samples().p, kListPerPixel);
     outside.insert(outside.end(), plane.outside().begin(), plane.outside().end());
     if (plane.empty()) continue;
     counters["longestList"] = std::max<std::uint64_t>(counters["longestList"], plane.light_pixels().longest_list());
@@ -73,7 +73,7 @@ void ViewSampleLists::block(std::span<const std::uint32_t> pixels, std::map<std:
   });
 }
 
-void ViewSampleLists::rasterise(FarPlane& plane, std::map<std::string, std::uint64_t>& counters) {
+void ViewSampleLists::rasterise(pairs::FarPlane& plane, std::map<std::string, std::uint64_t>& counters) {
   const pairs::ListCounts counts = pairs::draw<PairCounts>(
       {plane.light_pixels(), plane.heights(), casters_},
       [&](std::uint32_t triangle) { return plane.footprint(scene().corners(triangle)); },

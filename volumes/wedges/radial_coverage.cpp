@@ -180,8 +180,10 @@ std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Proj
   return is_disk ? cut_by_disk(edge) : edge;
 }
 
-RadialCoverage::RadialCoverage(const LightOutline& outline, const glm::dvec2& reference)
-    : outline_(&outline), reference_(reference) {
+RadialCoverage::RadialCoverage(const LightOutline& outline, const glm::dvec2& reference, Arc arc)
+    : outline_(&outline),
+      reference_(reference),
+      by_cosine_(arc == Arc::cosine && outline.corners.empty() && reference == glm::dvec2(0)) {
   double sum = 0;
   for (std::size_t i = 0; i < outline.corners.size(); ++i) {
     up_to_.push_back(sum);
@@ -218,6 +220,10 @@ double RadialCoverage::fan_area(const glm::dvec2& direction) const {
 double RadialCoverage::beyond(const ClippedEdge& edge, int side) const {
   const glm::dvec2 from = edge.from - reference_, to = edge.to - reference_;
   const double turned = cross2(from, to), area = outline_->area;
+  if (by_cosine_) {
+    const double cosine = glm::dot(from, to) / (glm::length(from) * glm::length(to));
+    return (side * std::acos(std::clamp(cosine, -1.0, 1.0)) - turned) / 2;
+  }
   double sector = fan_area(to) - fan_area(from);
   if (glm::dot(from, to) > 0) {
     // Less than a quarter turn: rounding may have turned it over, but it is as small as it seems. No quarter turn

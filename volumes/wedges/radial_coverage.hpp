@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -62,10 +63,16 @@ struct ClippedEdge {
 /// the numbers.
 std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Projected& a, const Projected& b);
 
+/// How the angle of a disk's sector is found.
+enum class Arc : std::uint8_t {
+  tangent,  ///< as the difference of two
+  cosine,   ///< of the angle between its sides, where C is the disk's centre (Johnson et al. 2009); off by up to 2e-8
+};
+
 /// Areas as seen from C, strictly inside L.
 class RadialCoverage {
  public:
-  RadialCoverage(const LightOutline& outline, const glm::dvec2& reference);
+  RadialCoverage(const LightOutline& outline, const glm::dvec2& reference, Arc arc = Arc::tangent);
 
   /// ∫_L [the segment C→l crosses the edge] dl, times the sign of the turn from→to around C: the sector of L over the
   /// edge less the triangle (C, from, to). `side` is that sign as decided exactly: where the sector is near half a
@@ -81,6 +88,7 @@ class RadialCoverage {
 
   const LightOutline* outline_;
   glm::dvec2 reference_;
+  bool by_cosine_;
   std::vector<double> up_to_;  // of the fan triangles (C, corner i, corner i + 1): the area before i
 };
 

@@ -46,11 +46,13 @@ int share_of(const mesh::EdgeGraph& graph, std::uint32_t edge, std::uint32_t tri
 
 }  // namespace
 
-SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light& light, const Casters& casters)
+SoftVisibility::SoftVisibility(const SceneFloats& scene, const visibility::Light& light, const Casters& casters,
+                               Arc arc)
     : scene_(scene),
       light_(light),
       casters_(casters),
       outline_(light_outline(light)),
+      arc_(arc),
       center_(visibility::center_of(light)),
       tree_(visibility::make_triangle_tree(scene)),
       caster_of_(scene.triangles.size(), kNone),
@@ -88,7 +90,8 @@ bool SoftVisibility::counts_for_receiver(std::uint32_t caster, Side seen) const 
 }
 
 /// Those of all view samples, less what the triangles left out here gave to them.
-std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const LitPoint& sample) const {
+std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const LitPoint& sample,
+                                                                           std::span<const Silhouette> of_all) const {
   std::vector<std::uint32_t> left_out;
   const std::uint32_t plane = scene_.plane[sample.carrier];
   for (auto at = std::ranges::lower_bound(by_plane_, std::pair{plane, 0U}); at != by_plane_.end() && at->first == plane;
@@ -106,11 +109,11 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const
       changes.emplace_back(edge, -share_of(casters_.graph, edge, caster, center_facings_[caster]));
     }
   }
-  if (changes.empty()) return silhouettes_;
+  if (changes.empty()) return {of_all.begin(), of_all.end()};
   std::ranges::sort(changes);
   std::vector<Silhouette> both, result;
-  both.reserve(changes.size() + silhouettes_.size());
-  std::ranges::merge(changes, silhouettes_, std::back_inserter(both));
+  both.reserve(changes.size() + of_all.size());
+  std::ranges::merge(changes, of_all, std::back_inserter(both));
   result.reserve(both.size());
   for (const Silhouette& change : both) {
     if (result.empty() || result.back().first != change.first) {
@@ -138,7 +141,7 @@ std::vector<SoftVisibility::Silhouette> SoftVisibility::receiver_silhouettes(con
 }
 
 std::vector<SoftVisibility::Silhouette> SoftVisibility::silhouettes(const LitPoint& sample, Viewer viewer) const {
-  return viewer == Viewer::center ? center_silhouettes(sample) : receiver_silhouettes(sample);
+  return viewer == Viewer::center ? center_silhouettes(sample, silhouettes_) : receiver_silhouettes(sample);
 }
 
 /// The light's centre, or that of what p sees of a sphere.
@@ -177,24 +180,35 @@ glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjec
   return center;  // vertices at every one of them: then no point is better
 }
 
-/// D at a point of the light: the triangles that p→l meets, each with the sign that its edges have been given.
+bool SoftVisibility::counts_at_center(std::uint32_t triangle) const {
+  const std::uint32_t caster = caster_of_[triangle];
+  return caster != kNone && center_facings_[caster] != Side::on;
+}
+
+bool SoftVisibility::may_appear(const LightProjection& from, std::uint32_t edge) const {
+  const auto [a, b] = casters_.graph.edges[edge];
+  return !from.misses(casters_.positions[a], casters_.positions[b], lower_, upper_);
+}
+
+/// Of a triangle that p→l meets the sign that its edges have been given; of others 0.
+std::int32_t SoftVisibility::layer_of(std::uint32_t triangle, const LitPoint& sample, const glm::vec3& l,
+                                      Viewer viewer) const {
+  const std::uint32_t caster = caster_of_[triangle];
+  if (caster == kNone || (viewer == Viewer::center && center_facings_[caster] == Side::on)) return 0;
+  const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
+  if (box_misses(corners, glm::min(sample.p, l), glm::max(sample.p, l)) || is_left_out(caster, sample)) return 0;
+  if (!visibility::segment_meets_triangle(sample.p, l, corners, light_).meets) return 0;
+  // By the casters' own order of corners, which facings speak of: it is the scene's.
+  const Side seen = mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p);
+  if (viewer == Viewer::center) return -sign_of(center_facings_[caster]) * sign_of(seen);
+  return counts_for_receiver(caster, seen) ? 1 : 0;
+}
+
+/// D at a point of the light.
 std::int32_t SoftVisibility::layers_at(const LitPoint& sample, const glm::vec3& l, Viewer viewer) const {
   std::int32_t layers = 0;
-  const glm::vec3 lower = glm::min(sample.p, l), upper = glm::max(sample.p, l);
-  tree_.for_each_near(lower, upper, [&](std::uint32_t triangle) {
-    const std::uint32_t caster = caster_of_[triangle];
-    if (caster == kNone || (viewer == Viewer::center && center_facings_[caster] == Side::on)) return;
-    const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
-    if (box_misses(corners, lower, upper) || is_left_out(caster, sample)) return;
-    if (!visibility::segment_meets_triangle(sample.p, l, corners, light_).meets) return;
-    // By the casters' own order of corners, which facings speak of: it is the scene's.
-    const Side seen = mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p);
-    if (viewer == Viewer::center) {
-      layers -= sign_of(center_facings_[caster]) * sign_of(seen);
-    } else if (counts_for_receiver(caster, seen)) {
-      ++layers;
-    }
-  });
+  tree_.for_each_near(glm::min(sample.p, l), glm::max(sample.p, l),
+                      [&](std::uint32_t triangle) { layers += layer_of(triangle, sample, l, viewer); });
   return layers;
 }
 
@@ -236,6 +250,16 @@ double SoftVisibility::area_beyond(const Candidate& edge, int side, const Radial
 }
 
 LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
+  return sum_of(sample, viewer, silhouettes(sample, viewer), {});
+}
+
+LayerSum SoftVisibility::at_center(const LitPoint& sample, std::span<const Silhouette> edges,
+                                   const CenterCount& count) const {
+  return sum_of(sample, Viewer::center, center_silhouettes(sample, edges), count);
+}
+
+LayerSum SoftVisibility::sum_of(const LitPoint& sample, Viewer viewer, std::span<const Silhouette> edges,
+                                const CenterCount& count) const {
   LayerSum result;
   const bool no_disk = light_.kind == visibility::LightKind::sphere &&  // p is outside by less than double holds
                        visibility::light_frame_from(light_, sample.p).u == glm::dvec3(0);
@@ -243,19 +267,19 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer) const {
   if (!result.in_front) return result;
   const LightProjection projection(light_, sample.p);
   std::vector<Candidate> candidates;
-  for (const auto& [edge, k] : silhouettes(sample, viewer)) {
+  for (const auto& [edge, k] : edges) {
+    if (!may_appear(projection, edge)) continue;
     const auto [a, b] = casters_.graph.edges[edge];
-    const glm::dvec3 &at_a = casters_.positions[a], &at_b = casters_.positions[b];
-    if (projection.misses(at_a, at_b, lower_, upper_)) continue;
-    const auto clipped = clip_to_light(outline_, projection(at_a), projection(at_b));
+    const auto clipped = clip_to_light(outline_, projection(casters_.positions[a]), projection(casters_.positions[b]));
     if (clipped) candidates.push_back({edge, k, *clipped});
   }
 
   result.reference = choose_reference(sample.p, projection, candidates);
   result.reference_at = projection(glm::dvec3(result.reference)).point();
   result.moved = result.reference != center_from(sample.p);
-  result.constant = layers_at(sample, result.reference, viewer);
-  const RadialCoverage coverage(outline_, result.reference_at);
+  result.constant = count.layers && !result.moved ? *count.layers : layers_at(sample, result.reference, viewer);
+  if (count.at_most_one) result.constant = std::min(result.constant, 1);
+  const RadialCoverage coverage(outline_, result.reference_at, arc_);
   // k counts triangles counter-clockwise as the viewer sees them; between c and p, c sees them the other way around.
   const int sense = viewer == Viewer::center ? -projection.turn() : projection.turn();
   for (const Candidate& candidate : candidates) {

@@ -72,9 +72,29 @@ struct LayerSum {
 class SoftVisibility {
  public:
   /// Borrows all three; `casters` are casters_of(scene, light). ResourceError: a texture too large (TextureWeights).
-  SoftVisibility(const visibility::SceneFloats& scene, const visibility::Light& light, const Casters& casters);
+  SoftVisibility(const visibility::SceneFloats& scene, const visibility::Light& light, const Casters& casters,
+                 Arc arc = Arc::tangent);
 
   [[nodiscard]] LayerSum at(const LitPoint& sample, Viewer viewer) const;
+
+  /// Edges of what counts, with their k_e, by number.
+  using Silhouette = std::pair<std::uint32_t, std::int32_t>;
+  /// As at() with Viewer::center, in parts. Edges may be left out that do not appear on the light.
+  struct CenterCount {
+    std::optional<std::int32_t> layers = {};  ///< at the light's centre, if they are counted already
+    bool at_most_one = false;                 ///< however many there are
+  };
+  [[nodiscard]] LayerSum at_center(const LitPoint& sample, std::span<const Silhouette> edges,
+                                   const CenterCount& count) const;
+  /// k_e(c) ≠ 0, the same for all view samples.
+  [[nodiscard]] const std::vector<Silhouette>& silhouettes_of_center() const { return silhouettes_; }
+  [[nodiscard]] bool may_appear(const LightProjection& from, std::uint32_t edge) const;
+  /// Does one of the scene's triangles count as a layer at the light's centre, and what does it add there for a view
+  /// sample?
+  [[nodiscard]] bool counts_at_center(std::uint32_t triangle) const;
+  [[nodiscard]] std::int32_t layer_at_center(const LitPoint& sample, std::uint32_t triangle) const {
+    return layer_of(triangle, sample, center_, Viewer::center);
+  }
 
   /// The triangles that count for the receiver and may appear on its light: of the layers, each by itself
   /// (layer_areas.hpp makes `blocked` of them without edges).
@@ -86,8 +106,6 @@ class SoftVisibility {
   [[nodiscard]] const LightOutline& outline() const { return outline_; }
   /// None: all of the light weighs the same.
   [[nodiscard]] const TextureWeights* texture() const { return texture_ ? &*texture_ : nullptr; }
-  /// Edges of what counts, with their k_e, by number.
-  using Silhouette = std::pair<std::uint32_t, std::int32_t>;
   [[nodiscard]] std::vector<Silhouette> silhouettes(const LitPoint& sample, Viewer viewer) const;
 
  private:
@@ -99,13 +117,18 @@ class SoftVisibility {
 
   [[nodiscard]] bool is_left_out(std::uint32_t caster, const LitPoint& sample) const;
   [[nodiscard]] bool counts_for_receiver(std::uint32_t caster, mesh::Side seen) const;
-  [[nodiscard]] std::vector<Silhouette> center_silhouettes(const LitPoint& sample) const;
+  [[nodiscard]] std::vector<Silhouette> center_silhouettes(const LitPoint& sample,
+                                                           std::span<const Silhouette> of_all) const;
   [[nodiscard]] std::vector<Silhouette> receiver_silhouettes(const LitPoint& sample) const;
   [[nodiscard]] glm::vec3 center_from(const glm::vec3& p) const;
   [[nodiscard]] std::vector<glm::vec3> corners_from(const glm::vec3& p) const;
   [[nodiscard]] glm::vec3 choose_reference(const glm::vec3& p, const LightProjection& projection,
                                            std::span<const Candidate> edges) const;
   [[nodiscard]] std::int32_t layers_at(const LitPoint& sample, const glm::vec3& l, Viewer viewer) const;
+  [[nodiscard]] std::int32_t layer_of(std::uint32_t triangle, const LitPoint& sample, const glm::vec3& l,
+                                      Viewer viewer) const;
+  [[nodiscard]] LayerSum sum_of(const LitPoint& sample, Viewer viewer, std::span<const Silhouette> edges,
+                                const CenterCount& count) const;
   [[nodiscard]] double area_beyond(const Candidate& edge, int side, const RadialCoverage& coverage,
                                    const glm::dvec2& reference) const;
   [[nodiscard]] double share_above_carrier(const LitPoint& sample) const;
@@ -114,6 +137,7 @@ class SoftVisibility {
   const visibility::Light& light_;
   const Casters& casters_;
   LightOutline outline_;
+  Arc arc_;
   std::optional<TextureWeights> texture_;
   glm::dvec2 lower_{-1}, upper_{1};  // of the outline
   glm::vec3 center_{0};

@@ -1,4 +1,4 @@
-#include "vsm/far_plane.hpp"
+#include "engines/pairs/far_plane.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace penumbra::vsm {
+namespace penumbra::pairs {
 namespace {
 
 /// Nearer than this share of the far plane's distance, a triangle's footprint is not computed but bounded.
@@ -45,7 +45,7 @@ class Slab {
 
 }  // namespace
 
-FarPlane::FarPlane(const pairs::LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
+FarPlane::FarPlane(const LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
                    std::span<const glm::vec3> p, double per_pixel)
     : light_(light), side_(side) {
   // Fewer than 8 roundings of twice the reach, and cuts interpolate with as many; light samples are `off` their plane,
@@ -70,7 +70,7 @@ FarPlane::FarPlane(const pairs::LightBox& light, double side, double reach, std:
     places.push_back(light.sun ? glm::dvec2(at) : glm::dvec2(at) * (far_ / at.z));
     if (!light.sun) stretch = std::max(stretch, (1 + kWidest) * far_ / at.z);
   }
-  light_pixels_ = pairs::LightPixels(places, 4 * error_ * stretch, per_pixel);
+  light_pixels_ = LightPixels(places, 4 * error_ * stretch, per_pixel);
 }
 
 double FarPlane::nearest(const std::array<glm::vec3, 3>& corners) const {
@@ -93,7 +93,7 @@ bool FarPlane::misses_window(std::span<const glm::dvec3> polygon) const {
   return false;
 }
 
-void FarPlane::add_upper(pairs::Footprint& footprint, std::span<const glm::dvec3> polygon) const {
+void FarPlane::add_upper(Footprint& footprint, std::span<const glm::dvec3> polygon) const {
   for (const glm::dvec3& x : polygon) {
     const double k = light_.sun ? far_ - x.z : far_ / x.z;
     for (const glm::dvec2& l : light_.corners()) {
@@ -107,9 +107,9 @@ void FarPlane::add_upper(pairs::Footprint& footprint, std::span<const glm::dvec3
   }
 }
 
-pairs::Footprint FarPlane::footprint(const std::array<glm::vec3, 3>& corners) const {
+Footprint FarPlane::footprint(const std::array<glm::vec3, 3>& corners) const {
   const std::array at{place(corners[0]), place(corners[1]), place(corners[2])};
-  pairs::Footprint footprint;
+  Footprint footprint;
   const double high = std::max({at[0].z, at[1].z, at[2].z}), low = std::min({at[0].z, at[1].z, at[2].z});
   const double all = std::numeric_limits<double>::max();
   if (low > far_ + 4 * error_) return footprint;
@@ -124,4 +124,4 @@ pairs::Footprint FarPlane::footprint(const std::array<glm::vec3, 3>& corners) co
   return footprint;
 }
 
-}  // namespace penumbra::vsm
+}  // namespace penumbra::pairs

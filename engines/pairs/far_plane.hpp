@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace penumbra::vsm {
+namespace penumbra::pairs {
 
 /// The far plane of a light's frustum, parallel to the light through the farthest view sample: view samples are
 /// projected on it from the light's centre and lie in lists of light pixels, and a triangle's footprint there is the
@@ -32,7 +32,7 @@ class FarPlane {
   /// `side`: −1 for what a two-sided light sees behind it. `reach`: at least the length of all positions. View samples
   /// on the other side are left out; those in the light's plane up to rounding, or outside of the frustum, are in
   /// `outside`.
-  FarPlane(const pairs::LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
+  FarPlane(const LightBox& light, double side, double reach, std::span<const std::uint32_t> pixels,
            std::span<const glm::vec3> p, double per_pixel);
 
   [[nodiscard]] bool empty() const { return pixels_.empty(); }
@@ -40,10 +40,10 @@ class FarPlane {
   /// Of a number in its lists.
   [[nodiscard]] std::uint32_t pixel(std::uint32_t number) const { return pixels_[number]; }
   [[nodiscard]] std::span<const double> heights() const { return heights_; }
-  [[nodiscard]] pairs::LightPixels& light_pixels() { return light_pixels_; }
+  [[nodiscard]] LightPixels& light_pixels() { return light_pixels_; }
 
   /// No points and not everywhere: it hides nothing from any view sample.
-  [[nodiscard]] pairs::Footprint footprint(const std::array<glm::vec3, 3>& corners) const;
+  [[nodiscard]] Footprint footprint(const std::array<glm::vec3, 3>& corners) const;
   /// How near to the light it is at least: less than the height of what it hides anything from.
   [[nodiscard]] double nearest(const std::array<glm::vec3, 3>& corners) const;
 
@@ -54,15 +54,15 @@ class FarPlane {
     at.z *= side_;
     return at;
   }
-  void add_upper(pairs::Footprint& footprint, std::span<const glm::dvec3> polygon) const;
+  void add_upper(Footprint& footprint, std::span<const glm::dvec3> polygon) const;
   [[nodiscard]] bool misses_window(std::span<const glm::dvec3> polygon) const;
 
-  pairs::LightBox light_;
+  LightBox light_;
   double side_ = 1, error_ = 0;  ///< of a place
   double far_ = 0;
   std::vector<std::uint32_t> pixels_, outside_;
   std::vector<double> heights_;
-  pairs::LightPixels light_pixels_;
+  LightPixels light_pixels_;
 };
 
-}  // namespace penumbra::vsm
+}  // namespace penumbra::pairs

@@ -1,0 +1,134 @@
+// soft-irregular against the sum over all silhouettes of the light's centre at each view sample (SoftVisibility): its
+// lists lose no edge and no layer. With umbra=layers and arc=tangent the numbers are the same to the last bit. An arc
+// cosine is off by √(2 · 2⁻⁵²) where its angle is near 0 or π (the cosine rounds by 2⁻⁵² at most): an edge's share of
+// the light by half of that over π, 3.4e-9; V is stored in float, 2⁻²⁵.
+
+#include "tests/agreement/lattice.hpp"
+#include "tests/agreement/volumes/soft_stage.hpp"
+#include "tests/property/lattice_truth.hpp"
+
+#include "base/error.hpp"
+#include "volumes/soft/soft_irregular.hpp"
+
+namespace penumbra::volumes {
+namespace {
+
+using tests::SoftStage;
+
+constexpr double kArcCosine = 3.4e-9, kFloat = 0x1p-25;
+
+class SoftIrregularTwin : public tests::DeviceTest {
+ protected:
+  struct Expected {
+    std::vector<LayerSum> sums;
+    std::size_t penumbra = 0;
+  };
+  static Expected twin(const SoftStage& stage) {
+    const Casters casters = casters_of(stage.floats, stage.light);
+    const SoftVisibility soft(stage.floats, stage.light, casters);
+    Expected expected{std::vector<LayerSum>(stage.samples.size())};
+    tbb::parallel_for(std::size_t{0}, stage.samples.size(), [&](std::size_t i) {
+      if (visibility::is_receiver(stage.floats, stage.samples, i))
+        expected.sums[i] = soft.at(stage.lit(i), Viewer::center);
+    });
+    for (const LayerSum& sum : expected.sums) expected.penumbra += sum.edges.empty() ? 0U : 1U;
+    return expected;
+  }
+  static void expect_twin(const std::string& name, const SoftStage& stage, std::size_t fewest = 10) {
+    const Expected expected = twin(stage);
+    const auto layers = make_soft_irregular({{"umbra", "layers"}, {"arc", "tangent"}});
+    const auto cosines = make_soft_irregular({{"umbra", "layers"}}), published = make_soft_irregular({});
+    const std::vector<float> v = stage.run(*layers, 7), by_cosine = stage.run(*cosines),
+                             as_published = stage.run(*published);
+    std::size_t wrong = 0;
+    double most_off = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      const LayerSum& sum = expected.sums[i];
+      if (v[i] != static_cast<float>(sum.visibility) && wrong++ == 0)
+        ADD_FAILURE() << name << ", pixel " << i << ": V is " << v[i] << ", the twin's " << sum.visibility;
+      const double off = std::abs(static_cast<double>(by_cosine[i]) - sum.visibility);
+      const double allowed = kFloat + kArcCosine * static_cast<double>(sum.edges.size());
+      EXPECT_LE(off, allowed) << name << ", pixel " << i;
+      most_off = std::max(most_off, off);
+      const double one = sum.in_front ? std::clamp(1 - std::min(sum.constant, 1) - sum.sum, 0.0, sum.above) : 0;
+      EXPECT_LE(std::abs(static_cast<double>(as_published[i]) - one), allowed) << name << ", pixel " << i;
+    }
+    EXPECT_EQ(wrong, 0U) << name;
+    EXPECT_GE(expected.penumbra, fewest) << name;
+    fmt::print("{}: {} view samples see edges; by arc cosines off by {:.1e} at most; {} wedge tests, {} kept\n", name,
+               expected.penumbra, most_off, layers->counters().at("wedgeTests"), layers->counters().at("edgesOnLight"));
+  }
+};
+
+TEST_F(SoftIrregularTwin, ShippedScenes) {
+  for (const char* name : {"broken", "contact", "fusion", "textured-light", "thin"})
+    expect_twin(name, SoftStage(tests::shipped_scene(name), device(), 32, 24));
+}
+
+TEST_F(SoftIrregularTwin, RoundLightsAndPolygons) {
+  for (const scenes::LightShape& shape : {scenes::LightShape(scenes::Disk{{0, 5, 0}, {0.1, -1, 0}, 0.9}),
+                                          scenes::LightShape(scenes::Ellipse{{0, 5, 0}, {1.2, 0, 0}, {0, 0.1, 0.4}}),
+                                          scenes::LightShape(scenes::Polygon{{{-1, 5, -1}, {1, 5, -1}, {0, 5, 1}}})}) {
+    scenes::Scene scene = tests::shipped_scene("fusion");
+    scene.lights[0].shape = shape;
+    expect_twin(fmt::format("fusion {}", shape.index()), SoftStage(scene, device(), 32, 24));
+  }
+}
+
+/// View samples on both sides of a light, and beside its frusta.
+TEST_F(SoftIrregularTwin, LightsAmongTriangles) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> real(-1, 1);
+  const auto point = [&] { return glm::dvec3(real(random), real(random), real(random)); };
+  std::size_t outside = 0;
+  for (int i = 0; i < 12; ++i) {
+    scenes::Scene scene = tests::floor_and_light(0.5);
+    std::vector<tests::Corners> soup;
+    for (int k = 0; k < 16; ++k) soup.push_back({2.0 * point(), 2.0 * point(), 2.0 * point()});
+    tests::add_object(scene, "soup", soup);
+    scene.lights[0] = tests::rectangle_light(point(), 0.4 * point(), 0.3 * point());
+    scene.lights[0].two_sided = true;
+    const SoftStage stage(scene, device(), 24, 24);
+    expect_twin(fmt::format("soup {}", i), stage, 0);
+    const auto method = make_soft_irregular({});
+    static_cast<void>(stage.run(*method));
+    outside += method->counters().at("viewSamplesOutside");
+  }
+  EXPECT_GT(outside, 20U);
+}
+
+/// One board is exact; of two, one behind the other, the map knows one layer, and what the nearer one's outline gives
+/// back where the other still hides the light is a leak. layers has none where the boards do not overlap on the light.
+TEST_F(SoftIrregularTwin, StackedBoardsLeak) {
+  scenes::Scene one = tests::floor_and_light(0.6);
+  tests::add_object(one, "board", tests::quad({0, 1, 0}, {0.8, 0, 0}, {0, 0, -0.8}));
+  scenes::Scene two = one;
+  tests::add_object(two, "lower", tests::quad({0, 0.5, 0}, {2, 0, 0}, {0, 0, -2}));
+  two.cameras[0] = tests::camera({0, 0.3, 4.5}, {0, 0, 0});  // under both
+  const auto errors = [&](const scenes::Scene& scene, const char* umbra) {
+    const SoftStage stage(scene, device(), 32, 32);
+    const auto method = make_soft_irregular({{"umbra", umbra}});
+    return tests::errors_of(stage.run(*method), stage.exact());
+  };
+  EXPECT_LE(errors(one, "map").largest, 1e-7);
+  EXPECT_LE(errors(one, "layers").largest, 1e-7);
+  EXPECT_GT(errors(two, "map").largest, 0.2);
+  EXPECT_LE(errors(two, "layers").largest, errors(two, "map").largest);
+}
+
+TEST_F(SoftIrregularTwin, WhatItCannotDoIsRefused) {
+  scenes::Scene scene = tests::floor_and_light(0.5);
+  for (const scenes::LightShape& shape :
+       {scenes::LightShape(scenes::Sphere{{0, 3, 0}, 0.5}), scenes::LightShape(scenes::Sun{{0, -1, 0}, 5})}) {
+    scene.lights[0].shape = shape;
+    const SoftStage stage(scene, device(), 8, 8);
+    const auto method = make_soft_irregular({});
+    EXPECT_THROW(static_cast<void>(stage.run(*method)), InputError);
+  }
+  EXPECT_THROW(make_soft_irregular({{"umbra", "both"}}), UsageError);
+  EXPECT_THROW(make_soft_irregular({{"bias", "1"}}), UsageError);
+}
+
+}  // namespace
+}  // namespace penumbra::volumes
