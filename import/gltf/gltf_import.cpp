@@ -6,6 +6,7 @@
 #include "import/gltf/gltf_camera.hpp"
 #include "import/gltf/gltf_deform.hpp"
 #include "import/gltf/gltf_extras.hpp"
+#include "import/gltf/gltf_hidden.hpp"
 #include "import/gltf/gltf_load.hpp"
 #include "import/gltf/gltf_losses.hpp"
 #include "import/gltf/gltf_nodes.hpp"
@@ -47,6 +48,11 @@ constexpr std::array<std::string_view, 9> kWithoutEffect{
     "KHR_materials_sheen",      "KHR_materials_iridescence", "KHR_materials_anisotropy",
     "KHR_materials_dispersion", "KHR_materials_volume",      "KHR_xmp_json_ld"};
 
+bool is_understood(const std::string& extension) {
+  return std::ranges::find(kUnderstood, extension) != kUnderstood.end() ||
+         std::ranges::find(kWithoutEffect, extension) != kWithoutEffect.end();
+}
+
 /// What the file is read for; `rest`: a mesh as it is modelled, which no skin and no morph target bends.
 enum class Purpose { lit_scene, any_scene, mesh, rest };
 
@@ -62,6 +68,9 @@ class GltfImport {
     scene_.name = std::move(name);
   }
 
+  /// See unhidden_places; must outlive it. Without a call, a light that is scaled to nothing is none.
+  void keep_hidden_lights(const std::vector<std::optional<glm::dmat4>>& unhidden) { unhidden_ = unhidden; }
+
   Scene run() {
     const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
     to_world_.resize(model_.nodes.size());
@@ -69,10 +78,10 @@ class GltfImport {
     for (const PlacedNode& placed : nodes) {
       const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
       const std::string name = node.name.empty() ? fmt::format("node {}", placed.number) : node.name;
-      if (node.mesh >= 0) add_mesh(node, placed, name);
+      if (node.mesh >= 0) add_mesh_or_hidden(node, placed, name);
       if (is_mesh()) continue;
       if (node.camera >= 0) add_camera(node, placed, name);
-      if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, placed, name);
+      if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, unhidden(placed), name);
     }
     if (scene_.soup.triangles.empty()) {
       throw InputError(
@@ -96,6 +105,11 @@ class GltfImport {
       if (scene_.lights.size() > 1)
         losses_.mention("shines faintly, and shows that alone: the light of others on it is left out", name);
     }
+    for (const std::string& extension : model_.extensionsRequired) {
+      if (!is_understood(extension))
+        losses_.refuse("is an extension that the file requires (extensionsRequired) and that is not supported",
+                       extension);
+    }
     add_warnings();
     if (!is_mesh()) losses_.report(lenient_, scene_.warnings);
     return std::move(scene_);
@@ -103,6 +117,27 @@ class GltfImport {
 
  private:
   [[nodiscard]] bool is_mesh() const { return purpose_ == Purpose::mesh || purpose_ == Purpose::rest; }
+
+  [[nodiscard]] PlacedNode unhidden(const PlacedNode& placed) const {
+    const auto number = static_cast<std::size_t>(placed.number);
+    return number < unhidden_.size() && unhidden_[number] ? PlacedNode{placed.number, *unhidden_[number]} : placed;
+  }
+
+  /// A light that is scaled to nothing stays one, of the shape that it has when it is not, and dark: so all frames have
+  /// the same lights. What is seen of it is where its transform puts it.
+  void add_mesh_or_hidden(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    const PlacedNode whole = unhidden(placed);
+    if (is_mesh() || !hides_light(model_, node, placed.to_world, whole.to_world)) return add_mesh(node, placed, name);
+    const std::size_t first_position = scene_.soup.positions.size(), first_light = scene_.lights.size();
+    add_mesh(node, whole, name);
+    const glm::dmat4 back = glm::inverse(whole.to_world);
+    for (glm::dvec3& p : std::span(scene_.soup.positions).subspan(first_position))
+      p = glm::dvec3(placed.to_world * (back * glm::dvec4(p, 1)));
+    for (AreaLight& light : std::span(scene_.lights).subspan(first_light)) {
+      light.radiance = glm::dvec3(0);
+      losses_.mention("is scaled to nothing: a light that is dark", light.name);
+    }
+  }
 
   void add_mesh(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
     if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
@@ -303,6 +338,10 @@ class GltfImport {
     scene_.cameras.push_back(std::move(camera));
   }
 
+  [[nodiscard]] bool is_required(const std::string& extension) const {
+    return !is_mesh() && std::ranges::find(model_.extensionsRequired, extension) != model_.extensionsRequired.end();
+  }
+
   void add_warnings() {
     const auto count = [&](std::uint64_t number, const char* what) {
       if (number > 0) scene_.warnings.push_back(fmt::format("{} {}", number, what));
@@ -314,8 +353,7 @@ class GltfImport {
     count(skipped_.leftover_indices, "indices at the end of primitives skipped: they make no whole triangle");
     count(emissive_, "emissive objects are no lights here: those are the scene's");
     for (const std::string& extension : model_.extensionsUsed) {
-      if (std::ranges::find(kUnderstood, extension) != kUnderstood.end()) continue;
-      if (std::ranges::find(kWithoutEffect, extension) != kWithoutEffect.end()) continue;
+      if (is_understood(extension) || is_required(extension)) continue;
       scene_.warnings.push_back(fmt::format("extension {} ignored", extension));
     }
   }
@@ -324,7 +362,8 @@ class GltfImport {
   Purpose purpose_;
   bool lenient_;
   Scene scene_;
-  std::vector<std::optional<glm::dmat4>> to_world_;  // of each node; nothing for those that are not in the scene
+  std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or of each node
+  std::vector<std::optional<glm::dmat4>> to_world_;      // of each node; nothing for those that are not in the scene
   Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
@@ -358,8 +397,13 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
       origin = 0.5 * lower + 0.5 * upper;
     }
     std::vector<std::string> warnings;
+    const auto scales = rest_scales(model);
     if (options.time) pose_model(model, *options.time, warnings);
-    Scene scene = GltfImport(model, name, purpose, options).run();
+    std::vector<std::optional<glm::dmat4>> unhidden;
+    if (motion) unhidden = unhidden_places(model, scales);
+    GltfImport import(model, name, purpose, options);
+    import.keep_hidden_lights(unhidden);
+    Scene scene = import.run();
     scene.origin = origin;
     scene.motion = motion;
     scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());

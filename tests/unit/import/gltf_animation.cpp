@@ -161,6 +161,52 @@ TEST_F(GltfAnimation, SkinsNeedNoBindMatrices) {
   EXPECT_THAT(read(gltf).warnings, IsEmpty());
 }
 
+/// The usual way to hide a lamp: its scale is keyed to 0.
+TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
+  for (const bool by_parent : {false, true}) {
+    Gltf gltf;
+    gltf.at("/nodes").push_back({{"name", "Arm"}, {"children", {1}}});
+    gltf.at("/scenes/0/nodes") = {0, 2, 3};
+    gltf.at("/nodes/1")["scale"] = {2, 1, 1};
+    if (by_parent)
+      gltf.animate(3, "scale", {0, 1}, {1, 1, 1, 0, 0, 0}, "STEP");
+    else
+      gltf.animate(1, "scale", {0, 1}, {2, 1, 1, 0, 0, 0}, "STEP");
+    gltf.animate(1, "translation", {0, 1, 2}, {0, 5, 0, 0, 5, 0, 0, 6, 0});
+    const Scene shown = read(gltf, 0), hidden = read(gltf, 1.5);
+    ASSERT_EQ(shown.lights.size(), 1u);
+    ASSERT_EQ(hidden.lights.size(), 1u);
+    EXPECT_EQ(hidden.lights[0].name, "Lamp");
+    EXPECT_EQ(shown.lights[0].radiance, glm::dvec3(20, 10, 0));
+    EXPECT_EQ(hidden.lights[0].radiance, glm::dvec3(0));
+    const auto& before = std::get<Rectangle>(shown.lights[0].shape);
+    const auto& after = std::get<Rectangle>(hidden.lights[0].shape);
+    EXPECT_EQ(after.half_u, before.half_u) << "the shape that it has at rest";
+    EXPECT_EQ(after.half_v, before.half_v);
+    EXPECT_EQ(after.center, glm::dvec3(0, 5.5, 0)) << "where it is by then";
+    EXPECT_THAT(shown.warnings, IsEmpty());
+    EXPECT_THAT(hidden.warnings, ::testing::ElementsAre("'Lamp' is scaled to nothing: a light that is dark"));
+    // Nothing is seen of it, and it is the light's own body all the same.
+    ASSERT_EQ(hidden.objects.size(), shown.objects.size());
+    EXPECT_EQ(hidden.objects[1].emits, std::optional(0u));
+    for (const mesh::Triangle& t : hidden.soup.triangles) {
+      if (hidden.soup.object[static_cast<std::size_t>(&t - hidden.soup.triangles.data())] != 1) continue;
+      for (const std::uint32_t v : t) EXPECT_EQ(hidden.soup.positions[v], glm::dvec3(0, by_parent ? 0 : 5.5, 0));
+    }
+  }
+  // A plane that is squashed along its normal has lost nothing.
+  Gltf flat;
+  flat.animate(1, "scale", {0, 1}, {1, 1, 1, 1, 0, 1}, "STEP");
+  EXPECT_EQ(read(flat, 2).lights[0].radiance, glm::dvec3(20, 10, 0));
+  // One that rests at 0 is as large as its mesh; without any animation a scale of 0 is a mistake.
+  Gltf dark;
+  dark.at("/nodes/1")["scale"] = {0, 0, 0};
+  EXPECT_THAT(refusal(dark), HasSubstr("'Lamp' (it has no area)"));
+  dark.animate(1, "scale", {0, 1}, {0, 0, 0, 3, 3, 3}, "STEP");
+  EXPECT_EQ(glm::length(std::get<Rectangle>(read(dark, 0).lights[0].shape).half_u), 1);
+  EXPECT_EQ(glm::length(std::get<Rectangle>(read(dark, 2).lights[0].shape).half_u), 3);
+}
+
 TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   const auto expect = [&](Gltf gltf, const std::string& what) { EXPECT_THAT(refusal(gltf), HasSubstr(what)); };
   Gltf gltf;

@@ -246,6 +246,18 @@ TEST_F(GltfReader, CountsThatOverflowAreRefused) {
   EXPECT_THAT(refusal(colors), HasSubstr("/accessors/4/count: 4611686018427387904 elements"));
 }
 
+TEST_F(GltfReader, ExtensionsThatItRequiresAreUnderstoodOrRefused) {
+  Gltf gltf;
+  gltf.document["extensionsUsed"] = {"KHR_materials_emissive_strength", "EXT_mesh_gpu_instancing", "EXT_other"};
+  gltf.document["extensionsRequired"] = {"KHR_materials_emissive_strength", "EXT_mesh_gpu_instancing"};
+  EXPECT_THAT(refusal(gltf), HasSubstr("'EXT_mesh_gpu_instancing' is an extension that the file requires"));
+  ReadOptions lenient;
+  lenient.lenient = true;
+  const Scene scene = read_gltf(write("scene.glb", gltf.glb()), lenient);
+  EXPECT_THAT(scene.warnings,
+              ::testing::ElementsAre(HasSubstr("'EXT_mesh_gpu_instancing'"), "extension EXT_other ignored"));
+}
+
 TEST_F(GltfReader, AMemoryBombCostsAMessage) {
   Gltf gltf;  // an accessor without a buffer view is all zeros: the file is small, the mesh is not
   gltf.at("/accessors/0") = {{"componentType", 5126}, {"count", 3000000000u}, {"type", "VEC3"}};
