@@ -208,7 +208,7 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
         fmt::format("light \"{}\": its texture is left out; its mean colour stands in its place", light.name));
   }
   for (const Camera& camera : scene.cameras) {
-    glb.add_camera(camera, static_cast<double>(scene.width) / scene.height);
+    glb.add_camera(camera, camera.aspect.value_or(static_cast<double>(scene.width) / scene.height));
   }
   for (const Object& object : scene.objects) {
     if (object.lit_by)

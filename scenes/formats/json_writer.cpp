@@ -1,4 +1,5 @@
 #include "scenes/formats/writers.hpp"
+#include "scenes/picture_size.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -117,7 +118,15 @@ void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) 
 
 void write_json(const Scene& scene, AtomicFile& file, Notes& notes) {
   TextStream text(file);
-  text.print("{{\n  \"format\": \"penumbra-scene/1\",\n  \"size\": [{}, {}],\n", scene.width, scene.height);
+  const auto size = picture_size(scene, scene.cameras.front());
+  for (const Camera& camera : scene.cameras) {
+    const auto own = picture_size(scene, camera);
+    if (own != size) {
+      notes.push_back(fmt::format("camera \"{}\": a scene has one size, that of its first camera; {}x{} is left out",
+                                  camera.name, own.first, own.second));
+    }
+  }
+  text.print("{{\n  \"format\": \"penumbra-scene/1\",\n  \"size\": [{}, {}],\n", size.first, size.second);
   if (scene.cameras.size() == 1) {
     text.print("  \"camera\": ");
     write_camera(scene.cameras[0], text);

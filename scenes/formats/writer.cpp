@@ -91,6 +91,10 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
   for (std::size_t i = 0; extension == ".json" && i < scene.lights.size(); ++i) {
     if (scene.lights[i].texture) write_texture(*scene.lights[i].texture, texture_file(file, i));
   }
+  if (scene.motion)
+    notes.push_back(fmt::format("its animation from {} s to {} s is left out; it is written as it rests",
+                                scene.motion->first, scene.motion->last));
+  if (!scene.looks.normals.empty()) notes.emplace_back("normals of vertices are left out: shading will be by facets");
   output.commit();
   return notes;
 }

@@ -286,6 +286,32 @@ TEST(GlbWriter, LampsReadBack) {
   EXPECT_EQ(lamps, 4);
 }
 
+TEST(Writer, KeepsCamerasShapesAndSaysWhatIsLost) {
+  const TemporaryFolder folder;
+  Scene scene = read_text(scene_text());
+  scene.width = scene.height = 512;
+  scene.cameras.front().aspect = 2;
+  EXPECT_TRUE(write_scene(scene, folder / "scene.json").empty());
+  const Scene json = read_scene(folder / "scene.json");
+  EXPECT_EQ(json.width, 512u);
+  EXPECT_EQ(json.height, 256u);
+  write_scene(scene, folder / "scene.glb");
+  EXPECT_NEAR(read_scene(folder / "scene.glb").cameras.front().aspect.value(), 2, 1e-12);
+
+  scenes::Camera upright = scene.cameras.front();
+  upright.name = "upright";
+  upright.aspect = 0.5;
+  scene.cameras.push_back(upright);
+  scene.motion = scenes::Motion{1, 3};
+  scene.looks.normals.assign(scene.soup.positions.size(), glm::vec3(0, 1, 0));
+  const auto notes = write_scene(scene, folder / "scene.json");
+  ASSERT_EQ(notes.size(), 3u);
+  EXPECT_NE(notes[0].find("camera \"upright\""), std::string::npos);
+  EXPECT_NE(notes[0].find("256x512"), std::string::npos);
+  EXPECT_NE(notes[1].find("animation from 1 s to 3 s"), std::string::npos);
+  EXPECT_NE(notes[2].find("normals of vertices"), std::string::npos);
+}
+
 TEST(Writer, RefusesOtherFormatsAndLeavesNothingBehind) {
   const TemporaryFolder folder;
   const Scene scene = read_text(scene_text());
