@@ -59,12 +59,16 @@ int run_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {  // --help, --version: on stdout
+    // `penumbra WORD --help`: CLI11 answers the second before it looks at the first.
+    const bool no_command =
+        app.get_subcommands().empty() &&
+        std::ranges::any_of(app.remaining(), [](const std::string& word) { return !word.starts_with('-'); });
+    if (error.get_exit_code() == 0 && !no_command) {  // --help, --version: on stdout
       app.exit(error);
       check_stdout();
       return 0;
     }
-    const bool unknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    const bool unknown = no_command || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     say(fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n",
                     unknown ? explain_unknown_arguments(app) : error.what(),
                     app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " "));

@@ -59,7 +59,10 @@ LightMethod choose(const Light& light, const MethodWish& wish) {
   const MethodDescription& method = wish.method.empty() ? default_method(light) : describe_method(wish.method);
   MethodOptions options = options_for(method, wish);
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
-  if (!wish.samples && !chosen.description.gives_area()) {
+  if (!wish.samples && !counts_light_samples(chosen.description) && !chosen.description.gives_area()) {
+    chosen.note = fmt::format("light \"{}\": {} gives an estimate of V without light samples; it is exact for {}",
+                              light.name, method.name, method.exact_for);
+  } else if (!wish.samples && !chosen.description.gives_area()) {
     const std::string through =
         light.filtered_by.empty() ? "" : fmt::format(" through \"{}\" (alphaMode MASK or BLEND)", light.filtered_by);
     chosen.note =

@@ -225,6 +225,12 @@ bool runs_on_device(std::string_view name, const MethodOptions& options, const L
   return row.on_device && (row.on_vectors == nullptr || !row.on_vectors(devices.device(), options, light));
 }
 
+bool counts_light_samples(const MethodDescription& method) {
+  // Two methods without masks add up, map by map, how many light samples are visible.
+  constexpr std::array<std::string_view, 2> kShares = {"deep-penumbra", "layered-attenuation"};
+  return method.output == visibility::Output::mask || std::ranges::find(kShares, method.name) != kShares.end();
+}
+
 bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   return std::ranges::all_of(lights, [&](const Light& light) {
     return std::ranges::find(method.lights, light.kind) != method.lights.end() && (method.textures || !light.texture) &&

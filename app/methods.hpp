@@ -30,6 +30,10 @@ visibility::MethodDescription describe_method(std::string_view name, const visib
 bool runs_on_device(std::string_view name, const visibility::MethodOptions& options, const visibility::Light& light,
                     DeviceSource& devices);
 
+/// Is V, of masks or not, about the light samples that --light-samples asks for? Other methods look at the light's
+/// centre, at points of their own, or at its area.
+bool counts_light_samples(const visibility::MethodDescription& method);
+
 /// Checks the options, then builds the method. Only methods that run on a device ask `devices` for one.
 std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,
                                                 DeviceSource& devices);

@@ -34,12 +34,11 @@ visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibi
 }  // namespace
 
 std::uint32_t samples_of(const LabelledLights& all, std::size_t light) {
-  return all.label(light).description.gives_area() ? 0 : all.lights[light].sample_count();
+  return counts_light_samples(all.label(light).description) ? all.lights[light].sample_count() : 0;
 }
 
-/// Nothing: V is an area.
 std::optional<std::string> pattern_of(const LabelledLights& all, std::size_t light) {
-  if (all.label(light).description.gives_area()) return std::nullopt;
+  if (!counts_light_samples(all.label(light).description)) return std::nullopt;
   return visibility::name_of(all.lights[light].pattern);
 }
 
@@ -48,7 +47,7 @@ compare::LightStats light_stats(const LabelledLights& all, std::size_t light) {
   return {.name = all.lights[light].name,
           .method = label.description.name,
           .options = label.options,
-          .area = label.description.gives_area(),
+          .area = !counts_light_samples(label.description),
           .light_samples = samples_of(all, light),
           .sample_pattern = pattern_of(all, light).value_or("")};
 }
@@ -161,7 +160,7 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.seconds.light = run.times.light;
   stats.seconds.evaluate = run.times.evaluate;
   stats.seconds.warmup = run.times.warmup;
-  stats.seconds.total = session.open_seconds + run.times.total;
+  stats.seconds.total = stats.seconds.sum();
   stats.passes = run.passes;
   stats.peak_memory_bytes = run.memory_bytes;
   stats.counters = run.counters;
@@ -176,8 +175,10 @@ std::string summary(const compare::Stats& stats) {
   };
   for (const compare::LightStats& light : stats.lights) {
     add(methods, light.method);
-    add(questions,
-        light.area ? "exact areas" : fmt::format("{} light samples ({})", light.light_samples, light.sample_pattern));
+    const bool exact = describe_method(light.method, light.options).gives_area();
+    add(questions, exact        ? "exact areas"
+                   : light.area ? "an estimate of V"
+                                : fmt::format("{} light samples ({})", light.light_samples, light.sample_pattern));
   }
   return fmt::format("{}: {}x{}, {} triangles, {}; shadow {:.3f} s on {}", fmt::join(methods, " + "), stats.width,
                      stats.height, stats.triangles, fmt::join(questions, " + "), stats.seconds.shadow().value_or(0),

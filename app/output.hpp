@@ -81,7 +81,7 @@ struct LabelledLights {
   [[nodiscard]] const MethodLabel& label(std::size_t light) const { return labels[labels.size() == 1 ? 0 : light]; }
 };
 
-/// Of one of them: 0 if V is an area.
+/// Of one of them: 0 if V is an area, exactly or about.
 std::uint32_t samples_of(const LabelledLights& all, std::size_t light);
 /// Nothing if V is an area.
 std::optional<std::string> pattern_of(const LabelledLights& all, std::size_t light);

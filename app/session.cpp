@@ -6,11 +6,11 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "scenes/picture_size.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -44,16 +44,6 @@ std::vector<std::size_t> wanted_lights(const scenes::Scene& scene, const std::ve
   wanted.resize(scene.lights.size());
   std::iota(wanted.begin(), wanted.end(), std::size_t{0});
   return wanted;
-}
-
-/// The scene's size, in the shape that the camera says: then its longer side is the scene's.
-std::pair<std::uint32_t, std::uint32_t> size_of(const scenes::Scene& scene, const scenes::Camera& camera) {
-  if (!camera.aspect) return {scene.width, scene.height};
-  const double longest = std::max(scene.width, scene.height), aspect = *camera.aspect;
-  const auto pixels = [&](double share) {
-    return static_cast<std::uint32_t>(std::max(1.0, std::round(longest * std::min(share, 1.0))));
-  };
-  return {pixels(aspect), pixels(1 / aspect)};
 }
 
 /// Refuses an image that this machine has no memory for, before minutes of work end in a killed process.
@@ -126,7 +116,7 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   const std::vector<std::size_t> wanted = wanted_lights(session_.scene, options_.lights, scene_name);
   session_.camera_index = find_named(session_.scene.cameras, camera, "--camera", scene_name);
   const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
-  std::tie(session_.width, session_.height) = size_.value_or(size_of(session_.scene, seen_by));
+  std::tie(session_.width, session_.height) = size_.value_or(scenes::picture_size(session_.scene, seen_by));
   require_image_memory(session_.width, session_.height, wanted.size());
 
   if (changed) {
@@ -195,8 +185,8 @@ scenes::Scene read_session_scene(const RunOptions& options, std::optional<double
   return scenes::read_scene(options.scene, reading);
 }
 
-Session open_session(const RunOptions& options, DeviceSource& devices, std::uint32_t runs, Progress& progress) {
-  const Stopwatch open;
+Session open_session(const RunOptions& options, std::optional<double> time, DeviceSource& devices, std::uint32_t runs,
+                     Progress& progress) {
   progress.begin("reading " + options.scene.filename().string(), 1);
   // What is wrong with the command line is said before anything long begins.
   SessionMaker maker(options, devices);
@@ -204,13 +194,12 @@ Session open_session(const RunOptions& options, DeviceSource& devices, std::uint
   scenes::Scene scene;
   {
     const MayExitAtOnce at_once;
-    scene = read_session_scene(options, {});
+    scene = read_session_scene(options, time);
   }
   const double read_seconds = load.seconds();
   maker.show(std::move(scene), options.camera, runs, progress);
   Session session = maker.take();
   session.load_seconds += read_seconds;
-  session.open_seconds = open.seconds();
   return session;
 }
 

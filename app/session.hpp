@@ -34,7 +34,6 @@ struct Session {
   double device_seconds = 0;    ///< starting the device
   double receiver_seconds = 0;  ///< classes
   double view_seconds = 0;      ///< finding the view samples: the median of the runs asked for
-  double open_seconds = 0;      ///< wall-clock of all that made this session
   std::vector<std::string> warnings;
 
   std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, its own among these; nothing: `floats`
@@ -77,9 +76,10 @@ class SessionMaker {
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time);
 
 /// Reads the scene and finds its view samples; once if `runs` is 0, else `runs` times after a
-/// discarded one.
+/// discarded one. `time`: see read_session_scene.
 /// Throws UsageError, InputError or ResourceError.
-Session open_session(const RunOptions& options, DeviceSource& devices, std::uint32_t runs, Progress& progress);
+Session open_session(const RunOptions& options, std::optional<double> time, DeviceSource& devices, std::uint32_t runs,
+                     Progress& progress);
 
 /// The middle one; of an even number, the mean of the two in the middle. Not of nothing.
 double median(std::vector<double> values);

@@ -99,6 +99,12 @@ std::optional<double> Seconds::shadow() const {
   return *light + *evaluate;
 }
 
+double Seconds::sum() const {
+  double all = 0;
+  for (const auto& phase : {load, mesh, view, light, evaluate, beauty, write}) all += phase.value_or(0);
+  return all;
+}
+
 Json to_json(const LightStats& light) {
   std::optional<double> shadow;
   if (light.light && light.evaluate) shadow = *light.light + *light.evaluate;

@@ -24,9 +24,11 @@ struct Seconds {
   std::optional<double> beauty;    ///< reading back what a method found, and integrating it
   std::optional<double> write;     ///< files
   std::optional<double> warmup;    ///< first run less the median, at least 0
-  std::optional<double> total;     ///< of the command up to here
+  std::optional<double> total;     ///< their sum; of a rendered picture, what the clock on the wall says
 
   [[nodiscard]] std::optional<double> shadow() const;
+  /// All phases that are known.
+  [[nodiscard]] double sum() const;
 };
 
 /// What one light was asked, and what that cost.
@@ -34,9 +36,9 @@ struct LightStats {
   std::string name;
   std::string method;
   visibility::MethodOptions options = {};
-  bool area = false;                                ///< V is the visible area itself: there are no light samples
-  std::uint32_t light_samples = 0;                  ///< 0 of areas
-  std::string sample_pattern = {};                  ///< empty of areas
+  bool area = false;                ///< V is the visible area, exactly or about: there are no light samples
+  std::uint32_t light_samples = 0;  ///< 0 of areas
+  std::string sample_pattern = {};  ///< empty of areas
   std::optional<double> light = {}, evaluate = {};  ///< seconds
 };
 

@@ -26,6 +26,9 @@ class ConvertCommand : public Command {
         ->required()
         ->type_name("FILE");
     cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
+    cli_.add_flag(
+        "--lenient", lenient_,
+        "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
     add_lamp_options(cli_, lamps_);
   }
 
@@ -34,7 +37,8 @@ class ConvertCommand : public Command {
     if (std::ranges::find(kExtensions, out_.extension()) == kExtensions.end()) {
       throw UsageError("-o {}: expected a name that ends in .json, .glb or .obj", out_.string());
     }
-    const scenes::ReadOptions reading = read_options(lamps_, allow_outside_);
+    scenes::ReadOptions reading = read_options(lamps_, allow_outside_);
+    reading.lenient = lenient_;
     OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});
@@ -55,7 +59,7 @@ class ConvertCommand : public Command {
 
  private:
   std::filesystem::path scene_, out_;
-  bool allow_outside_ = false;
+  bool allow_outside_ = false, lenient_ = false;
   LampSizes lamps_;
 };
 

@@ -5,9 +5,11 @@
 #include "app/methods.hpp"
 #include "app/options.hpp"
 #include "app/process/output_files.hpp"
+#include "app/process/process.hpp"
 #include "app/parse.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/error.hpp"
+#include "visibility/view_samples.hpp"
 
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
@@ -75,7 +77,7 @@ class RenderCommand : public Command {
     if (!wish_.method.empty()) describe_method(wish_.method, wish_.options);  // refuses now what would be refused later
     wish_.samples = !options_.light_samples.empty() || !options_.sample_pattern.empty() || !bits_.empty();
     Exposure exposure = parse_exposure(exposure_);
-    seconds_per_frame_ = 1 / parse_fps();
+    seconds_per_frame_ = 1 / parse_fps(fps_);
     parse_means();
     if (options_.out.extension() != ".exr") {
       throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
@@ -104,10 +106,14 @@ class RenderCommand : public Command {
     {
       const MayExitAtOnce at_once;
       now = read(frames[at]);
+      now.seconds = seconds_since_start();  // nothing else has been done yet
     }
     if (all_cameras) {
       cameras.clear();
-      for (const scenes::Camera& camera : now.scene.cameras) cameras.push_back(camera.name);
+      for (const scenes::Camera& camera : now.scene.cameras) {
+        visibility::make_camera(camera, {}, 1, 1);  // refuses now what would be refused after the others' pictures
+        cameras.push_back(camera.name);
+      }
       claim(outputs, frames, cameras);
     }
     outputs.refuse_inputs(now.scene.sources);
@@ -117,7 +123,13 @@ class RenderCommand : public Command {
       spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);
     }
     if (exposure.kind == Exposure::Kind::first && skip_existing_) {
-      exposure.stops = written_exposure(files_of(frames.front(), cameras.front()).picture).value_or(exposure.stops);
+      const std::filesystem::path first = files_of(frames.front(), cameras.front()).picture;
+      const auto stops = written_exposure(first);
+      if (!stops && std::filesystem::exists(first)) {
+        progress.clear();
+        spdlog::warn("{} does not say how it was exposed: the first frame that is rendered decides", first.string());
+      }
+      exposure.stops = stops.value_or(exposure.stops);
     }
 
     while (at < frames.size()) {
@@ -142,13 +154,6 @@ class RenderCommand : public Command {
   }
 
  private:
-  [[nodiscard]] double parse_fps() const {
-    if (fps_.empty()) return 24;
-    const auto fps = parse_number(fps_);
-    if (!fps || !(*fps > 0)) throw UsageError("--fps {}: expected a number above 0, such as 24 or 29.97", fps_);
-    return *fps;
-  }
-
   void parse_means() {
     const auto whole = [](const std::string& text, const char* option, std::uint32_t most, const char* wanted) {
       const auto value = parse_integer<std::uint32_t>(text.empty() ? "1" : text);

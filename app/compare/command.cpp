@@ -2,6 +2,9 @@
 #include "app/compare/comparison.hpp"
 #include "app/methods.hpp"
 #include "app/options.hpp"
+#include "app/parse.hpp"
+#include "app/pictures/frame_render.hpp"
+#include "app/pictures/frames.hpp"
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
@@ -109,13 +112,25 @@ class CompareCommand : public Command {
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: the beauty for eyes");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation")->type_name("F");
+    cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
+    cli_.add_option("--exposure", exposure_,
+                    "of the pictures for eyes: auto and first (the reference's lit surfaces fill them) or stops "
+                    "(default: auto)")
+        ->type_name("auto|first|EV");
+    add_refused_options();
   }
 
   int run(const GlobalOptions& global) override {
     options_.methods = parse_methods(methods_);
     options_.method_options = parse_method_options(run_.method_options);
+    refuse_means();
+    const Exposure exposure = parse_exposure(exposure_);
+    if (exposure.kind == Exposure::Kind::fixed) options_.exposure = exposure.stops;
+    const double fps = parse_fps(fps_);
+    if (frame_) options_.time = static_cast<double>(*frame_) * (1 / fps);  // as `render` has it
+    if (run_.camera == "all")
+      throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
     Progress progress(!global.quiet);
-    if (frame_) spdlog::warn("scenes have no animation yet: every frame shows the same");
     const compare::Metrics metrics = compare_methods(run_, options_, global.arguments, progress);
     print_table(metrics);
     print_budgets(metrics);
@@ -129,6 +144,31 @@ class CompareCommand : public Command {
   }
 
  private:
+  /// Options of `render` that would make another question of it. They are known here, so that it can be said why.
+  void add_refused_options() {
+    cli_.add_option("--pixel-samples", pixel_samples_, "1 alone: errors are of pixels' centres")->type_name("1");
+    cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
+    cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
+    cli_.add_option("--frames", frames_, "not here: errors are of one frame (--frame)")->type_name("A-B[xN]");
+    cli_.add_flag("--skip-existing", skip_existing_, "not here: everything is measured anew");
+  }
+
+  void refuse_means() const {
+    if (parse_integer<std::uint32_t>(pixel_samples_) != 1u) {
+      throw UsageError("--pixel-samples {}: methods are compared at pixels' centres, one view sample each; expected 1",
+                       pixel_samples_);
+    }
+    if (parse_integer<std::uint32_t>(motion_samples_) != 1u)
+      throw UsageError("--motion-samples {}: methods are compared at one moment; expected 1", motion_samples_);
+    if (!shutter_.empty())
+      throw UsageError("--shutter {}: methods are compared at one moment (--frame), not over an open shutter",
+                       shutter_);
+    if (!frames_.empty())
+      throw UsageError("--frames {}: methods are compared on one frame; --frame F, once for each", frames_);
+    if (skip_existing_)
+      throw UsageError("--skip-existing: a comparison is measured as a whole, so nothing of an earlier one is kept");
+  }
+
   [[nodiscard]] bool exceeds_max_rmse(const compare::Metrics& metrics) const {
     bool exceeded = false;
     for (const compare::MethodResult& result : metrics.methods) {
@@ -147,6 +187,8 @@ class CompareCommand : public Command {
   std::string methods_ = "default";
   std::optional<double> max_rmse_;
   std::optional<std::int64_t> frame_;
+  std::string fps_, exposure_, pixel_samples_ = "1", motion_samples_ = "1", shutter_, frames_;
+  bool skip_existing_ = false;
 };
 
 }  // namespace

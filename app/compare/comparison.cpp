@@ -23,6 +23,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -57,7 +58,7 @@ class Comparison {
     reference_request_ = parse_reference_samples();
     if (options.error_budget) require_explainable(options.methods);
     files_.claim(run.scene, options.methods, options.stats);
-    session_ = open_session(run, devices_, options.runs, progress);
+    session_ = open_session(run, options.time, devices_, options.runs, progress);
     files_.refuse_inputs(session_.scene.sources);
     progress.clear();
     for (const scenes::Object& object : session_.scene.objects) {
@@ -65,6 +66,8 @@ class Comparison {
       session_.warnings.push_back(fmt::format(
           "\"{}\" is translucent: pictures here show what is behind it (render composites it over that)", object.name));
     }
+    if (options.time && !session_.scene.motion)
+      spdlog::warn("{} has no animation: every frame shows the same", session_.scene.name);
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
     for (const Light& light : session_.lights) check_light(reference_.description, light);
     if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
@@ -141,7 +144,7 @@ class Comparison {
                      "choose a smaller --size or fewer --light-samples, or leave out --reference-samples same");
     }
     Finished done = run_one(reference_, reference_lights_, rays ? keep_rays() : TileSink([](const TileResult&) {}));
-    report_.exposure = auto_exposure(session_, done.beauty);
+    report_.exposure = options_.exposure ? std::exp2(*options_.exposure) : auto_exposure(session_, done.beauty);
     report_.metrics.reference = stats_of(reference_, reference_lights_, done.run);
     report_.metrics.judged_pixels = truths_.front().judged.size();
     report_.metrics.horizon_pixels = truths_.front().horizon.size();

@@ -5,6 +5,7 @@
 #include "compare/stats.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,10 @@ struct ComparisonOptions {
   std::string sample_pixels = "all";
   std::uint32_t runs = 5;
   bool bits = false, png = false;
-  bool error_budget = false;    ///< why each image-based method is wrong
-  std::filesystem::path stats;  ///< empty: only DIR/metrics.json
+  bool error_budget = false;      ///< why each image-based method is wrong
+  std::filesystem::path stats;    ///< empty: only DIR/metrics.json
+  std::optional<double> time;     ///< when the scene is looked at, in seconds; nothing: at rest
+  std::optional<float> exposure;  ///< of pictures for eyes, in stops; nothing: the reference's fill them
 };
 
 /// Runs the reference, then each method on the same view samples, and writes all of DIR. Every light is judged; what is

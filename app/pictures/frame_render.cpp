@@ -3,6 +3,7 @@
 #include "app/methods.hpp"
 #include "app/parse.hpp"
 #include "app/pictures/picture_file.hpp"
+#include "app/process/process.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/assert.hpp"
 #include "base/atomic_file.hpp"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace penumbra::app {
@@ -34,6 +36,12 @@ std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std
     for (std::size_t i = 0; i < part.size(); ++i) sum[i] += part[i];
   }
   return sum;
+}
+
+std::vector<std::string> names_of(const std::vector<visibility::Light>& lights) {
+  std::vector<std::string> names;
+  for (const visibility::Light& light : lights) names.push_back(light.name);
+  return names;
 }
 
 /// Is any pixel on a side that the light shines to?
@@ -84,50 +92,65 @@ Exposure parse_exposure(const std::string& text) {
 
 std::optional<float> written_exposure(const std::filesystem::path& picture) {
   if (!is_there(picture)) return std::nullopt;
-  const ExrFile file = read_exr(picture, {.channels = {"none of them: the header is enough"}});
+  ExrFile file;
+  try {
+    file = read_exr(picture, {.channels = {"none of them: the header is enough"}});
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
   const auto text = file.attributes.find(kExposure);
   const auto stops = text == file.attributes.end() ? std::nullopt : parse_number(text->second);
   return stops ? std::optional(static_cast<float>(*stops)) : std::nullopt;
 }
 
-PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, std::size_t lights)
-    : width_(width),
-      height_(height),
-      visibility_(lights, std::vector<double>(std::size_t{width} * height, 0)),
-      beauty_(lights, std::vector<glm::dvec3>(std::size_t{width} * height, glm::dvec3(0))),
-      alpha_(std::size_t{width} * height, 0) {}
+PictureMean::PictureMean(std::uint32_t width, std::uint32_t height)
+    : width_(width), height_(height), alpha_(std::size_t{width} * height, 0) {}
 
-void PictureMean::add(std::span<const float> alpha, std::span<const std::vector<float>> visibility,
-                      std::span<const std::vector<glm::vec3>> beauty, std::uint32_t side) {
+std::size_t PictureMean::number_of(const std::string& light) {
+  const auto known = std::ranges::find(lights_, light);
+  if (known != lights_.end()) return static_cast<std::size_t>(known - lights_.begin());
+  lights_.push_back(light);
+  visibility_.emplace_back(alpha_.size(), 0);
+  beauty_.emplace_back(alpha_.size(), glm::dvec3(0));
+  return lights_.size() - 1;
+}
+
+void PictureMean::add(std::span<const float> alpha, const std::vector<std::string>& lights,
+                      std::span<const std::vector<float>> visibility, std::span<const std::vector<glm::vec3>> beauty,
+                      std::uint32_t side) {
   const std::size_t width = std::size_t{width_} * side;
-  PENUMBRA_ASSERT(alpha.size() == width * height_ * side && visibility.size() == visibility_.size(),
+  PENUMBRA_ASSERT(alpha.size() == width * height_ * side && visibility.size() == lights.size(),
                   "{} view samples of {} lights for {}x{} blocks of {} of {}", alpha.size(), visibility.size(), width_,
-                  height_, side, visibility_.size());
+                  height_, side, lights.size());
+  std::vector<std::size_t> numbers;
+  for (const std::string& light : lights) numbers.push_back(number_of(light));
   for (std::size_t i = 0; i < alpha.size(); ++i) {
     const std::size_t x = i % width / side, y = i / width / side, pixel = y * width_ + x;
     alpha_[pixel] += double{alpha[i]};
     for (std::size_t light = 0; light < visibility.size(); ++light) {
-      visibility_[light][pixel] += double{visibility[light][i]};
-      if (!beauty[light].empty()) beauty_[light][pixel] += glm::dvec3(beauty[light][i]);
+      visibility_[numbers[light]][pixel] += double{visibility[light][i]};
+      if (!beauty[light].empty()) beauty_[numbers[light]][pixel] += glm::dvec3(beauty[light][i]);
     }
   }
   blocks_ += static_cast<double>(side) * side;
 }
 
-std::vector<std::vector<float>> PictureMean::visibility() const {
-  std::vector<std::vector<float>> means;
-  for (const std::vector<double>& sums : visibility_) {
-    auto& mean = means.emplace_back();
-    for (const double sum : sums) mean.push_back(static_cast<float>(sum / blocks_));
+std::vector<std::vector<float>> PictureMean::visibility(std::span<const std::string> lights) const {
+  std::vector<std::vector<float>> means(lights.size(), std::vector<float>(alpha_.size(), 0));
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    const auto number = static_cast<std::size_t>(std::ranges::find(lights_, lights[light]) - lights_.begin());
+    for (std::size_t i = 0; number < lights_.size() && i < alpha_.size(); ++i)
+      means[light][i] = static_cast<float>(visibility_[number][i] / blocks_);
   }
   return means;
 }
 
-std::vector<std::vector<glm::vec3>> PictureMean::beauty() const {
-  std::vector<std::vector<glm::vec3>> means;
-  for (const std::vector<glm::dvec3>& sums : beauty_) {
-    auto& mean = means.emplace_back();
-    for (const glm::dvec3& sum : sums) mean.emplace_back(sum / blocks_);
+std::vector<std::vector<glm::vec3>> PictureMean::beauty(std::span<const std::string> lights) const {
+  std::vector<std::vector<glm::vec3>> means(lights.size(), std::vector<glm::vec3>(alpha_.size(), glm::vec3(0)));
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    const auto number = static_cast<std::size_t>(std::ranges::find(lights_, lights[light]) - lights_.begin());
+    for (std::size_t i = 0; number < lights_.size() && i < alpha_.size(); ++i)
+      means[light][i] = glm::vec3(beauty_[number][i] / blocks_);
   }
   return means;
 }
@@ -168,14 +191,14 @@ void FrameRenderer::say_warnings() {
 }
 
 /// Says, and notes, where light samples are looked at though nobody asked for them.
-void FrameRenderer::choose_methods() {
-  chosen_ = choose_light_methods(lit().lights, wish_);
+void FrameRenderer::choose_methods(const std::vector<visibility::Light>& lights) {
+  chosen_ = choose_light_methods(lights, wish_);
   labels_.clear();
   notes_.clear();
   for (std::size_t light = 0; light < chosen_.size(); ++light) {
     const LightMethod& one = chosen_[light];
-    labels_.push_back({one.description, one.options,
-                       device_of(one.description.name, one.options, session().lights[light], devices_)});
+    labels_.push_back(
+        {one.description, one.options, device_of(one.description.name, one.options, lights[light], devices_)});
     if (one.note.empty()) continue;
     notes_.push_back(one.note);
     if (std::ranges::find(said_, one.note) != said_.end()) continue;
@@ -199,30 +222,38 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
 void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
   maker.show(std::move(scene), frame_.camera, 0, progress_);
   load_seconds_ += maker.session().load_seconds;
-  device_seconds_ += maker.session().device_seconds;
+  make_seconds_ += maker.session().device_seconds;
   view_seconds_ += maker.session().view_seconds + maker.session().receiver_seconds;
 }
 
 void FrameRenderer::run_methods(const std::filesystem::path& bits) {
+  Stopwatch watch;
   say_warnings();
-  choose_methods();
+  choose_methods(lit().lights);
+  load_seconds_ += watch.seconds();
   if (!bits.empty()) {
     check_bits(chosen_.front().description, lit().lights.front());
     bits_.emplace(bits, lit(), lit().lights.front());
   }
+  watch.restart();
   BeautyAccumulator beauty(lit(), lit().lights);
+  beauty_seconds_ += watch.seconds();
   run_ = run_lights(beauty, bits_ ? &*bits_ : nullptr);
+  watch.restart();
   beauty_ = beauty.parts();
   alpha_.clear();
   for (const std::int32_t triangle : lit().samples.triangle)
     alpha_.push_back(triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f);
+  beauty_seconds_ += watch.seconds();
   add_panes();
 }
 
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
   for (const std::vector<std::size_t>& lights : same_methods(chosen_)) {
+    const Stopwatch make;
     Kept& kept = method_for(chosen_[lights.front()]);
+    make_seconds_ += make.seconds();
     MethodRun run = run_method(
         *kept.method, lit(), {.lights = lit().lights, .only = lights, .prepared = kept.prepared},
         [&](const TileResult& tile) {
@@ -234,6 +265,9 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
         },
         progress_);
     kept.prepared = run.prepared;
+    // Whatever is no phase of the method's is about its answers.
+    const RunTimes& times = run.times;
+    beauty_seconds_ += times.total - times.mesh - times.light - times.evaluate - times.view;
     add_run(all, std::move(run));
   }
   view_seconds_ += all.times.view;
@@ -255,15 +289,21 @@ void FrameRenderer::add_panes() {
   };
   visibility::ViewSamples behind;
   for (std::size_t number = 0; number < panes.depth(); ++number) {
+    Stopwatch watch;
     visibility::PaneLayer layer = panes.layer(number);
     visibility::ViewSamples before = lit_maker().look_at(std::move(layer.samples));
     if (behind.size() == 0) behind = std::move(before);
+    view_seconds_ += watch.seconds();
+    watch.restart();
     BeautyAccumulator beauty(lit(), lit().lights);
+    beauty_seconds_ += watch.seconds();
     add_times(run_, run_lights(beauty, nullptr));
+    watch.restart();
     for (std::size_t i = 0; i < pixels; ++i) {
       add(i, through[i] * double{layer.alpha[i]}, beauty.parts());
       through[i] *= 1 - double{layer.alpha[i]};
     }
+    beauty_seconds_ += watch.seconds();
   }
   lit_maker().look_at(std::move(behind));
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -276,10 +316,9 @@ void FrameRenderer::add_panes() {
 
 void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits,
                            double read_seconds) {
-  const Stopwatch busy;
   frame_ = frame;
-  load_seconds_ = read_ahead_seconds_ = read_seconds;
-  device_seconds_ = view_seconds_ = bits_seconds_ = 0;
+  load_seconds_ = read_seconds;
+  make_seconds_ = view_seconds_ = beauty_seconds_ = bits_seconds_ = 0;
   bits_.reset();
   mean_.reset();
   run_ = {};
@@ -290,7 +329,6 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
     render_mean(std::move(scene));
   }
   devices_.check_validation();  // before anything appears: a picture that cannot be trusted is none
-  busy_seconds_ = busy.seconds();
 }
 
 void FrameRenderer::render_mean(scenes::Scene scene) {
@@ -304,12 +342,21 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
       fine_.emplace(fine_options_, devices_);
     }
   }
+  std::map<std::string, LightTimes> times;
   const auto add = [&](scenes::Scene moment) {
     show(side > 1 ? *fine_ : maker_, std::move(moment));
     MethodRun before = std::exchange(run_, {});
     run_methods({});
-    if (!mean_) mean_.emplace(lit().width / side, lit().height / side, lit().lights.size());
-    mean_->add(alpha_, run_.visibility, beauty_, side);
+    if (!mean_) mean_.emplace(lit().width / side, lit().height / side);
+    const std::vector<std::string> names = names_of(lit().lights);
+    const Stopwatch watch;
+    mean_->add(alpha_, names, run_.visibility, beauty_, side);
+    beauty_seconds_ += watch.seconds();
+    for (std::size_t light = 0; light < names.size(); ++light) {
+      times[names[light]].light += run_.times.lights[light].light;
+      times[names[light]].evaluate += run_.times.lights[light].evaluate;
+    }
+    before.times.lights.clear();  // its lights may be others
     add_times(run_, before);
   };
   if (frame_.moments.empty()) add(scene);
@@ -320,15 +367,33 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     add(std::move(then));
   }
   if (side == 1) show(maker_, std::move(scene));
+  // What is written of lights is about those of the frame's own time.
+  choose_methods(session().lights);
+  run_.times.lights.clear();
+  const std::vector<std::string> own = names_of(session().lights);
+  for (const std::string& light : own) run_.times.lights.push_back(times[light]);
+  for (const std::string& light : mean_->lights()) {
+    if (std::ranges::find(own, light) != own.end()) continue;
+    notes_.push_back(fmt::format(
+        "light \"{}\" is not there at the frame's own time: R G B have its light, and it has no layer", light));
+    if (std::ranges::find(said_, notes_.back()) == said_.end()) spdlog::warn("{}", said_.emplace_back(notes_.back()));
+  }
 }
 
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
   const LabelledLights lights{session().lights, labels_};
-  const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty() : std::move(beauty_);
-  const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility() : std::move(run_.visibility);
+  const std::vector<std::string> own = names_of(session().lights);
+  const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty(own) : std::move(beauty_);
+  const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility(own) : std::move(run_.visibility);
   const std::vector<float> alpha = mean_ ? mean_->alpha() : std::move(alpha_);
-  const std::vector<glm::vec3> sum = sum_of(beauty, session().pixel_count());
+  std::vector<glm::vec3> sum = sum_of(beauty, session().pixel_count());
+  if (mean_) {  // lights of other moments alone
+    std::vector<std::string> others = mean_->lights();
+    std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
+    const std::vector<glm::vec3> more = sum_of(mean_->beauty(others), sum.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
+  }
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops)) stops = std::log2(auto_exposure(session(), sum));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
@@ -348,14 +413,15 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   }
   compare::Stats stats = make_stats(session(), lights, run_);
   stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
-  // What stands between the phases is a few milliseconds of choosing and messages.
   compare::Seconds& seconds = stats.seconds;
   seconds.load = load_seconds_;
-  seconds.mesh = *seconds.mesh + device_seconds_;
+  seconds.mesh = *seconds.mesh + make_seconds_;
   seconds.view = view_seconds_;
-  seconds.beauty = std::max(run_.times.read - bits_seconds_, 0.0);
+  seconds.beauty = std::max(beauty_seconds_ - bits_seconds_, 0.0);
   seconds.write = write.seconds() + bits_seconds_;
-  seconds.total = read_ahead_seconds_ + busy_seconds_ + write.seconds();
+  // From the last picture to this one: the seconds of a sequence's pictures add up to its own.
+  const double now = seconds_since_start();
+  seconds.total = now - std::exchange(written_, now);
   if (!files.stats.empty()) {
     stats_file.emplace(files.stats);
     stats_file->write(compare::json_text(compare::to_json(stats)));

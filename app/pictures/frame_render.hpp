@@ -37,7 +37,8 @@ struct Exposure {
 /// "auto", "first" or a number of stops. Throws UsageError.
 Exposure parse_exposure(const std::string& text);
 
-/// The stops that an earlier run wrote into a picture's header; nothing if there is no such picture.
+/// The stops that an earlier run wrote into a picture's header; nothing if there is no such picture, or it does
+/// not say.
 std::optional<float> written_exposure(const std::filesystem::path& picture);
 
 /// What one picture shows, besides what is the same for all.
@@ -52,19 +53,27 @@ struct Frame {
 /// The mean of several pictures, or of blocks of pixels of larger ones.
 class PictureMean {
  public:
-  /// Of so many lights and pixels.
-  PictureMean(std::uint32_t width, std::uint32_t height, std::size_t lights);
+  /// Of so many pixels.
+  PictureMean(std::uint32_t width, std::uint32_t height);
   /// A picture of `side` times the width and height: each block counts as much as any other block of any picture.
-  void add(std::span<const float> alpha, std::span<const std::vector<float>> visibility,
-           std::span<const std::vector<glm::vec3>> beauty, std::uint32_t side);
+  /// Lights are who their names say, whatever their places; where one is missing, it counts as 0.
+  void add(std::span<const float> alpha, const std::vector<std::string>& lights,
+           std::span<const std::vector<float>> visibility, std::span<const std::vector<glm::vec3>> beauty,
+           std::uint32_t side);
 
-  [[nodiscard]] std::vector<std::vector<float>> visibility() const;
-  [[nodiscard]] std::vector<std::vector<glm::vec3>> beauty() const;
+  /// All that were added, in the order in which they came.
+  [[nodiscard]] const std::vector<std::string>& lights() const { return lights_; }
+  [[nodiscard]] std::vector<std::vector<float>> visibility(std::span<const std::string> lights) const;
+  [[nodiscard]] std::vector<std::vector<glm::vec3>> beauty(std::span<const std::string> lights) const;
   [[nodiscard]] std::vector<float> alpha() const;
 
  private:
+  /// Its number; one that nobody has added yet is added, dark.
+  std::size_t number_of(const std::string& light);
+
   std::uint32_t width_, height_;
-  double blocks_ = 0;                            // that were added, in view samples of a pixel
+  double blocks_ = 0;  // that were added, in view samples of a pixel
+  std::vector<std::string> lights_;
   std::vector<std::vector<double>> visibility_;  // sums, in double: order matters to no digit that is kept
   std::vector<std::vector<glm::dvec3>> beauty_;
   std::vector<double> alpha_;
@@ -78,7 +87,7 @@ class FrameRenderer {
 
   /// Looks at a scene and computes all lights' V and beauty: of it, or the mean of `frame.moments`; then positions,
   /// normals, depths and ids are those of `scene` and of pixels' centres. `read_seconds`: what reading the scene took,
-  /// of which nobody waited for anything else.
+  /// perhaps while the picture before was made; of the first, all since the process began.
   void render(scenes::Scene scene, const Frame& frame, const std::filesystem::path& bits, double read_seconds);
   /// Writes what was computed last. `exposure` gets its stops if it is of a sequence's first picture and has none yet.
   /// Returns what stats.json says.
@@ -95,7 +104,7 @@ class FrameRenderer {
     std::uint64_t mesh_version = 0;
   };
 
-  void choose_methods();
+  void choose_methods(const std::vector<visibility::Light>& lights);
   void run_methods(const std::filesystem::path& bits);
   /// What the chosen methods make of the view samples that are looked at; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
@@ -129,8 +138,9 @@ class FrameRenderer {
   std::vector<float> alpha_;                    // of each pixel
   std::optional<PictureMean> mean_;             // nothing: the picture is that of one moment and of pixels' centres
   std::optional<BitsOutput> bits_;
-  double read_ahead_seconds_ = 0, load_seconds_ = 0, device_seconds_ = 0, view_seconds_ = 0, bits_seconds_ = 0,
-         busy_seconds_ = 0;
+  // `make`: the device and methods. `beauty`: all that is done with what methods answer, writing bits included.
+  double load_seconds_ = 0, make_seconds_ = 0, view_seconds_ = 0, beauty_seconds_ = 0, bits_seconds_ = 0;
+  double written_ = 0;  // when the last picture was, since the process began
 };
 
 }  // namespace penumbra::app

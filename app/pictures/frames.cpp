@@ -67,6 +67,13 @@ FrameRange parse_frames(std::string_view text) {
       text, kMostFrames);
 }
 
+double parse_fps(const std::string& text) {
+  if (text.empty()) return 24;
+  const auto fps = parse_number(text);
+  if (!fps || !(*fps > 0)) throw UsageError("--fps {}: expected a number above 0, such as 24 or 29.97", text);
+  return *fps;
+}
+
 std::vector<std::int64_t> numbers_of(const FrameRange& range) {
   std::vector<std::int64_t> numbers;
   for (std::int64_t frame = range.first; frame <= range.last; frame += range.step) numbers.push_back(frame);

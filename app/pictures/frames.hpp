@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace penumbra::app {
 struct FrameRange {
   std::int64_t first = 0, last = 0, step = 1;
 };
+
+/// --fps: frames a second; 24 if nobody asked for any. Throws UsageError.
+double parse_fps(const std::string& text);
 
 /// "A-B" or "A-BxN", A ≤ B, 1 ≤ N. Throws UsageError that says what would be right.
 FrameRange parse_frames(std::string_view text);

@@ -3,14 +3,20 @@
 #include "app/process/failure.hpp"
 #include "base/error.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
 #include <system_error>
 
 #include <fcntl.h>
+#include <time.h>
 #include <unistd.h>
 
 namespace penumbra::app {
@@ -23,6 +29,23 @@ void occupy_closed_streams() {
     // stdout for reading only, so that results nobody can get are an error; messages nobody wants are none.
     ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }
+}
+
+double boot_clock() {
+  timespec now{};
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// On the boot clock: field 22 of proc(5)'s stat, in ticks. The second field, a name in brackets, may hold anything.
+double start_of_process() {
+  std::ifstream file("/proc/self/stat");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream fields(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
+  std::string field;
+  for (int number = 3; number < 22; ++number) fields >> field;
+  double ticks = 0;
+  return fields >> ticks ? ticks / static_cast<double>(::sysconf(_SC_CLK_TCK)) : boot_clock();
 }
 
 [[noreturn]] void end_after_uncaught() noexcept {
@@ -42,6 +65,11 @@ void prepare_process() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(end_after_uncaught);
+}
+
+double seconds_since_start() {
+  static const double start = start_of_process();
+  return std::max(boot_clock() - start, 0.0);
 }
 
 void say(std::string_view text) noexcept {

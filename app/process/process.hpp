@@ -9,6 +9,9 @@ namespace penumbra::app {
 /// instead, and costs an exit code. An exception that nobody catches ends the process with exit code 4 and a message.
 void prepare_process();
 
+/// Wall-clock seconds since this process began, to a hundredth; since the first call where the system does not say.
+double seconds_since_start();
+
 /// Writes to stderr if that is possible; what cannot be said is not said, and is no error.
 void say(std::string_view text) noexcept;
 

@@ -98,6 +98,9 @@ class WedgesCommand : public Command {
         ->type_name("FILE.svg")
         ->needs("--explain");
     cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
+    cli_.add_flag(
+        "--lenient", lenient_,
+        "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
   }
 
   int run(const GlobalOptions&) override {
@@ -107,7 +110,7 @@ class WedgesCommand : public Command {
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
     std::optional<MayExitAtOnce> at_once(std::in_place);  // until files are written
-    const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_});
+    const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_, .lenient = lenient_});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
     visibility::SceneFloats floats = visibility::make_scene_floats(scene);
@@ -185,7 +188,7 @@ class WedgesCommand : public Command {
 
   std::filesystem::path scene_, export_, json_, svg_;
   std::string light_, construction_ = "original", from_ = "centre", explain_;
-  bool validate_ = false, allow_outside_ = false;
+  bool validate_ = false, allow_outside_ = false, lenient_ = false;
 };
 
 }  // namespace

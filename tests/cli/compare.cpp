@@ -41,7 +41,11 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
   const json& method = result["methods"][0];
   for (const char* key : {"mean", "rmse", "p999", "max", "over05", "bias"})
     EXPECT_TRUE(method.at("error").contains(key)) << key;
-  EXPECT_TRUE(method.at("seconds").at("warmup").is_number());
+  const json& seconds = method.at("seconds");
+  EXPECT_TRUE(seconds.at("warmup").is_number());
+  double sum = 0;
+  for (const char* phase : {"load", "mesh", "view", "light", "evaluate"}) sum += seconds.at(phase).get<double>();
+  EXPECT_DOUBLE_EQ(seconds.at("total").get<double>(), sum);
 
   // The counts again, computed from the files.
   const auto mine = tests::read_bits(path("dir/view-sample.bits")),

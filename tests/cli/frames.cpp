@@ -1,6 +1,7 @@
 // `render` of what moves: which frames, which files, and that a frame of a sequence is the frame by itself.
 #include "tests/cli/program.hpp"
 
+#include "app/pictures/frame_render.hpp"
 #include "base/exr.hpp"
 #include "tests/unit/import/gltf_file.hpp"
 
@@ -99,6 +100,41 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
   EXPECT_THAT(render(sequence).err, HasSubstr("all 3 pictures are there"));
 }
 
+TEST_F(Frames, AFirstPictureThatDoesNotSayItsExposureIsNoReasonToStop) {
+  write("s.0001.exr", "kept as it is");
+  const Outcome outcome =
+      render({"--frames", "1-2", "-o", path("s.exr"), "--exposure", "first", "--skip-existing", "--size", "8x8"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("does not say how it was exposed"));
+  EXPECT_EQ(read("s.0001.exr"), "kept as it is");
+  EXPECT_TRUE(std::filesystem::exists(path("s.0002.exr")));
+}
+
+/// `compare` looks at the frame that `render` renders.
+TEST_F(Frames, OfComparisonsAreAtTheirTime) {
+  const auto compare = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"compare", path("scene.glb"), "--size",    "12x8",        "--runs", "1",
+                                          "-o",      path("dir"),       "--methods", "edge-scatter"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Outcome outcome = compare({"--frame", "5", "--fps", "10", "--pixel-samples", "1", "--exposure", "-2", "--png",
+                                   "--light-samples", "16", "--reference-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, Not(HasSubstr("animation")));
+  EXPECT_FLOAT_EQ(read_exr(path("dir/edge-scatter.exr")).floats.at("Z")[11], 3.5f);
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{"--pixel-samples", "4"}, "one view sample each"},         {{"--motion-samples", "2"}, "at one moment"},
+      {{"--shutter", "1"}, "not over an open shutter"},           {{"--frames", "1-2"}, "one frame; --frame F"},
+      {{"--skip-existing"}, "nothing of an earlier one is kept"}, {{"--camera", "all"}, "name one"},
+      {{"--exposure", "bright"}, "stops from -100 to 100"},       {{"--fps", "0"}, "a number above 0"}};
+  for (const auto& [options, why] : refused) {
+    const Outcome one = compare(options);
+    EXPECT_EQ(one.code, 2) << options.front();
+    EXPECT_THAT(one.err, HasSubstr(why)) << options.front();
+  }
+}
+
 TEST_F(Frames, ExposuresAreStops) {
   const auto png = [&](const std::string& exposure) {
     EXPECT_EQ(render({"--frame", "1", "-o", path("e.exr"), "--png", path("e.png"), "--exposure", exposure}).code, 0);
@@ -140,6 +176,51 @@ TEST_F(Frames, PixelSamplesAreMeans) {
   }
   EXPECT_GT(between, 5u);
   EXPECT_EQ(four.integers.at("id"), one.integers.at("id"));
+}
+
+/// A lamp that an animation hides stays a light, dark, and means over a shutter know lights by their names.
+TEST_F(Frames, OfALampThatIsHidden) {
+  test::Gltf gltf;
+  gltf.at("/nodes/0")["rotation"] = {-0.70710678, 0, 0, 0.70710678};
+  gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};
+  gltf.at("/nodes/1")["translation"] = {-2, 5, 0};
+  gltf.at("/nodes/2") = {
+      {"name", "Camera"}, {"camera", 0}, {"translation", {0, 4, 0}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}};
+  gltf.at("/nodes").push_back({{"name", "B"}, {"mesh", 1}, {"translation", {2, 5, 0}}, {"rotation", {1, 0, 0, 0}}});
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
+  gltf.animate(1, "scale", {0, 1}, {1, 1, 1, 0, 0, 0}, "STEP");
+  write("scene.glb", gltf.glb());
+  const Outcome outcome = render({"--frames", "5-15x5", "-o", path("s.##.exr"), "--light", "Lamp", "--light", "B"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("'Lamp' is scaled to nothing"));
+  const ExrFile shown = read_exr(path("s.05.exr")), hidden = read_exr(path("s.15.exr"));
+  const auto greatest = [](const std::vector<float>& all) { return *std::ranges::max_element(all); };
+  ASSERT_EQ(shown.floats.size(), hidden.floats.size());
+  EXPECT_GT(greatest(shown.floats.at("Lamp.R")), 0.1f);
+  EXPECT_EQ(greatest(hidden.floats.at("Lamp.R")), 0);
+  for (std::size_t i = 0; i < shown.floats.at("B.R").size(); ++i)
+    EXPECT_FLOAT_EQ(hidden.floats.at("B.R")[i], shown.floats.at("B.R")[i]);
+  // Half a frame and one and a half before and after the key.
+  const Outcome mean = render({"--frame", "10", "--motion-samples", "4", "--shutter", "4", "-o", path("m.exr")});
+  ASSERT_EQ(mean.code, 0) << mean.err;
+  const ExrFile blurred = read_exr(path("m.exr"));
+  for (std::size_t i = 0; i < blurred.floats.at("R").size(); ++i) {
+    EXPECT_FLOAT_EQ(blurred.floats.at("Lamp.R")[i], shown.floats.at("Lamp.R")[i] / 2);
+    EXPECT_FLOAT_EQ(blurred.floats.at("B.R")[i], shown.floats.at("B.R")[i]);
+  }
+}
+
+TEST(PictureMean, KnowsLightsByTheirNames) {
+  const std::vector<float> alpha = {1};
+  app::PictureMean mean(1, 1);
+  using Values = std::vector<std::vector<float>>;
+  using Colors = std::vector<std::vector<glm::vec3>>;
+  mean.add(alpha, {"A", "B"}, Values{{1}, {0.5f}}, Colors{{glm::vec3(4)}, {glm::vec3(2)}}, 1);
+  mean.add(alpha, {"B", "C"}, Values{{0.25f}, {1}}, Colors{{glm::vec3(1)}, {glm::vec3(8)}}, 1);
+  EXPECT_THAT(mean.lights(), ElementsAre("A", "B", "C"));
+  const std::vector<std::string> asked = {"C", "B", "A", "D"};
+  EXPECT_EQ(mean.visibility(asked), (Values{{0.5f}, {0.375f}, {0.5f}, {0}}));
+  EXPECT_EQ(mean.beauty(asked), (Colors{{glm::vec3(4)}, {glm::vec3(1.5f)}, {glm::vec3(2)}, {glm::vec3(0)}}));
 }
 
 /// Two moments of a shutter that is open for 0.4 frames: 0.1 frames before and after.

@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kFill =
     R"({"name": "fill", "rectangle": {"center": [3, 3, 3], "halfU": [0.2, 0, 0], "halfV": [0, 0, 0.2]}})";
@@ -151,6 +152,11 @@ TEST_P(Render, StatsAndPng) {
   for (const char* key : {"load", "mesh", "view", "light", "evaluate", "shadow", "total"}) {
     EXPECT_GE(stats.at("seconds").at(key).get<double>(), 0) << key;
   }
+  // Phases of one picture do not overlap; the system tells the process's start to a hundredth of a second.
+  double sum = 0;
+  for (const char* key : {"load", "mesh", "view", "light", "evaluate", "beauty", "write"})
+    sum += stats["seconds"].at(key).get<double>();
+  EXPECT_LE(sum, stats["seconds"]["total"].get<double>() + 0.02);
   EXPECT_TRUE(stats.at("seconds").at("warmup").is_null()) << "one run: nothing was discarded";
   EXPECT_DOUBLE_EQ(stats["seconds"]["shadow"].get<double>(),
                    stats["seconds"]["light"].get<double>() + stats["seconds"]["evaluate"].get<double>());
@@ -282,6 +288,17 @@ TEST_F(ExactByDefault, OfAMethodThatWasNamedToo) {
   EXPECT_EQ(rays.stats["lightSamples"], 256);
   EXPECT_THAT(rays.stats["warnings"].dump(), HasSubstr("raytrace does not give its exact area"));
   EXPECT_EQ(run({"render", path("scene.json"), "-o", path("out.exr"), "--method-option", "search=hsm"}).code, 2);
+}
+
+/// What looks at no light samples does not say that it does.
+TEST_F(ExactByDefault, EstimatesAreNoCounts) {
+  tiny_scene();
+  const Rendered hard = render({"--method", "alias-free"});
+  expect_first_light(hard,
+                     {{"method", "alias-free"}, {"lightSamples", 0}, {"samplePattern", nullptr}, {"quantity", "area"}});
+  EXPECT_THAT(hard.err,
+              testing::AllOf(HasSubstr("an estimate of V"), HasSubstr("the hard shadow of the light's centre"),
+                             Not(HasSubstr("256")), Not(HasSubstr("exact area"))));
 }
 
 /// A sun beside rectangles: what each light gives is the same together.

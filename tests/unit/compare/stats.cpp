@@ -39,6 +39,16 @@ Stats some_stats() {
   return stats;
 }
 
+TEST(Seconds, AddUpToTheirPhases) {
+  Seconds seconds;
+  EXPECT_EQ(seconds.sum(), 0);
+  seconds.load = 1, seconds.mesh = 2, seconds.view = 4, seconds.light = 8, seconds.evaluate = 16;
+  seconds.warmup = 1000, seconds.total = 1000;
+  EXPECT_EQ(seconds.sum(), 31) << "what was not measured counts as nothing";
+  seconds.beauty = 32, seconds.write = 64;
+  EXPECT_EQ(seconds.sum(), 127);
+}
+
 TEST(StatsJson, HasTheNamesOfTheInterface) {
   const auto json = to_json(some_stats());
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"scene", "size", "device", "triangles", "method", "options",
