@@ -152,7 +152,7 @@ const std::vector<TableRow>& table() {
   return rows;
 }
 
-/// Names of methods that are planned, or that this build goes without. They are never used for anything else.
+/// Names of methods that a build may go without. They are never used for anything else.
 constexpr std::array kNotThereYet = {"exact",
                                      "depth-complexity",
                                      "alias-free",

@@ -133,7 +133,7 @@ TEST_F(AgreementOn, SpheresAndSuns) {
     const glm::dvec3 center = std::get<scenes::Rectangle>(scene.lights[0].shape).center;
     for (const scenes::LightShape& shape :
          {scenes::LightShape(scenes::Sphere{center, 0.4}), scenes::LightShape(scenes::Sphere{center, 0.01}),
-          scenes::LightShape(scenes::Sun{-center, 12}), scenes::LightShape(scenes::Sun{-center, 0.5})}) {
+          scenes::LightShape(scenes::Sun{-center, 12}), scenes::LightShape(scenes::Sun{-center, 2})}) {
       scene.lights[0].shape = shape;
       for (const tests::MaskMethod& method : tests::kConeMethods) {
         const tests::Differences found = tests::BothMethods(device(), method).on(scene, 64);

@@ -151,7 +151,6 @@ std::vector<BadUsage> bad_usages() {
       {"SizeInWords", with({"--size", "big"}), 2, {"WxH"}},
       {"UnknownMethod", with({"--method", "magic"}), 2, {"magic", "raytrace"}},
       {"MisspeltMethod", with({"--method", "edge-scater"}), 2, {"did you mean edge-scatter?"}},
-      {"MethodNotThereYet", with({"--method", "soft-irregular"}), 2, {"not there yet", "raytrace"}},
       {"UnknownMethodOption", with({"--method", "raytrace", "--method-option", "speed=high"}), 2, {"speed"}},
       {"MethodOptionWithoutValue", with({"--method", "raytrace", "--method-option", "speed"}), 2, {"KEY=VALUE"}},
       {"UnknownLight", with({"--method", "raytrace", "--light", "moon"}), 2, {"moon", "key"}},

@@ -102,8 +102,7 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
 
 TEST_F(Frames, AFirstPictureThatDoesNotSayItsExposureIsNoReasonToStop) {
   write("s.0001.exr", "kept as it is");
-  const Outcome outcome =
-      render({"--frames", "1-2", "-o", path("s.exr"), "--exposure", "first", "--skip-existing", "--size", "8x8"});
+  const Outcome outcome = render({"--frames", "1-2", "-o", path("s.exr"), "--exposure", "first", "--skip-existing"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("does not say how it was exposed"));
   EXPECT_EQ(read("s.0001.exr"), "kept as it is");

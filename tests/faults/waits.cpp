@@ -14,7 +14,8 @@ class WaitFaults : public FaultTest {
   /// Work of minutes in few submissions for Mesa's driver for processors, with one thread.
   [[nodiscard]] Conditions long_work() const {
     return {.arguments = {"render", small_scene(), "-o", path("out.exr"), "--bits", path("out.bits"), "--method",
-                          "depth-complexity", "--size", "2048x2048", "--light-samples", "4096", "--device", "cpu"},
+                          "depth-complexity", "--method-option", "engine=vulkan", "--size", "2048x2048",
+                          "--light-samples", "4096", "--device", "cpu"},
             .environment = {{"LP_NUM_THREADS", "1"}}};
   }
 };
