@@ -1,5 +1,5 @@
-"""docs/alias-free.md, hierarchical-penumbra.md, view-sample-planar.md, and the variant of view-sample.md: view samples in
-lists of light pixels, pairs of boxes, footprints and left-sample maps."""
+"""docs/alias-free.md, hierarchical-penumbra.md, view-sample-planar.md, soft-irregular.md, and the variant of view-sample.md: view
+samples in lists of light pixels, pairs of boxes, footprints, wedges and left-sample maps."""
 
 from math import atan2, cos, floor, hypot, pi, sin
 
@@ -253,5 +253,110 @@ def clip_line(a, b, size=1.2):
     return tuple((a[0] + u * (b[0] - a[0]), a[1] + u * (b[1] - a[1])) for u in (low, high))
 
 
-FIGURES = {"alias-free": alias_free_figure, "hierarchical-penumbra": hierarchical_figure,
+def soft_irregular_figure():
+    """In a plane: the light is a segment, casters are segments, an edge is a caster's end, areas are lengths."""
+    half, centre, line, count = 1.0, (3.6, 6.2), -0.75, 16
+    ends = [(centre[0] - half, centre[1]), (centre[0] + half, centre[1])]
+    casters = [((2.3, 3.5), (4.2, 3.7)), ((3.3, 1.7), (5.3, 1.6))]
+    samples = [(-0.7 + 0.5 * i, 0.0) for i in range(20)]
+
+    def far(l, x):
+        return meet(l, x, (0, line), (1, line))[0]
+
+    def on_light(p, x):
+        """Where p sees x, −1 … 1 on the light."""
+        return (meet(p, x, *ends)[0] - centre[0]) / half
+
+    def beyond(place):
+        """The share of the light on the other side of an edge, as the centre sees it."""
+        return max(0, 1 - abs(place)) / 2
+
+    def visible(p, layers, some=None):
+        """1 − H − Σ k A; `some`: of these edges alone."""
+        hidden = [min(on_light(p, a), on_light(p, b)) < 0 < max(on_light(p, a), on_light(p, b)) for a, b in casters]
+        value = 1 - (sum(hidden) if layers else any(hidden))
+        for (a, b), over in zip(casters, hidden):
+            places = sorted((on_light(p, x), x) for x in (a, b))
+            for place, x in places:
+                if some is not None and x not in some:
+                    continue
+                # The caster lies toward the centre of an edge that gives light back, away from it of one that takes it.
+                gives = over or (place > 0) == (place == places[1][0])
+                value += beyond(place) if gives else -beyond(place)
+        return min(1, max(0, value))
+
+    def truth(p):
+        spans = sorted(sorted(min(1, max(-1, on_light(p, x))) for x in caster) for caster in casters)
+        (a, b), (c, e) = spans
+        return 1 - (b - a + e - c - max(0, min(b, e) - max(a, c))) / 2
+
+    d = Drawing(860, 616, "An irregular shadow map and wedges over lists of light pixels")
+    d.text((20, 26), "Wedges of the centre's silhouettes over lists of view samples", 14, bold=True)
+    view = View(d, (10, 40, 590, 400), (-1.2, 9.2), (-1.35, 6.5))
+    places = [far(centre, p) for p in samples]
+    low, high = min(places), max(places)
+    width = (high - low) / count
+
+    def pixel(x):
+        return min(max(floor((x - low) / width), 0), count - 1)
+
+    kept = {i: set() for i in range(len(samples))}
+    edge = casters[0][1]
+    touched, tested = set(), set()
+    for caster in casters:
+        for x in caster:
+            a, b = sorted(far(l, x) for l in ends)
+            for k in range(pixel(a), pixel(b) + 1):
+                for i, p in enumerate(samples):
+                    if pixel(places[i]) == k:
+                        if x == edge:
+                            touched.add(k)
+                            tested.add(i)
+                        if beyond(on_light(p, x)) > 0:
+                            kept[i].add(x)
+    # What the lists of a footprint find is all that matters.
+    for i, p in enumerate(samples):
+        assert abs(visible(p, True) - visible(p, True, kept[i])) < 1e-12
+    view.polygon([edge, (far(ends[1], edge), line), (far(ends[0], edge), line)], RED, opacity=0.16)
+    for a, b in casters:
+        view.polygon([a, b, (far(centre, b), line), (far(centre, a), line)], DARK, opacity=0.12)
+        view.line(a, b, INK, 4)
+        for x in (a, b):
+            view.dot(x, 3.5, RED if x == edge else "#ffffff", stroke=INK)
+    view.line((-1.1, 0), (9.1, 0), DARK, 2)
+    for k in range(count):
+        box = [(low + k * width, line), (low + (k + 1) * width, line), (low + (k + 1) * width, line - 0.3),
+               (low + k * width, line - 0.3)]
+        view.polygon(box, "#f6d9d5" if k in touched else "#ffffff", FAINT, 1)
+    umbra = [any(crosses(centre, p, *caster) for caster in casters) for p in samples]
+    for i, p in enumerate(samples):
+        view.line(p, (places[i], line), FAINT, 0.8, "2 3")
+        view.dot(p, 4.2, DARK if umbra[i] else LIGHT, stroke=RED if edge in kept[i] else INK)
+    view.line(*ends, LIGHT, 7)
+    view.dot(centre, 4, "#ffffff", stroke=INK)
+    view.text(ends[1], "light, and its centre", 12.5, (10, 4))
+    x = 612
+    d.legend((x, 90), [("dot", LIGHT, "sees the light's centre"), ("dot", DARK, "in the umbra of the centre"),
+                       ("ring", RED, "keeps the red edge"), ("box", "#f2d3cf", "its wedge, and light pixels that"), ("box", "#ffffff", "this touches")])
+    found = sum(edge in edges for edges in kept.values())
+    d.text((x, 206), f"{len(tested)} of {len(samples)} view samples are", 12.5)
+    d.text((x, 223), f"tested, and {found} see the red edge", 12.5)
+    d.text((x, 240), "before the light.", 12.5)
+    left, top, across, tall = 60, 470, 500, 130
+    xs = [-1 + 10 * i / 400 for i in range(401)]
+
+    def at(px, v):
+        return (view.at((px, 0))[0], top + tall * (1 - v))
+
+    assert max(abs(visible((px, 0.0), False) - truth((px, 0.0))) for px in xs if px < 1.2) < 1e-9
+    for v in (0, 0.5, 1):
+        d.line((left, top + tall * (1 - v)), (left + across + 20, top + tall * (1 - v)), PALE, 1)
+        d.text((left - 6, top + tall * (1 - v) + 4), f"{v:g}", 11, anchor="end")
+    for colour, dash, of in ((INK, None, truth), (RED, None, lambda p: visible(p, False)), (BLUE, "5 3", lambda p: visible(p, True))):
+        d.polygon([at(px, of((px, 0.0))) for px in xs], None, colour, 2, dash, closed=False)
+    d.legend((x, 500), [("line", INK, "*V* along the floor, exact"), ("line", RED, "umbra=map: leaks"), ("dash", BLUE, "umbra=layers: too dark")])
+    return d.finish()
+
+
+FIGURES = {"soft-irregular": soft_irregular_figure, "alias-free": alias_free_figure, "hierarchical-penumbra": hierarchical_figure,
            "footprints": footprint_figure, "left-samples": left_samples_figure}
