@@ -19,13 +19,16 @@ struct Dot {
   double x = 0, y = 0;  ///< on the drawing
 };
 
-/// Whole powers of ten around all values that are not 0.
+/// V is a float: an error of less than half of its last digit, and the mean of such errors, is drawn as none.
+constexpr double kNoError = 0x1p-25;
+
+/// Whole powers of ten around all values that are not none.
 struct Decades {
   int first = 0, last = 1;
   explicit Decades(std::span<const double> values) {
     double smallest = 0, largest = 0;
     for (const double value : values) {
-      if (value <= 0) continue;
+      if (value < kNoError) continue;
       smallest = smallest == 0 ? value : std::min(smallest, value);
       largest = std::max(largest, value);
     }
@@ -81,6 +84,7 @@ std::string names(std::vector<Dot> dots) {
 }
 
 std::string power_of_ten(int exponent) {
+  if (exponent < -4) return fmt::format("1e{}", exponent);  // longer ones would not fit beside the axis
   return fmt::format("{:.{}f}", std::pow(10, exponent), std::max(0, -exponent));
 }
 
@@ -104,11 +108,11 @@ std::string error_against_time_html(const ReportInput& in) {
     errors.push_back(*cost);
   }
   const Decades across(seconds), along(errors);
-  const bool has_zero = std::ranges::find(errors, 0.0) != errors.end();
+  const bool has_zero = std::ranges::any_of(errors, [](double error) { return error < kNoError; });
   const double bottom = has_zero ? kBottom - kZeroGap : kBottom;
   const auto x_of = [&](double value) { return kLeft + (kRight - kLeft) * across.share(value); };
   const auto y_of = [&](double value) {
-    return value <= 0 ? kBottom - 12 : bottom - (bottom - kTop) * along.share(value);
+    return value < kNoError ? kBottom - 12 : bottom - (bottom - kTop) * along.share(value);
   };
   std::string svg =
       "<svg class=\"plot\" viewBox=\"0 0 860 420\" role=\"img\" aria-label=\"Error of V against time, one mark a "
@@ -138,7 +142,7 @@ std::string error_against_time_html(const ReportInput& in) {
       "<text class=\"axis\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">seconds for the shadow{}</text>"
       "<text class=\"axis\" text-anchor=\"middle\" transform=\"translate(14 {}) rotate(-90)\">RMSE of V</text>\n",
       (kLeft + kRight) / 2, kBottom + 40, in.lights.size() > 1 ? " of all lights" : "", (kTop + kBottom) / 2);
-  if (cost && *cost > 0) {
+  if (cost && *cost >= kNoError) {
     svg += fmt::format(
         "<path class=\"cost\" d=\"M{0} {2:.1f}H{1}\"/><text class=\"axis\" x=\"{3}\" y=\"{4:.1f}\">what {5} light "
         "samples cost</text>\n",
@@ -154,7 +158,7 @@ std::string error_against_time_html(const ReportInput& in) {
   std::string html = "<h3>Error against time</h3>\n" + svg +
                      "<p class=\"note\">Further down is closer to the reference, further left is faster; both scales "
                      "step by tens. Circles are geometry-based methods, squares image-based ones, diamonds references.";
-  if (cost && *cost > 0) {
+  if (cost && *cost >= kNoError) {
     html += fmt::format(
         " The dashed line is how far rays on the methods’ own {} light samples are from the reference: a method with a "
         "mask can be as exact as can be and yet come no lower, and it is no fault of its own.",

@@ -115,6 +115,20 @@ TEST(Report, DrawsErrorAgainstTimeAndTheBudget) {
   EXPECT_EQ(report_html(in).find("Error against time"), std::string::npos);
 }
 
+/// A method that is right to a float's last digit does not push all others into a corner.
+TEST(Report, DrawsErrorsBelowAFloatsLastDigitAsNone) {
+  ReportInput in = input_with(2);
+  in.metrics.methods[1].all_lights_error->rmse = 2.5e-10;
+  std::string html = report_html(in);
+  EXPECT_NE(html.find("\">0</text>"), std::string::npos);
+  EXPECT_EQ(html.find("1e-1"), std::string::npos);
+  in.metrics.methods[1].all_lights_error->rmse = 2e-6;
+  html = report_html(in);
+  EXPECT_EQ(html.find("\">0</text>"), std::string::npos);
+  EXPECT_NE(html.find("\">1e-6</text>"), std::string::npos);
+  EXPECT_EQ(html.find("0.00000"), std::string::npos);
+}
+
 TEST(Report, LinksLeadSomewhere) {
   ReportInput in = input_with(2);
   in.warnings = {"w"};
