@@ -8,6 +8,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp
   analytic/maps/layers.cpp
+  analytic/maps/left_out.cpp
   analytic/maps/contour.cpp
   analytic/maps/contour_claims.cpp
   analytic/maps/light_table.cpp
