@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""The strips of methods in README.md: for each method V, and below it how far V is off, one PNG each in
-docs/images/methods/. Runs one comparison a strip against exact areas and takes the pictures out of its report. Python's standard
-library is all that it needs.
+"""What methods get wrong, in PNGs. The strips of README.md (geometry, image): for each method V, and below it how far V is
+off, in docs/images/methods/, out of one report a strip. And the error maps of the methods' pages (pages): V, and beside it how
+far it is off where errors are judged, on a scene where that can be seen, in docs/images/errors/. Exact areas judge. Python's standard library is all
+that it needs.
 
-  docs/method_pictures.py [--program build/penumbra] [geometry] [image]          minutes: exact areas at every pixel"""
+  docs/method_pictures.py [--program build/penumbra] [geometry] [image] [pages | PAGE…]          minutes each"""
 
 import argparse
 import base64
@@ -12,12 +13,15 @@ import re
 import subprocess
 import sys
 import tempfile
+from math import sqrt
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "docs" / "figures"))
+sys.path.insert(0, str(ROOT / "docs" / "figures" / "papers"))
 
+from experiment import TRUTH, Runner, measures  # noqa: E402
 from png import read_png, write_png  # noqa: E402
 
 SCENE = "scenes/fusion.json"
@@ -29,6 +33,42 @@ STRIPS = {
                        "backproject:size=128", "backproject-peel:size=128", "bitmask:size=128", "contour:size=128:traversal=hierarchy",
                        "packet:size=128:sublights=2", "adaptive-light:size=128", "layered-attenuation:size=128", "deep-penumbra:size=128"]),
 }
+# Page: scene, light samples, one or two entries. Not `exact`: it is the judge.
+PAGES = {
+    "edge-scatter": ("large-penumbra", 64, ["edge-scatter", TRUTH]),
+    "view-sample": ("thin", 64, ["view-sample"]),
+    "depth-complexity": ("large-penumbra", 16, ["depth-complexity", "depth-complexity:variant=forest"]),
+    "view-sample-planar": ("thin", 256, ["view-sample-planar:lookup=nearest:map=32"]),
+    "hierarchical-penumbra": ("contact", 64, ["hierarchical-penumbra"]),
+    "alias-free": ("contact", 64, ["alias-free"]),
+    "hard-volume": ("room", 64, ["hard-volume"]),
+    "wedge-ramp": ("bunny", 64, ["wedge-ramp"]),
+    "soft-volume": ("fusion", 64, ["soft-volume", "soft-volume:split=3"]),
+    "soft-volume-blend": ("large-penumbra", 64, ["soft-volume-blend"]),
+    "soft-irregular": ("fusion", 64, ["soft-irregular", "soft-irregular:umbra=layers"]),
+    "raytrace": ("bunny", 64, ["raytrace"]),
+    "shadow-map": ("contact", 64, ["shadow-map:size=256"]),
+    "pcf": ("contact", 64, ["pcf:size=256"]),
+    "pcss": ("papers/fusion-half", 64, ["pcss"]),
+    "vssm": ("papers/two-sheets", 64, ["vssm", "vssm:moments=esm"]),
+    "convolution": ("papers/tower", 64, ["convolution"]),
+    "occlusion-textures": ("contact", 64, ["occlusion-textures:size=512"]),
+    "accumulate": ("contact", 64, ["accumulate:size=128"]),
+    "soft-shadow-map": ("papers/ball", 64, ["soft-shadow-map", "soft-shadow-map:passes=2"]),
+    "backproject": ("papers/plate-over-plate", 64, ["backproject:size=128:fill=none", "backproject:size=128"]),
+    "backproject-peel": ("papers/ball", 64, ["backproject-peel:size=128:layers=1", "backproject-peel:size=128"]),
+    "bitmask": ("papers/bars", 256, ["bitmask:size=256", "bitmask:size=256:occluder=patch"]),
+    "contour": ("papers/gap-open", 64, ["contour:size=256"]),
+    "packet": ("papers/ball", 64, ["packet:size=256", "packet:size=256:sublights=2"]),
+    "adaptive-light": ("papers/ball", 64, ["adaptive-light:size=256", "adaptive-light:size=256:weights=area"]),
+    "layered-attenuation": ("contact", 36, ["layered-attenuation:size=128"]),
+    "deep-penumbra": ("contact", 36, ["deep-penumbra:size=128", "deep-penumbra:size=128:bound=0.2"]),
+}
+PAGE_SIZE, PAGE_LIMIT = 144, 0.5  # pixels on a side; the error of the deepest colour
+# As compare/error_picture.cpp.
+BACKGROUND = (96, 104, 116)
+TOO_BRIGHT = ((255, 255, 255), (188, 218, 236), (90, 163, 206), (33, 102, 172), (5, 40, 90))
+TOO_DARK = ((255, 255, 255), (253, 208, 180), (240, 130, 95), (190, 35, 45), (95, 0, 25))
 LEFT, TOP, RIGHT, BOTTOM = 0.05, 0.125, 0.925, 0.90625  # the part of the picture in which something happens
 
 
@@ -66,6 +106,46 @@ def render(program, size, factor, samples, methods):
         print(f"{name}: RMSE {e['rmse']:.4f}, largest {e['max']:.2f}, {path.stat().st_size} bytes")
 
 
+def error_color(error):
+    arm = TOO_BRIGHT if error > 0 else TOO_DARK
+    depth = 4 * sqrt(min(1, abs(error) / PAGE_LIMIT))
+    first = min(int(depth), 3)
+    return tuple(round(a + (b - a) * (depth - first)) for a, b in zip(arm[first], arm[first + 1]))
+
+
+def render_pages(program, pages):
+    """Pages with the same scene and light samples share a run."""
+    runs = {}
+    for page in pages:
+        runs.setdefault(PAGES[page][:2], []).append(page)
+    for (scene, samples), together in runs.items():
+        entries = [entry for page in together for entry in PAGES[page][2]]
+        found = Runner(program).compare(f"scenes/{scene}.json", entries, size=PAGE_SIZE, samples=samples)
+        found[TRUTH] = found["truth"]
+        for page in together:
+            print(f"{page}: scenes/{scene}.json, {samples} light samples, {write_page(page, found)} bytes")
+            for entry in PAGES[page][2]:
+                error = measures(found, entry, ("rmse", "bias"))
+                print(f"  {entry}: RMSE {error['rmse']:.4f}, mean error {error['bias']:+.4f}", flush=True)
+
+
+def write_page(page, found):
+    """For each entry V, and beside it how far it is off."""
+    rows = [b""] * PAGE_SIZE
+    for k, entry in enumerate(PAGES[page][2]):
+        greys, errors = [], []
+        for v, truth, a, judged in zip(found[entry]["V"], *(found[TRUTH][name] for name in ("V", "A", "judged"))):
+            greys.append((round(255 * min(max(v, 0), 1)),) * 3 if a else BACKGROUND)
+            errors.append(error_color(v - truth) if judged else BACKGROUND)
+        for y in range(PAGE_SIZE):
+            line = slice(y * PAGE_SIZE, (y + 1) * PAGE_SIZE)
+            rows[y] += b"\xff" * (24 if k else 0) + b"".join(map(bytes, greys[line])) + b"\xff" * 12 + b"".join(map(bytes, errors[line]))
+    path = ROOT / "docs" / "images" / "errors" / f"{page}.png"
+    path.parent.mkdir(exist_ok=True)
+    write_png(path, rows)
+    return path.stat().st_size
+
+
 def file_name(entry):
     """The method's name, with those of its options that change more than resolution and time."""
     parts = [text for text in entry.split(":") if not text.startswith(("size=", "receiverSize=", "traversal="))]
@@ -74,11 +154,14 @@ def file_name(entry):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("strips", nargs="*", choices=[[], *STRIPS], metavar="STRIP")
+    parser.add_argument("what", nargs="*", choices=[[], *STRIPS, "pages", *PAGES], metavar="WHAT")
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "penumbra")
     args = parser.parse_args()
-    for strip in args.strips or STRIPS:
-        render(args.program.resolve(), *STRIPS[strip])
+    wanted = args.what or [*STRIPS, "pages"]
+    for what in STRIPS:
+        if what in wanted:
+            render(args.program.resolve(), *STRIPS[what])
+    render_pages(args.program, [page for page in PAGES if page in wanted or "pages" in wanted])
 
 
 main()

@@ -54,6 +54,29 @@ def scene(casters, half=0.5, light_y=5.0, floor=2.5, eye=0.01, half_z=None, cent
     }
 
 
+def cross(a, b):
+    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def judged(world, channels):
+    """Of each pixel, whether errors are counted there: something is seen, in front of the first light, a rectangle, and all of
+    this is above its tangent plane."""
+    light = world["lights"][0]["rectangle"]
+    u, v = light["halfU"], light["halfV"]
+    corners = [[c + s * x + t * y for c, x, y in zip(light["center"], u, v)] for s in (-1, 1) for t in (-1, 1)]
+    normal = cross(u, v)
+    found = []
+    for a, *p_n in zip(channels["A"], *(channels[f"{name}.{axis}"] for name in "PN" for axis in "XYZ")):
+        p, n = p_n[:3], p_n[3:]
+        ways = [[x - y for x, y in zip(corner, p)] for corner in corners]
+        found.append(a > 0 and dot(normal, ways[0]) < 0 and all(dot(n, way) > 0 for way in ways))
+    return found
+
+
 class Runner:
     """Runs the program, and keeps what each run was."""
 
@@ -63,7 +86,7 @@ class Runner:
         self.device = None
 
     def compare(self, world, methods, size=48, runs=1, samples=None, more=()):
-        """{entry: {"V": pixels, "A", "counters", "passes", "evaluate", "light", "rmse"}}, with "truth" among them. `size`: pixels on
+        """{entry: {"V": pixels, "A", "judged", "counters", "passes", "evaluate", "light", "rmse"}}, with "truth" among them. `size`: pixels on
         a side, or (width, height)."""
         width, height = size if isinstance(size, tuple) else (size, size)
         entries = list(dict.fromkeys([TRUTH, *methods]))
@@ -80,14 +103,16 @@ class Runner:
                 path.write_text(json.dumps(world), encoding="utf-8")
             else:
                 path = ROOT / world
+                world = json.loads(path.read_text(encoding="utf-8"))
             subprocess.run([self.program, "-q", "compare", path, "-o", out, *args], check=True, stdout=subprocess.DEVNULL)
             metrics = json.loads((out / "metrics.json").read_text(encoding="utf-8"))
-            found = {}
+            found, counted = {}, None  # all entries have the same view samples
             for entry in metrics["methods"]:
                 assert entry["failure"] is None, (entry["entry"], entry["failure"])
                 channels, _ = read_exr(out / f"{entry['entry']}.exr")
+                counted = counted or judged(world, channels)
                 found[entry["entry"]] = {
-                    "V": channels["V"], "A": channels["A"], "counters": entry["counters"], "device": entry["device"],
+                    "V": channels["V"], "A": channels["A"], "judged": counted, "counters": entry["counters"], "device": entry["device"],
                     "passes": {p["name"]: p["milliseconds"] for p in entry["passes"]},
                     "evaluate": entry["seconds"]["evaluate"], "light": entry["seconds"]["light"],
                     "rmse": entry["error"]["rmse"]}
@@ -100,7 +125,7 @@ class Runner:
 def measures(found, entry, keep=None):
     """Errors of an entry against the truth of its run. `s0` is the measure of Atty et al. 2006: the sum of |V − V_ref| over the
     pixels in umbra or penumbra, a pixel. `leak`: share of the umbra with V > 0.05; `dark`: of what is lit with V < 0.95."""
-    pairs = [(v, r) for v, r, a in zip(found[entry]["V"], found["truth"]["V"], found["truth"]["A"]) if a > 0]
+    pairs = [(v, r) for v, r, a in zip(found[entry]["V"], found["truth"]["V"], found["truth"]["judged"]) if a]
     shadow = sum(r < 1 for _, r in pairs)
     umbra = [v for v, r in pairs if r == 0]
     lit = [v for v, r in pairs if r == 1]
