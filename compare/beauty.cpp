@@ -47,7 +47,7 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
   for (std::size_t i = begin; i < end; ++i) {
     if (in.samples.triangle[i] < 0) continue;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
-    if (in.scene.emits[triangle] >= 0) continue;
+    if (in.scene.emits[triangle] == light.index) continue;  // V and masks are those of the rule
     if (!is_lit_by(in.scene, light, static_cast<std::uint32_t>(triangle))) continue;
     const bool bent = !in.normals.empty() && in.normals[i] != in.samples.n[i];
     const visibility::UnshadowedLight view(light, in.samples.p[i], bent ? in.normals[i] : in.samples.n[i]);
@@ -92,7 +92,8 @@ std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<cons
       if (emits >= 0) {
         // By the light's number in the scene: `lights` may hold only those that were asked for.
         for (const visibility::Light& light : scene.lights) {
-          if (light.index == emits) sum[i - range.begin()] = radiance_at(light, scene.samples.p[i]);
+          if (light.index == emits && light.piece == 0)
+            sum[i - range.begin()] += radiance_at(light, scene.samples.p[i]);
         }
       }
       beauty[i] = glm::vec3(sum[i - range.begin()]);

@@ -54,9 +54,10 @@ struct BeautyScene {
 /// V and masks know only the triangle and what is above its plane, so the terminator is where either normal turns away.
 /// Form factors are of the triangle's own normal: where a pixel has another, its beauty is V · F of the whole light.
 ///
-/// Pixels of a light's body show its radiance (with a texture, times the texel that is there or nearest; black if that
-/// light is not among `lights`: it is off), the background is 0, and what receives no shadow is lit as if nothing stood
-/// between. A sphere light is the disk that p sees of it, which fills its solid angle.
+/// Pixels of a light's body show its radiance (with a texture, times the texel that is there or nearest; none if that
+/// light is not among `lights`: it is off) beside what its colour reflects of the other lights, the background is 0,
+/// and what receives no shadow is lit as if nothing stood between. A sphere light is the disk that p sees of it, which
+/// fills its solid angle.
 ///
 /// Each pixel is summed in double and in one order, so the result does not depend on the number of threads.
 std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility);

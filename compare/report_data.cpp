@@ -160,7 +160,7 @@ std::string report_data_html(const ReportInput& in) {
                   {"tooDark", colors(error_colors(false))},
                   {"classNames",
                    {"background", "a light’s body", "receives no shadow", "judged", "at the horizon",
-                    "behind the light", "not lit by this light"}},
+                    "behind the light", "not lit by this light", "another light’s body"}},
                   {"lights", lights},
                   {"entries", entries}};
   // A name may hold "</script": the only thing that could end the element.

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include <array>
+#include <utility>
 #include <variant>
 
 namespace penumbra::compare {
@@ -38,6 +40,21 @@ struct ShapeText {
                                                   s.cone->outer, text_of(s.cone->direction))
                                     : "";
     return fmt::format("a sphere of radius {:.4g} at {}{}", s.radius, text_of(s.center), cone);
+  }
+  /// "3 pieces: 2 rectangles, 1 polygon"
+  std::string operator()(const scenes::Pieces& light) const {
+    constexpr std::array kKinds = {"rectangle", "polygon", "sphere"};
+    static_assert(kKinds.size() == std::variant_size_v<scenes::Pieces::Piece>);
+    std::array<std::size_t, kKinds.size()> counts{};
+    for (const scenes::Pieces::Piece& piece : light.pieces) ++counts.at(piece.index());
+    std::string text = fmt::format("{} pieces:", light.pieces.size());
+    const char* before = " ";
+    for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+      if (counts.at(kind) == 0) continue;
+      text += fmt::format("{}{} {}{}", std::exchange(before, ", "), counts.at(kind), kKinds.at(kind),
+                          counts.at(kind) == 1 ? "" : "s");
+    }
+    return text;
   }
 };
 

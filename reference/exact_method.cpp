@@ -61,6 +61,7 @@ class Exact final : public visibility::Method {
   visibility::MethodDescription description_;
   SweepArithmetic arithmetic_ = SweepArithmetic::rounded;
   const SceneFloats* scene_ = nullptr;
+  const Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   std::optional<ExactArea> area_;
   std::optional<std::vector<std::uint32_t>> wanted_;  // ascending; nothing: every pixel
@@ -104,12 +105,13 @@ void Exact::prepare_light(const Light& light) {
   PENUMBRA_ASSERT(area_.has_value(), "prepare_mesh comes first");
   visibility::check_light(description_, light);
   area_->set_light(light);
+  light_ = &light;
   view_samples_ = triangles_ = edges_ = 0;
 }
 
 /// Not those that the host's rules answer.
 bool Exact::is_question(std::size_t pixel) const {
-  return visibility::is_receiver(*scene_, *samples_, pixel);
+  return visibility::is_receiver(*scene_, *light_, *samples_, pixel);
 }
 
 ExactView Exact::evaluate_pixel(std::size_t pixel) {

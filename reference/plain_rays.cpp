@@ -153,7 +153,7 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
       for (std::size_t x = block.cols().begin(); x != block.cols().end(); ++x) {
         const std::size_t pixel = y * samples.width + x;
         visibility[pixel] = 1;
-        if (!visibility::is_receiver(*scene_, samples, pixel)) continue;
+        if (!visibility::is_receiver(*scene_, light, samples, pixel)) continue;
         visibility[pixel] = 0;
         const glm::vec3 n = samples.n[pixel], p = range.scaled(samples.p[pixel]) + offset_ * n;
         if (sphere) {

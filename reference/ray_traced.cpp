@@ -198,7 +198,7 @@ void RayTraced::decide_short_rays(std::size_t pixel, const std::vector<glm::vec3
 
 template <int kWidth>
 void RayTraced::trace_pixel(std::size_t pixel, Workspace& work, std::span<std::uint32_t> visible) {
-  if (!visibility::is_receiver(*scene_, *samples_, pixel)) {
+  if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {
     std::copy(full_mask_.begin(), full_mask_.end(), visible.begin());
     return;
   }

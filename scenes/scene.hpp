@@ -94,7 +94,12 @@ inline double irradiance_of_radiance(const Sun& sun) {
   const double sine = std::sin(sun.angle / 360 * std::numbers::pi);
   return std::numbers::pi * sine * sine;
 }
-using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse, Sun>;
+/// Several that are one light: an emitter that turns corners or lies apart, cut up.
+struct Pieces {
+  using Piece = std::variant<Rectangle, Polygon, Sphere>;
+  std::vector<Piece> pieces;  ///< at least one; no cones
+};
+using LightShape = std::variant<Rectangle, Disk, Polygon, Sphere, Ellipse, Sun, Pieces>;
 
 /// A picture on a rectangle light. It stands upright and unmirrored before who looks at the side that emits, half_u to
 /// the right and half_v upward: texel (0, 0), the picture's top left, lies in the corner −half_u + half_v. Each texel

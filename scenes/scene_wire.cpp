@@ -52,6 +52,8 @@ void put_count(WireWriter& to, std::size_t count) {
   to.put<std::uint64_t>(count);
 }
 
+void put_shape(WireWriter& to, const LightShape& shape);
+
 struct PutShape {
   WireWriter& to;
   void operator()(const Rectangle& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
@@ -63,7 +65,18 @@ struct PutShape {
   }
   void operator()(const Ellipse& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
   void operator()(const Sun& shape) const { to.put(shape.direction), to.put(shape.angle); }
+  void operator()(const Pieces& shape) const {
+    put_count(to, shape.pieces.size());
+    for (const Pieces::Piece& piece : shape.pieces) {
+      std::visit([&](const auto& one) { put_shape(to, one); }, piece);
+    }
+  }
 };
+
+void put_shape(WireWriter& to, const LightShape& shape) {
+  to.put(static_cast<std::uint8_t>(shape.index()));
+  std::visit(PutShape{to}, shape);
+}
 
 LightShape get_shape(WireReader& from) {
   switch (from.get<std::uint8_t>()) {
@@ -103,6 +116,23 @@ LightShape get_shape(WireReader& from) {
     case 5: {
       Sun shape;
       shape.direction = get_vector(from), shape.angle = get_number(from);
+      return shape;
+    }
+    case 6: {
+      Pieces shape;
+      const auto count = from.get<std::uint64_t>();
+      for (std::uint64_t i = 0; i < count; ++i) {
+        const LightShape one = get_shape(from);
+        if (const auto* rectangle = std::get_if<Rectangle>(&one))
+          shape.pieces.emplace_back(*rectangle);
+        else if (const auto* polygon = std::get_if<Polygon>(&one))
+          shape.pieces.emplace_back(*polygon);
+        else if (const auto* sphere = std::get_if<Sphere>(&one))
+          shape.pieces.emplace_back(*sphere);
+        else
+          throw WireError("a light has a piece of a kind that is none");
+      }
+      if (shape.pieces.empty()) throw WireError("a light has no pieces");
       return shape;
     }
     default:
@@ -215,8 +245,7 @@ void put_scene(WireWriter& to, const Scene& scene) {
   put_count(to, scene.lights.size());
   for (const AreaLight& light : scene.lights) {
     to.put_string(light.name);
-    to.put(static_cast<std::uint8_t>(light.shape.index()));
-    std::visit(PutShape{to}, light.shape);
+    put_shape(to, light.shape);
     to.put(light.radiance);
     put_bool(to, light.two_sided);
   }

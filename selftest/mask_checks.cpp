@@ -27,7 +27,7 @@ Check check_masks(visibility::Method& method, const Stage& stage, const std::str
   }
   std::vector<Check> pixels(stage.samples.size());
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t pixel) {
-    if (!visibility::is_receiver(stage.floats, stage.samples, pixel)) return;
+    if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, pixel)) return;
     for (std::uint32_t j = 0; j < stage.light.sample_count(); ++j) {
       const bool found = (masks[pixel * words + j / 32] >> (j % 32) & 1) != 0;
       const auto truth = visibility::decide_pair(stage.floats, stage.samples, pixel, stage.light, j);

@@ -52,6 +52,10 @@ Axes axes_around(const glm::dvec3& n) {
 }
 
 /// What the shapes have in common while a light is being made.
+struct NoArea : InputError {
+  using InputError::InputError;
+};
+
 struct Builder {
   Light& light;
   const glm::dvec3& origin;
@@ -60,7 +64,7 @@ struct Builder {
   [[nodiscard]] glm::vec3 stored(const glm::dvec3& world) const { return to_float(world, origin); }
 
   [[noreturn]] void refuse_zero_area(const std::string& detail) const {
-    throw InputError("light \"{}\": its area is zero{}; an area light needs a shape with an area", light.name, detail);
+    throw NoArea("light \"{}\": its area is zero{}; an area light needs a shape with an area", light.name, detail);
   }
 
   /// The frame must span a plane after rounding too, and emit to the side it was meant to.
@@ -124,6 +128,7 @@ struct Builder {
   }
 
   void operator()(const scenes::Polygon& shape) const;
+  void operator()(const scenes::Pieces& shape) const;
 
   void operator()(const scenes::Sphere& shape) const {
     light.kind = LightKind::sphere;
@@ -230,6 +235,11 @@ void Builder::operator()(const scenes::Polygon& shape) const {
   }
 }
 
+void Builder::operator()(const scenes::Pieces& shape) const {
+  throw InputError("light \"{}\" is cut in {} pieces, and what was asked for is of one; take another light", light.name,
+                   shape.pieces.size());
+}
+
 void add_texture(Light& light, const scenes::Texture& source) {
   PENUMBRA_ASSERT(light.kind == LightKind::rectangle, "light \"{}\" is a {} with a texture", light.name,
                   name_of(light.kind));
@@ -256,6 +266,52 @@ void add_links(Light& light, const scenes::Scene& scene, std::uint32_t light_ind
     const bool casts = object.casts_shadow && (light.unshaded_by.empty() || light.unshaded_by[i] == 0) && !own_body;
     if (casts && object.alpha.mode != scenes::Alpha::Mode::opaque) light.filtered_by = object.name;
   }
+}
+
+/// Which of a scene's lights, or which piece of it, and what shape that is.
+struct Part {
+  const scenes::Scene& scene;
+  std::uint32_t light_index, piece;
+};
+
+template <typename Shape>
+Light make_part(const Part& part, const Shape& shape, const glm::dvec3& origin, const SampleRequest& request,
+                std::vector<std::string>* notes) {
+  const auto& [scene, light_index, piece] = part;
+  const scenes::AreaLight& source = scene.lights.at(light_index);
+  const SampleLayout layout = layout_of(request);
+  Light light;
+  light.name = source.name;
+  light.index = static_cast<std::int32_t>(light_index);
+  light.piece = piece;
+  light.two_sided = source.two_sided;
+  light.radiance = source.radiance;
+  light.pattern = request.pattern;
+  if (request.pattern == SamplePattern::rows || request.pattern == SamplePattern::grid) {
+    light.rows = layout.rows;
+    light.columns = layout.columns;
+    if (notes != nullptr && request.rows == 0 && layout.count != request.count) {
+      notes->push_back(fmt::format("light samples: {} rounded up to {} rows of {} = {} by pattern {}", request.count,
+                                   layout.rows, layout.columns, layout.count, name_of(request.pattern)));
+    }
+  }
+  if (request.pattern == SamplePattern::rows) {
+    for (std::uint32_t row = 0; row < layout.rows; ++row) light.row_shift.push_back(row_shift_of(row));
+  }
+
+  const std::vector<glm::dvec2> unit = unit_square_samples(request);
+  std::visit(Builder{light, origin, unit}, shape);
+  const auto all_finite = [](const std::vector<glm::vec3>& points) {
+    return std::all_of(points.begin(), points.end(), finite);
+  };
+  if (!finite(light.center) || !finite(light.center_u) || !finite(light.center_v) || !all_finite(light.outline) ||
+      !all_finite(light.points) || !std::isfinite(light.area)) {
+    throw InputError("light \"{}\": its position relative to the scene's origin ({}, {}, {}) is not finite in float32",
+                     light.name, origin.x, origin.y, origin.z);
+  }
+  if (source.texture) add_texture(light, *source.texture);
+  add_links(light, scene, light_index);
+  return light;
 }
 
 }  // namespace
@@ -288,39 +344,25 @@ bool is_planar(LightKind kind) {
 
 Light make_light(const scenes::Scene& scene, std::uint32_t light_index, const glm::dvec3& origin,
                  const SampleRequest& request, std::vector<std::string>* notes) {
-  const scenes::AreaLight& source = scene.lights.at(light_index);
-  const SampleLayout layout = layout_of(request);
-  Light light;
-  light.name = source.name;
-  light.index = static_cast<std::int32_t>(light_index);
-  light.two_sided = source.two_sided;
-  light.radiance = source.radiance;
-  light.pattern = request.pattern;
-  if (request.pattern == SamplePattern::rows || request.pattern == SamplePattern::grid) {
-    light.rows = layout.rows;
-    light.columns = layout.columns;
-    if (notes != nullptr && request.rows == 0 && layout.count != request.count) {
-      notes->push_back(fmt::format("light samples: {} rounded up to {} rows of {} = {} by pattern {}", request.count,
-                                   layout.rows, layout.columns, layout.count, name_of(request.pattern)));
+  return make_part({scene, light_index, 0}, scene.lights.at(light_index).shape, origin, request, notes);
+}
+
+std::vector<Light> make_light_pieces(const scenes::Scene& scene, std::uint32_t light_index, const glm::dvec3& origin,
+                                     const SampleRequest& request, std::vector<std::string>* notes) {
+  const auto* cut = std::get_if<scenes::Pieces>(&scene.lights.at(light_index).shape);
+  if (cut == nullptr) return {make_light(scene, light_index, origin, request, notes)};
+  std::vector<Light> pieces;
+  std::optional<NoArea> thin;
+  for (const scenes::Pieces::Piece& shape : cut->pieces) {
+    const auto piece = static_cast<std::uint32_t>(pieces.size());
+    try {
+      pieces.push_back(make_part({scene, light_index, piece}, shape, origin, request, piece == 0 ? notes : nullptr));
+    } catch (const NoArea& error) {
+      thin = error;
     }
   }
-  if (request.pattern == SamplePattern::rows) {
-    for (std::uint32_t row = 0; row < layout.rows; ++row) light.row_shift.push_back(row_shift_of(row));
-  }
-
-  const std::vector<glm::dvec2> unit = unit_square_samples(request);
-  std::visit(Builder{light, origin, unit}, source.shape);
-  const auto all_finite = [](const std::vector<glm::vec3>& points) {
-    return std::all_of(points.begin(), points.end(), finite);
-  };
-  if (!finite(light.center) || !finite(light.center_u) || !finite(light.center_v) || !all_finite(light.outline) ||
-      !all_finite(light.points) || !std::isfinite(light.area)) {
-    throw InputError("light \"{}\": its position relative to the scene's origin ({}, {}, {}) is not finite in float32",
-                     light.name, origin.x, origin.y, origin.z);
-  }
-  if (source.texture) add_texture(light, *source.texture);
-  add_links(light, scene, light_index);
-  return light;
+  if (pieces.empty()) throw NoArea(*thin);
+  return pieces;
 }
 
 glm::vec3 center_of(const Light& light) {

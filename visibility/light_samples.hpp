@@ -36,6 +36,9 @@ struct SampleRequest {
 struct Light {
   std::string name;
   std::int32_t index = 0;  ///< in Scene::lights
+  /// Of a light in pieces (scenes::Pieces), which this is. Each piece is a Light of its own, with the name, index, and
+  /// so the body, of all. docs/definitions.md says what their V is together.
+  std::uint32_t piece = 0;
   LightKind kind = LightKind::rectangle;
   bool two_sided = false;
   glm::dvec3 radiance{0};  ///< of a sun of one direction: irradiance / π
@@ -113,11 +116,16 @@ PointBounds point_bounds(const Light& light);
 /// strata of equal area, in L = round(√N) rows.
 std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request);
 
-/// Throws InputError for a light of zero area, one whose points are not finite in float32 relative to `origin`, or one
-/// whose samples all lie on black texels.
+/// Throws InputError for a light of zero area, one whose points are not finite in float32 relative to `origin`, one
+/// whose samples all lie on black texels, or one in pieces.
 /// If rows or grid rounded the count, `notes` (when given) gets a line that says so.
 Light make_light(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
                  const SampleRequest& request, std::vector<std::string>* notes = nullptr);
+
+/// The same for a light that may be in pieces: each piece, with the light samples that were asked for; of any other
+/// light that itself. Pieces without an area in float32 relative to `origin` are left out, unless all are.
+std::vector<Light> make_light_pieces(const scenes::Scene& scene, std::uint32_t light, const glm::dvec3& origin,
+                                     const SampleRequest& request, std::vector<std::string>* notes = nullptr);
 
 /// The point that stands for the whole light: its stored centre; of a polygon, its centroid rounded to float32.
 glm::vec3 center_of(const Light& light);

@@ -9,9 +9,13 @@
 
 namespace penumbra::visibility {
 
-/// Who receives shadow: not the body of a light, nor what says that it does not. There V = 1, whatever casts.
-[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::uint32_t triangle) {
-  return scene.emits[triangle] < 0 && scene.receives_shadow[triangle] != 0;
+/// Who receives shadow of a light (Light::index): not its own body, nor what says that it receives none. There V = 1,
+/// whatever casts.
+[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::int32_t light, std::uint32_t triangle) {
+  return scene.emits[triangle] != light && scene.receives_shadow[triangle] != 0;
+}
+[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, const Light& light, std::uint32_t triangle) {
+  return is_receiver(scene, light.index, triangle);
 }
 
 /// Does the light light this triangle's object (a mesh's `lights`)?
@@ -19,10 +23,15 @@ namespace penumbra::visibility {
   return light.unlit.empty() || light.unlit[scene.object[triangle]] == 0;
 }
 
-/// Does the surface that a pixel shows receive shadow? Background does not.
-[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel) {
+/// Does the surface that a pixel shows receive shadow of the light? Background does not.
+[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, std::int32_t light, const ViewSamples& samples,
+                                      std::size_t pixel) {
   const std::int32_t carrier = samples.triangle[pixel];
-  return carrier != ViewSamples::kBackground && is_receiver(scene, static_cast<std::uint32_t>(carrier));
+  return carrier != ViewSamples::kBackground && is_receiver(scene, light, static_cast<std::uint32_t>(carrier));
+}
+[[nodiscard]] inline bool is_receiver(const SceneFloats& scene, const Light& light, const ViewSamples& samples,
+                                      std::size_t pixel) {
+  return is_receiver(scene, light.index, samples, pixel);
 }
 
 }  // namespace penumbra::visibility

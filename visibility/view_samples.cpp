@@ -79,9 +79,11 @@ bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, con
 PixelClass classify(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light) {
   if (samples.triangle[pixel] == ViewSamples::kBackground) return PixelClass::background;
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
-  if (scene.emits[carrier] < 0 && !is_lit_by(scene, light, carrier)) return PixelClass::unlit;
-  if (!is_receiver(scene, carrier)) return scene.emits[carrier] >= 0 ? PixelClass::emitter : PixelClass::unshadowed;
+  if (scene.emits[carrier] == light.index) return PixelClass::emitter;
+  if (!is_lit_by(scene, light, carrier)) return PixelClass::unlit;
+  if (!is_receiver(scene, light, carrier)) return PixelClass::unshadowed;
   if (!in_front_of_light(light, samples.p[pixel])) return PixelClass::behind;
+  if (scene.emits[carrier] >= 0) return PixelClass::other_body;
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
   if (light.sun) {
     return cone_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;

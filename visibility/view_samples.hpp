@@ -80,12 +80,13 @@ ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCame
 /// What kind of receiver a pixel is for one light.
 enum class PixelClass : std::uint8_t {
   background,  ///< A = 0
-  emitter,     ///< carries the body of some light: V = 1
+  emitter,     ///< carries the light's own body: V = 1
   unshadowed,  ///< receivesShadow is false: V = 1
   judged,      ///< the whole light is above the tangent plane and p is in front of the light
   horizon,     ///< some of the light is not strictly above the tangent plane
   behind,      ///< p is not strictly on an emitting side of the light
   unlit,       ///< the carrier's object is not among those that the light lights: V = 0
+  other_body,  ///< p, in front of the light, is on the body of another one: V as anywhere, but errors leave it out
 };
 
 /// Exact (the predicates of pair_truth on the stored floats; the light by its outline). One entry a pixel.

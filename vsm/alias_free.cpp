@@ -209,7 +209,7 @@ std::vector<Face> AliasFree::sort_view_samples(const visibility::Tile& tile) {
   const glm::dvec3 center(center_);
   tbb::parallel_for(std::size_t{0}, lit_.size(), [&](std::size_t i) {
     const std::size_t pixel = first_pixel_ + i;
-    if (!visibility::is_receiver(*scene_, *samples_, pixel)) return;
+    if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) return;
     const auto carrier = scene_->corners(static_cast<std::uint32_t>(samples_->triangle[pixel]));
     lit_[i] = visibility::above_horizon(*light_, carrier, samples_->facing[pixel], center_) &&
               visibility::in_front_of_light(*light_, samples_->p[pixel]);

@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace penumbra::app {
@@ -22,16 +23,22 @@ namespace {
 
 using visibility::LightKind;
 
-LightKind kind_of(const scenes::AreaLight& light) {
-  struct Kind {
-    LightKind operator()(const scenes::Rectangle&) const { return LightKind::rectangle; }
-    LightKind operator()(const scenes::Disk&) const { return LightKind::disk; }
-    LightKind operator()(const scenes::Ellipse&) const { return LightKind::ellipse; }
-    LightKind operator()(const scenes::Sun&) const { return LightKind::sun; }
-    LightKind operator()(const scenes::Polygon&) const { return LightKind::polygon; }
-    LightKind operator()(const scenes::Sphere&) const { return LightKind::sphere; }
+/// Of a light in pieces, those of all pieces.
+std::set<LightKind> kinds_of(const scenes::AreaLight& light) {
+  struct Kinds {
+    std::set<LightKind> operator()(const scenes::Rectangle&) const { return {LightKind::rectangle}; }
+    std::set<LightKind> operator()(const scenes::Disk&) const { return {LightKind::disk}; }
+    std::set<LightKind> operator()(const scenes::Ellipse&) const { return {LightKind::ellipse}; }
+    std::set<LightKind> operator()(const scenes::Sun&) const { return {LightKind::sun}; }
+    std::set<LightKind> operator()(const scenes::Polygon&) const { return {LightKind::polygon}; }
+    std::set<LightKind> operator()(const scenes::Sphere&) const { return {LightKind::sphere}; }
+    std::set<LightKind> operator()(const scenes::Pieces& light) const {
+      std::set<LightKind> kinds;
+      for (const scenes::Pieces::Piece& piece : light.pieces) kinds.merge(std::visit(*this, piece));
+      return kinds;
+    }
   };
-  return std::visit(Kind(), light.shape);
+  return std::visit(Kinds(), light.shape);
 }
 
 InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) {
@@ -42,7 +49,9 @@ InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside) 
   for (const scenes::Object& object : scene.objects) mesh.objects.push_back(object.name);
   mesh.notes = std::move(scene.warnings);
   mesh.sources = std::move(scene.sources);
-  for (const scenes::AreaLight& light : scene.lights) mesh.lights.push_back({light.name, kind_of(light)});
+  for (const scenes::AreaLight& light : scene.lights) {
+    for (const LightKind kind : kinds_of(light)) mesh.lights.push_back({light.name, kind});
+  }
   return mesh;
 }
 

@@ -22,7 +22,8 @@ using visibility::PixelClass;
 using volumes::LayerSum;
 
 const char* name_of(PixelClass kind) {
-  static constexpr std::array kNames = {"background", "emitter", "unshadowed", "judged", "horizon", "behind", "unlit"};
+  static constexpr std::array kNames = {"background", "emitter", "unshadowed", "judged",
+                                        "horizon",    "behind",  "unlit",      "other body"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -125,7 +126,9 @@ Explanation explain(const ToExplain& input, std::uint32_t x, std::uint32_t y) {
   result.sample = {samples.p[pixel], static_cast<std::uint32_t>(samples.triangle[pixel]), samples.facing[pixel]};
   result.object = input.scene.objects[input.floats.object[result.sample.carrier]].name;
   result.given = result.kind == PixelClass::behind || result.kind == PixelClass::unlit ? 0 : 1;
-  if (result.kind != PixelClass::judged && result.kind != PixelClass::horizon) return result;
+  const bool asked =
+      result.kind == PixelClass::judged || result.kind == PixelClass::horizon || result.kind == PixelClass::other_body;
+  if (!asked) return result;
   const volumes::SoftVisibility soft(input.floats, input.light, input.casters);
   result.center = soft.at(result.sample, volumes::Viewer::center);
   result.receiver = soft.at(result.sample, volumes::Viewer::receiver);
@@ -173,7 +176,7 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
       fmt::print("background, no surface; V = 1\n");
       return;
     case PixelClass::emitter:
-      fmt::print("{} is the body of a light; V = 1\n", explanation.object);
+      fmt::print("{} is the body of this light; V = 1\n", explanation.object);
       return;
     case PixelClass::unshadowed:
       fmt::print("{} receives no shadow; V = 1\n", explanation.object);
@@ -187,6 +190,7 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
       return;
     case PixelClass::judged:
     case PixelClass::horizon:
+    case PixelClass::other_body:
       break;
   }
   fmt::print("{}, triangle {}, p = {}\n", explanation.object, explanation.sample.carrier,

@@ -46,9 +46,10 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
 }
 
 void MaskMethod::prepare_view(const visibility::ViewSamples& samples) {
+  PENUMBRA_ASSERT(light_ != nullptr, "prepare_light comes first: {} pixels", samples.size());
   samples_ = &samples;
-  view_.prepare(samples, *scene_, scale_, notes_.tags);
-  if (light_ != nullptr && max_tile_rows() >= samples.height) view_.load({0, samples.height});
+  view_.prepare(samples, *scene_, *light_, scale_, notes_.tags);
+  if (max_tile_rows() >= samples.height) view_.load({0, samples.height});
 }
 
 std::uint32_t MaskMethod::max_tile_rows() const {

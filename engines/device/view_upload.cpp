@@ -10,14 +10,14 @@ namespace penumbra::device {
 using visibility::Texel;
 using visibility::TriangleTree;
 
-void ViewUpload::prepare(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene, float scale,
-                         std::span<const std::uint32_t> tags) {
+void ViewUpload::prepare(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
+                         const visibility::Light& light, float scale, std::span<const std::uint32_t> tags) {
   width_ = samples.width;
   texels_.clear();
   texels_.reserve(2 * samples.size());
   for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
     const glm::vec3 p = samples.p[pixel] * scale;
-    if (!visibility::is_receiver(scene, samples, pixel)) {
+    if (!visibility::is_receiver(scene, light, samples, pixel)) {
       texels_.push_back({p, TriangleTree::kNoTriangle});
       texels_.push_back({glm::vec3(0), 0});
       continue;

@@ -2,6 +2,7 @@
 
 #include "render/buffer.hpp"
 #include "render/device.hpp"
+#include "visibility/light_samples.hpp"
 #include "visibility/method.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/tree_texels.hpp"
@@ -15,8 +16,8 @@
 namespace penumbra::device {
 
 /// View samples on the device: two texels a pixel, (p, carrying triangle) and (normal, the carrier's plane and tag).
-/// p is scaled like everything there. What receives no shadow is background (TriangleTree::kNoTriangle); where a
-/// triangle's normal is not known (visibility::normal_is_known), it is 0.
+/// p is scaled like everything there. What receives no shadow of the light is background (TriangleTree::kNoTriangle);
+/// where a triangle's normal is not known (visibility::normal_is_known), it is 0.
 class ViewUpload {
  public:
   static constexpr std::uint64_t kTexelsPerPixel = 2, kBytesPerPixel = kTexelsPerPixel * sizeof(visibility::Texel);
@@ -24,8 +25,8 @@ class ViewUpload {
   explicit ViewUpload(const render::Device& device) : device_(&device) {}
 
   /// `tags`: for each triangle bits to be OR-ed to the number of its plane; empty: none.
-  void prepare(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene, float scale,
-               std::span<const std::uint32_t> tags = {});
+  void prepare(const visibility::ViewSamples& samples, const visibility::SceneFloats& scene,
+               const visibility::Light& light, float scale, std::span<const std::uint32_t> tags = {});
   void load(const visibility::Tile& tile);  ///< if its rows are not on the device yet
 
   [[nodiscard]] const render::Buffer& buffer() const { return *buffer_; }

@@ -62,7 +62,7 @@ std::uint32_t PairMethod::max_tile_rows() const {
 /// Conditions (1) and (2) of the truth of a pair, exactly.
 void PairMethod::start(std::size_t pixel) {
   const std::span<std::uint32_t> mask = visible(static_cast<std::uint32_t>(pixel));
-  if (!visibility::is_receiver(*scene_, *samples_, pixel)) {
+  if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {
     std::ranges::copy(full_, mask.begin());
     return;
   }
@@ -93,7 +93,7 @@ void PairMethod::evaluate(const visibility::Tile& tile) {
   std::vector<std::uint32_t> pixels;
   for (std::size_t pixel = first_pixel_; pixel < first_pixel_ + count; ++pixel) {
     const auto number = static_cast<std::uint32_t>(pixel);
-    if (visibility::is_receiver(*scene_, *samples_, pixel) && sees_something(number)) pixels.push_back(number);
+    if (visibility::is_receiver(*scene_, *light_, *samples_, pixel) && sees_something(number)) pixels.push_back(number);
   }
   if (!pixels.empty() && !tree_.nodes.empty()) block(pixels, counters_);
   milliseconds_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -43,7 +43,8 @@ std::size_t split(std::span<GridSample> samples) {
 
 SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at) {
   const auto& [scene, samples, light, grid, normal_is_known, scale] = view;
-  if (!visibility::is_receiver(scene, samples, pixel)) return SampleClass::all_visible;
+  if (!visibility::is_receiver(scene, static_cast<std::int32_t>(grid.light), samples, pixel))
+    return SampleClass::all_visible;
   const auto triangle = static_cast<std::uint32_t>(samples.triangle[pixel]);
   at.p = samples.p[pixel] * scale;
   const glm::vec3 from = at.p - grid.center;

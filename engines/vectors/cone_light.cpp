@@ -119,7 +119,7 @@ LightGrid ConeLight::make_grid() const {
 }
 
 SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, GridSample& at, LightCone& cone) const {
-  if (!visibility::is_receiver(view.scene, view.samples, pixel)) return SampleClass::all_visible;
+  if (!visibility::is_receiver(view.scene, light_, view.samples, pixel)) return SampleClass::all_visible;
   const auto triangle = static_cast<std::uint32_t>(view.samples.triangle[pixel]);
   const glm::vec3& p = view.samples.p[pixel];
   at.p = p * view.scale;

@@ -101,6 +101,7 @@ class Subsampled final : public visibility::Method {
     if (widths_) widths_->prepare_mesh(scene);
   }
   void prepare_light(const visibility::Light& light) override {
+    light_ = &light;
     method_->prepare_light(light);
     if (widths_) widths_->prepare_light(light);
     whole_.clear();
@@ -133,6 +134,7 @@ class Subsampled final : public visibility::Method {
   std::unique_ptr<visibility::Method> method_, widths_;
   std::uint32_t step_;
   const visibility::SceneFloats* scene_ = nullptr;
+  const visibility::Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   ViewSamples few_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> computed_;  ///< pixel, and where it is in few_
@@ -141,7 +143,7 @@ class Subsampled final : public visibility::Method {
 };
 
 void Subsampled::choose(std::uint32_t pixel) {
-  if (visibility::is_receiver(*scene_, *samples_, pixel)) {
+  if (visibility::is_receiver(*scene_, *light_, *samples_, pixel)) {
     computed_.emplace_back(pixel, static_cast<std::uint32_t>(few_.triangle.size()));
   }
   few_.triangle.push_back(samples_->triangle[pixel]);
@@ -211,11 +213,11 @@ void Subsampled::choose_pixels() {
       const std::uint32_t pixel = y * samples.width + x;
       if (!steps.empty() && (x % steps[pixel] != 0 || y % steps[pixel] != 0)) continue;
       choose(pixel);
-      if (visibility::is_receiver(*scene_, samples, pixel)) shown.insert(object_of(pixel));
+      if (visibility::is_receiver(*scene_, *light_, samples, pixel)) shown.insert(object_of(pixel));
     }
   }
   for (std::uint32_t pixel = 0; pixel < samples.size(); ++pixel) {
-    if (visibility::is_receiver(*scene_, samples, pixel) && !shown.contains(object_of(pixel))) choose(pixel);
+    if (visibility::is_receiver(*scene_, *light_, samples, pixel) && !shown.contains(object_of(pixel))) choose(pixel);
   }
   while (few_.width > 0 && few_.triangle.size() % few_.width != 0) {
     few_.triangle.push_back(ViewSamples::kBackground);
@@ -237,7 +239,7 @@ void Subsampled::evaluate(const visibility::Tile& tile) {
   const std::vector<float> few = answers(*method_, few_);
   std::vector<KnownPixel> pixels(samples_->size());
   for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel) {
-    if (!visibility::is_receiver(*scene_, *samples_, pixel)) continue;
+    if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) continue;
     pixels[pixel].object = scene_->object[static_cast<std::size_t>(samples_->triangle[pixel])];
   }
   for (const auto& [pixel, at] : computed_) {

@@ -62,8 +62,8 @@ struct SideTriangles {
   std::vector<glm::dvec2> hull_x, hull_y;  // (x, z) and (y, z), basis coordinates, z > 0
 };
 
-bool receives(const visibility::SceneFloats& scene, std::size_t triangle) {
-  return visibility::is_receiver(scene, static_cast<std::uint32_t>(triangle)) &&
+bool receives(const visibility::SceneFloats& scene, const visibility::Light& light, std::size_t triangle) {
+  return visibility::is_receiver(scene, light, static_cast<std::uint32_t>(triangle)) &&
          scene.plane[triangle] != visibility::SceneFloats::kNoPlane;
 }
 
@@ -175,7 +175,7 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
   for (int s = 0; s < (light.two_sided ? 2 : 1); ++s) {
     const double sign = s == 0 ? 1 : -1;
     const SideTriangles receivers =
-        triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, i); });
+        triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });
     if (!receivers.any) continue;
     const bool beside = options.beside != glm::dvec2(0) || options.reach != glm::dvec2(0);
     const SideTriangles casters = triangles_on_side(scene, local, sign, [&](std::size_t i) {

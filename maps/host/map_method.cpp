@@ -190,8 +190,8 @@ void MapMethod::make_centre_maps(std::uint32_t part) {
 }
 
 void MapMethod::prepare_view(const visibility::ViewSamples& samples) {
-  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_view before prepare_mesh", recipe_.description.name);
-  receivers_.upload(*device_, *scene_, samples);
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", recipe_.description.name);
+  receivers_.upload(*device_, *scene_, *light_, samples);
 }
 
 std::uint32_t MapMethod::max_tile_rows() const {

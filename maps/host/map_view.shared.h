@@ -40,8 +40,8 @@ struct LightBasis {
   vec3 u, v, n;
 };
 
-// A view sample as the look-ups take it. n is zero where nothing is shadowed: background, emitters, receivesShadow
-// false.
+// A view sample as the look-ups take it. n is zero where nothing is shadowed: background, the light's own body,
+// receivesShadow false.
 struct Receiver {
   vec3 p, n;
 };

@@ -11,7 +11,7 @@
 namespace penumbra::maps {
 
 void Receivers::upload(const render::Device& device, const visibility::SceneFloats& scene,
-                       const visibility::ViewSamples& samples) {
+                       const visibility::Light& light, const visibility::ViewSamples& samples) {
   width_ = samples.width;
   height_ = samples.height;
   bands_.clear();
@@ -25,7 +25,7 @@ void Receivers::upload(const render::Device& device, const visibility::SceneFloa
     receivers.assign(std::size_t{rows} * width_, {});
     const std::size_t first = std::size_t{row} * width_;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-      if (!visibility::is_receiver(scene, samples, first + i)) continue;
+      if (!visibility::is_receiver(scene, light, samples, first + i)) continue;
       if (!wanted_ || left_out_[first + i] == 0) receivers[i] = {samples.p[first + i], samples.n[first + i]};
     }
     bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});

@@ -19,7 +19,8 @@ class Receivers {
  public:
   /// Only these pixels will be looked at (visibility::Method::want_pixels): upload() makes background of the others.
   void want(std::span<const std::uint32_t> pixels) { wanted_.emplace(pixels.begin(), pixels.end()); }
-  void upload(const render::Device& device, const visibility::SceneFloats& scene,
+  /// What receives no shadow of the light is background.
+  void upload(const render::Device& device, const visibility::SceneFloats& scene, const visibility::Light& light,
               const visibility::ViewSamples& samples);
 
   /// The part of a tile that lies in one band.

@@ -46,7 +46,7 @@ void MapFrame::record(render::Commands& /*commands*/, const MapSet& maps) {
                       .half_box = half_box(maps.light, maps.basis),
                       .smallest_near = static_cast<float>(half_width(maps.light))};
   for (std::uint32_t i = 0; i < maps.scene.triangles.size(); ++i) {
-    if (!visibility::is_receiver(maps.scene, i)) continue;
+    if (!visibility::is_receiver(maps.scene, maps.light, i)) continue;
     for (const glm::vec3& corner : maps.scene.corners(i)) {
       const auto height = static_cast<float>(maps.basis.local(corner).z);
       frame.deepest[0] = std::max(frame.deepest[0], height);

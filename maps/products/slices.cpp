@@ -60,10 +60,10 @@ Range heights(const MapSet& maps, double sign, const Counts& counts) {
 
 }  // namespace
 
-std::uint32_t ground_of(const visibility::SceneFloats& scene, const LightBasis& basis) {
+std::uint32_t ground_of(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis) {
   std::vector<double> areas;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-    if (!visibility::is_receiver(scene, i)) continue;
+    if (!visibility::is_receiver(scene, light, i)) continue;
     if (scene.plane[i] != visibility::SceneFloats::kNoPlane && scene.casts_shadow[i] == 0) return kNoObject;
     areas.resize(std::max<std::size_t>(areas.size(), scene.object[i] + std::size_t{1}), 0.0);
     areas[scene.object[i]] += facing(scene, basis, i).area;
@@ -74,7 +74,7 @@ std::uint32_t ground_of(const visibility::SceneFloats& scene, const LightBasis& 
 
 gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t count) {
   gpu::SlicePlanes planes{.count = count, .limit = {}, .plane = {}};
-  const std::uint32_t ground = rule == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  const std::uint32_t ground = rule == SliceRule::one_plane ? ground_of(maps.scene, maps.light, maps.basis) : kNoObject;
   for (std::size_t s = 0; s < 2; ++s) {
     const double sign = s == 0 ? 1 : -1;
     const auto set = [&](std::uint32_t k, double plane, double limit) {
@@ -98,7 +98,7 @@ gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t 
     }
     const Range casters = heights(maps, sign, [&](std::uint32_t i) { return casts(maps, i); });
     const Range receivers =
-        heights(maps, sign, [&](std::uint32_t i) { return visibility::is_receiver(maps.scene, i); });
+        heights(maps, sign, [&](std::uint32_t i) { return visibility::is_receiver(maps.scene, maps.light, i); });
     const double first = std::min(casters.nearest, receivers.deepest),
                  last = std::max(first, std::min(casters.deepest, receivers.deepest));
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -131,7 +131,8 @@ Slices::Slices(const render::Device& device, const SliceOptions& options)
 }
 
 void Slices::upload(const MapSet& maps) {
-  const std::uint32_t ground = options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  const std::uint32_t ground =
+      options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.light, maps.basis) : kNoObject;
   const std::uint64_t room =
       opengl_pass_ ? device_->opengl().info().max_storage_block : device_->limits().max_storage_buffer_range;
   const std::size_t most = room / (3 * sizeof(glm::vec3)) * 3;
@@ -193,7 +194,8 @@ void Slices::record(render::Commands& commands, const MapSet& maps) {
 }
 
 void Slices::move_nearest(render::Commands& commands, const MapSet& maps) {
-  const std::uint32_t ground = options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.basis) : kNoObject;
+  const std::uint32_t ground =
+      options_.rule == SliceRule::one_plane ? ground_of(maps.scene, maps.light, maps.basis) : kNoObject;
   const render::Buffer* layers = &maps.depths;
   if (ground != kNoObject) {
     visibility::SceneFloats blockers = maps.scene;

@@ -27,7 +27,7 @@ enum class SliceRule : std::uint8_t {
 /// shadow; else the one whose receiving triangles, seen from the light's plane, are largest. kNoObject if there is
 /// none.
 inline constexpr std::uint32_t kNoObject = 0xffffffffU;
-std::uint32_t ground_of(const visibility::SceneFloats& scene, const LightBasis& basis);
+std::uint32_t ground_of(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis);
 
 /// The planes of `count` slices (1 … 32; one_plane: 1).
 gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t count);

@@ -143,11 +143,12 @@ void AdaptiveLight::prepare_light(const visibility::Light& light) {
 }
 
 void AdaptiveLight::prepare_view(const visibility::ViewSamples& samples) {
-  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_view before prepare_mesh", description_.name);
-  receivers_.upload(*device_, *scene_, samples);
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", description_.name);
+  receivers_.upload(*device_, *scene_, *light_, samples);
   receiving_ = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) receiving_ += visibility::is_receiver(*scene_, samples, i) ? 1 : 0;
-  if (compare_ == CompareIn::camera && light_ != nullptr && maps_.refined()) maps_.restart();  // another view
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    receiving_ += visibility::is_receiver(*scene_, *light_, samples, i) ? 1 : 0;
+  if (compare_ == CompareIn::camera && maps_.refined()) maps_.restart();  // another view
 }
 
 ComparedReceivers AdaptiveLight::pixels() const {

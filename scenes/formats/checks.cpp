@@ -146,6 +146,17 @@ void check_shape(const Polygon& polygon, const std::string& where) {
   }
 }
 
+void check_shape(const Pieces& shape, const std::string& where) {
+  if (shape.pieces.empty()) throw InputError("{}: there are no pieces; a light needs at least one", where);
+  for (std::size_t i = 0; i < shape.pieces.size(); ++i) {
+    const auto check = [&](const auto& piece) { check_shape(piece, fmt::format("{}/{}", where, i)); };
+    std::visit(check, shape.pieces[i]);
+    const auto* sphere = std::get_if<Sphere>(&shape.pieces[i]);
+    if (sphere != nullptr && sphere->cone)
+      throw InputError("{}/{}: a piece has no cone; make it a light of its own", where, i);
+  }
+}
+
 }  // namespace
 
 glm::dvec3 polygon_normal(const Polygon& polygon) {

@@ -67,6 +67,16 @@ void write_shape(const Sun& sun, TextStream& text) {
   text.print(R"(, "angle": )").number(sun.angle).print("}}");
 }
 
+void write_shape(const Pieces& shape, TextStream& text) {
+  text.print(R"("pieces": [)");
+  for (std::size_t i = 0; i < shape.pieces.size(); ++i) {
+    text.print("{}{{", i > 0 ? ", " : "");
+    std::visit([&](const auto& piece) { write_shape(piece, text); }, shape.pieces[i]);
+    text.print("}}");
+  }
+  text.print("]");
+}
+
 /// "key": ["name", …], each name once.
 void write_names(const char* key, const std::set<std::string>& names, TextStream& text) {
   text.print(R"("{}": [)", key);

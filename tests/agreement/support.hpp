@@ -152,7 +152,7 @@ inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floa
     if (n % 32 != 0 && masks.word(pixel, light.words_per_mask() - 1) >> (n % 32) != 0) {
       wrong(fmt::format("pixel {}: bits beyond sample {} are set", pixel, n - 1));
     }
-    if (!visibility::is_receiver(floats, samples, pixel)) {
+    if (!visibility::is_receiver(floats, light, samples, pixel)) {
       if (set != n) wrong(fmt::format("pixel {} receives no shadow, and is not lit", pixel));
       return;
     }

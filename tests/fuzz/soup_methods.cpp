@@ -123,7 +123,8 @@ SoupFindings SoupMethods::check(const SoupCase& judged) {
     found.refusals += masks ? 0 : 1;
     if (!masks) continue;
     for_each_pair([&](std::size_t pixel, std::uint32_t j) {
-      if (!visibility::is_receiver(judged.floats, judged.samples, pixel)) return;  // lit, whatever the truth
+      if (!visibility::is_receiver(judged.floats, judged.light, judged.samples, pixel))
+        return;  // lit, whatever the truth
       compare(variant.name, pixel, j, bit(*masks, pixel, j));
     });
   }

@@ -129,7 +129,7 @@ class PixelFilter {
 
   /// Are transmittances touched?
   bool filter(std::size_t pixel, std::span<std::uint32_t> mask, std::span<float> transmittances, AlphaCounts& counts) {
-    if (!is_receiver(scene_, samples_, pixel)) return false;
+    if (!is_receiver(scene_, light_, samples_, pixel)) return false;
     find_ways(pixel, mask);
     if (lit_.empty()) return false;
     find_triangles(pixel);

@@ -243,7 +243,7 @@ void VolumeCount::State::classify(const Tile& tile) {
   const BoxFinder boxes(samples->camera);
   mesh::for_each_index(pixels, [&](std::size_t i) {
     const std::size_t pixel = first + i;
-    if (!visibility::is_receiver(*scene, *samples, pixel)) return;
+    if (!visibility::is_receiver(*scene, *light, *samples, pixel)) return;
     const auto carrier = static_cast<std::uint32_t>(samples->triangle[pixel]);
     const std::array<glm::vec3, 3> corners = scene->corners(carrier);
     const glm::vec3& p = samples->p[pixel];

@@ -170,7 +170,7 @@ std::vector<Receiver> SoftIrregular::receivers_of(const visibility::Tile& tile) 
   std::vector<Receiver> receivers;
   for (std::size_t i = 0; i < visibility_.size(); ++i) {
     const std::size_t pixel = first + i;
-    if (!visibility::is_receiver(*scene_, *samples_, pixel)) continue;
+    if (!visibility::is_receiver(*scene_, *light_, *samples_, pixel)) continue;
     const glm::vec3& p = samples_->p[pixel];
     visibility_[i] = 0;
     if (!visibility::in_front_of_light(*light_, p)) continue;

@@ -42,7 +42,9 @@ double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
 SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis) {
   const std::size_t count = scene.triangles.size();
   const auto casts = [&](std::size_t i) { return scene.casts_shadow[i] != 0 && scene.emits[i] != light.index; };
-  const auto receives = [&](std::size_t i) { return visibility::is_receiver(scene, static_cast<std::uint32_t>(i)); };
+  const auto receives = [&](std::size_t i) {
+    return visibility::is_receiver(scene, light, static_cast<std::uint32_t>(i));
+  };
   std::map<std::uint32_t, bool> casting;   // objects that receive: does any of their triangles cast?
   std::map<std::uint32_t, double> facing;  // their area toward the light
   for (std::size_t i = 0; i < count; ++i) {

@@ -313,9 +313,9 @@ void SoftShadowMap::add_up(const Map& occluders, std::uint32_t pass) {
 }
 
 void SoftShadowMap::prepare_view(const visibility::ViewSamples& samples) {
-  PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_view before prepare_mesh", description_.name);
+  PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", description_.name);
   samples_ = &samples;
-  receivers_.upload(*device_, *scene_, samples);
+  receivers_.upload(*device_, *scene_, *light_, samples);
 }
 
 void SoftShadowMap::evaluate(const visibility::Tile& tile) {

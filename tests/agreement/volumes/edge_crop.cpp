@@ -43,7 +43,7 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
   triangles.prepare(device, stage.floats, tree, scale);
   device::ViewUpload view(device);
   const visibility::Tile whole{0, stage.samples.height};
-  view.prepare(stage.samples, stage.floats, scale);
+  view.prepare(stage.samples, stage.floats, stage.light, scale);
   view.load(whole);
   EdgeLists edges(device, "edge_crop", crops);
   edges.prepare_mesh(stage.floats, tree, scale);

@@ -28,7 +28,7 @@ class SoftIrregularTwin : public tests::DeviceTest {
     const SoftVisibility soft(stage.floats, stage.light, casters);
     Expected expected{std::vector<LayerSum>(stage.samples.size())};
     tbb::parallel_for(std::size_t{0}, stage.samples.size(), [&](std::size_t i) {
-      if (visibility::is_receiver(stage.floats, stage.samples, i))
+      if (visibility::is_receiver(stage.floats, stage.light, stage.samples, i))
         expected.sums[i] = soft.at(stage.lit(i), Viewer::center);
     });
     for (const LayerSum& sum : expected.sums) expected.penumbra += sum.edges.empty() ? 0U : 1U;
@@ -43,7 +43,7 @@ class SoftIrregularTwin : public tests::DeviceTest {
     std::size_t wrong = 0;
     double most_off = 0;
     for (std::size_t i = 0; i < v.size(); ++i) {
-      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
       const LayerSum& sum = expected.sums[i];
       if (v[i] != static_cast<float>(sum.visibility) && wrong++ == 0)
         ADD_FAILURE() << name << ", pixel " << i << ": V is " << v[i] << ", the twin's " << sum.visibility;

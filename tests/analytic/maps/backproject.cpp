@@ -68,7 +68,8 @@ class MapsBackproject : public MapsTest {
     double most = 0, sum = 0;
     std::size_t count = 0, partly = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      if (!visibility::is_receiver(stage.floats, stage.samples, i) || !twin.is_below_all_casters(i)) continue;
+      if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i) || !twin.is_below_all_casters(i))
+        continue;
       const double expected = twin.visibility(i, fill), off = std::abs(found.visibility[i] - expected);
       most = std::max(most, off);
       sum += off;

@@ -23,7 +23,7 @@ class MapsBitmask : public MapsTest {
     return run(maps::make_bitmask, stage, all);
   }
   static bool receives(const Stage& stage, std::size_t i) {
-    return visibility::is_receiver(stage.floats, stage.samples, i);
+    return visibility::is_receiver(stage.floats, stage.light, stage.samples, i);
   }
   /// All that is hidden in `less` is hidden in `more`.
   static testing::AssertionResult hides_no_less(const Masks& more, const Masks& less) {
@@ -213,7 +213,7 @@ double bias_of(const Stage& stage, const Masks& found) {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-    if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+    if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
     for (std::uint32_t j = 0; j < stage.light.sample_count(); ++j) {
       sum += (found.visible(i, j) ? 1 : 0) -
              (visibility::decide_pair(stage.floats, stage.samples, i, stage.light, j).outcome ==

@@ -64,7 +64,7 @@ TEST_F(Vssm, IsItsTwin) {
       std::size_t receivers = 0, off = 0, soft = 0;
       double sum = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+        if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
         ++receivers;
         const double v = twin(i).v, is = found.visibility[i];
         soft += v > 0.02 && v < 0.98 ? 1 : 0;
@@ -134,7 +134,7 @@ TEST_F(Vssm, TheBoundIsNeverDarkerThanCountingTheSameTexels) {
     const VssmTwin twin(maps, stage, settings);
     std::size_t brighter = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
       const VssmTwin::Answer answer = twin(i);
       if (answer.no_blockers || answer.v < answer.pcf) continue;  // the horizon may cut V
       const double is = found.visibility[i];
@@ -183,7 +183,7 @@ TEST_F(Vssm, TheSeriesIsTheCountButForItsSwings) {
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
       const VssmTwin::Answer answer = twin(i);
       if (answer.no_blockers) continue;
       sum += std::pow(static_cast<double>(found.visibility[i]) - answer.pcf, 2);
@@ -284,7 +284,9 @@ TEST_F(Vssm, PyramidsAndWindowsComeNearTheTables) {
                  {{"size", "100"}, {"moments", moments}, {"filter", filter}, {"exponent", "30"}});
     };
     const Masks table = with("sat"), windows = with("n-buffer"), pyramid = with("mip");
-    const auto receives = [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.samples, i); };
+    const auto receives = [&](std::size_t i) {
+      return visibility::is_receiver(stage.floats, stage.light, stage.samples, i);
+    };
     const double of_windows =
         rmse(stage, receives, [&](std::size_t i) { return windows.visibility[i] - table.visibility[i]; });
     const double of_pyramid =

@@ -21,7 +21,7 @@ class MapsPeel : public MapsTest {
     Quality q;
     std::size_t count = 0, umbra = 0, lit = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      if (!visibility::is_receiver(stage.floats, stage.samples, i)) continue;
+      if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
       const double v = found.visibility[i], is = truth.visibility[i];
       ++count;
       q.bias += v - is;

@@ -102,11 +102,11 @@ TEST_F(SliceProducts, OnePlaneIsTheBlockersMeanHeightWithoutTheGround) {
   scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
   const Stage stage(scene, 4, 4, light_samples(1));
   const CentreMaps maps(device(), stage, 16);
-  EXPECT_EQ(maps::ground_of(stage.floats, maps.basis), 0U);
+  EXPECT_EQ(maps::ground_of(stage.floats, stage.light, maps.basis), 0U);
   EXPECT_NEAR(maps::slice_planes(maps.set(stage), maps::SliceRule::one_plane, 1).plane[0][0], 3.75, 1e-6);
   scene.objects[0].casts_shadow = false;
   const Stage lit(scene, 4, 4, light_samples(1));
-  EXPECT_EQ(maps::ground_of(lit.floats, maps.basis), maps::kNoObject);
+  EXPECT_EQ(maps::ground_of(lit.floats, lit.light, maps.basis), maps::kNoObject);
   const CentreMaps its(device(), lit, 16);
   EXPECT_NEAR(maps::slice_planes(its.set(lit), maps::SliceRule::one_plane, 1).plane[0][0], 3.75, 1e-6);
 }

@@ -48,7 +48,7 @@ TEST_F(MapsSubsampled, ComputedPixelsAreTheMethodsAndOthersLieBetweenThem) {
       for (std::size_t i = 0; i < few.visibility.size(); ++i) {
         EXPECT_TRUE(few.visibility[i] >= 0 && few.visibility[i] <= 1);
         const bool on_grid = i % 61 % step == 0 && i / 61 % step == 0;
-        if (on_grid || !visibility::is_receiver(stage.floats, stage.samples, i)) {
+        if (on_grid || !visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) {
           EXPECT_EQ(few.visibility[i], whole.visibility[i]) << i;
         }
         if (on_object(stage, i, 2)) ++speck;
@@ -66,7 +66,7 @@ TEST_F(MapsSubsampled, TheErrorGrowsWithTheStep) {
   for (const std::uint32_t step : {2U, 4U, 8U, 16U}) {
     const Masks few = run(maps::make_packet, stage, with({{"size", "128"}}, step));
     const double off = rmse(
-        stage, [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.samples, i); },
+        stage, [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.light, stage.samples, i); },
         [&](std::size_t i) { return static_cast<double>(few.visibility[i] - whole.visibility[i]); });
     fmt::print("subsample={}: RMSE {:.4f} of the whole picture\n", step, off);
     RecordProperty(fmt::format("subsample {}", step), fmt::format("{:.4f}", off));
@@ -122,7 +122,9 @@ TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
     const MethodOptions options{{"size", "128"}};
     const Masks whole = run(maps::make_packet, stage, options),
                 widths = run(*maps::make_penumbra_widths(device(), options), stage);
-    const auto receives = [&](std::size_t i) { return visibility::is_receiver(stage.floats, stage.samples, i); };
+    const auto receives = [&](std::size_t i) {
+      return visibility::is_receiver(stage.floats, stage.light, stage.samples, i);
+    };
     const auto error = [&](const Masks& few) {
       return rmse(stage, receives,
                   [&](std::size_t i) { return static_cast<double>(few.visibility[i] - whole.visibility[i]); });

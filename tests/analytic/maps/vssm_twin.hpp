@@ -42,7 +42,7 @@ class VssmTwin {
     for (const float depth : maps.read()) heights_.push_back(depth < 1 ? depth * view.far : kNothing);
     nearest_ = *std::ranges::min_element(heights_);
     for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
-      if (!visibility::is_receiver(stage.floats, i)) continue;
+      if (!visibility::is_receiver(stage.floats, stage.light, i)) continue;
       for (const glm::vec3& corner : stage.floats.corners(i)) {
         deepest_ = std::max(deepest_, maps.basis.local(corner).z);
       }

@@ -97,7 +97,7 @@ class HardVolume : public tests::DeviceTest {
   static Kind exact_kind(const Picture& picture, std::size_t pixel, const glm::vec3& l) {
     if (picture.samples.triangle[pixel] == ViewSamples::kBackground) return Kind::lit;
     const auto carrier = static_cast<std::uint32_t>(picture.samples.triangle[pixel]);
-    if (picture.floats.emits[carrier] >= 0 || picture.floats.receives_shadow[carrier] == 0) return Kind::lit;
+    if (!visibility::is_receiver(picture.floats, picture.light, carrier)) return Kind::lit;
     const bool above = visibility::above_horizon(picture.floats.corners(carrier), picture.samples.facing[pixel], l);
     const bool in_front = visibility::in_front_of_light(picture.light, picture.samples.p[pixel]);
     return above && in_front ? Kind::counted : Kind::dark;

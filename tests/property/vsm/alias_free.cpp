@@ -51,11 +51,11 @@ Tally compare(const SceneFloats& floats, const Light& light, const ViewSamples& 
   const tests::Masks found = tests::run(*method, floats, light, samples, rows);
   std::vector<std::uint8_t> truth(samples.size(), 1);
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    if (visibility::is_receiver(floats, samples, i)) truth[i] = sees_center(floats, samples, i, light) ? 1 : 0;
+    if (visibility::is_receiver(floats, light, samples, i)) truth[i] = sees_center(floats, samples, i, light) ? 1 : 0;
   });
   Tally tally;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!visibility::is_receiver(floats, samples, i)) continue;
+    if (!visibility::is_receiver(floats, light, samples, i)) continue;
     ++tally.asked;
     ++(truth[i] != 0 ? tally.lit : tally.dark);
     if (found.visibility[i] == static_cast<float>(truth[i])) continue;

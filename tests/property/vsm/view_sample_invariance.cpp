@@ -146,13 +146,14 @@ TEST_F(Invariance, OneMethodForManyMeshesLightsAndViews) {
 }
 
 TEST_F(Invariance, LightsOnTheOneEngineAndTheOther) {
-  // Rows on the processor, points that form no rows on the device: in turns, in one method, before and after the view
-  // is given.
+  // Rows on the processor, points that form no rows on the device: in turns, in one method, while
+  // the view stays.
   const auto method = make_view_sample(device(), {{"engine", "native"}});
   const scenes::Scene scene = shipped("contact.json");
   const tests::Stage stage(scene, 40, 40, {64, 0, 0, visibility::SamplePattern::rows, 0});
   const tests::Stage other(scene, 40, 40, {50, 0, 0, visibility::SamplePattern::sobol, 1});
   method->prepare_mesh(stage.floats);
+  method->prepare_light(other.light);
   method->prepare_view(stage.samples);
   for (const tests::Stage* at : {&stage, &other, &stage, &other}) {
     method->prepare_light(at->light);

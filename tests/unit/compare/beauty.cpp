@@ -257,6 +257,20 @@ TEST(Beauty, BackgroundEmittersAndReceiversOfNoShadow) {
   EXPECT_FLOAT_EQ(colors[3].r, static_cast<float>(0.5 * 10 * kStraightAbove));
 }
 
+TEST(Beauty, BodiesShowTheirOwnLightOnceAndReflectThatOfOthers) {
+  Floor floor({{0, 0, 0}, {0, 0, 0}});
+  floor.lights = {rectangle(2, 1, 1, 1, 1), rectangle(2, 1, 1, 1, 1), rectangle(2, 1, 1, 1, 1)};
+  floor.lights[0].index = floor.lights[1].index = 5;  // two pieces of one light
+  floor.lights[1].piece = 1;
+  floor.lights[2].index = 6;
+  floor.scene.emits[0] = 5;
+  const std::vector<float> full{1, 1};
+  const auto colors = floor.shade({{{}, full}, {{}, full}, {{}, full}});
+  const double reflected = 0.5 * 10 * kStraightAbove;
+  EXPECT_FLOAT_EQ(colors[0].r, static_cast<float>(10 + reflected));
+  EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(3 * reflected));
+}
+
 TEST(Beauty, DoesNotDependOnTheNumberOfThreads) {
   std::vector<glm::vec3> points;
   for (int i = 0; i < 5000; ++i)

@@ -87,6 +87,8 @@ TEST(Classify, EveryKindOfPixel) {
   tests::add_object(scene, "shelf", tests::quad({6, 7, 0}, {1, 0, 0}, {0, 0, -1}));  // above the light
   tests::add_object(scene, "lamp", tests::quad({9, 0, 0}, {1, 0, 0}, {0, 0, -1})).emits = 0;
   tests::add_object(scene, "sky", tests::quad({12, 0, 0}, {1, 0, 0}, {0, 0, -1})).receives_shadow = false;
+  tests::add_object(scene, "sign", tests::quad({15, 0, 0}, {1, 0, 0}, {0, 0, -1})).emits = 1;
+  tests::add_object(scene, "bulb", tests::quad({18, 7, 0}, {1, 0, 0}, {0, 0, -1})).emits = 1;
   scene.lights.push_back(tests::ceiling_light(5, 1));
   const SceneFloats floats = make_scene_floats(scene);
   const Light light = make_light(scene, 0, floats.origin, {});
@@ -100,6 +102,8 @@ TEST(Classify, EveryKindOfPixel) {
   EXPECT_EQ(class_at({6.1, 9, 1}, {6.1, 7, 0.1}), PixelClass::behind);
   EXPECT_EQ(class_at({9.1, 9, 1}, {9.1, 0, 0.1}), PixelClass::emitter);
   EXPECT_EQ(class_at({12.1, 9, 1}, {12.1, 0, 0.1}), PixelClass::unshadowed);
+  EXPECT_EQ(class_at({15.1, 3, 1}, {15.1, 0, 0.1}), PixelClass::other_body);
+  EXPECT_EQ(class_at({18.1, 9, 1}, {18.1, 7, 0.1}), PixelClass::behind) << "and another light's body";
   EXPECT_EQ(class_at({0, 9, 0.5}, {50, 0, 50}), PixelClass::background);
 }
 
