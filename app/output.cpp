@@ -94,12 +94,13 @@ std::vector<glm::vec3> BeautyAccumulator::sum() const {
   return pixels;
 }
 
-float auto_exposure(const Session& session, std::span<const glm::vec3> beauty) {
+float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, std::span<const std::uint8_t> lamps) {
   std::vector<glm::vec3> surfaces;
   for (std::size_t i = 0; i < beauty.size(); ++i) {
     const std::int32_t triangle = session.samples.triangle[i];
     const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
-    if (!body) surfaces.push_back(beauty[i]);
+    const bool through_body = !lamps.empty() && lamps[i] != 0;
+    if (!body && !through_body) surfaces.push_back(beauty[i]);
   }
   const bool black = std::ranges::all_of(surfaces, [](const glm::vec3& color) { return color == glm::vec3(0); });
   return compare::auto_exposure(black ? beauty : std::span<const glm::vec3>(surfaces));

@@ -38,8 +38,10 @@ class BeautyAccumulator {
   std::vector<std::vector<glm::vec3>> parts_;
 };
 
-/// compare::auto_exposure of what is no body of a light; of everything, if nothing else is seen.
-float auto_exposure(const Session& session, std::span<const glm::vec3> beauty);
+/// compare::auto_exposure of pixels that show no body of a light; of everything, if nothing else is seen. `lamps`
+/// (empty, or of each pixel): not 0 where a body is seen that does not carry the pixel.
+float auto_exposure(const Session& session, std::span<const glm::vec3> beauty,
+                    std::span<const std::uint8_t> lamps = {});
 
 /// Throws UsageError if `--bits` cannot be had of this method and light.
 void check_bits(const visibility::MethodDescription& description, const visibility::Light& light);

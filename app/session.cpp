@@ -83,8 +83,12 @@ void link_casters(Session& session) {
     std::optional<std::size_t>& own = session.linked_of.emplace_back();
     if (light.unshaded_by.empty()) continue;
     visibility::SceneFloats linked = cast_for(session.floats, light);
-    if (linked.casts_shadow == session.floats.casts_shadow) continue;
-    const auto same = std::ranges::find(session.linked, linked.casts_shadow, &visibility::SceneFloats::casts_shadow);
+    const auto casters = [](const visibility::SceneFloats& floats) {
+      return std::tie(floats.casts_shadow, floats.alphas.casters);
+    };
+    if (casters(linked) == casters(session.floats)) continue;
+    const auto same =
+        std::ranges::find_if(session.linked, [&](const auto& other) { return casters(other) == casters(linked); });
     own = static_cast<std::size_t>(same - session.linked.begin());
     if (same == session.linked.end()) session.linked.push_back(std::move(linked));
   }

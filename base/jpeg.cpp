@@ -8,6 +8,8 @@
 
 #include <jpeglib.h>
 
+#include <jerror.h>
+
 #include <algorithm>
 #include <csetjmp>
 #include <utility>
@@ -41,9 +43,10 @@ void jpeg_failed(j_common_ptr jpeg) {
   std::longjmp(decoder.escape, 1);
 }
 
-/// Warnings are of damaged data, behind which libjpeg would invent the rest.
+/// Warnings are of damaged data, behind which libjpeg would invent the rest; but for bytes that nobody needs between
+/// two parts of the file, which some cameras leave.
 void jpeg_warned(j_common_ptr jpeg, int level) {
-  if (level < 0) jpeg_failed(jpeg);
+  if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) jpeg_failed(jpeg);
 }
 
 /// False: `message` says why not, unless the size is the reason.

@@ -8,8 +8,6 @@
 
 #include <png.h>
 
-#include <algorithm>
-
 namespace penumbra {
 namespace {
 
@@ -46,23 +44,6 @@ void write_png(const std::filesystem::path& path, const Image8& image) {
 
 std::string png_data_uri(const Image8& image) {
   return "data:image/png;base64," + base64(encode_png(image));
-}
-
-RgbaImage decode_rgba_png(std::span<const std::byte> bytes, std::uint32_t largest_side) {
-  PngImage png;
-  if (png_image_begin_read_from_memory(&png.image, bytes.data(), bytes.size()) == 0) {
-    throw InputError("not a PNG picture: {}", png.image.message);
-  }
-  if (std::max(png.image.width, png.image.height) > largest_side) {
-    throw InputError("{}x{} pixels; at most {} a side", png.image.width, png.image.height, largest_side);
-  }
-  png.image.format = PNG_FORMAT_RGBA;
-  RgbaImage image{png.image.width, png.image.height, {}};
-  image.pixels.resize(std::size_t{image.width} * image.height);
-  if (png_image_finish_read(&png.image, nullptr, image.pixels.data(), 0, nullptr) == 0) {
-    throw InputError("a damaged PNG picture: {}", png.image.message);
-  }
-  return image;
 }
 
 Image8 decode_png(std::span<const std::byte> bytes) {

@@ -24,8 +24,9 @@ std::string png_data_uri(const Image8& image);
 /// Throws InputError for what is no PNG file. Transparent pixels are put on black.
 Image8 decode_png(std::span<const std::byte> bytes);
 
-/// Any PNG picture in 8 bits, with its alpha (255 where it has none). InputError for what is no PNG file, is damaged,
-/// or has a side of more than `largest_side` pixels, which is found out before anything is decoded.
+/// Any PNG picture in 8 bits, those of 16 rounded to the nearest, with its alpha (255 where it has none); values as the
+/// file has them, whatever a gAMA or iCCP chunk says. InputError for what is no PNG file, is damaged, or has a side of
+/// more than `largest_side` pixels, which is found out before anything is decoded.
 RgbaImage decode_rgba_png(std::span<const std::byte> bytes, std::uint32_t largest_side);
 
 /// Any PNG picture (1 to 16 bits, grey, colour or palette) in linear light, no digit lost: values are taken as sRGB

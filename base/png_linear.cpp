@@ -1,6 +1,6 @@
-// PNG without loss of digits. libpng's simplified interface (png.cpp) turns 16 bits into linear light by a power of 2.2
-// where sRGB has its own curve; the classic one hands out the bits as they are. It reports errors by longjmp, which may
-// not jump over destructors: in `decode` nothing has one.
+// PNG as the file has it. libpng's simplified interface (png.cpp) obeys gAMA chunks and takes 16 bits without one as
+// linear light, by a power of 2.2 where sRGB has its own curve; the classic one hands out the bits as they are. It
+// reports errors by longjmp, which may not jump over destructors: in `decode` nothing has one.
 #include "base/error.hpp"
 #include "base/png.hpp"
 
@@ -20,7 +20,7 @@ constexpr std::size_t kChannels = 4;  // red green blue alpha, whatever the file
 
 /// All that outlives a longjmp.
 struct Decoder {
-  explicit Decoder(std::span<const std::byte> file) : bytes(file) {}
+  Decoder(std::span<const std::byte> file, std::uint32_t most) : bytes(file), largest_side(most) {}
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
   ~Decoder() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -29,7 +29,7 @@ struct Decoder {
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::array<char, 200> message{};
-  std::uint32_t width = 0, height = 0, largest_side = 0;
+  std::uint32_t width = 0, height = 0, largest_side;
   std::vector<std::uint16_t> values;
   std::vector<png_bytep> rows;
 };
@@ -76,18 +76,37 @@ bool decode(Decoder& decoder) {
   return true;
 }
 
-}  // namespace
-
-LinearImage decode_linear_png(std::span<const std::byte> bytes, std::uint32_t largest_side) {
-  Decoder decoder(bytes);
-  decoder.largest_side = largest_side;
+/// Throws InputError for what cannot be read, or is larger than the decoder allows.
+void decode_or_throw(Decoder& decoder) {
   decoder.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &decoder, fail, ignore);
   if (decoder.png != nullptr) decoder.info = png_create_info_struct(decoder.png);
   if (decoder.info == nullptr) throw ResourceError("libpng does not start; is memory short?");
   if (!decode(decoder)) {
     if (decoder.message[0] != '\0') throw InputError("no readable PNG picture: {}", decoder.message.data());
-    throw InputError("{}x{} pixels; at most {} a side", decoder.width, decoder.height, largest_side);
+    throw InputError("{}x{} pixels; at most {} a side", decoder.width, decoder.height, decoder.largest_side);
   }
+}
+
+}  // namespace
+
+RgbaImage decode_rgba_png(std::span<const std::byte> bytes, std::uint32_t largest_side) {
+  Decoder decoder(bytes, largest_side);
+  decode_or_throw(decoder);
+  RgbaImage image{decoder.width, decoder.height, {}};
+  image.pixels.reserve(std::size_t{image.width} * image.height);
+  for (std::size_t i = 0; i < decoder.values.size(); i += kChannels) {
+    // A byte v came as 257 v: it comes back.
+    const auto byte = [&](std::size_t channel) {
+      return static_cast<std::uint8_t>((decoder.values[i + channel] + 128u) / 257u);
+    };
+    image.pixels.push_back({byte(0), byte(1), byte(2), byte(3)});
+  }
+  return image;
+}
+
+LinearImage decode_linear_png(std::span<const std::byte> bytes, std::uint32_t largest_side) {
+  Decoder decoder(bytes, largest_side);
+  decode_or_throw(decoder);
   constexpr double kLargest = std::numeric_limits<std::uint16_t>::max();
   LinearImage image{decoder.width, decoder.height, {}};
   image.pixels.reserve(std::size_t{image.width} * image.height);

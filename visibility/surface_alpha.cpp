@@ -51,6 +51,16 @@ glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& way, const std:
   return finite ? shares : glm::dvec3(1, 0, 0);
 }
 
+namespace {
+
+/// A vertex value linear over a triangle; exactly the corners' where all three have the same.
+template <class T>
+T between(const T& a, const T& b, const T& c, const glm::dvec3& shares) {
+  return a + shares.y * (b - a) + shares.z * (c - a);
+}
+
+}  // namespace
+
 double alpha_at(const SceneFloats& scene, std::uint32_t triangle, const glm::dvec3& shares) {
   const SurfaceAlphas& all = scene.alphas;
   if (all.empty()) return 1;
@@ -59,8 +69,7 @@ double alpha_at(const SceneFloats& scene, std::uint32_t triangle, const glm::dve
   double alpha = surface.alpha.factor;
   if (surface.picture) {
     const SurfaceAlphas::Picture& picture = all.pictures[surface.picture->picture];
-    glm::dvec2 place(0);
-    for (int i = 0; i < 3; ++i) place += shares[i] * all.places[corners[static_cast<std::size_t>(i)]];
+    const glm::dvec2 place = between(all.places[corners[0]], all.places[corners[1]], all.places[corners[2]], shares);
     const double x = std::floor(place.x * picture.width), y = std::floor(place.y * picture.height);
     if (std::isfinite(x) && std::isfinite(y)) {
       const std::size_t column = scenes::texel_number(x, picture.width, surface.picture->wrap_s),
@@ -69,9 +78,8 @@ double alpha_at(const SceneFloats& scene, std::uint32_t triangle, const glm::dve
     }
   }
   if (!all.vertices.empty()) {
-    double vertex = 0;
-    for (int i = 0; i < 3; ++i) vertex += shares[i] * double{all.vertices[corners[static_cast<std::size_t>(i)]]};
-    alpha *= std::clamp(vertex, 0.0, 1.0);
+    const auto vertex = [&](std::size_t corner) { return double{all.vertices[corners[corner]]}; };
+    alpha *= std::clamp(between(vertex(0), vertex(1), vertex(2), shares), 0.0, 1.0);
   }
   return alpha;
 }

@@ -274,6 +274,17 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
   return all;
 }
 
+/// Notes in which of the picture's pixels the surfaces that are looked at are bodies of lights.
+void FrameRenderer::mark_lamps() {
+  lamps_.resize(session().pixel_count());
+  const std::uint32_t side = lit().width / session().width;
+  for (std::size_t i = 0; i < lit().samples.size(); ++i) {
+    const std::int32_t triangle = lit().samples.triangle[i];
+    if (triangle < 0 || lit().floats.emits[static_cast<std::size_t>(triangle)] < 0) continue;
+    lamps_[i / lit().width / side * session().width + i % lit().width / side] = 1;
+  }
+}
+
 void FrameRenderer::add_panes() {
   const Stopwatch find;
   const visibility::Panes panes(lit().floats, lit().samples);
@@ -295,6 +306,7 @@ void FrameRenderer::add_panes() {
     if (behind.size() == 0) behind = std::move(before);
     view_seconds_ += watch.seconds();
     watch.restart();
+    mark_lamps();
     BeautyAccumulator beauty(lit(), lit().lights);
     beauty_seconds_ += watch.seconds();
     add_times(run_, run_lights(beauty, nullptr));
@@ -321,6 +333,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   make_seconds_ = view_seconds_ = beauty_seconds_ = bits_seconds_ = 0;
   bits_.reset();
   mean_.reset();
+  lamps_.clear();
   run_ = {};
   if (frame.moments.empty() && frame.pixel_side == 1) {
     show(maker_, std::move(scene));
@@ -395,7 +408,8 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
   }
   float stops = exposure.stops;
-  if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops)) stops = std::log2(auto_exposure(session(), sum));
+  if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops))
+    stops = std::log2(auto_exposure(session(), sum, lamps_));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
   std::map<std::string, std::string> attributes = {{kExposure, fmt::format("{}", stops)}};
   if (frame_.number) attributes["penumbra.frame"] = fmt::format("{}", *frame_.number);

@@ -110,6 +110,7 @@ class FrameRenderer {
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
   /// Composites translucent surfaces (BLEND), each shaded by view samples of its own, over what is behind them.
   void add_panes();
+  void mark_lamps();
   void show(SessionMaker& maker, scenes::Scene scene);
   void render_mean(scenes::Scene scene);
   /// What methods look at: the picture's session, or that of more view samples a pixel.
@@ -136,6 +137,7 @@ class FrameRenderer {
   MethodRun run_;
   std::vector<std::vector<glm::vec3>> beauty_;  // of each light
   std::vector<float> alpha_;                    // of each pixel
+  std::vector<std::uint8_t> lamps_;             // of each pixel: a translucent body of a light is seen; empty: none is
   std::optional<PictureMean> mean_;             // nothing: the picture is that of one moment and of pixels' centres
   std::optional<BitsOutput> bits_;
   // `make`: the device and methods. `beauty`: all that is done with what methods answer, writing bits included.

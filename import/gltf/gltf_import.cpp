@@ -81,7 +81,7 @@ class GltfImport {
       if (node.mesh >= 0) add_mesh_or_hidden(node, placed, name);
       if (is_mesh()) continue;
       if (node.camera >= 0) add_camera(node, placed, name);
-      if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, unhidden(placed), name);
+      if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, lamp_place(placed), name);
     }
     if (scene_.soup.triangles.empty()) {
       throw InputError(
@@ -111,7 +111,7 @@ class GltfImport {
                        extension);
     }
     add_warnings();
-    if (!is_mesh()) losses_.report(lenient_, scene_.warnings);
+    is_mesh() ? losses_.warn_of_refused(scene_.warnings) : losses_.report(lenient_, scene_.warnings);
     return std::move(scene_);
   }
 
@@ -121,6 +121,13 @@ class GltfImport {
   [[nodiscard]] PlacedNode unhidden(const PlacedNode& placed) const {
     const auto number = static_cast<std::size_t>(placed.number);
     return number < unhidden_.size() && unhidden_[number] ? PlacedNode{placed.number, *unhidden_[number]} : placed;
+  }
+
+  /// A lamp is where its node is, and shines along what the node is turned to, however it is scaled.
+  [[nodiscard]] PlacedNode lamp_place(const PlacedNode& placed) const {
+    PlacedNode place = unhidden(placed);
+    place.to_world[3] = placed.to_world[3];
+    return place;
   }
 
   /// A light that is scaled to nothing stays one, of the shape that it has when it is not, and dark: so all frames have
@@ -170,13 +177,18 @@ class GltfImport {
     const std::string own_name = unique_name(object_names_, name);
     Look look = surfaces_.read(primitive, place, own_name, positions.size());
     if (purpose_ != Purpose::rest) morph(model_, node, primitive, "NORMAL", place, look.normals);
-    switch (opacity_of(look, scene_.pictures)) {
+    switch (surfaces_.opacity_of(look)) {
       case Opacity::gone:
+        losses_.mention("is wholly transparent, and left out", own_name);
         return;
       case Opacity::solid:
         look.alpha = {};
         break;
       case Opacity::neither:
+        if (is_mesh())
+          losses_.refuse(
+              "is solid as a mesh of another scene: what its alpha lets through is kept in scenes that are glTF",
+              own_name);
         break;
     }
     add_object({positions, skinned, look}, std::move(mesh->triangles), placed, {place, own_name});
@@ -285,7 +297,7 @@ class GltfImport {
                                          std::size_t first_position, std::size_t first_triangle) {
     const glm::dvec3& radiance = look.radiance;
     if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) return std::nullopt;
-    if (is_mesh()) {
+    if (purpose_ == Purpose::mesh) {
       ++emissive_;
       return std::nullopt;
     }

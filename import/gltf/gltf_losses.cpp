@@ -21,6 +21,10 @@ std::string Losses::text_of(const Loss& loss) {
   return names + " " + loss.what;
 }
 
+void Losses::warn_of_refused(std::vector<std::string>& warnings) const {
+  for (const Loss& loss : refused_) warnings.push_back(text_of(loss));
+}
+
 void Losses::report(bool lenient, std::vector<std::string>& warnings) const {
   std::vector<std::string> texts;
   for (const Loss& loss : refused_) texts.push_back(text_of(loss));

@@ -14,6 +14,9 @@ class Losses {
   /// It changes how a surface looks.
   void mention(const std::string& what, const std::string& object) { add(mentioned_, what, object); }
 
+  /// Warnings of what is refused elsewhere, alone: how a surface looks is nobody's concern here.
+  void warn_of_refused(std::vector<std::string>& warnings) const;
+
   /// Throws InputError with all that is refused; if `lenient`, that becomes warnings. What matters more comes first.
   void report(bool lenient, std::vector<std::string>& warnings) const;
 

@@ -150,7 +150,11 @@ Look SurfaceReader::read(const tinygltf::Primitive& primitive, const std::string
         look.places.push_back(transform(uv));
       }
     } else {
-      look.places.assign(vertices, transform.offset);  // glTF 2.0 leaves it open; the coordinates are then taken as 0
+      // glTF 2.0 leaves it open what is seen then; it decides of light where alpha does.
+      const std::string what =
+          fmt::format("has no TEXCOORD_{}, by which its picture lies on it: one texel is everywhere", set);
+      look.alpha.mode == Alpha::Mode::opaque ? losses_.mention(what, object) : losses_.refuse(what, object);
+      look.places.assign(vertices, transform.offset);
     }
   }
   return look;
@@ -176,6 +180,10 @@ void SurfaceReader::read_material(const tinygltf::Primitive& primitive, const st
   read_picture(primitive, object, look);
   read_emission(material, here, object, look);
 
+  if (look.alpha.mode != Alpha::Mode::opaque && !look.picture &&
+      material.extensions.contains("KHR_materials_pbrSpecularGlossiness"))
+    losses_.refuse("has its alpha in KHR_materials_pbrSpecularGlossiness, which is not supported: it would be solid",
+                   object);
   if (number_of(material.extensions, "KHR_materials_transmission", "transmissionFactor", 0, here) > 0)
     losses_.refuse("lets light through (transmission), which is not supported: it would be opaque", object);
   if (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0)
@@ -261,7 +269,7 @@ std::optional<std::uint32_t> SurfaceReader::picture_of(int texture, const std::s
   return known->second;
 }
 
-AlphaRange alpha_range(const Look& look, std::span<const Picture> pictures) {
+SurfaceReader::AlphaRange SurfaceReader::alpha_range(const Look& look) {
   AlphaRange vertices, texels;
   for (const glm::vec4& color : look.colors) {
     vertices.least = std::min<double>(vertices.least, color.a);
@@ -269,17 +277,20 @@ AlphaRange alpha_range(const Look& look, std::span<const Picture> pictures) {
   if (!look.colors.empty())
     vertices.greatest = std::ranges::max_element(look.colors, {}, [](const glm::vec4& color) { return color.a; })->a;
   if (look.picture) {
-    const auto& all = pictures[look.picture->picture].texels;
-    const auto alpha = [](const auto& texel) { return texel[3]; };
-    const auto [least, greatest] = std::ranges::minmax_element(all, {}, alpha);
-    texels = {(*least)[3] / 255.0, (*greatest)[3] / 255.0};
+    const auto [known, is_new] = ranges_.try_emplace(look.picture->picture);
+    if (is_new) {
+      const auto& all = pictures_[look.picture->picture].texels;
+      const auto [least, greatest] = std::ranges::minmax_element(all, {}, [](const auto& texel) { return texel[3]; });
+      known->second = {(*least)[3] / 255.0, (*greatest)[3] / 255.0};
+    }
+    texels = known->second;
   }
   return {look.alpha.factor * vertices.least * texels.least, look.alpha.factor * vertices.greatest * texels.greatest};
 }
 
-Opacity opacity_of(const Look& look, std::span<const Picture> pictures) {
+Opacity SurfaceReader::opacity_of(const Look& look) {
   if (look.alpha.mode == Alpha::Mode::opaque) return Opacity::solid;
-  const AlphaRange range = alpha_range(look, pictures);
+  const AlphaRange range = alpha_range(look);
   const bool mask = look.alpha.mode == Alpha::Mode::mask;
   if (range.least >= (mask ? look.alpha.cutoff : 1.0)) return Opacity::solid;
   if (mask ? range.greatest < look.alpha.cutoff : range.greatest <= 0) return Opacity::gone;

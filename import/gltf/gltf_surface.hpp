@@ -35,6 +35,9 @@ struct Look {
   std::vector<glm::dvec2> places = {};
 };
 
+/// What its alpha makes of a whole surface: nothing stops light (`gone`), everything does, or neither.
+enum class Opacity { solid, gone, neither };
+
 /// Reads materials, textures and vertices' attributes. Surfaces are diffuse here: what else glTF says of them goes to
 /// the losses, under the objects' names.
 class SurfaceReader {
@@ -47,7 +50,14 @@ class SurfaceReader {
   Look read(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
             std::size_t vertices);
 
+  Opacity opacity_of(const Look& look);
+
  private:
+  /// The least and the greatest alpha that may be anywhere.
+  struct AlphaRange {
+    double least = 1, greatest = 1;
+  };
+  AlphaRange alpha_range(const Look& look);
   void read_material(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
                      Look& look);
   void read_emission(const tinygltf::Material& material, const std::string& place, const std::string& object,
@@ -60,16 +70,7 @@ class SurfaceReader {
   Losses& losses_;
   std::map<int, std::optional<std::uint32_t>> known_;  // of images
   std::map<int, std::string> unreadable_;
+  std::map<std::uint32_t, AlphaRange> ranges_;  // of pictures: leaves share one by the thousand
 };
-
-/// The least and the greatest alpha that the surface may have anywhere, over these of its vertices.
-struct AlphaRange {
-  double least = 1, greatest = 1;
-};
-AlphaRange alpha_range(const Look& look, std::span<const Picture> pictures);
-
-/// What its alpha makes of a whole surface: nothing stops light (`gone`), everything does, or neither.
-enum class Opacity { solid, gone, neither };
-Opacity opacity_of(const Look& look, std::span<const Picture> pictures);
 
 }  // namespace penumbra::scenes

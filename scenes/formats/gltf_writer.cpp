@@ -200,7 +200,11 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
     if (const auto light = scene.objects[range.object].emits) has_body[*light] = true;
   }
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    if (!has_body[i]) add_light(scene.lights[i], glb, notes);
+    if (has_body[i]) continue;
+    if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would come back as a surface that casts shadow
+      notes.push_back(fmt::format("light \"{}\" is dark: glTF has no such lights; left out", scene.lights[i].name));
+    else
+      add_light(scene.lights[i], glb, notes);
   }
   for (const AreaLight& light : scene.lights) {
     if (!light.texture) continue;

@@ -113,6 +113,26 @@ TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
   EXPECT_EQ(picture("default.exr").floats.at("R"), both.floats.at("R")) << "the same masks, by another method";
 }
 
+/// Exposure leaves out what shines itself, translucent or not.
+TEST_F(AlphaSurfaces, PanesThatShineAreNotExposedFor) {
+  look_from_above();
+  gltf.at("/materials/2")["emissiveFactor"] = {1, 1, 1};
+  gltf.at("/materials/2")["extensions"]["KHR_materials_emissive_strength"] = {{"emissiveStrength", 1000.0}};
+  gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {-1.2, 2, 0}}, {"scale", {0.2, 1, 0.2}}};
+  const auto exposure = [&](double alpha, const std::vector<std::string>& more) {
+    translucent(alpha);
+    std::vector<std::string> options = {"--light-samples", "16"};
+    options.insert(options.end(), more.begin(), more.end());
+    const Outcome outcome = render(options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return std::stod(picture().attributes.at("penumbra.exposure"));
+  };
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--pixel-samples", "4"}}) {
+    const double solid = exposure(1, more), pane = exposure(0.9, more);
+    EXPECT_NEAR(pane, solid, 0.5);
+  }
+}
+
 /// The half of a card that its texels leave is a rectangle: the shadow is that of one made of triangles.
 TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
   half_a_card();

@@ -7,20 +7,38 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace penumbra::visibility {
 
 namespace {
 
-/// Do a ray through their common edge or corner and cover(), which is of closed triangles, meet one surface twice?
-bool are_one(const SceneFloats& scene, const ViewWalk::Met& a, const ViewWalk::Met& b) {
-  if (scene.object[a.triangle] != scene.object[b.triangle] || !(b.t - a.t <= 0x1p-40 * b.t)) return false;
-  const auto others = scene.corners(b.triangle);
-  return std::ranges::any_of(scene.corners(a.triangle), [&](const glm::vec3& corner) {
-    return std::ranges::find(others, corner) != others.end();
-  });
+/// A share or a distance below this is rounding: both come of some ten operations in double.
+constexpr double kNothing = 0x1p-40;
+
+/// Does a ray through a common edge or corner of two triangles meet one surface twice? cover() is of closed triangles.
+/// Not where they coincide: those are two surfaces.
+bool are_one(const SceneFloats& scene, const ViewRay& ray, const ViewWalk::Met& a, const ViewWalk::Met& b) {
+  if (!(std::abs(b.t - a.t) <= kNothing * std::abs(b.t))) return false;
+  const auto common = [](const std::array<glm::vec3, 3>& corners, const std::array<glm::vec3, 3>& others,
+                         std::size_t i) { return std::ranges::find(others, corners[i]) != others.end(); };
+  const auto crossed_at_common = [&](const std::array<glm::vec3, 3>& corners, const std::array<glm::vec3, 3>& others) {
+    const glm::dvec3 shares = shares_on_line(ray.start, ray.direction, corners);
+    std::size_t of_both = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (common(corners, others, i))
+        ++of_both;
+      else if (!(std::abs(shares[static_cast<glm::length_t>(i)]) <= kNothing))
+        return false;
+    }
+    return of_both == 1 || of_both == 2;
+  };
+  const auto first = scene.corners(a.triangle), second = scene.corners(b.triangle);
+  return crossed_at_common(first, second) && crossed_at_common(second, first);
 }
 
 }  // namespace
@@ -44,7 +62,9 @@ Panes::Panes(const SceneFloats& scene, const ViewSamples& seen) : scene_(scene),
       walk.meet(x, y, met);
       for (std::size_t k = 0; k < met.size() && met[k].t < end; ++k) {
         const std::uint32_t triangle = met[k].triangle;
-        if (k > 0 && are_one(scene, met[k - 1], met[k])) continue;
+        const std::span<const ViewWalk::Met> nearer(met.data(), k);
+        if (std::ranges::any_of(nearer, [&](const auto& other) { return are_one(scene, ray, other, met[k]); }))
+          continue;
         const glm::dvec3 shares = shares_on_line(ray.start, ray.direction, scene.corners(triangle));
         const double alpha = alpha_at(scene, triangle, shares);
         if (alpha > 0) panes_[i].push_back({static_cast<std::int32_t>(triangle), static_cast<float>(alpha)});

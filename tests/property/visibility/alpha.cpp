@@ -52,11 +52,13 @@ struct Leaves {
   scenes::Scene scene;
   std::mt19937 random;
 
-  explicit Leaves(std::uint32_t seed) : random(seed) {
+  Leaves(std::uint32_t seed, bool under_a_sun) : random(seed) {
     scene.lights.push_back(tests::rectangle_light(point(), {1, 0, 0}, {0, 1, 1}));
-    auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
-    light.center.z += 1;
+    std::get<scenes::Rectangle>(scene.lights[0].shape).center.z += 1;
     scene.lights[0].two_sided = true;
+    if (under_a_sun)
+      scene.lights[0].shape =
+          scenes::Sun{point() + glm::dvec3(0.25, 0.5, 0.125), static_cast<double>(number(0, 1) * 60)};
     scene.pictures.push_back({"leaf", 3, 2, {}});
     for (int i = 0; i < 6; ++i)
       scene.pictures[0].texels.push_back({0, 0, 0, static_cast<std::uint8_t>(number(0, 1) * 255)});
@@ -103,12 +105,14 @@ std::optional<bool> literal_is_there(const scenes::Scene& scene, const SceneFloa
   return picture.texels[*row * picture.width + *column][3] >= 128;
 }
 
-class AlphaOnLattice : public testing::TestWithParam<std::uint32_t> {};
+/// The seed, and whether the light is a sun: of those a pair is a ray without end.
+class AlphaOnLattice : public testing::TestWithParam<std::tuple<std::uint32_t, bool>> {};
 
 TEST_P(AlphaOnLattice, TexelsDecide) {
   std::size_t by_mask = 0, stopped = 0, passed = 0;
+  const auto [seed, under_a_sun] = GetParam();
   for (std::uint32_t round = 0; round < 60; ++round) {
-    Leaves leaves(GetParam() * 1000 + round);
+    Leaves leaves(seed * 1000 + round, under_a_sun);
     const SceneFloats floats = make_scene_floats(leaves.scene);
     const Light light = make_light(leaves.scene, 0, glm::dvec3(0), {0, 3, 3, SamplePattern::grid, 0});
     EXPECT_EQ(light.filtered_by, "leaf");
@@ -138,12 +142,15 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
       const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
       for (std::uint32_t j = 0; j < 9; ++j) {
         if ((unfiltered[pixel] >> j & 1u) == 0) continue;
-        const Vector p = exact(samples.p[pixel]), way = exact(light.points[j]) - p;
-        const Vector moved = way + kTiny * (exact(light.center_u) - exact(light.center)) +
-                             kTiny * kTiny * (exact(light.center_v) - exact(light.center));
+        const Vector p = exact(samples.p[pixel]);
+        const Vector way = light.sun ? exact(light.points[j]) : Vector(exact(light.points[j]) - p);
+        const Vector u = light.sun ? exact(light.sun->axis_u) : Vector(exact(light.center_u) - exact(light.center));
+        const Vector v = light.sun ? exact(light.sun->axis_v) : Vector(exact(light.center_v) - exact(light.center));
+        const Vector moved = way + kTiny * u + kTiny * kTiny * v;
         bool visible = true, certain = true;
         for (const std::uint32_t leaf : floats.alphas.casters) {
-          if (floats.plane[leaf] == floats.plane[carrier] || !tests::meets({p, moved, way, true}, floats.corners(leaf)))
+          if (floats.plane[leaf] == floats.plane[carrier] ||
+              !tests::meets({p, moved, way, !light.sun}, floats.corners(leaf)))
             continue;
           const auto there = literal_is_there(leaves.scene, floats, leaf, p, way);
           certain &= there.has_value();
@@ -152,7 +159,7 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
         ASSERT_EQ((masks[pixel] >> j & 1u) != 0, is_visible(floats, pixel, j)) << "both exact, certain or not";
         if (!certain) continue;
         ASSERT_EQ((masks[pixel] >> j & 1u) != 0, visible)
-            << "seed " << GetParam() << " round " << round << " pixel " << pixel << " sample " << j;
+            << "seed " << seed << " round " << round << " pixel " << pixel << " sample " << j;
         ++(visible ? passed : stopped);
       }
     }
@@ -162,7 +169,7 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
   EXPECT_GT(passed, 100u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, AlphaOnLattice, testing::Range(0u, 4u));
+INSTANTIATE_TEST_SUITE_P(Seeds, AlphaOnLattice, testing::Combine(testing::Range(0u, 4u), testing::Bool()));
 
 /// A floor under a square light, with surfaces in between.
 struct UnderPanes {
@@ -217,6 +224,34 @@ TEST(AlphaFilters, VerticesAndFactorsMultiply) {
   for (std::size_t i = 0; i < panes.scene.soup.positions.size(); ++i)
     panes.scene.looks.colors.emplace_back(1, 1, 1, 0.5f);
   EXPECT_FLOAT_EQ(panes.share(), 0.75f);
+}
+
+/// One value at all corners is that value anywhere, to the last digit, though vertices elsewhere have others.
+TEST(AlphaFilters, WhatCornersShareHasNoNoise) {
+  for (const float vertex : {1.0F, 0.75F}) {
+    scenes::Scene scene;
+    scenes::Object& solid = tests::add_quad(scene, {0, 0, 0}, {1, 0.3, 0}, {0, 0.2, 1});
+    solid.alpha = {Alpha::Mode::mask, 1, double{vertex}};
+    solid.picture = PictureUse{0};
+    scene.pictures.push_back({"checks", 2, 1, {{0, 0, 0, 255}, {}}});
+    scene.lights.push_back(tests::ceiling_light(4, 0.5));
+    for (std::size_t i = 0; i < 4; ++i) {
+      scene.looks.places.emplace_back(1, 0.5);  // between two texels: the first, by repetition
+      scene.looks.colors.emplace_back(1, 1, 1, vertex);
+    }
+    tests::add_quad(scene, {9, 0, 0}, {1, 0, 0}, {0, 0, 1});
+    scene.looks.places.resize(8);
+    scene.looks.colors.resize(8, glm::vec4(1, 1, 1, 0.5F));
+    const SceneFloats floats = make_scene_floats(scene);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> real(0, 1);
+    for (int i = 0; i < 2000; ++i) {
+      const glm::dvec3 aim = glm::dvec3(real(random), 0, real(random)), way(real(random), -1, real(random));
+      const glm::dvec3 shares = shares_on_line(aim - way, way, floats.corners(0));
+      EXPECT_EQ(alpha_at(floats, 0, shares), double{vertex});
+      EXPECT_EQ(transmittance_at(floats, 0, shares), 0);
+    }
+  }
 }
 
 TEST(AlphaFilters, AnObjectsFlagsHold) {
@@ -329,6 +364,37 @@ TEST(PaneLayers, AreBeforeWhatIsSeenAndInOrder) {
     EXPECT_EQ(layers[1].alpha[i], card_before ? 0.0f : 0.5f);
     EXPECT_EQ(layers[1].samples.triangle[i] == ViewSamples::kBackground, card_before);
   }
+}
+
+/// Rays through what triangles have in common meet one surface, whichever objects these are of; faces that coincide are
+/// two surfaces.
+TEST(PaneLayers, SeamsAreOneSurface) {
+  const auto quads = [](std::initializer_list<glm::dvec3> centers) {
+    scenes::Scene scene;
+    tests::add_quad(scene, {0, 0, -3}, {5, 0, 0}, {0, 5, 0});
+    for (const glm::dvec3& center : centers)
+      tests::add_quad(scene, center, {1, 0, 0}, {0, 1, 0}).alpha = {Alpha::Mode::blend, 0.5, 0.5};
+    scene.lights.push_back(tests::ceiling_light(4, 0.5));
+    return scene;
+  };
+  const auto depths = [](const scenes::Scene& scene) {
+    const SceneFloats floats = make_scene_floats(scene);
+    // Odd: the middle's rays pass through the seam x = 0, the diagonals of quads, and the corner at (0, 0).
+    const PinholeCamera view = make_camera(tests::camera({0, 0, 6}, {0, 0, 0}, 30), floats.origin, 21, 21);
+    const ViewSamples seen = brute_force_view_samples(floats, view);
+    const Panes panes(floats, seen);
+    std::vector<int> counts(seen.size());
+    for (std::size_t layer = 0; layer < panes.depth(); ++layer) {
+      const std::vector<float> alpha = panes.layer(layer).alpha;
+      for (std::size_t i = 0; i < alpha.size(); ++i) counts[i] += alpha[i] > 0 ? 1 : 0;
+    }
+    return counts;
+  };
+  const std::vector<int> four = depths(quads({{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(four, std::vector<int>(four.size(), 1));
+  const std::vector<int> twice = depths(quads({{0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(std::ranges::count(twice, 2), std::ranges::count_if(twice, [](int depth) { return depth > 0; }));
+  EXPECT_GT(std::ranges::count(twice, 2), 30);
 }
 
 }  // namespace

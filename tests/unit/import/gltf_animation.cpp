@@ -161,6 +161,39 @@ TEST_F(GltfAnimation, SkinsNeedNoBindMatrices) {
   EXPECT_THAT(read(gltf).warnings, IsEmpty());
 }
 
+/// A light without a body is in no box, whether the file is read at a time or as it lies.
+TEST_F(GltfAnimation, OutlinesOfLightsMoveNoOrigin) {
+  Gltf gltf;
+  gltf.at("/nodes/1")["extras"] = {{"body", false}};
+  gltf.animate(0, "translation", {0, 1}, {0, 0, 0, 4, 0, 0});
+  const auto box_center = [](const Scene& scene) {
+    glm::dvec3 lower = scene.soup.positions.front(), upper = lower;
+    for (const glm::dvec3& p : scene.soup.positions) lower = glm::min(lower, p), upper = glm::max(upper, p);
+    return 0.5 * lower + 0.5 * upper;
+  };
+  const Scene still = read(gltf, {});
+  EXPECT_EQ(still.origin.value_or(box_center(still)), glm::dvec3(0.5, 0.5, 0));
+  EXPECT_EQ(read(gltf, 1).origin, std::optional(glm::dvec3(0.5, 0.5, 0)));
+}
+
+/// However nodes are scaled, a lamp is at their transform of its node's origin; animation elsewhere changes nothing.
+TEST_F(GltfAnimation, LampsUnderWhatIsScaledToNothingStay) {
+  for (const bool animated : {false, true}) {
+    Gltf gltf;
+    gltf.document["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"intensity", 9}}}}}}};
+    gltf.document["extensionsUsed"].push_back("KHR_lights_punctual");
+    gltf.at("/nodes").push_back({{"name", "Arm"}, {"children", {4}}, {"translation", {1, 2, 3}}, {"scale", {1, 0, 1}}});
+    gltf.at("/nodes").push_back(
+        {{"name", "Bulb"}, {"translation", {0, 7, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
+    if (animated) gltf.animate(0, "translation", {0, 1}, {0, 0, 0, 4, 0, 0});
+    const Scene scene = read(gltf, animated ? std::optional(0.0) : std::nullopt);
+    const auto bulb = std::ranges::find(scene.lights, "Bulb", &AreaLight::name);
+    ASSERT_NE(bulb, scene.lights.end());
+    EXPECT_EQ(std::get<Sphere>(bulb->shape).center, glm::dvec3(1, 2, 4)) << animated;
+  }
+}
+
 /// The usual way to hide a lamp: its scale is keyed to 0.
 TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
   for (const bool by_parent : {false, true}) {

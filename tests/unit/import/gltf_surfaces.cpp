@@ -4,6 +4,7 @@
 #include "base/image.hpp"
 #include "base/png.hpp"
 #include "tests/unit/import/gltf_file.hpp"
+#include "tests/unit/textured_lights_support.hpp"
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -132,6 +133,39 @@ TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("'Body'"), HasSubstr("PNG")));
   gltf.at("/materials/0").erase("alphaMode");
   EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("without its picture")));
+}
+
+/// Texels are sRGB and alpha what the file has, whatever its depth and its gAMA chunk; 16 bits come rounded.
+TEST_F(GltfSurfaces, PicturesOfAnyDepthAreAsTheyAre) {
+  const auto texel_of = [&](const std::string& png) {
+    Gltf gltf = textured();
+    gltf.at("/images/0")["bufferView"] = gltf.add_view(png);
+    return read(gltf).pictures.at(0).texels.at(0);
+  };
+  const std::string wide = tests::bytes_of({0x80, 0x80, 0x40, 0x00, 0xff, 0xff, 0x3f, 0xd9});
+  EXPECT_EQ(texel_of(tests::png_file(1, 1, 16, 6, {wide})), (std::array<std::uint8_t, 4>{128, 64, 255, 64}));
+  const std::string linear = tests::png_chunk("gAMA", tests::big_endian(100000));
+  EXPECT_EQ(texel_of(tests::png_file(1, 1, 8, 6, {tests::bytes_of({128, 64, 255, 7})}, linear)),
+            (std::array<std::uint8_t, 4>{128, 64, 255, 7}));
+}
+
+/// What would be lost in silence is named.
+TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
+  Gltf gltf = textured();
+  gltf.at("/meshes/0/primitives/0/attributes").erase("TEXCOORD_0");
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has no TEXCOORD_0")));
+  gltf.at("/materials/0")["alphaMode"] = "MASK";
+  EXPECT_THAT(refusal(gltf), HasSubstr("'Body' has no TEXCOORD_0"));
+  Gltf glossy;
+  glossy.at("/materials/0")["alphaMode"] = "MASK";
+  glossy.at("/materials/0")["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {{"diffuseFactor", {1, 1, 1, 0}}};
+  EXPECT_THAT(refusal(glossy), HasSubstr("KHR_materials_pbrSpecularGlossiness"));
+  Gltf pane;
+  pane.at("/materials/0")["alphaMode"] = "BLEND";
+  pane.at("/materials/0/pbrMetallicRoughness")["baseColorFactor"] = {1, 1, 1, 0.5};
+  EXPECT_THAT(mesh::import_mesh(write("pane.glb", pane.glb())).notes, Contains(HasSubstr("'Body' is solid")));
+  pane.at("/materials/0/pbrMetallicRoughness/baseColorFactor/3") = 0;
+  EXPECT_THAT(read(pane).warnings, Contains(HasSubstr("'Body' is wholly transparent")));
 }
 
 /// A light of radiance (20, 10, 0) under a picture of dark red and white: the mean, in linear light.

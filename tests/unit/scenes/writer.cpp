@@ -252,6 +252,21 @@ TEST(GlbWriter, SaysWhatGltfCannotHold) {
   }
 }
 
+/// The outline of a light without a body is no geometry, and a light that is dark leaves none.
+TEST(GlbWriter, DarkLightsLeaveNoGeometry) {
+  const TemporaryFolder folder;
+  Scene scene = read_text(kEverything);
+  const auto dark = std::ranges::find_if(
+      scene.lights, [](const auto& light) { return std::holds_alternative<scenes::Rectangle>(light.shape); });
+  ASSERT_NE(dark, scene.lights.end());
+  dark->radiance = glm::dvec3(0);
+  const auto notes = write_scene(scene, folder / "scene.glb");
+  EXPECT_TRUE(std::ranges::any_of(notes, [](const auto& note) { return note.find("is dark") != note.npos; }));
+  const Scene again = read_scene(folder / "scene.glb");
+  EXPECT_EQ(again.lights.size(), scene.lights.size() - 1);
+  EXPECT_EQ(again.soup.triangles.size(), scene.soup.triangles.size());
+}
+
 /// Suns, spheres and spots are lamps of KHR_lights_punctual, with their sizes as extras.
 TEST(GlbWriter, LampsReadBack) {
   const TemporaryFolder folder;
