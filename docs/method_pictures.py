@@ -56,11 +56,11 @@ PAGES = {
     "accumulate": ("contact", 64, ["accumulate:size=128"]),
     "soft-shadow-map": ("papers/ball", 64, ["soft-shadow-map", "soft-shadow-map:passes=2"]),
     "backproject": ("papers/plate-over-plate", 64, ["backproject:size=128:fill=none", "backproject:size=128"]),
-    "backproject-peel": ("papers/ball", 64, ["backproject-peel:size=128:layers=1", "backproject-peel:size=128"]),
+    "backproject-peel": ("papers/ball", 64, ["backproject-peel:size=128"]),
     "bitmask": ("papers/bars", 256, ["bitmask:size=256", "bitmask:size=256:occluder=patch"]),
     "contour": ("papers/gap-open", 64, ["contour:size=256"]),
     "packet": ("papers/ball", 64, ["packet:size=256", "packet:size=256:sublights=2"]),
-    "adaptive-light": ("papers/ball", 64, ["adaptive-light:size=256", "adaptive-light:size=256:weights=area"]),
+    "adaptive-light": ("papers/ball", 64, ["adaptive-light:size=256"]),
     "layered-attenuation": ("contact", 36, ["layered-attenuation:size=128"]),
     "deep-penumbra": ("contact", 36, ["deep-penumbra:size=128", "deep-penumbra:size=128:bound=0.2"]),
 }
