@@ -1,6 +1,7 @@
 #include "engines/pairs/light_box.hpp"
 
 #include "base/assert.hpp"
+#include "base/error.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -29,8 +30,15 @@ LightBox make_light_box(const visibility::Light& light) {
     box.axis = glm::normalize(glm::cross(frame.u, frame.v));
   }
   box.along = glm::cross(box.axis, box.across);
+  constexpr double kFlattest = 0x1p-8;  // of a direction's length, across the sun: double keeps 44 digits of the rest
   double reach = 0;
   for (const glm::vec3& l : light.points) {
+    if (box.sun && !(-box.place(glm::dvec3(l)).z >= kFlattest * glm::length(glm::dvec3(l)))) {
+      throw InputError(
+          "light \"{}\": a sun of more than 179.5 degrees is too wide for this method; edge-scatter, view-sample, "
+          "depth-complexity and raytrace can do it",
+          light.name);
+    }
     const glm::dvec2 at = box.sample(l);
     box.lower = glm::min(box.lower, at);
     box.upper = glm::max(box.upper, at);

@@ -40,7 +40,7 @@ struct LightBox {
   static double dot3(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 };
 
-/// Not of a sphere.
+/// Not of a sphere. Throws InputError for a sun that is all but a half-space wide.
 LightBox make_light_box(const visibility::Light& light);
 
 }  // namespace penumbra::pairs

@@ -93,6 +93,11 @@ HWY_INLINE hn::Mask<D> box_meets(const WalkInput& in, const Shaft& shaft, const 
   return met;
 }
 
+Point cross(const Point& p, const Point& q) {
+  return {hn::Sub(hn::Mul(p.y, q.z), hn::Mul(p.z, q.y)), hn::Sub(hn::Mul(p.z, q.x), hn::Mul(p.x, q.z)),
+          hn::Sub(hn::Mul(p.x, q.y), hn::Mul(p.y, q.x))};
+}
+
 /// (bound cone)
 hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lane, const Point& middle,
                       const Point& half) {
@@ -104,12 +109,11 @@ hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lan
   const Point to = minus(middle, in.cluster.middle);
   const Point e{hn::Add(half.x, hn::Set(d, box.x)), hn::Add(half.y, hn::Set(d, box.y)),
                 hn::Add(half.z, hn::Set(d, box.z))};
-  const V straight = hn::Abs(dot(axis, to)), squared = dot(to, to), zero = hn::Zero(d);
-  const V aside = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(straight, straight)), zero));
+  const V straight = hn::Abs(dot(axis, to)), aside = length(cross(axis, to)), zero = hn::Zero(d);
   const V sine = hn::Sqrt(hn::Max(hn::Sub(hn::Set(d, 1.0F), hn::Mul(cosine, cosine)), zero));
   const V spread = hn::Add(hn::Mul(dot(absolute(axis), e), cosine), hn::Mul(length(e), sine));
   const V least = hn::Sub(hn::Mul(straight, cosine), hn::Mul(aside, sine));
-  const V slack = hn::Add(scaled(hn::Sqrt(squared), 0.0001F), hn::Set(d, 64 * kRound * in.grid.reach));
+  const V slack = hn::Add(scaled(length(to), 0.0001F), hn::Set(d, 64 * kRound * in.grid.reach));
   return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
 }
 

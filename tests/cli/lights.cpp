@@ -73,6 +73,17 @@ TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
     EXPECT_EQ(outcome.code, 3) << method;
     EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("is a sun"), HasSubstr("raytrace"))) << method;
   }
+  scene_with(R"({"name": "key", "sun": {"direction": [0.2, -1, 0.1], "angle": 179.999}})");
+  for (const char* method : {"view-sample-planar", "hierarchical-penumbra", "view-sample:variant=sintorn"}) {
+    const std::string text(method);
+    const std::size_t colon = text.find(':');
+    std::vector<std::string> arguments = {"--method", text.substr(0, colon)};
+    if (colon != text.npos) arguments.insert(arguments.end(), {"--method-option", text.substr(colon + 1)});
+    const Outcome outcome = render(arguments);
+    EXPECT_EQ(outcome.code, 3) << method;
+    EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("179.5 degrees"), HasSubstr("edge-scatter"))) << method;
+  }
+  scene_with(fmt::format(R"({{"name": "key", {}}})", kSun));
   const Outcome wedges = run({"wedges", path("scene.json"), "--light", "key"});
   EXPECT_EQ(wedges.code, 3);
   EXPECT_THAT(wedges.err, HasSubstr("is a sun"));

@@ -37,10 +37,10 @@ vec3 middle, half_size;
 // vector d = p − x lies in D ± e, and all normals within an angle of `cone.xyz`. (bound cone)
 bool same_side(vec3 center, vec3 extent, vec4 cone) {
   const vec3 d = middle - center, e = half_size + extent;
-  const float straight = abs(dot(cone.xyz, d)), squared = dot(d, d);
-  const float aside = sqrt(max(squared - straight * straight, 0.0)), sine = sqrt(max(1.0 - cone.w * cone.w, 0.0));
+  const float straight = abs(dot(cone.xyz, d)), aside = length(cross(cone.xyz, d));
+  const float sine = sqrt(max(1.0 - cone.w * cone.w, 0.0));
   const float spread = dot(abs(cone.xyz), e) * cone.w + length(e) * sine;
-  return straight * cone.w - aside * sine > 1.01 * spread + 0.0001 * sqrt(squared) + 64.0 * kRound * push.reach;
+  return straight * cone.w - aside * sine > 1.01 * spread + 0.0001 * length(d) + 64.0 * kRound * push.reach;
 }
 
 bool meets(Shaft shaft, vec3 level, vec4 least) {

@@ -67,6 +67,51 @@ TEST_P(DepthSearch, EveryPairIsTheExactDecision) {
   }
   tests::expect_all_kinds(counts);
 }
+/// A light seen from so near its plane that the rounding of its stored samples off that plane decides what hides them:
+/// an occluder's edge that passes just beside the light as it is meant.
+TEST_P(DepthSearch, ALightSeenEdgeOn) {
+  tests::MethodsByLayout methods([&] { return make_depth_complexity(device(), {{"search", GetParam()}}); });
+  PairCounts counts;
+  for (std::uint32_t seed = 0; seed < 24; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto direction = [&] { return glm::normalize(glm::dvec3(real(random), real(random), real(random))); };
+    const glm::dvec3 n = direction(), d = glm::normalize(glm::cross(n, direction())), w = glm::cross(n, d);
+    const glm::dvec3 center = 0.9 * direction();
+    constexpr double kHalf = 0.005;
+    const double height = 2e-5 * (1 + 0.2 * real(random)), side = seed % 2 == 0 ? 1 : -1;
+    const auto at = [&](double x, double y, double z) { return center + x * d + y * w + z * n; };
+    // Over half the way, as high as what a way from p to just beside the light's rim has there.
+    const double beside = side * kHalf * (1.002 + 0.074 * (1 + real(random)));
+    const double p_height = height * (1 - beside) / (0.5 - beside), patch = 2e-5;
+    scenes::Scene scene;
+    tests::add_object(scene, "anchor", {{glm::dvec3(-2), glm::dvec3(2), glm::dvec3(2, -2, 2)}}).casts_shadow = false;
+    tests::add_object(scene, "occluder",
+                      {{at(0.5, -0.2, height), at(0.5, 0.2, height), at(0.5, 0, height * (1 + side * 0.6))}});
+    const glm::dvec3 p = at(1, 0, p_height), down = 0.8 * patch * n;
+    tests::add_object(scene, "patch", {{p - patch * w - down, p + patch * w - down, p + patch * n}}).casts_shadow =
+        false;
+    scene.lights.push_back(tests::rectangle_light(center, kHalf * d, kHalf * w));
+    scene.lights[0].two_sided = true;
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light =
+        visibility::make_light(scene, 0, floats.origin, {4096, 0, 0, visibility::SamplePattern::rows, 0});
+    ViewSamples samples;
+    samples.width = samples.height = 1;
+    samples.triangle = {2};
+    samples.p = {glm::vec3(p - floats.origin)};
+    const auto [a, b, c] = floats.corners(2);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+    samples.facing = {static_cast<std::int8_t>(glm::dot(normal, d) < 0 ? 1 : -1)};
+    samples.n = {glm::vec3(static_cast<double>(samples.facing[0]) * glm::normalize(normal))};
+    samples.depth = {1};
+    visibility::Method& method = methods.of(light);
+    EXPECT_TRUE(tests::equals_truth(floats, light, samples, tests::run(method, floats, light, samples), &counts))
+        << "seed " << seed;
+  }
+  EXPECT_GT(counts.visible, 1000u);
+  EXPECT_GT(counts.blocked, 1000u);
+}
 INSTANTIATE_TEST_SUITE_P(Structure, DepthSearch, testing::Values("kd-tree", "hemicube"), [](const auto& it) {
   return std::string(it.param).starts_with("kd") ? "kd_tree" : "hemicube";
 });

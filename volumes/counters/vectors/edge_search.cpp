@@ -23,7 +23,8 @@ using visibility::TriangleTree;
 constexpr std::size_t kFewWedges = 16, kFewPixels = 16;  ///< a cell is not divided
 constexpr int kDeepest = 32;
 constexpr std::uint32_t kCells = 32;  ///< of a side of a face of the hemicube
-/// What the light is made larger by, so that nothing that rounding may bring to its rim is left out.
+/// What the light is made larger by, so that nothing that rounding may bring to its rim is left out: beside where light
+/// samples are stored, off their places by up to DeviceLight::deviation.
 constexpr double kAroundLight = 1 + 0x1p-10;
 
 using Edge = std::array<glm::dvec3, 2>;
@@ -35,12 +36,21 @@ Key key_of(const glm::vec3& a, const glm::vec3& b) {
   return {from.x, from.y, from.z, to.x, to.y, to.z};
 }
 
-/// Corners of the rectangle that ways to light samples stay in, in scene floats.
-std::vector<glm::dvec3> corners_around(const visibility::DeviceLight& frame, float scale) {
-  const double larger = kAroundLight / static_cast<double>(scale), to_floats = 1 / static_cast<double>(scale);
-  const glm::dvec3 c = to_floats * glm::dvec3(frame.center), u = larger * glm::dvec3(frame.u),
-                   v = larger * glm::dvec3(frame.v);
-  return {c - u - v, c + u - v, c + u + v, c - u + v};
+/// A box around all stored light samples, in scene floats: its middle, then its corners. Seen along the light's plane
+/// from near it, how thick it is decides what may hide a sample.
+LightHull hull_around(const visibility::DeviceLight& frame, float scale) {
+  const double to_floats = 1 / static_cast<double>(scale), off = kAroundLight * static_cast<double>(frame.deviation);
+  const glm::dvec3 u(frame.u), v(frame.v), n = glm::normalize(glm::cross(u, v));
+  const auto longer = [&](const glm::dvec3& x) { return to_floats * (kAroundLight + off / glm::length(x)) * x; };
+  LightHull hull;
+  hull.center = to_floats * glm::dvec3(frame.center);
+  hull.is_solid = true;
+  for (const double side : {-off, off}) {
+    const glm::dvec3 c = hull.center + to_floats * side * n;
+    for (const glm::dvec2 at : {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)})
+      hull.corners.push_back(c + at.x * longer(u) + at.y * longer(v));
+  }
+  return hull;
 }
 
 enum class Overlap : std::uint8_t { none, some, all };
@@ -96,9 +106,8 @@ std::vector<std::uint32_t> leaves_in_use(const vectors::WideEdgeTree& tree) {
 
 EdgeSearch::EdgeSearch(Search search, const EdgeSearchInput& input) : search_(search) {
   const Casters casters = casters_of(input.scene, input.light);
-  LightHull hull = light_hull(input.light);
-  hull.corners = corners_around(input.frame, input.scale);
-  center_ = 0.25 * (hull.corners[0] + hull.corners[1] + hull.corners[2] + hull.corners[3]);
+  const LightHull hull = hull_around(input.frame, input.scale);
+  center_ = hull.center;
   const CastingEdges casting = casting_edges(casters, hull, SilhouettesFrom::anywhere, search == Search::kd_tree);
   std::vector<Edge> edges;
   for (const WedgeEdge& edge : casting.wedges) edges.push_back({edge.a, edge.b});
