@@ -39,7 +39,7 @@ struct Decades {
   [[nodiscard]] double share(double value) const { return (std::log10(value) - first) / (last - first); }
 };
 
-constexpr double kLeft = 64, kRight = 660, kTop = 16, kBottom = 372, kZeroGap = 34;
+constexpr double kLeft = 64, kRight = 660, kTop = 16, kBottom = 372, kZeroGap = 34, kWidth = 860;
 
 /// By family in colour and in shape.
 std::string mark(const Dot& dot) {
@@ -51,19 +51,22 @@ std::string mark(const Dot& dot) {
   return fmt::format(R"(<path class="reference" d="M{:.1f} {:.1f}l6 6-6 6-6-6z"/>)", dot.x, dot.y - 6);
 }
 
-/// Each name to the right of its dot, and further down where another name is already.
-std::string names(std::vector<Dot> dots) {
+/// A line of text, y at half of its height.
+struct Box {
+  double x, end, y;
+};
+
+/// Each name to the right of its dot, or to the left where it would not fit, and further up or down where something
+/// else is already; `taken`: other texts.
+std::string names(std::vector<Dot> dots, std::vector<Box> taken) {
   constexpr double kLine = 15;
   std::ranges::sort(dots, [](const Dot& a, const Dot& b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
-  struct Box {
-    double x, end, y;
-  };
-  std::vector<Box> taken;
   for (const Dot& dot : dots) taken.push_back({dot.x - 7, dot.x + 7, dot.y});
   std::string svg;
   for (const Dot& dot : dots) {
     const double width = 7.0 * static_cast<double>(dot.name.size());
-    Box box{dot.x + 10, dot.x + 10 + width, dot.y};
+    const bool is_left = dot.x + 10 + width > kWidth;
+    Box box = is_left ? Box{dot.x - 10 - width, dot.x - 10, dot.y} : Box{dot.x + 10, dot.x + 10 + width, dot.y};
     for (double shift = 0; shift < 20 * kLine; shift += kLine / 3) {
       bool is_free = false;
       for (const double y : {dot.y - shift, dot.y + shift}) {
@@ -77,8 +80,10 @@ std::string names(std::vector<Dot> dots) {
     }
     taken.push_back(box);
     if (std::abs(box.y - dot.y) > 6)
-      svg += fmt::format("<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>", dot.x, dot.y, box.x - 1, box.y);
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", box.x, box.y + 4, escape_html(dot.name));
+      svg += fmt::format("<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>", dot.x, dot.y,
+                         is_left ? box.end + 1 : box.x - 1, box.y);
+    svg += fmt::format("<text{} x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", is_left ? " text-anchor=\"end\"" : "",
+                       is_left ? box.end : box.x, box.y + 4, escape_html(dot.name));
   }
   return svg;
 }
@@ -142,7 +147,9 @@ std::string error_against_time_html(const ReportInput& in) {
       "<text class=\"axis\" text-anchor=\"middle\" x=\"{}\" y=\"{}\">seconds for the shadow{}</text>"
       "<text class=\"axis\" text-anchor=\"middle\" transform=\"translate(14 {}) rotate(-90)\">RMSE of V</text>\n",
       (kLeft + kRight) / 2, kBottom + 40, in.lights.size() > 1 ? " of all lights" : "", (kTop + kBottom) / 2);
+  std::vector<Box> taken;
   if (cost && *cost >= kNoError) {
+    taken.push_back({kRight + 6, kWidth, y_of(*cost)});
     svg += fmt::format(
         "<path class=\"cost\" d=\"M{0} {2:.1f}H{1}\"/><text class=\"axis\" x=\"{3}\" y=\"{4:.1f}\">what {5} light "
         "samples cost</text>\n",
@@ -154,7 +161,7 @@ std::string error_against_time_html(const ReportInput& in) {
     svg += fmt::format("<g>{}<title>{}: RMSE {}, {}</title></g>\n", mark(dot), escape_html(dot.name),
                        error_text(dot.rmse), seconds_text(dot.seconds));
   }
-  svg += names(dots) + "</svg>\n";
+  svg += names(dots, taken) + "</svg>\n";
   std::string html = "<h3>Error against time</h3>\n" + svg +
                      "<p class=\"note\">Further down is closer to the reference, further left is faster; both scales "
                      "step by tens. Circles are geometry-based methods, squares image-based ones, diamonds references.";

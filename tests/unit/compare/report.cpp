@@ -115,6 +115,15 @@ TEST(Report, DrawsErrorAgainstTimeAndTheBudget) {
   EXPECT_EQ(report_html(in).find("Error against time"), std::string::npos);
 }
 
+/// Names stay in the drawing, and do not lie on what the light samples cost.
+TEST(Report, NamesInErrorAgainstTimeFindAPlace) {
+  ReportInput in = input_with(2);
+  in.metrics.methods[1].stats.seconds.evaluate = 50;  // so that the first is on the left
+  EXPECT_EQ(report_html(in).find("<text text-anchor=\"end\" x="), std::string::npos);
+  in.metrics.methods[1].entry = "bitmask:size=128:occluder=patch:fill=diagonal";
+  EXPECT_NE(report_html(in).find("<text text-anchor=\"end\" x="), std::string::npos);
+}
+
 /// A method that is right to a float's last digit does not push all others into a corner.
 TEST(Report, DrawsErrorsBelowAFloatsLastDigitAsNone) {
   ReportInput in = input_with(2);
