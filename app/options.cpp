@@ -200,13 +200,12 @@ std::vector<MethodEntry> parse_methods(std::string_view text) {
     if (const auto group = method_group(fields[0])) {
       if (group->empty()) throw UsageError("--methods {}: this build has no {} method", text, fields[0]);
       for (const visibility::MethodDescription* description : *group) {
-        visibility::parse_options(*description, options);
+        describe_method(description->name, options);  // throws for options that it has not
         add(description->name, description->name, options, true);
         if (description->exact_area) add_exact_area(*description, options);
       }
     } else {
-      const auto& description = describe_method(fields[0]);  // throws for a name that is not there
-      visibility::parse_options(description, options);
+      describe_method(fields[0], options);  // throws for a name that is not there, and for such options
       add(part, fields[0], std::move(options), false);
     }
   }

@@ -45,9 +45,8 @@ void check_light(const MethodDescription& description, const Light& light) {
   const std::vector<LightKind>& can = description.lights;
   if (light.texture && !description.textures) {
     throw InputError(
-        "light \"{}\" has a texture; method {} knows none. Take another light (--light) or method (--method; "
-        "edge-scatter and raytrace "
-        "does textures)",
+        "light \"{}\" has a texture; method {}, as asked for, does not weigh V by it. Take another light (--light) or "
+        "method (--method: edge-scatter and raytrace do textures, of outlines packet:sublights=S, S of 2 or more)",
         light.name, description.name);
   }
   if (light.rows == 0 && !description.any_pattern && light.kind == LightKind::rectangle) {

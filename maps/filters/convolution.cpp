@@ -25,6 +25,7 @@ visibility::MethodDescription convolution_description() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
       .lights = planar_lights(),
+      .textures = false,
       .options = single_map_option_descriptions(),
       .verdict_on = convolution_verdict,
       .repairs = slice_repairs};

@@ -34,6 +34,7 @@ visibility::MethodDescription pcf_description() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
       .lights = planar_lights(),
+      .textures = false,
       .options = single_map_option_descriptions(),
       .verdict_on = pcf_verdict,
       .repairs = pcf_repairs};

@@ -11,7 +11,7 @@
 // the light's shape, and Fernando's width of the penumbra over the receiver, w (p.z - z)/z, is the same thing.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
-layout(scalar, binding = 5) readonly buffer Pattern { vec2 pattern[]; };  // light points in its basis
+layout(scalar, binding = 5) readonly buffer Taps { vec3 taps[]; };  // light points in its basis, and what each weighs
 
 // The map at the light point s seen through height z; see above.
 Tap tap_at(LightView view, vec3 d, vec2 s, float z) {
@@ -28,7 +28,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   float sum = 0.0;
   uint blockers = 0;
   for (uint k = 0; k < own.blocker_samples; ++k) {
-    const Tap tap = tap_at(view, d, pattern[k], near);
+    const Tap tap = tap_at(view, d, taps[k].xy, near);
     if (blocks_light(tap, d, m, lookup.bias)) {
       sum += tap.depth * abs(tap.direction.z);
       ++blockers;
@@ -38,13 +38,15 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   // 2, 3. As if all blockers were one plane at their mean height: share of the light seen past it. A light point that is
   // below the receiver's horizon is hidden whatever the map says.
   const float blocker = blockers == 0 ? height : sum / float(blockers);
-  uint visible = 0;
+  float visible = 0.0, total = 0.0;  // whole numbers without a texture
   for (uint k = 0; k < own.filter_samples; ++k) {
-    const vec2 s = pattern[own.blocker_samples + k];
+    const vec2 s = taps[own.blocker_samples + k].xy;
+    const float weight = taps[own.blocker_samples + k].z;
+    total += weight;
     const bool above = dot(m, d - vec3(s, 0.0)) > 0.0;
-    if (above && (blockers == 0 || !blocks_light(tap_at(view, d, s, blocker), d, m, lookup.bias))) ++visible;
+    if (above && (blockers == 0 || !blocks_light(tap_at(view, d, s, blocker), d, m, lookup.bias))) visible += weight;
   }
-  return float(visible) / float(own.filter_samples);
+  return visible / total;
 }
 
 #include "maps/host/scalar_main.glsl"

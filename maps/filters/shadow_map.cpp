@@ -25,6 +25,7 @@ visibility::MethodDescription shadow_map_description() {
           .output = visibility::Output::scalar,
           .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
           .lights = planar_lights(),
+          .textures = false,
           .options = single_map_option_descriptions(),
           .verdict_on = shadow_map_verdict,
           .repairs = filter_repairs};

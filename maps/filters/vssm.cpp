@@ -67,6 +67,7 @@ visibility::MethodDescription vssm_description() {
                                                 "plane and what they shade in another, both "
                                                 "parallel to a rectangle light",
                                             .lights = planar_lights(),
+                                            .textures = false,
                                             .options = single_map_option_descriptions(),
                                             .verdict_on = vssm_verdict,
                                             .repairs = vssm_repairs};

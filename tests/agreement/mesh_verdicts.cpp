@@ -150,6 +150,7 @@ double error_of(visibility::Method& method, const FlawedStage& stage, const std:
   const std::vector<float> v = visibility_of(method, stage);
   double most = 0;
   for (std::size_t i = 0; i < v.size(); ++i) {
+    EXPECT_TRUE(v[i] >= 0 && v[i] <= 1) << method.description().name << ": V of pixel " << i << " is " << v[i];
     if (stage.classes[i] == PixelClass::judged) most = std::max<double>(most, std::abs(v[i] - areas[i]));
   }
   return most;

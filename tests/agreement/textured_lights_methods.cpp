@@ -2,7 +2,6 @@
 
 #include "compare/beauty.hpp"
 #include "maps/sampling/accumulate.hpp"
-#include "maps/filters/pcss.hpp"
 #include "tests/agreement/support.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 
@@ -156,21 +155,6 @@ TEST_F(TexturedLightMethods, TheBodyShowsThePictureUprightToWhoStandsBeforeIt) {
       EXPECT_EQ(picture[(y + 6) * 16 + x + 6], 2.0f * glm::vec3(x + 1, y + 1, 1)) << x << ", " << y;
     }
   }
-}
-
-TEST_F(TexturedLightMethods, ScalarMethodsKeepTheirV) {
-  const Stage plain = stage_with({}, {}), textured = stage_with(random_texture(4, 4, 2), {});
-  const auto value = [](const Stage& stage) {
-    const auto method = maps::make_pcss(device(), {{"size", "64"}});
-    method->prepare_mesh(stage.floats);
-    method->prepare_light(stage.light);
-    method->prepare_view(stage.samples);
-    method->evaluate({0, 8});
-    std::vector<float> v(std::size_t{8} * stage.samples.width);
-    method->read_visibility(v);
-    return v;
-  };
-  EXPECT_EQ(value(plain), value(textured));
 }
 
 }  // namespace

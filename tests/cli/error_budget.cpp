@@ -183,13 +183,13 @@ TEST_F(ErrorBudget, SaysWhatCannotBeDone) {
   write("textured.json", scene_text_with("/lights/0", R"({"name": "window", "texture": "window.png",
       "rectangle": {"center": [0, 4, 0], "halfU": [0.6, 0, 0], "halfV": [0, 0, 0.6]}})"));
   const Outcome outcome =
-      compare(path("textured.json"), "vssm:size=16,backproject-peel:size=16", {"--sample-pixels", "20"});
+      compare(path("textured.json"), "soft-shadow-map:size=16,backproject-peel:size=16", {"--sample-pixels", "20"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json methods = json::parse(read("dir/metrics.json")).at("methods");
-  const json &vssm = methods.at(0), &peel = methods.at(1);
-  EXPECT_TRUE(vssm.at("errorBudget").at("view").is_null());
-  EXPECT_THAT(vssm.at("errorBudgetRuns").at("view").at("words").get<std::string>(), HasSubstr("texture"));
-  EXPECT_EQ(vssm["errorBudgetRuns"].at("together").at("lightParts"), 1);
+  const json &soft = methods.at(0), &peel = methods.at(1);
+  EXPECT_TRUE(soft.at("errorBudget").at("view").is_null());
+  EXPECT_THAT(soft.at("errorBudgetRuns").at("view").at("words").get<std::string>(), HasSubstr("texture"));
+  EXPECT_EQ(soft["errorBudgetRuns"].at("together").at("lightParts"), 1);
   EXPECT_TRUE(peel.at("errorBudget").at("fusion").is_null());
   EXPECT_THAT(peel.at("errorBudgetRuns").at("fusion").at("words").get<std::string>(), HasSubstr("samples=0"));
   for (const char* part : {"view", "remainder"}) EXPECT_TRUE(peel["errorBudget"].at(part).is_number()) << part;

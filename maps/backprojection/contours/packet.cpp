@@ -6,31 +6,60 @@
 
 #include "maps/backprojection/contours/packet.hpp"
 
+#include "base/error.hpp"
+#include "maps/backprojection/contours/contour.shared.h"
 #include "maps/backprojection/contours/contour_recipe.hpp"
 #include "maps/backprojection/subsampled.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace penumbra::maps {
 namespace {
 
 struct Extent {
-  std::uint32_t width, height;
-  constexpr bool operator==(const Extent&) const = default;
+  std::uint32_t width = 0, height = 0;
 };
-constexpr visibility::ChoiceOption kPacket{"packet",
-                                           {{"1x1", Extent{1, 1}},
-                                            {"2x1", Extent{2, 1}},
-                                            {"2x2", Extent{2, 2}},
-                                            {"3x2", Extent{3, 2}},
-                                            {"3x3", Extent{3, 3}},
-                                            {"4x2", Extent{4, 2}},
-                                            {"4x4", Extent{4, 4}},
-                                            {"5x5", Extent{5, 5}},
-                                            {"8x4", Extent{8, 4}},
-                                            {"8x8", Extent{8, 8}}},
-                                           Extent{3, 3},
-                                           "pixels that look for contours together"};
+constexpr const char* kPacket = "packet";
+
+/// What `methods` lists; any other W x H of as many pixels is a choice, too.
+visibility::OptionDescription packet_option() {
+  return {.name = kPacket,
+          .choices = {"1x1", "2x1", "2x2", "3x2", "3x3", "4x2", "4x4", "5x5", "8x4", "8x8"},
+          .default_value = "3x3",
+          .help = fmt::format("WxH pixels that look for contours together: these, or any others of up to {} in all",
+                              gpu::kMostPacketPixels)};
+}
+
+/// "4x3". Throws UsageError for what is not two whole numbers from 1 on, or too many pixels.
+Extent extent_of(const std::string& text) {
+  Extent extent;
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, extent.width);
+  const bool cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = cross ? std::from_chars(width.ptr + 1, end, extent.height) : width;
+  const bool whole = cross && height.ec == std::errc() && height.ptr == end;
+  if (!whole || extent.width == 0 || extent.height == 0 ||
+      std::uint64_t{extent.width} * extent.height > gpu::kMostPacketPixels) {
+    throw UsageError(
+        "method packet: option {} is \"{}\"; it must be WxH, pixels across and down, 1x1 or more and no more than {} "
+        "pixels in all",
+        kPacket, text, gpu::kMostPacketPixels);
+  }
+  return extent;
+}
+
+/// As given, or the default.
+std::string packet_text(const visibility::MethodOptions& options) {
+  const auto given = options.find(kPacket);
+  return given == options.end() ? packet_option().default_value : given->second;
+}
+
 constexpr visibility::IntegerOption kSubLights{
     "sublights", 1, 16, 1, "parts of the light along each axis, each with a map of its own; V is their mean"};
 constexpr auto kHierarchy =
@@ -41,7 +70,7 @@ constexpr visibility::RealOption kDivergence{
 
 }  // namespace
 
-visibility::MethodDescription packet_description() {
+visibility::MethodDescription packet_description(const visibility::MethodOptions& options) {
   visibility::MethodDescription description{
       .name = "packet",
       .family = visibility::Family::image,
@@ -52,27 +81,33 @@ visibility::MethodDescription packet_description() {
       .options = single_map_option_descriptions(),
       .verdict_on = contour_verdict,
       .repairs = contour_repairs};
-  description.options.push_back(kPacket.description());
+  description.options.push_back(packet_option());
+  std::vector<std::string>& extents = description.options.back().choices;
+  const std::string packet = packet_text(options);
+  extent_of(packet);
+  if (std::ranges::find(extents, packet) == extents.end()) extents.push_back(packet);
   description.options.push_back(kSubLights.description());
   description.options.push_back(kHierarchy.description());
   description.options.push_back(kDivergence.description());
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
+  // Outlines know of their area alone; a texture weighs the parts of the light.
+  description.textures = visibility::parse_options(description, options)[kSubLights] > 1;
   return description;
 }
 
 std::unique_ptr<visibility::Method> make_packet(const render::Device& device,
                                                 const visibility::MethodOptions& options) {
-  const visibility::ParsedOptions parsed = visibility::parse_options(packet_description(), options);
-  const Extent packet = parsed[kPacket];
+  const visibility::MethodDescription description = packet_description(options);
+  const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
+  const Extent packet = extent_of(packet_text(options));
   const ContourChoices choices{.search = Search::mssm,
                                .traversal = parsed[kHierarchy] ? Traversal::hierarchy : Traversal::flat,
                                .packet_width = packet.width,
                                .packet_height = packet.height,
                                .divergence = parsed[kDivergence],
                                .sub_lights = parsed[kSubLights]};
-  return subsampled(device,
-                    make_map_method(device, contour_recipe(device, packet_description(), choices, parsed), options),
+  return subsampled(device, make_map_method(device, contour_recipe(device, description, choices, parsed), options),
                     parsed, options);
 }
 

@@ -147,6 +147,8 @@ std::vector<std::pair<Factory, MethodOptions>> all_ways() {
     ways.push_back({maps::make_packet, {{"packet", "4x2"}, {"divergence", divergence}}});
   }
   ways.push_back({maps::make_packet, {{"packet", "5x5"}, {"divergence", "1"}, {"hierarchy", "off"}}});
+  ways.push_back({maps::make_packet, {{"packet", "3x7"}}});
+  ways.push_back({maps::make_packet, {{"packet", "64x1"}, {"divergence", "1"}}});
   return ways;
 }
 
@@ -372,7 +374,23 @@ TEST_F(MapsContour, WhatItCannotDoIsRefused) {
   const auto packet = maps::make_packet(device(), {{"size", "16"}, {"sublights", "2"}});
   packet->prepare_mesh(bulb.floats);
   EXPECT_THROW(packet->prepare_light(bulb.light), InputError);
-  EXPECT_THROW(maps::make_packet(device(), {{"packet", "0x3"}}), UsageError);
+  for (const char* extent : {"0x3", "3x0", "9x8", "3", "x3", "3x", "3x3x", "3X3", "-1x2", " 2x2", "4294967297x1"}) {
+    EXPECT_THROW(maps::make_packet(device(), {{"packet", extent}}), UsageError) << extent;
+  }
+  // Outlines know no texture, and sub-lights are weighed by theirs.
+  const auto one = maps::make_packet(device(), {{"size", "16"}}),
+             four = maps::make_packet(device(), {{"size", "16"}, {"sublights", "2"}});
+  one->prepare_mesh(plain.floats);
+  four->prepare_mesh(plain.floats);
+  EXPECT_FALSE(one->description().textures);
+  try {
+    one->prepare_light(textured);
+    ADD_FAILURE() << "a texture is not weighed";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("packet:sublights=S"), std::string::npos) << error.what();
+  }
+  EXPECT_TRUE(four->description().textures);
+  four->prepare_light(textured);
   EXPECT_THROW(maps::make_contour(device(), {{"traversal", "deep"}}), UsageError);
 }
 

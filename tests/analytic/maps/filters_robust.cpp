@@ -1,18 +1,24 @@
 // What holds of every filter whatever it is given: V in [0, 1] for input that has no meaning, 1 where nothing is near,
 // the same bytes in any order of triangles; and where filters are known to be wrong.
 
+#include "base/error.hpp"
 #include "maps/filters/convolution.hpp"
 #include "maps/filters/occlusion_textures.hpp"
 #include "maps/filters/pcf.hpp"
 #include "maps/filters/vssm.hpp"
+#include "maps/products/light_shape.hpp"
 #include "mesh/shapes/broken_meshes.hpp"
 #include "tests/agreement/differences.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
+#include "tests/unit/textured_lights_support.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <random>
+#include <utility>
 
 namespace penumbra::tests {
 namespace {
@@ -215,6 +221,84 @@ TEST_F(Filters, FewTapsAreFarFromMany) {
   };
   fmt::print("pcss against 1024 taps: 16 taps {:.4f}, 256 taps {:.4f}\n", error(few), error(some));
   EXPECT_GT(error(few), 2 * error(some));
+}
+
+/// A floor under a board and a light that may have a picture; other scenes than boards have more wrong with pcss.
+scenes::Scene board_under(std::optional<scenes::Texture> texture) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_quad(scene, {0.2, 2, 0.1}, {0.5, 0, 0}, {0, 0, -0.4});
+  scene.lights.push_back(ceiling_light(4, 1));
+  scene.lights.front().texture = std::move(texture);
+  scene.cameras.push_back(camera({0, 6, 6}, {0, 0, 0}, 50));
+  return scene;
+}
+
+// A constant texture leaves every byte; under one that is black but for a half of the light V is that half's. (What
+// single taps weigh: PcssFormulas.TexturesWeighTaps.)
+TEST_F(Filters, PcssWeighsTapsByTheTexture) {
+  constexpr std::uint32_t kSize = 512;
+  const visibility::MethodOptions options{
+      {"size", fmt::format("{}", kSize)}, {"blockerSamples", "1024"}, {"filterSamples", "1024"}};
+  const auto stage_of = [](std::optional<scenes::Texture> texture) {
+    return Stage(board_under(std::move(texture)), 40, 40, light_samples(4));
+  };
+  const auto v_of = [&](const Stage& stage) { return run(maps::make_pcss, stage, options).visibility; };
+  const Stage plain = stage_of({});
+  EXPECT_EQ(v_of(plain), v_of(stage_of(constant_texture(3, 2, glm::vec3(0.3F, 0.5F, 0.1F)))));
+  for (const bool upper : {false, true}) {
+    // Bright where x > 0, or where z > 0: the picture's right column, or its first row.
+    const Stage stage = stage_of(texture_of(upper ? 1 : 2, upper ? 2 : 1, [&](std::uint32_t x, std::uint32_t y) {
+      return glm::vec3((upper ? y == 0 : x == 1) ? 1.0F : 0.0F);
+    }));
+    const std::vector<float> found = v_of(stage);
+    const glm::dvec2 lower(upper ? -1 : 0, upper ? 0 : -1), wide = glm::dvec2(1) - lower;
+    // The window holds the floor, 3/4, and what is tapped beside it; on the light a texel is as large as
+    // f = 2 · 4 / (4 − 2) makes it. Each of the board's four edges is half of one off, of a half that is 1 wide; 1024
+    // taps of the R2 sequence are off by log₂ n / n of the light for each edge and for the half's own.
+    const glm::dvec2 side =
+        2.0 * (0.75 + maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light));
+    const double bound = 4 * 0.5 * side.x / (kSize - 2.0) * 4 + 2 * 5 * 10.0 / 1024;
+    double worst = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;  // the floor's two
+      const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
+      const glm::dvec2 at(p.x, p.z), middle = at + (glm::dvec2(0.2, 0.1) - at) * 2.0;
+      const glm::dvec2 from = glm::clamp(middle - glm::dvec2(1, 0.8), lower, glm::dvec2(1)),
+                       to = glm::clamp(middle + glm::dvec2(1, 0.8), lower, glm::dvec2(1));
+      const double exact = 1 - (to.x - from.x) * (to.y - from.y) / (wide.x * wide.y);
+      worst = std::max(worst, std::abs(static_cast<double>(found[i]) - exact));
+    }
+    fmt::print("pcss, half of the light black: off by {:.4f} of {:.4f}\n", worst, bound);
+    RecordProperty(upper ? "upper half" : "right half", fmt::format("{:.4f} of {:.4f}", worst, bound));
+    EXPECT_LT(worst, bound);
+    EXPECT_LT(bound, 0.2) << "the other half is off by 1";
+  }
+}
+
+// What has no place for weights says so, and names who has.
+TEST_F(Filters, ATextureIsWeighedOrRefused) {
+  const Stage stage(board_under(constant_texture(2, 2, glm::vec3(1))), 8, 8, light_samples(1));
+  for (const Filter& filter : all_filters("16")) {
+    const auto method = filter.make(device(), filter.options);
+    method->prepare_mesh(stage.floats);
+    EXPECT_EQ(method->description().textures, filter.name == "pcss") << filter.name;
+    if (method->description().textures) {
+      method->prepare_light(stage.light);
+    } else {
+      EXPECT_THROW(method->prepare_light(stage.light), InputError) << filter.name;
+    }
+  }
+}
+
+// Taps that all lie on black texels have no V.
+TEST_F(Filters, PcssWithoutATapOnTheBrightTexelIsRefused) {
+  const Stage stage(board_under(texture_of(
+                        64, 64, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(x + y == 0 ? 1.0F : 0.0F); })),
+                    8, 8, light_samples(4096));
+  const auto method = maps::make_pcss(device(), {{"size", "16"}, {"filterSamples", "4"}});
+  method->prepare_mesh(stage.floats);
+  EXPECT_THROW(method->prepare_light(stage.light), InputError);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "tests/analytic/maps/parallel_square.hpp"
 #include "tests/analytic/maps/pcss_prediction.hpp"
+#include "tests/unit/textured_lights_support.hpp"
 
 #include <fmt/format.h>
 
@@ -59,7 +60,8 @@ class PcssFormulas : public MapsTest {
       if (triangle < 0 || stage.floats.object[static_cast<std::size_t>(triangle)] != 0) continue;
       const Between v = predicted(glm::dvec3(stage.samples.p[i]));
       const double is = found.visibility[i], off = std::max(v.low - is, is - v.high);
-      wrong += off > 1e-6 ? 1 : 0;  // V is a float, and the bounds are sums of floats
+      // V is a float; without a texture a whole number's share, else a sum of as many floats as there are taps.
+      wrong += off > (stage.light.texture ? kTaps * 0x1p-24 : 1e-6) ? 1 : 0;
       beyond = std::max(beyond, off);
       if (v.low == 1 || v.high == 0) continue;
       ++penumbra;
@@ -103,6 +105,15 @@ TEST_F(PcssFormulas, DisksEllipsesAndPolygons) {
   expect_predicted(scene, boards, "ellipse");
   scene.lights.front().shape = scenes::Polygon{{{-1, 5, -0.5}, {1, 5, -0.5}, {0.2, 5, 1}}};  // its basis's u is along x
   expect_predicted(scene, boards, "polygon");
+}
+
+// Each tap weighs what the texture has at its light point.
+TEST_F(PcssFormulas, TexturesWeighTaps) {
+  const std::vector<Board> boards{{2, -6, 1}};
+  scenes::Scene scene = under_boards(boards);
+  scene.lights.front().texture = texture_of(
+      5, 3, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(static_cast<float>(1 + 2 * x * x + 7 * y)); });
+  expect_predicted(scene, boards, "texture");
 }
 
 /// Points spread over a light have its moments. Means of a smooth function over n points of the R2 sequence are off by

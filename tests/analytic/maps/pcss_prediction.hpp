@@ -39,7 +39,8 @@ class PcssPrediction {
         taps_(taps),
         basis_(maps::light_basis(light)),
         search_(maps::light_pattern(light, basis_, taps.blocker)),
-        filter_(maps::light_pattern(light, basis_, taps.filter)) {}
+        filter_(maps::light_pattern(light, basis_, taps.filter)),
+        weights_(weights_of(light)) {}
 
   /// For a receiver on a plane parallel to the light, farther than all casters.
   [[nodiscard]] Between operator()(const glm::dvec3& receiver) const {
@@ -51,19 +52,39 @@ class PcssPrediction {
     if (!heights.may_be_any()) return {1, 1};
     const auto [low, high] = heights.bounds();
     Between v{0, 0};
-    const double one = 1.0 / static_cast<double>(filter_.size());
-    for (const glm::vec2& s : filter_) {
+    for (std::size_t k = 0; k < filter_.size(); ++k) {
+      const glm::dvec2 s(filter_[k]);
       // Where the tap goes is linear in 1/z: between its places for the least and the largest mean height.
-      const glm::dvec2 a = at + glm::dvec2(s) * (1 / low - 1 / d.z), b = at + glm::dvec2(s) * (1 / high - 1 / d.z);
+      const glm::dvec2 a = at + s * (1 / low - 1 / d.z), b = at + s * (1 / high - 1 / d.z);
       const Tap between = tap_between(glm::min(a, b), glm::max(a, b));
-      if (!between.may_block) v.low += one;
-      if (!between.blocks) v.high += one;
+      if (!between.may_block) v.low += weights_[k];
+      if (!between.blocks) v.high += weights_[k];
     }
     if (heights.may_be_none()) v.high = 1;
     return v;
   }
 
  private:
+  /// Of the filter's taps, 1 together: equal, or a rectangle's texture at the light point, its first row uppermost.
+  [[nodiscard]] std::vector<double> weights_of(const visibility::Light& light) const {
+    std::vector<double> weights(filter_.size(), 1.0);
+    if (light.texture) {
+      const visibility::LightFrame frame = visibility::light_frame(light);
+      for (std::size_t k = 0; k < filter_.size(); ++k) {
+        const glm::dvec3 point =
+            static_cast<double>(filter_[k].x) * basis_.u + static_cast<double>(filter_[k].y) * basis_.v;
+        const double s = glm::dot(point, frame.u) / glm::dot(frame.u, frame.u),
+                     t = glm::dot(point, frame.v) / glm::dot(frame.v, frame.v);
+        const auto x = static_cast<std::size_t>((s + 1) / 2 * light.texture->width),
+                   y = static_cast<std::size_t>((1 - t) / 2 * light.texture->height);
+        weights[k] = light.texture->luminance[y * light.texture->width + x];
+      }
+    }
+    double sum = 0;
+    for (const double weight : weights) sum += weight;
+    for (double& weight : weights) weight /= sum;
+    return weights;
+  }
   struct Tap {
     bool blocks = false, may_block = false;  ///< surely, perhaps
     double low = 0, high = 0;                ///< bounds of the height, if it blocks
@@ -133,6 +154,7 @@ class PcssPrediction {
   PcssTaps taps_;
   maps::LightBasis basis_;
   std::vector<glm::vec2> search_, filter_;
+  std::vector<double> weights_;
 };
 
 }  // namespace penumbra::tests
