@@ -32,6 +32,14 @@ void start_log(const GlobalOptions& global) {
   spdlog::set_default_logger(logger);
 }
 
+/// `--flag=3` is wrong usage: CLI11 would take it as the flag's value.
+void refuse_values_of_flags(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 0) option->disable_flag_override();
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_values_of_flags(*command);
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -55,6 +63,7 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(make_devices_command(app));
   commands.push_back(make_convert_command(app));
   commands.push_back(make_wedges_command(app));
+  refuse_values_of_flags(app);
 
   try {
     app.parse(argc, argv);

@@ -22,7 +22,6 @@ namespace {
 template <typename Named>
 std::size_t find_named(const std::vector<Named>& elements, const std::string& wanted, std::string_view option,
                        const std::string& scene) {
-  if (wanted.empty()) return 0;
   const auto found = std::ranges::find(elements, wanted, &Named::name);
   if (found != elements.end()) return static_cast<std::size_t>(found - elements.begin());
   std::vector<std::string> names;
@@ -118,7 +117,7 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   session_.warnings = session_.scene.warnings;
   const std::string scene_name = options_.scene.string();
   const std::vector<std::size_t> wanted = wanted_lights(session_.scene, options_.lights, scene_name);
-  session_.camera_index = find_named(session_.scene.cameras, camera, "--camera", scene_name);
+  session_.camera_index = camera.empty() ? 0 : find_named(session_.scene.cameras, camera, "--camera", scene_name);
   const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
   std::tie(session_.width, session_.height) = size_.value_or(scenes::picture_size(session_.scene, seen_by));
   require_image_memory(session_.width, session_.height, wanted.size());

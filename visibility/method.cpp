@@ -67,7 +67,8 @@ void check_light(const MethodDescription& description, const Light& light) {
   std::string kinds;
   for (const LightKind kind : can) kinds += (kinds.empty() ? "" : ", ") + std::string(name_of(kind));
   throw InputError(
-      "light \"{}\" is a {}; method {} can do: {}. Take another light (--light) or method (--method; edge-scatter and "
+      "light \"{}\" is a {}; method {}, as asked for, can do: {}. Take another light (--light) or method (--method; "
+      "edge-scatter and "
       "raytrace "
       "do every kind)",
       light.name, name_of(light.kind), description.name, kinds);

@@ -22,8 +22,6 @@ std::vector<double> weights_of(const tinygltf::Model& model, const tinygltf::Nod
 std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, int number,
                                        std::span<const std::optional<glm::dmat4>> to_world) {
   const std::string place = fmt::format("/skins/{}", number);
-  if (number < 0 || static_cast<std::size_t>(number) >= model.skins.size())
-    throw InputError("{}: it does not exist; there are {}", place, model.skins.size());
   const tinygltf::Skin& source = model.skins[static_cast<std::size_t>(number)];
   if (source.joints.empty()) throw InputError("{}/joints: there are none", place);
   std::optional<Numbers> inverse;
@@ -67,6 +65,8 @@ void morph(const tinygltf::Model& model, const tinygltf::Node& node, const tinyg
 std::optional<std::vector<glm::dmat4>> skin(const tinygltf::Model& model, const tinygltf::Node& node,
                                             const tinygltf::Primitive& primitive, const std::string& place,
                                             std::span<const std::optional<glm::dmat4>> to_world) {
+  if (node.skin >= 0 && static_cast<std::size_t>(node.skin) >= model.skins.size())
+    throw InputError("/skins/{}: it does not exist; there are {}", node.skin, model.skins.size());
   if (node.skin < 0 || !primitive.attributes.contains("JOINTS_0")) return std::nullopt;
   const std::vector<glm::dmat4> joints = joint_matrices(model, node.skin, to_world);
   std::vector<glm::dmat4> vertices;

@@ -32,8 +32,8 @@ double largest(const glm::dvec3& v) {
 void check_position(const glm::dvec3& position, const std::string& where, const char* what) {
   if (!is_finite(position)) throw InputError("{}: {} is {}; expected finite numbers", where, what, show(position));
   if (largest(position) > kLargestCoordinate) {
-    throw InputError("{}: {} is {}; coordinates beyond {:g} leave the range of single precision", where, what,
-                     show(position), kLargestCoordinate);
+    throw InputError("{}: {} is {}; coordinates beyond {:g} are not supported", where, what, show(position),
+                     kLargestCoordinate);
   }
 }
 
@@ -175,9 +175,11 @@ void check_light(const AreaLight& light, const std::string& where) {
   if (light.texture && !std::holds_alternative<Rectangle>(light.shape)) {
     throw InputError("{}: only a rectangle light can have a texture", where);
   }
-  if (!is_finite(light.radiance) || light.radiance.x < 0 || light.radiance.y < 0 || light.radiance.z < 0) {
-    throw InputError("{}: the radiance is {}; expected finite numbers from 0 up", where, show(light.radiance));
-  }
+  constexpr double kBrightest = 1e36;  // sums over hundreds of lights stay below a float's largest number
+  const auto [least, greatest] = std::minmax({light.radiance.x, light.radiance.y, light.radiance.z});
+  if (!is_finite(light.radiance) || least < 0 || greatest > kBrightest)
+    throw InputError("{}: the radiance is {}; expected numbers from 0 to {:g}", where, show(light.radiance),
+                     kBrightest);
 }
 
 void check_camera(const Camera& camera, const std::string& where) {

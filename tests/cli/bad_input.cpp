@@ -44,7 +44,7 @@ std::vector<BadScene> bad_scenes() {
       {"WrongTypeInList", scene_text_with("/meshes/0/color/1", "\"red\""), {"/meshes/0/color/1"}},
       {"UnknownKey", scene_text_with("/lights/0/radianze", "[1, 1, 1]"), {"/lights/0", "radianze"}},
       {"InfiniteVertex", scene_text_with("/meshes/1/triangles/0/3", "1e999"), {"scene.json"}},
-      {"VertexBeyondFloat", scene_text_with("/meshes/1/triangles/0/3", "1e300"), {"1e+300", "single precision"}},
+      {"VertexBeyondFloat", scene_text_with("/meshes/1/triangles/0/3", "1e300"), {"1e+300", "beyond 1e+12"}},
       {"EmptyMesh", scene_text_with("/meshes/1/triangles", "[]"), {"/meshes/1"}},
       {"NoLight", scene_text_with("/lights", "[]"), {"/lights"}},
       {"LightOfZeroArea", scene_text_with("/lights/0/rectangle/halfU", "[0, 0, 0]"), {"/lights/0/rectangle", "area"}},

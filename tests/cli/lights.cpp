@@ -87,7 +87,14 @@ TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
   const Outcome wedges = run({"wedges", path("scene.json"), "--light", "key"});
   EXPECT_EQ(wedges.code, 3);
   EXPECT_THAT(wedges.err, HasSubstr("is a sun"));
+  scene_with(fmt::format(R"({{"name": "key", {}, "radiance": [1e300, 1, 1]}})", kRectangle));
+  const Outcome blinding = render({});
+  EXPECT_EQ(blinding.code, 3);
+  EXPECT_THAT(blinding.err, testing::AllOf(HasSubstr("1e+300"), HasSubstr("1e+36")));
   scene_with(R"({"name": "key", "sphere": {"center": [0, 4, 0], "radius": 0.6}})");
+  EXPECT_EQ(render({"--light", ""}).code, 2);
+  EXPECT_EQ(render({"--quiet=7"}).code, 2);
+  EXPECT_EQ(render({"--skip-existing=3"}).code, 2);
   EXPECT_EQ(render({"--method", "raytrace", "--bits", path("out.bits")}).code, 2);
   EXPECT_EQ(render({"--method", "raytrace", "--sun-angle", "180"}).code, 2);
   EXPECT_EQ(render({"--method", "raytrace", "--lamp-radius", "0"}).code, 2);

@@ -206,6 +206,7 @@ TEST_F(GltfReader, RefusesWhatDoesNotFitWithItsPlace) {
   expect([](Gltf& g) { g.at("/meshes/0/primitives/0/material") = 7; }, "material 7 does not exist");
   expect([](Gltf& g) { g.at("/nodes/0/mesh") = 5; }, "/nodes/0/mesh: mesh 5 does not exist");
   expect([](Gltf& g) { g.at("/nodes/0/children") = {0}; }, "/nodes/0: it has two parents or is its own ancestor");
+  expect([](Gltf& g) { g.at("/nodes/0")["skin"] = 7; }, "/skins/7: it does not exist; there are 0");
   expect([](Gltf& g) { g.at("/nodes/0/children") = {77}; }, "/nodes/77: it does not exist");
   expect([](Gltf& g) { g.at("/nodes/0/matrix") = {1, 2, 3}; }, "/nodes/0/matrix: 3 numbers; expected 16");
   expect([](Gltf& g) { g.at("/nodes/0/rotation") = {0, 0, 0, 0}; }, "/nodes/0/rotation");
