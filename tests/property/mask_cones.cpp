@@ -3,11 +3,16 @@
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/property/lattice_truth.hpp"
+#include "visibility/receivers.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <random>
+#include <string>
 #include <tuple>
+#include <vector>
 
 namespace penumbra {
 namespace {
@@ -97,6 +102,65 @@ INSTANTIATE_TEST_SUITE_P(Lights, ConeLattices,
                            return fmt::format("{}_{}_{}", std::get<2>(it.param).name, sphere ? "spheres" : "suns",
                                               std::get<0>(it.param));
                          });
+
+/// Triangles near the float point of a sphere that a view sample sees, with an edge through it as far as floats know,
+/// where rounding that point is off by more than anything else: far from zero, under a small light. What it takes of
+/// its bound is printed.
+class AimedSpheres : public tests::DeviceTest, public testing::WithParamInterface<tests::MaskMethod> {};
+
+TEST_P(AimedSpheres, EveryPairIsTheExactDecision) {
+  constexpr double kPlantedCut = 0.01;  // of tests/planted_faults
+  const auto method = GetParam().make(device(), {});
+  PairCounts counts;
+  double used = 0;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto vector = [&] { return glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    // Keeps the origin of scene floats at zero, whatever is added.
+    scenes::Object& anchor =
+        tests::add_object(scene, "anchor", {{glm::dvec3(-1024), glm::dvec3(1024, 1024, -1024), glm::dvec3(1024)}});
+    anchor.casts_shadow = anchor.receives_shadow = false;
+    const glm::dvec3 middle = glm::dvec3(700) + 200.0 * vector();
+    tests::add_object(scene, "floor", tests::quad(middle, {1, 0.1, 0}, {0, 0.2, -1}));
+    scene.lights.push_back(tests::rectangle_light(middle, {1, 0, 0}, {0, 0, 1}));
+    scene.lights[0].shape = scenes::Sphere{middle + glm::dvec3(0, 4, 0) + vector(), 0.25};
+    const visibility::SceneFloats floor = visibility::make_scene_floats(scene);
+    ASSERT_EQ(floor.origin, glm::dvec3(0));
+    const visibility::Light light = visibility::make_light(scene, 0, floor.origin, kSamples[1]);
+    const visibility::ViewSamples samples = tests::samples_on_triangles(floor, 8, 8, random, 1U);
+    const double reach =
+        std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)}) + 0.25;
+    std::vector<tests::Corners> casters;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!visibility::is_receiver(floor, light, samples, i)) continue;
+      const glm::vec3& p = samples.p[i];
+      std::vector<glm::vec3> points(light.sample_count());
+      visibility::light_points_for(light, p, points.data());
+      const std::size_t j = random() % points.size();
+      const visibility::LightFrame disk = visibility::light_frame_from(light, p);
+      const glm::dvec3 place = disk.center + light.coordinates[j].x * disk.u + light.coordinates[j].y * disk.v;
+      used = std::max(used, glm::length(glm::dvec3(points[j]) - place) / (2 * 0x1p-24 * reach));
+      const double share = 0.6 + 0.3 * real(random);
+      const glm::dvec3 at = glm::dvec3(p) + share * (glm::dvec3(points[j]) - glm::dvec3(p)),
+                       e = glm::normalize(vector() + 0x1p-30), f = glm::normalize(vector() + 0x1p-30);
+      casters.push_back({at - 0.1 * e, at + 0.15 * e, at + 0.1 * f});
+    }
+    tests::add_object(scene, "casters", casters);
+    const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
+    const tests::Masks masks = tests::run(*method, floats, light, samples);
+    EXPECT_TRUE(tests::equals_truth(floats, light, samples, masks, &counts)) << "seed " << seed;
+  }
+  fmt::print("{} pairs, {} visible, {} blocked; up to {:.1f} % of the bound is used\n", counts.pairs, counts.visible,
+             counts.blocked, 100 * used);
+  EXPECT_LT(used, 1);
+  EXPECT_GT(used, 10 * kPlantedCut);
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 20);
+}
+INSTANTIATE_TEST_SUITE_P(Of, AimedSpheres, testing::ValuesIn(tests::kConeMethods),
+                         [](const auto& it) { return std::string(it.param.name); });
 
 }  // namespace
 }  // namespace penumbra
