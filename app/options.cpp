@@ -2,6 +2,7 @@
 
 #include "app/methods.hpp"
 #include "app/parse.hpp"
+#include "app/reading_options.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
 
@@ -84,16 +85,14 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--method-option", options.method_options, "option of the method; may be given again")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  command.add_flag("--allow-outside", options.allow_outside, "let a scene name files outside its own folder");
+  add_allow_outside(command, options.allow_outside);
   command
       .add_option(
           "--normals", options.normals,
           "of the beauty: geometric (facets), or shading (the file's smooth ones); visibility is the triangles' "
           "(default: geometric)")
       ->type_name("NAME");
-  command.add_flag(
-      "--lenient", options.lenient,
-      "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
+  add_lenient(command, options.lenient);
   add_lamp_options(command, options.lamps);
 }
 

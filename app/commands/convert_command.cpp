@@ -2,6 +2,7 @@
 #include "app/options.hpp"
 #include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
+#include "app/reading_options.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
 #include "scenes/formats/writer.hpp"
@@ -25,10 +26,8 @@ class ConvertCommand : public Command {
                     "FILE.json (textures of lights go beside it: FILE-light0.exr), FILE.glb or FILE.obj")
         ->required()
         ->type_name("FILE");
-    cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
-    cli_.add_flag(
-        "--lenient", lenient_,
-        "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
+    add_allow_outside(cli_, allow_outside_);
+    add_lenient(cli_, lenient_);
     add_lamp_options(cli_, lamps_);
   }
 

@@ -5,6 +5,7 @@
 #include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
 #include "app/process/progress.hpp"
+#include "app/reading_options.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "mesh/soup_ply.hpp"
@@ -52,7 +53,7 @@ class InspectCommand : public Command {
             "--list", list_,
             fmt::format("places listed of each defect (default {} in JSON, {} in the table)", kListed, kListedInTable))
         ->type_name("N");
-    cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
+    add_allow_outside(cli_, allow_outside_);
     cli_.footer(
         "JSON: \"files\" lists every FILE with its \"notes\", \"objects\" and their \"total\"; of a single FILE all "
         "this\nstands at the top level, too, and so do the total's keys: `penumbra inspect m.ply --json - | jq "

@@ -2,6 +2,7 @@
 #include "app/options.hpp"
 #include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
+#include "app/reading_options.hpp"
 #include "app/wedges/report.hpp"
 #include "base/atomic_file.hpp"
 #include "base/did_you_mean.hpp"
@@ -97,10 +98,8 @@ class WedgesCommand : public Command {
                     "working folder: <name>-X-Y.svg)")
         ->type_name("FILE.svg")
         ->needs("--explain");
-    cli_.add_flag("--allow-outside", allow_outside_, "let a scene name files outside its own folder");
-    cli_.add_flag(
-        "--lenient", lenient_,
-        "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
+    add_allow_outside(cli_, allow_outside_);
+    add_lenient(cli_, lenient_);
   }
 
   int run(const GlobalOptions&) override {

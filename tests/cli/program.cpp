@@ -1,6 +1,7 @@
 #include "tests/cli/program.hpp"
 
 #include "tests/child_arguments.hpp"
+#include "tests/child_pipes.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -17,7 +18,6 @@
 #include <thread>
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,26 +47,15 @@ std::vector<std::string> child_environment(const Invocation& invocation) {
 void collect(pid_t child, int out, int err, const Invocation& invocation, Outcome& outcome) {
   const auto start = std::chrono::steady_clock::now();
   bool interrupted = false;
-  std::array<pollfd, 2> pipes = {{{out, POLLIN, 0}, {err, POLLIN, 0}}};
-  std::array<std::string*, 2> texts = {&outcome.out, &outcome.err};
-  while (pipes[0].fd >= 0 || pipes[1].fd >= 0) {
-    ::poll(pipes.data(), pipes.size(), 10);
+  ChildPipes pipes(out, err, outcome.out, outcome.err);
+  while (pipes.open()) {
+    pipes.read_within(10);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (invocation.interrupt_after && !interrupted && elapsed >= *invocation.interrupt_after) {
       ::kill(child, SIGINT);
       interrupted = true;
     }
     if (elapsed > invocation.timeout) ::kill(child, SIGKILL);
-    for (std::size_t i = 0; i < pipes.size(); ++i) {
-      if (pipes[i].fd < 0 || pipes[i].revents == 0) continue;
-      std::array<char, 4096> buffer{};
-      const ssize_t count = ::read(pipes[i].fd, buffer.data(), buffer.size());
-      if (count > 0) {
-        texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
-      } else if (count == 0 || errno != EINTR) {
-        pipes[i].fd = -1;
-      }
-    }
   }
 }
 

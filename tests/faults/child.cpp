@@ -1,6 +1,7 @@
 #include "tests/faults/child.hpp"
 
 #include "tests/child_arguments.hpp"
+#include "tests/child_pipes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,6 @@
 #include <thread>
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -141,21 +141,10 @@ bool Running::has_ended() {
 Ending Running::wait() {
   Ending ending;
   const auto start = Clock::now();
-  std::array<pollfd, 2> pipes = {{{out_, POLLIN, 0}, {err_, POLLIN, 0}}};
-  std::array<std::string*, 2> texts = {&ending.out, &ending.err};
-  while (pipes[0].fd >= 0 || pipes[1].fd >= 0) {
-    ::poll(pipes.data(), pipes.size(), 100);
+  ChildPipes pipes(out_, err_, ending.out, ending.err);
+  while (pipes.open()) {
+    pipes.read_within(100);
     if (std::chrono::duration<double>(Clock::now() - start).count() > timeout_) send(SIGKILL);
-    for (std::size_t i = 0; i < pipes.size(); ++i) {
-      if (pipes[i].fd < 0 || pipes[i].revents == 0) continue;
-      std::array<char, 4096> buffer{};
-      const ssize_t count = ::read(pipes[i].fd, buffer.data(), buffer.size());
-      if (count > 0) {
-        texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
-      } else if (count == 0 || errno != EINTR) {
-        pipes[i].fd = -1;
-      }
-    }
   }
   while (!has_ended()) {  // closing its streams is not ending
     if (std::chrono::duration<double>(Clock::now() - start).count() > timeout_) send(SIGKILL);

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -46,17 +45,11 @@ class LatticeSoupsFull : public testing::TestWithParam<std::tuple<int, tests::Ma
 
 /// 60,000 soups for each engine of each method.
 TEST_P(LatticeSoupsFull, EveryPairIsTheExactDecision) {
-  constexpr std::uint32_t kSoups = 20'000, kAtOnce = 1000;
   const auto [range, under_test] = GetParam();
   const render::Device device(render::DeviceOptions{});
   tests::MethodsByLayout methods([&make = under_test.make, &device] { return make(device, {}); });
-  PairCounts counts;
-  for (std::uint32_t done = 0; done < kSoups && !HasFailure(); done += kAtOnce) {
-    counts += tests::expect_lattice_truth(methods, {range, kAtOnce, under_test.any_light, 1000 + done});
-    fmt::print("{} of range {}: {} soups, {} pairs, {} of them by a zero\n", under_test.name, range, done + kAtOnce,
-               counts.pairs, counts.zero);
-    std::fflush(stdout);
-  }
+  const PairCounts counts =
+      tests::expect_lattice_truth_by_thousands(methods, {range, 20'000, under_test.any_light, 1000}, under_test.name);
   tests::expect_all_kinds(counts);
 }
 

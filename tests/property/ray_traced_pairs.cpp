@@ -2,7 +2,7 @@
 // off by rounding alone.
 
 #include "tests/unit/ray_traced_masks.hpp"
-#include "tests/unit/visibility/scenes.hpp"
+#include "tests/unit/visibility/soups.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <gtest/gtest.h>
@@ -19,16 +19,8 @@ using visibility::ViewSamples;
 
 scenes::Scene soup_over_floor(std::uint32_t seed) {
   std::mt19937 random(seed);
+  scenes::Scene scene = tests::soup_over_tilted_floor(random, 60);
   std::uniform_real_distribution<double> real(-1, 1);
-  const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
-  scenes::Scene scene;
-  tests::add_object(scene, "floor", tests::quad({0, -1.37, 0}, {3.1, 0.1, 0}, {0, 0.2, -2.9}));
-  std::vector<tests::Corners> soup;
-  for (int i = 0; i < 60; ++i) {
-    const glm::dvec3 center = point(1);
-    soup.push_back({center + point(0.5), center + point(0.5), center + point(0.5)});
-  }
-  tests::add_object(scene, "soup", soup);
   const glm::dvec3 center(real(random), 3, real(random));
   scene.lights.push_back(tests::rectangle_light(center, {0.6, 0.1, 0.03}, {0.05, 0.1, 0.7}));
   if (seed % 8 == 1) scene.lights[0].shape = scenes::Disk{center, {0.1, -1, 0.2}, 0.7};
@@ -36,7 +28,6 @@ scenes::Scene soup_over_floor(std::uint32_t seed) {
   if (seed % 4 == 2) scene.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.5}, {0.7, 3, -0.4}, {0.1, 3, 0.8}}};
   if (seed % 8 == 3) scene.lights[0].shape = scenes::Sphere{center, 0.6};
   if (seed % 8 == 7) scene.lights[0].shape = scenes::Sun{-center, seed % 16 == 7 ? 25.0 : 0.0};
-  scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));
   return scene;
 }
 

@@ -1,6 +1,7 @@
 // soft-volume-blend: soft-volume where one object stands alone, less than its sum where objects overlap.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 
 #include "volumes/soft/soft_volume.hpp"
 #include "volumes/soft/soft_volume_blend.hpp"
@@ -92,15 +93,8 @@ TEST_F(SoftVolumeBlend, WithoutOccludersOnlyTheHorizonIsDark) {
 TEST_F(SoftVolumeBlend, TheOrderOfTrianglesChangesNoByte) {
   scenes::Scene scene = tests::shipped_scene("fusion");
   const std::vector<float> once = run(SoftStage(scene, device(), 40, 30));
-  std::vector<std::size_t> order(scene.soup.triangles.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::shuffle(order, std::mt19937(5));
-  const mesh::TriangleSoup before = scene.soup;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    scene.soup.triangles[i] = before.triangles[order[i]];
-    scene.soup.object[i] = before.object[order[i]];
-    scene.soup.source_face[i] = before.source_face[order[i]];
-  }
+  std::mt19937 random(5);
+  tests::shuffle_order(scene.soup, random);
   const SoftStage stage(scene, device(), 40, 30);
   EXPECT_EQ(run(stage), once);
   EXPECT_EQ(stage.run(*make_soft_volume_blend(device(), {}), 7), once) << "in tiles";

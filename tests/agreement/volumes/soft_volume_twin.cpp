@@ -6,6 +6,7 @@
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/soft_stage.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 
 #include "volumes/soft/soft_volume.hpp"
 
@@ -138,15 +139,8 @@ TEST_F(SoftVolumeTwin, TheOrderOfTrianglesChangesNoByte) {
     scenes::Scene scene = tests::shipped_scene(name);
     const auto method = make_soft_volume(device(), {});
     const std::vector<float> once = SoftStage(scene, device(), 48, 36).run(*method);
-    std::vector<std::size_t> order(scene.soup.triangles.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::shuffle(order, std::mt19937(5));
-    const mesh::TriangleSoup before = scene.soup;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      scene.soup.triangles[i] = before.triangles[order[i]];
-      scene.soup.object[i] = before.object[order[i]];
-      scene.soup.source_face[i] = before.source_face[order[i]];
-    }
+    std::mt19937 random(5);
+    tests::shuffle_order(scene.soup, random);
     EXPECT_EQ(SoftStage(scene, device(), 48, 36).run(*method), once) << name;
     EXPECT_EQ(SoftStage(scene, device(), 48, 36).run(*method, 7), once) << name << " in tiles";
   }

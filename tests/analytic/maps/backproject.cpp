@@ -2,10 +2,10 @@
 
 #include "tests/analytic/maps/parallel_square.hpp"
 #include "tests/analytic/maps/patch_twin.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 
 #include <fmt/format.h>
 
-#include <numeric>
 #include <random>
 
 namespace penumbra::tests {
@@ -219,16 +219,8 @@ TEST_F(MapsBackproject, TrianglesMayComeInAnyOrderAndWinding) {
   const Stage stage(scene, 20, 20, light_samples(1));
   const Masks one = run(maps::make_backproject, stage, options_of({{"fill", "edges"}, {"search", "hsm"}}));
   std::mt19937 random(6);
-  std::vector<std::size_t> order(scene.soup.triangles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::shuffle(order, random);
-  auto soup = scene.soup;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    soup.triangles[i] = scene.soup.triangles[order[i]];
-    soup.object[i] = scene.soup.object[order[i]];
-    if (random() % 2 == 0) std::swap(soup.triangles[i][0], soup.triangles[i][2]);
-  }
-  scene.soup = soup;
+  shuffle_order(scene.soup, random);
+  shuffle_corners(scene.soup, random);
   const Stage shuffled(scene, 20, 20, light_samples(1));
   EXPECT_EQ(run(maps::make_backproject, shuffled, options_of({{"fill", "edges"}, {"search", "hsm"}})).visibility,
             one.visibility);

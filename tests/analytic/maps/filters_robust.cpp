@@ -10,6 +10,7 @@
 #include "mesh/shapes/broken_meshes.hpp"
 #include "tests/agreement/differences.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 
 #include <fmt/format.h>
@@ -140,14 +141,8 @@ TEST_F(Filters, OrderAndWindingOfTrianglesChangeNoByte) {
   };
   scenes::Scene scene = above_a_floor(ceiling_light(2, 0.3), solids), turned = scene;
   std::mt19937 random(7);
-  std::vector<std::size_t> order(scene.soup.triangles.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::shuffle(order.begin() + 2, order.end(), random);  // the floor's stay first
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    turned.soup.triangles[i] = scene.soup.triangles[order[i]];
-    turned.soup.object[i] = scene.soup.object[order[i]];
-    if (random() % 2 == 0) std::swap(turned.soup.triangles[i][0], turned.soup.triangles[i][1]);
-  }
+  shuffle_order(turned.soup, random, 2);  // the floor's stay first
+  shuffle_corners(turned.soup, random);
   const Stage first(scene, 32, 32, light_samples(1)), second(turned, 32, 32, light_samples(1));
   for (const Filter& filter : all_filters("64")) {
     EXPECT_EQ(run(filter.make, first, filter.options).visibility, run(filter.make, second, filter.options).visibility)

@@ -51,7 +51,39 @@ class MapLists : public MapsTest {
 };
 
 class DeepPenumbra : public MapLists {};
-class LayeredAttenuation : public MapLists {};
+class LayeredAttenuation : public MapLists {
+ protected:
+  static constexpr std::uint32_t kBoardSize = 40, kBoardSamples = 36;
+  struct Layered {
+    std::vector<maps::gpu::LayerEntry> entries;  // as many for each texel
+    std::size_t layers = 0;
+    std::vector<glm::dvec3> ways;  // of the texels' rays, 1 long along the light's normal
+  };
+  /// A board over a floor, 3 below a light at 5; it rises by `tilt` toward x from its middle.
+  static Layered board_over_floor(double tilt) {
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+    add_quad(scene, {0, 2, 0}, {0.8, tilt, 0}, {0, 0, 0.8});
+    scene.lights.push_back(ceiling_light(5, 0.5));
+    scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+    const Stage stage(scene, 4, 4, light_samples(kBoardSamples));
+    Made made(device(), stage, kBoardSize);
+    maps::LayeredDepth product(device(), 0.01);
+    product.make(*made.source);
+    Layered found{entries_of(product, std::size_t{kBoardSize} * kBoardSize), product.layers(), {}};
+    const auto face = maps::face_of(made.centre.views.front(), made.basis, 0);
+    for (std::uint32_t y = 0; y < kBoardSize; ++y) {
+      for (std::uint32_t x = 0; x < kBoardSize; ++x) found.ways.push_back(face.direction(x, y, kBoardSize));
+    }
+    return found;
+  }
+  /// The unsorted words of a layered depth image as entries.
+  static std::vector<maps::gpu::LayerEntry> entries_of(const maps::LayeredDepth& product, std::size_t texels) {
+    std::vector<maps::gpu::LayerEntry> entries(texels * product.layers());
+    product.buffer().read<maps::gpu::LayerEntry>(entries);
+    return entries;
+  }
+};
 
 // Each sample's map asked at places along each texel's ray, in double: behind what it holds, or not.
 TEST_F(DeepPenumbra, StepsAreTheirTwinAlongEveryRay) {
@@ -137,13 +169,6 @@ TEST_F(DeepPenumbra, TendsToAccumulateOnTheSameSamples) {
   EXPECT_LT(last, 0.015);
 }
 
-/// The unsorted words of a layered depth image as entries.
-std::vector<maps::gpu::LayerEntry> entries_of(const maps::LayeredDepth& product, std::size_t texels) {
-  std::vector<maps::gpu::LayerEntry> entries(texels * product.layers());
-  product.buffer().read<maps::gpu::LayerEntry>(entries);
-  return entries;
-}
-
 // One sample at the centre: every texel's own depth once, and nothing else.
 TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
   constexpr std::uint32_t kSize = 32;
@@ -175,76 +200,50 @@ TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
 }
 
 TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
-  constexpr std::uint32_t kSize = 40, kSamples = 36;
-  scenes::Scene scene;
-  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
-  add_quad(scene, {0, 2, 0}, {0.8, 0, 0}, {0, 0, 0.8});
-  scene.lights.push_back(ceiling_light(5, 0.5));
-  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
-  const Stage stage(scene, 4, 4, light_samples(kSamples));
-  Made made(device(), stage, kSize);
-  maps::LayeredDepth product(device(), 0.01);
-  product.make(*made.source);
-  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
-  const auto entries = entries_of(product, kTexels);
+  const Layered found = board_over_floor(0);
   std::size_t lit_floor = 0, uncovered = 0;
-  for (std::size_t texel = 0; texel < kTexels; ++texel) {
+  for (std::size_t texel = 0; texel < found.ways.size(); ++texel) {
     std::uint32_t board = 0, floor = 0;
-    for (std::size_t e = 0; e < product.layers(); ++e) {
-      const auto& entry = entries[texel * product.layers() + e];
-      EXPECT_LE(entry.weight, kSamples);
+    for (std::size_t e = 0; e < found.layers; ++e) {
+      const auto& entry = found.entries[texel * found.layers + e];
+      EXPECT_LE(entry.weight, kBoardSamples);
       if (entry.weight == 0) continue;
       const bool is_floor = std::abs(entry.t - 5) < 0.05F, is_board = std::abs(entry.t - 3) < 0.03F;
       EXPECT_TRUE(is_floor || is_board) << entry.t;
       (is_floor ? floor : board) += entry.weight;
     }
     // The board hides the floor from no sample where the centre's ray is far from it: |x| > 0.8 5/3 + 0.5 2/3 there.
-    const glm::dvec3 at = 5.0 * maps::face_of(made.centre.views.front(), made.basis, 0)
-                                    .direction(static_cast<std::uint32_t>(texel % kSize),
-                                               static_cast<std::uint32_t>(texel / kSize), kSize);
+    const glm::dvec3 at = 5.0 * found.ways[texel];
     const double out = std::max(std::abs(at.x), std::abs(at.z));
-    const double texel_width = 6.0 / (kSize - 2);
+    const double texel_width = 6.0 / (kBoardSize - 2);
     if (out < 0.8 * 5 / 3 - 0.5 * 2 / 3 - texel_width) {
       EXPECT_EQ(floor, 0U) << "umbra";
     }
     if (out < 0.8 * 5 / 3 + 0.5 * 2 / 3 + texel_width || out > 3 - texel_width) continue;
     ++lit_floor;
-    uncovered += floor != kSamples ? 1 : 0;
+    uncovered += floor != kBoardSamples ? 1 : 0;
   }
-  EXPECT_GT(lit_floor, kTexels / 4);
+  EXPECT_GT(lit_floor, found.ways.size() / 4);
   EXPECT_EQ(uncovered, 0U);
 }
 
 // Where a board is tilted, images of one map's texels begin at all fractions of the centre's: the middle of a gap of a
 // fiftieth would be met many times.
 TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
-  constexpr std::uint32_t kSize = 40, kSamples = 36;
-  scenes::Scene scene;
-  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
-  add_quad(scene, {0, 2, 0}, {0.8, 0.08, 0}, {0, 0, 0.8});
-  scene.lights.push_back(ceiling_light(5, 0.5));
-  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
-  const Stage stage(scene, 4, 4, light_samples(kSamples));
-  Made made(device(), stage, kSize);
-  maps::LayeredDepth product(device(), 0.01);
-  product.make(*made.source);
-  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
-  const auto entries = entries_of(product, kTexels);
-  const double texel_width = 6.0 / (kSize - 2) * 3 / 5;
+  const Layered found = board_over_floor(0.08);
+  const double texel_width = 6.0 / (kBoardSize - 2) * 3 / 5;
   std::size_t inside = 0;
-  for (std::size_t texel = 0; texel < kTexels; ++texel) {
-    const glm::dvec3 way =
-        maps::face_of(made.centre.views.front(), made.basis, 0)
-            .direction(static_cast<std::uint32_t>(texel % kSize), static_cast<std::uint32_t>(texel / kSize), kSize);
+  for (std::size_t texel = 0; texel < found.ways.size(); ++texel) {
+    const glm::dvec3& way = found.ways[texel];
     // The board is at height 2 + x / 10, that is at depth 3 - x / 10.
     const glm::dvec3 at = 3 / (1 + 0.1 * way.x) * way;
     if (std::max(std::abs(at.x), std::abs(at.z)) > 0.8 - 2 * texel_width) continue;
     std::uint32_t board = 0;
-    for (std::size_t e = 0; e < product.layers(); ++e) {
-      const auto& entry = entries[texel * product.layers() + e];
+    for (std::size_t e = 0; e < found.layers; ++e) {
+      const auto& entry = found.entries[texel * found.layers + e];
       if (entry.weight > 0 && entry.t < 4) board += entry.weight;
     }
-    EXPECT_EQ(board, kSamples) << texel;
+    EXPECT_EQ(board, kBoardSamples) << texel;
     ++inside;
   }
   EXPECT_GT(inside, 50U);

@@ -7,6 +7,7 @@
 #include "maps/filters/pcf.hpp"
 #include "maps/filters/vssm.hpp"
 #include "selftest/centre_maps.hpp"
+#include "selftest/crowd.hpp"
 #include "selftest/raster_twin.hpp"
 #include "selftest/rasteriser_checks.hpp"
 #include "tests/analytic/maps/fixture.hpp"
@@ -113,12 +114,9 @@ TEST(RasterTwin, JudgesWhatAMapHolds) {
   EXPECT_NEAR(selftest::largest_disagreement(surfaces, true), 0.02, 1e-12);
 }
 
-/// Boards, a sphere and needles over a floor; perhaps a wall up to the light (hemicubes), and the same above it.
-scenes::Scene crowd(bool wall, bool two_sided) {
-  scenes::Scene scene;
-  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
-  add_object(scene, "sphere", sphere({0.31, 1.07, 0.23}, 0.61, 8));
-  add_quad(scene, {-0.7, 1.5, 0.1}, {0.43, 0.21, 0}, {0, 0, 0.77});
+/// Also loose triangles among them.
+scenes::Scene crowd_with_needles(bool wall, bool two_sided) {
+  scenes::Scene scene = selftest::crowd(wall, two_sided);
   std::mt19937 random(8);
   std::uniform_real_distribution<double> draw(-1, 1);
   const auto point = [&] { return glm::dvec3(1.8 * draw(random), 1.2 + draw(random), 1.8 * draw(random)); };
@@ -128,14 +126,6 @@ scenes::Scene crowd(bool wall, bool two_sided) {
     loose.push_back({a, b, i % 2 == 0 ? point() : b + 0.004 * point()});  // every other one a needle
   }
   add_object(scene, "loose", loose);
-  if (wall) add_quad(scene, {2, 2, 0}, {0, 2, 0}, {0, 0, 2});
-  if (two_sided) {
-    add_quad(scene, {0, 6, 0}, {2, 0, 0}, {0, 0, 2});
-    add_quad(scene, {0.2, 5, 0}, {0.5, 0.1, 0}, {0, 0, 0.5});
-  }
-  scene.lights.push_back(ceiling_light(3, 0.5));
-  scene.lights.back().two_sided = two_sided;
-  scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
   return scene;
 }
 
@@ -143,7 +133,7 @@ class MapsRasterisers : public MapsTest {};
 
 TEST_F(MapsRasterisers, EachDrawsWhatItMust) {
   for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
-    const Stage stage(crowd(wall, two_sided), 4, 4, light_samples(1));
+    const Stage stage(crowd_with_needles(wall, two_sided), 4, 4, light_samples(1));
     for (const std::uint32_t size : {8U, 33U, 64U}) {
       SCOPED_TRACE(fmt::format("wall {}, two-sided {}, size {}", wall, two_sided, size));
       for (const Rasteriser rasteriser : {Rasteriser::vulkan, Rasteriser::opengl}) {
@@ -190,7 +180,7 @@ std::vector<Named> every_method() {
 // only where a receiver lies within a rounding (10⁻⁷ of the depth) of its threshold, which is 10⁻⁴ and more of depths
 // wide in these maps: fewer than a tap in a thousand, and so much of V in the mean.
 TEST_F(MapsRasterisers, EveryMethodGivesTheSameVOfTheSameMaps) {
-  const Stage stage(crowd(false, false), 24, 24, light_samples(16));
+  const Stage stage(crowd_with_needles(false, false), 24, 24, light_samples(16));
   const selftest::Check texels = selftest::check_rasterisers_agree(device(), stage, 32);
   for (const Named& method : every_method()) {
     SCOPED_TRACE(method.name);

@@ -6,6 +6,7 @@
 #include "maps/filters/vssm.hpp"
 #include "maps/products/light_shape.hpp"
 #include "maps/products/slices.hpp"
+#include "selftest/crowd.hpp"
 #include "selftest/map_checks.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
 #include "tests/unit/passed.hpp"
@@ -18,30 +19,12 @@
 namespace penumbra::tests {
 namespace {
 
-class SliceProducts : public MapsTest {
- protected:
-  /// A floor, a sphere, a board and, for a hemicube, a wall up to the light.
-  static scenes::Scene scene(bool hemicube, bool two_sided) {
-    scenes::Scene scene;
-    add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
-    add_object(scene, "sphere", sphere({0.31, 1.07, 0.23}, 0.61, 6));
-    add_quad(scene, {-0.7, 1.5, 0.1}, {0.43, 0.21, 0}, {0, 0, 0.77});
-    if (hemicube) add_quad(scene, {2, 2, 0}, {0, 2, 0}, {0, 0, 2});
-    if (two_sided) {
-      add_quad(scene, {0, 6, 0}, {2, 0, 0}, {0, 0, 2});
-      add_quad(scene, {0.2, 5, 0}, {0.5, 0.1, 0}, {0, 0, 0.5});
-    }
-    scene.lights.push_back(ceiling_light(3, 0.5));
-    scene.lights.back().two_sided = two_sided;
-    scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
-    return scene;
-  }
-};
+using SliceProducts = MapsTest;
 
 TEST_F(SliceProducts, MarkEverySurfaceInItsSlice) {
   constexpr std::uint32_t kSize = 48, kSlices = 5;
   for (const auto& [hemicube, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
-    const Stage stage(scene(hemicube, two_sided), 4, 4, light_samples(1));
+    const Stage stage(selftest::crowd(hemicube, two_sided), 4, 4, light_samples(1));
     for (const maps::Rasteriser rasteriser : {maps::Rasteriser::vulkan, maps::Rasteriser::opengl}) {
       expect_passed(selftest::check_slices(device(), stage, kSize, kSlices, rasteriser));
     }

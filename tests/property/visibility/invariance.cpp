@@ -1,12 +1,12 @@
 // What must not change anything: the order of triangles, their winding and first vertex, doubled vertices; and what
 // must change nothing but the unit: a scale by a power of two.
 
+#include "tests/unit/mesh/shuffled.hpp"
 #include "tests/unit/visibility/scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 
 namespace penumbra::visibility {
@@ -40,14 +40,8 @@ TEST_P(Invariance, OrderAndWindingOfTriangles) {
   const tests::Stage plain(scene, 40, 40);
   scenes::Scene shuffled = scene;
   std::mt19937 random(GetParam() + 77);
-  std::vector<std::uint32_t> order(scene.soup.triangles.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::shuffle(order.begin(), order.end(), random);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    shuffled.soup.triangles[i] = scene.soup.triangles[order[i]];
-    shuffled.soup.object[i] = scene.soup.object[order[i]];
-    std::shuffle(shuffled.soup.triangles[i].begin(), shuffled.soup.triangles[i].end(), random);
-  }
+  tests::shuffle_order(shuffled.soup, random);
+  tests::shuffle_corners(shuffled.soup, random);
   const tests::Stage other(shuffled, 40, 40);
   EXPECT_EQ(plain.samples.p, other.samples.p);
   EXPECT_EQ(plain.samples.n, other.samples.n);

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 #include <string>
 #include <tuple>
@@ -119,18 +118,13 @@ INSTANTIATE_TEST_SUITE_P(Structure, DepthSearch, testing::Values("kd-tree", "hem
 /// Without the validation layer, which takes most of the time.
 class DepthLatticeFull : public testing::TestWithParam<RangeAndEngine> {};
 TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
-  constexpr std::uint32_t kSoups = 20'000, kAtOnce = 1000;
   const auto& [of, engine] = GetParam();
   const render::Device device(render::DeviceOptions{});
   tests::MethodsByLayout methods([&make = engine.make, &device] { return make(device, {}); });
-  PairCounts counts;
   std::uint64_t open = 0;
-  for (std::uint32_t done = 0; done < kSoups && !HasFailure(); done += kAtOnce) {
-    counts += tests::expect_lattice_truth(methods, {of.range, kAtOnce, true, done, &open});
-    fmt::print("{}, range {}: {} soups, {} pairs, {} of them open\n", engine.name, of.range, done + kAtOnce,
-               counts.pairs, open);
-    std::fflush(stdout);
-  }
+  const PairCounts counts =
+      tests::expect_lattice_truth_by_thousands(methods, {of.range, 20'000, true, 0, &open}, engine.name);
+  fmt::print("{} pairs open\n", open);
   tests::expect_all_kinds(counts);
 }
 INSTANTIATE_TEST_SUITE_P(Range, DepthLatticeFull,

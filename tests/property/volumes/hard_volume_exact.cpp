@@ -3,6 +3,7 @@
 
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "scenes/formats/reader.hpp"
@@ -340,15 +341,8 @@ TEST_F(HardVolume, NeitherOrderNorWindingNorTilesChangeAByte) {
   EXPECT_EQ(first.counts, tiled.counts);
   std::mt19937 random(7);
   for (int round = 0; round < 3; ++round) {
-    mesh::TriangleSoup& soup = scene.soup;
-    for (std::size_t i = soup.triangles.size(); i-- > 1;) {
-      const std::size_t j = random() % (i + 1);
-      std::swap(soup.triangles[i], soup.triangles[j]);
-      std::swap(soup.object[i], soup.object[j]);
-    }
-    for (mesh::Triangle& triangle : soup.triangles) {
-      if (random() % 2 == 0) std::swap(triangle[0], triangle[2]);
-    }
+    tests::shuffle_order(scene.soup, random);
+    tests::shuffle_corners(scene.soup, random);
     const Counted other = run(Picture(scene, device(), 64, 48));
     EXPECT_EQ(first.counts, other.counts);
     EXPECT_EQ(first.kinds, other.kinds);

@@ -8,6 +8,7 @@
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/light_span.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 #include "volumes/counters/depth_complexity.hpp"
 
 #include <cmath>
@@ -251,16 +252,9 @@ TEST_F(Packed, TheOrderOfTrianglesChangesNoBit) {
   const visibility::SampleRequest request{16, 0, 0, visibility::SamplePattern::rows, 0};
   const Stage before(scene, 32, 24, request);
   const tests::Masks once = tests::run(*method_, before.floats, before.light, before.samples);
-  const mesh::TriangleSoup soup = scene.soup;
   std::mt19937 random(5);
-  std::vector<std::size_t> order(soup.triangles.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::shuffle(order, random);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto [a, b, c] = soup.triangles[order[i]];
-    scene.soup.triangles[i] = i % 2 == 0 ? mesh::Triangle{b, a, c} : mesh::Triangle{c, a, b};
-    scene.soup.object[i] = soup.object[order[i]];
-  }
+  tests::shuffle_order(scene.soup, random);
+  tests::shuffle_corners(scene.soup, random);
   const Stage after(scene, 32, 24, request);
   EXPECT_EQ(tests::run(*method_, after.floats, after.light, after.samples).words, once.words);
 }

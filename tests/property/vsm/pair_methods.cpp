@@ -5,6 +5,7 @@
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/point_lights.hpp"
 #include "tests/property/lattice_truth.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "scenes/formats/reader.hpp"
@@ -180,15 +181,8 @@ TEST_P(PairMethods, NeitherOrderNorWindingNorTilesChangeABit) {
   const tests::Masks first = tests::run(*GetParam().make({}), stage.floats, stage.light, stage.samples);
   EXPECT_EQ(tests::run(*GetParam().make({}), stage.floats, stage.light, stage.samples, 7).words, first.words);
   std::mt19937 random(7);
-  mesh::TriangleSoup& soup = scene.soup;
-  for (std::size_t i = soup.triangles.size(); i-- > 1;) {
-    const std::size_t j = random() % (i + 1);
-    std::swap(soup.triangles[i], soup.triangles[j]);
-    std::swap(soup.object[i], soup.object[j]);
-  }
-  for (mesh::Triangle& triangle : soup.triangles) {
-    if (random() % 2 == 0) std::swap(triangle[0], triangle[2]);
-  }
+  tests::shuffle_order(scene.soup, random);
+  tests::shuffle_corners(scene.soup, random);
   const tests::Stage shuffled(scene, 40, 30);
   EXPECT_EQ(tests::run(*GetParam().make({}), shuffled.floats, shuffled.light, shuffled.samples).words, first.words);
 }

@@ -4,11 +4,10 @@
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
+#include "tests/unit/mesh/shuffled.hpp"
 
 #include "render/visibility_buffer.hpp"
 #include "scenes/formats/reader.hpp"
-
-#include <numeric>
 
 namespace penumbra::vsm {
 namespace {
@@ -51,14 +50,8 @@ class Invariance : public tests::DeviceTest {
 /// Triangles in another order, each from another first vertex and often flipped.
 scenes::Scene shuffled(const scenes::Scene& scene, std::mt19937& random) {
   scenes::Scene result = scene;
-  std::vector<std::uint32_t> order(scene.soup.triangles.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::shuffle(order.begin(), order.end(), random);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    result.soup.triangles[i] = scene.soup.triangles[order[i]];
-    result.soup.object[i] = scene.soup.object[order[i]];
-    std::shuffle(result.soup.triangles[i].begin(), result.soup.triangles[i].end(), random);
-  }
+  tests::shuffle_order(result.soup, random);
+  tests::shuffle_corners(result.soup, random);
   return result;
 }
 

@@ -2,6 +2,7 @@
 // pixels where there are many) against the exact decision.
 
 #include "tests/agreement/support.hpp"
+#include "tests/unit/visibility/soups.hpp"
 
 namespace penumbra::vsm {
 namespace {
@@ -14,16 +15,7 @@ enum class Shape { rectangle, tilted, disk, ellipse, polygon };
 
 scenes::Scene soup_under(Shape shape, std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> real(-1, 1);
-  const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
-  scenes::Scene scene;
-  tests::add_object(scene, "floor", tests::quad({0, -1.37, 0}, {3.1, 0.1, 0}, {0, 0.2, -2.9}));
-  std::vector<tests::Corners> soup;
-  for (int i = 0; i < 24; ++i) {
-    const glm::dvec3 center = point(1);
-    soup.push_back({center + point(0.5), center + point(0.5), center + point(0.5)});
-  }
-  tests::add_object(scene, "soup", soup);
+  scenes::Scene scene = tests::soup_over_tilted_floor(random, 24);
   const glm::dvec3 center(0.3, 2.2, -0.2);
   scene.lights.push_back(tests::rectangle_light(center, {0.6, 0, 0}, {0, 0, 0.7}));
   if (shape == Shape::tilted) scene.lights[0] = tests::rectangle_light(center, {0.6, 0.37, 0.03}, {-0.11, 0.21, 0.7});
@@ -33,7 +25,6 @@ scenes::Scene soup_under(Shape shape, std::uint32_t seed) {
     scene.lights[0].shape = scenes::Polygon{{{-0.5, 2.2, -0.5}, {0.7, 2.2, -0.4}, {0.9, 2.2, 0.3}, {0.1, 2.2, 0.8}}};
   }
   scene.lights[0].two_sided = seed % 2 == 1;
-  scene.cameras.push_back(tests::camera({0.3, 1.5, 5}, {0, -0.3, 0}));
   return scene;
 }
 

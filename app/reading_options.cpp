@@ -1,0 +1,17 @@
+#include "app/reading_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace penumbra::app {
+
+void add_allow_outside(CLI::App& command, bool& allow_outside) {
+  command.add_flag("--allow-outside", allow_outside, "let a scene name files outside its own folder");
+}
+
+void add_lenient(CLI::App& command, bool& lenient) {
+  command.add_flag(
+      "--lenient", lenient,
+      "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
+}
+
+}  // namespace penumbra::app
