@@ -7,6 +7,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/covering_array.cpp
   cli/error_budget.cpp
   cli/explain.cpp
+  cli/exact_by_default.cpp
   cli/exr_layers.cpp
   cli/frames.cpp
   cli/inspect.cpp

@@ -4,6 +4,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/adaptive_light.cpp
   analytic/maps/backproject.cpp
   analytic/maps/bitmask.cpp
+  analytic/maps/bitmask_predicates.cpp
   analytic/maps/closed_form.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp

@@ -1,0 +1,112 @@
+// What papers say of bitmask on every scene of a class; the rest of docs/predicates.md is in predicates.cpp.
+
+#include "tests/analytic/maps/predicates.hpp"
+
+#include <array>
+#include <numbers>
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+/// Of the pixels in the umbra those that are brighter than 0.05.
+double leak(const Masks& found, const Masks& truth) {
+  double umbra = 0, lit = 0;
+  for (std::size_t i = 0; i < found.visibility.size(); ++i) {
+    if (truth.visibility[i] > 0) continue;
+    umbra += 1;
+    lit += found.visibility[i] > 0.05F ? 1 : 0;
+  }
+  EXPECT_GT(umbra, 20);
+  return lit / umbra;
+}
+
+// B6 (Schwarz and Stamminger 2007): quads of a connected surface share their borders: no light comes through, as it
+// does between patches.
+TEST_F(MapsPredicates, QuadsOfATiltedPlaneDoNotLeakAsPatchesDo) {
+  const Stage stage = on_floor(oblique_quad(), 32, light_samples(256));
+  const Masks truth = exact(stage);
+  const auto leak_of = [&](const char* occluder) {
+    return leak(run(maps::make_bitmask, stage, {{"size", "128"}, {"occluder", occluder}}), truth);
+  };
+  const double quads = leak_of("quad"), patches = leak_of("patch");
+  record("B6 leak of quads", quads);
+  record("B6 leak of patches", patches);
+  EXPECT_LE(quads, 0.02);
+  EXPECT_GT(patches, 0.2);
+}
+
+// B2 (Eisemann et al. 2009, section 5.2.3.2): the notes' 256 light samples, 8 x 8 tiles of four on a turned square,
+// stand in 32 columns of eight: under an edge along these V has 33 levels, steps of 1/32. Where the edge is turned by
+// 20 degrees hardly two of them are passed at once. Ours in rows are 256 columns, and 16 rows.
+TEST_F(MapsPredicates, TheNotesPatternHasThirtyThreeLevelsUnderAnAlignedEdge) {
+  // The penumbra of an edge half way up is as wide as the light, 2: two levels are 1/128 apart.
+  std::vector<double> places;
+  for (int i = 0; i < 1600; ++i) places.push_back(-1.1 + 2.2 * i / 1600);
+  const auto levels = [&](double degrees, bool notes, bool across) {
+    scenes::Scene scene = bare_floor(1, 2);
+    if (across) scene.lights.front() = rectangle_light({0, 5, 0}, {0, 0, 1}, {-1, 0, 0});
+    const double angle = degrees * std::numbers::pi / 180;
+    const glm::dvec3 along(-std::sin(angle), 0, std::cos(angle)), away(-std::cos(angle), 0, -std::sin(angle));
+    add_quad(scene, glm::dvec3(0, 2.5, 0) + 3.0 * away, 3.0 * away, 9.0 * along).receives_shadow = false;
+    Stage stage = along_floor(scene, places, light_samples(256));
+    if (notes) {
+      visibility::Light& light = stage.light;
+      light.rows = light.columns = 0;
+      light.row_shift.clear();
+      for (std::size_t j = 0; j < 256; ++j) {
+        // One of each of a tile's 4 x 4 columns and rows.
+        constexpr std::array<std::array<int, 2>, 4> kTurned{{{1, 0}, {3, 1}, {0, 2}, {2, 3}}};
+        const std::size_t tile = j / 4;
+        const glm::dvec2 cell(static_cast<double>(4 * (tile % 8)) + kTurned.at(j % 4)[0],
+                              static_cast<double>(4 * (tile / 8)) + kTurned.at(j % 4)[1]);
+        light.coordinates[j] = (cell + 0.5) / 16.0 - 1.0;
+        const visibility::LightFrame frame = visibility::light_frame(light);
+        light.points[j] = frame.center + light.coordinates[j].x * frame.u + light.coordinates[j].y * frame.v;
+      }
+    }
+    const Masks found = run(maps::make_bitmask, stage, {{"size", "64"}, {"occluder", "patch"}});
+    return std::set<float>(found.visibility.begin(), found.visibility.end()).size();
+  };
+  const std::size_t aligned = levels(0, true, false), turned = levels(20, true, false), rows = levels(0, false, false),
+                    beside = levels(0, false, true);
+  record("B2 levels of the notes' pattern, aligned", static_cast<double>(aligned));
+  record("B2 levels of the notes' pattern, turned by 20 degrees", static_cast<double>(turned));
+  record("B2 levels of rows, across them", static_cast<double>(rows));
+  record("B2 levels of rows, along them", static_cast<double>(beside));
+  EXPECT_EQ(aligned, 33U);
+  EXPECT_GT(turned, 200U);
+  EXPECT_EQ(std::max(rows, beside), 257U);
+  EXPECT_EQ(std::min(rows, beside), 17U);
+}
+
+// B7 (Eisemann et al. 2009, section 5.2.3.3), without a bias: where patches of a round body's own surface rise above a
+// receiver's plane, quads, for which all four of their corners must, do so less often.
+TEST_F(MapsPredicates, QuadsHaveLessAcneThanPatches) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_object(scene, "ball", sphere({0, 1.4, 0}, 1, 12));
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 4, 2}, {0, 1, 0}, 50));
+  const Stage stage(scene, 40, 40, light_samples(64));
+  const Masks truth = exact(stage);
+  const auto dark = [&](const char* occluder) {
+    const Masks found = run(maps::make_bitmask, stage, {{"size", "64"}, {"bias", "0"}, {"occluder", occluder}});
+    double lit = 0, wrong = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      if (!on_object(stage, i, 1) || truth.visibility[i] < 1) continue;
+      lit += 1;
+      wrong += found.visibility[i] < 0.95F ? 1 : 0;
+    }
+    EXPECT_GT(lit, 100);
+    return wrong / lit;
+  };
+  const double patches = dark("patch"), quads = dark("quad");
+  record("B7 dark share of patches", patches);
+  record("B7 dark share of quads", quads);
+  EXPECT_GT(patches, 0.05);
+  EXPECT_LT(quads, patches);
+}
+
+}  // namespace
+}  // namespace penumbra::tests
