@@ -42,17 +42,17 @@ LightShaft::LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3
   planes_[kClipPlanes] = {sign * w.value, w.size, 0, 0};
 }
 
-LightShaft::Place LightShaft::place_of(const glm::vec3& q) const {
+LightShaft::Sides LightShaft::sides_of(const glm::vec3& q) const {
   const glm::dvec3 d = glm::dvec3(q) - p_, size = glm::abs(d);
-  Place place;
+  Sides sides;
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const Plane& plane = planes_[i];
     const double height = plane.constant + glm::dot(plane.normal, d);
     const double error = kRounding * (plane.constant_size + glm::dot(plane.size, size));
-    if (height > error) place.inside |= 1u << i;
-    if (height < -error) place.outside |= 1u << i;
+    if (height > error) sides.inside |= 1u << i;
+    if (height < -error) sides.outside |= 1u << i;
   }
-  return place;
+  return sides;
 }
 
 bool LightShaft::misses(const glm::vec3& lower, const glm::vec3& upper) const {

@@ -15,7 +15,7 @@ class LightShaft {
  public:
   /// Which clip planes a point is certainly strictly inside of, and which ones it is certainly outside of (bits); among
   /// the latter kBehind: not on the light's side of p.
-  struct Place {
+  struct Sides {
     unsigned inside = 0, outside = 0;
   };
   static constexpr unsigned kBehind = 1u << kClipPlanes;
@@ -23,7 +23,7 @@ class LightShaft {
   /// `mirrored` as the exact projection has it: which way p is off the light's plane.
   LightShaft(const IntegerFrame& frame, bool mirrored, const glm::vec3& p, const GridBox& box);
 
-  [[nodiscard]] Place place_of(const glm::vec3& q) const;
+  [[nodiscard]] Sides sides_of(const glm::vec3& q) const;
   /// Is the box certainly outside of one of the planes?
   [[nodiscard]] bool misses(const glm::vec3& lower, const glm::vec3& upper) const;
 

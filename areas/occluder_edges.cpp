@@ -67,15 +67,15 @@ void OccluderEdges::for_each_candidate(Visit&& visit) const {
 void OccluderEdges::add_triangle(std::uint32_t triangle) {
   if (!may_occlude(*scene_.scene, light_, receiver_.carrier, triangle)) return;
   const std::array<glm::vec3, 3> corners = scene_.scene->corners(triangle);
-  const std::array<LightShaft::Place, 3> places = {shaft_.place_of(corners[0]), shaft_.place_of(corners[1]),
-                                                   shaft_.place_of(corners[2])};
-  if ((places[0].outside & places[1].outside & places[2].outside) != 0) return;
+  const std::array<LightShaft::Sides, 3> sides = {shaft_.sides_of(corners[0]), shaft_.sides_of(corners[1]),
+                                                  shaft_.sides_of(corners[2])};
+  if ((sides[0].outside & sides[1].outside & sides[2].outside) != 0) return;
   ++triangles_;
   int turn = static_cast<int>(mesh::side_of_plane(corners[0], corners[1], corners[2], receiver_.p));
   if (turn == 0) return;  // seen edge-on: not met
   if (projection_.mirrored()) turn = -turn;
 
-  const unsigned inside = places[0].inside & places[1].inside & places[2].inside;
+  const unsigned inside = sides[0].inside & sides[1].inside & sides[2].inside;
   constexpr unsigned kCutting = bit_of(ClipPlane::light) | bit_of(ClipPlane::bottom);
   if ((inside & kCutting) != kCutting && !cut_triangle(corners, turn)) return;
   const visibility::Triangle& t = scene_.scene->triangles[triangle];
@@ -122,7 +122,7 @@ void OccluderEdges::append_to(std::vector<SweepEdge<Number>>& edges) const {
   };
   for (const EdgeUse& use : uses_) {
     const glm::vec3 &low = scene_.scene->positions[use.low], &high = scene_.scene->positions[use.high];
-    const LightShaft::Place a = shaft_.place_of(low), b = shaft_.place_of(high);
+    const LightShaft::Sides a = shaft_.sides_of(low), b = shaft_.sides_of(high);
     if ((a.outside & b.outside) != 0) continue;
     const ProjectiveEdge whole{projection_.project(low), projection_.project(high)};
     if (const auto edge = projection_.clip_edge(whole, kAllClipPlanes & ~(a.inside & b.inside))) add(*edge, use.count);

@@ -1,5 +1,6 @@
 #include "mesh/repair/cgal.hpp"
 
+#include "mesh/box_tree.hpp"
 #include "mesh/edge_graph.hpp"
 #include "mesh/predicates.hpp"
 
@@ -28,17 +29,10 @@ using HalfEdge = CgalMesh::Halfedge_index;
 
 void say_nothing(const char*, const char*, const char*, int, const char*) {}
 
-struct Box {
-  glm::dvec3 lower, upper;
-};
-
 Box bounds(const TriangleSoup& soup, const std::vector<std::uint32_t>& triangles) {
-  Box box{soup.positions[soup.triangles[triangles[0]][0]], soup.positions[soup.triangles[triangles[0]][0]]};
+  Box box;
   for (const std::uint32_t t : triangles) {
-    for (const std::uint32_t i : soup.triangles[t]) {
-      box.lower = glm::min(box.lower, soup.positions[i]);
-      box.upper = glm::max(box.upper, soup.positions[i]);
-    }
+    for (const std::uint32_t i : soup.triangles[t]) box.include(soup.positions[i]);
   }
   return box;
 }

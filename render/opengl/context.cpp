@@ -49,14 +49,14 @@ std::string egl_error() {
 }
 
 /// One way to OpenGL on this machine.
-struct Place {
+struct DisplayChoice {
   std::string platform;
   EGLDisplay display;
   bool software;  ///< EGL says that the device is a processor
 };
 
-std::vector<Place> places() {
-  std::vector<Place> found;
+std::vector<DisplayChoice> displays() {
+  std::vector<DisplayChoice> found;
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (has(client, "EGL_EXT_platform_device") &&
       (has(client, "EGL_EXT_device_enumeration") || has(client, "EGL_EXT_device_base"))) {
@@ -141,18 +141,18 @@ void describe(ContextInfo& info, bool software) {
   }
 }
 
-std::unique_ptr<Context::State> open(const Place& place, std::uint32_t index) {
+std::unique_ptr<Context::State> open(const DisplayChoice& choice, std::uint32_t index) {
   auto state = std::make_unique<Context::State>();
   ContextInfo& info = state->info;
   info.index = index;
-  info.platform = info.name = place.platform;
-  info.kind = place.software ? "cpu" : "gpu";
-  state->display = place.display;
-  state->context = make_context(place.display, info);
+  info.platform = info.name = choice.platform;
+  info.kind = choice.software ? "cpu" : "gpu";
+  state->display = choice.display;
+  state->context = make_context(choice.display, info);
   if (!info.usable()) return state;
   try {
     const Current current(*state);
-    describe(info, place.software);
+    describe(info, choice.software);
     current.check("asking what it is");
   } catch (const ResourceError& error) {
     info.refusals.emplace_back(error.what());
@@ -193,7 +193,8 @@ void Current::check(const std::string& doing) const {
 
 std::vector<ContextInfo> list_contexts() {
   std::vector<ContextInfo> list;
-  for (const Place& place : places()) list.push_back(open(place, static_cast<std::uint32_t>(list.size()))->info);
+  for (const DisplayChoice& choice : displays())
+    list.push_back(open(choice, static_cast<std::uint32_t>(list.size()))->info);
   if (list.empty()) {
     ContextInfo none;
     none.platform = none.name = "none";
@@ -207,8 +208,8 @@ Context::Context(bool on_processor) {
   const auto is_wanted = [&](const ContextInfo& info) { return (info.kind == "cpu") == on_processor; };
   std::string reasons;
   std::uint32_t index = 0;
-  for (const Place& place : places()) {
-    std::unique_ptr<State> candidate = open(place, index++);
+  for (const DisplayChoice& choice : displays()) {
+    std::unique_ptr<State> candidate = open(choice, index++);
     if (!candidate->info.usable()) {
       reasons += fmt::format("\n  {}: {}", candidate->info.name, fmt::join(candidate->info.refusals, "; "));
     } else if (!state_ || (is_wanted(candidate->info) && !is_wanted(state_->info))) {

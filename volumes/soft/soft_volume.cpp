@@ -86,8 +86,8 @@ visibility::MethodDescription soft_volume_description() {
 namespace {
 
 /// The light, or one of the parts it is cut in.
-struct LightPart {
-  explicit LightPart(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
+struct CountedPart {
+  explicit CountedPart(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
 
   VolumeCount count;
   Light light;
@@ -117,7 +117,7 @@ class SoftVolume final : public visibility::Method {
         builder_(device,
                  {.on = options[kWedges], .construction = options[kConstruction], .layers = Layers::one_a_solid}),
         tests_(options[kTests]) {
-    for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<LightPart>(device));
+    for (std::uint32_t i = 0; i < split_ * split_; ++i) parts_.push_back(std::make_unique<CountedPart>(device));
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -180,10 +180,10 @@ class SoftVolume final : public visibility::Method {
 
  private:
   void make_raster(const Light& light);
-  void prepare(LightPart& part, const Light& light);
-  void add(LightPart& part);
-  void add_doubtful(LightPart& part, const std::vector<std::size_t>& pixels);
-  [[nodiscard]] double share_above(const LightPart& part, std::size_t pixel) const;
+  void prepare(CountedPart& part, const Light& light);
+  void add(CountedPart& part);
+  void add_doubtful(CountedPart& part, const std::vector<std::size_t>& pixels);
+  [[nodiscard]] double share_above(const CountedPart& part, std::size_t pixel) const;
 
   visibility::MethodDescription description_;
   const render::Device* device_;
@@ -191,10 +191,10 @@ class SoftVolume final : public visibility::Method {
   bool table_;
   WedgeBuilder builder_;
   WedgeTests tests_;
-  std::vector<gpu::uint> kind_;          // of raster_: shape and measure
-  const LightPart* prepared_ = nullptr;  // whose table raster_ has
+  std::vector<gpu::uint> kind_;            // of raster_: shape and measure
+  const CountedPart* prepared_ = nullptr;  // whose table raster_ has
   std::unique_ptr<WedgeRaster> raster_;
-  std::vector<std::unique_ptr<LightPart>> parts_;
+  std::vector<std::unique_ptr<CountedPart>> parts_;
   const SceneFloats* scene_ = nullptr;
   const ViewSamples* samples_ = nullptr;
   Tile tile_;
@@ -212,7 +212,7 @@ void SoftVolume::make_raster(const Light& light) {
   kind_ = kind;
 }
 
-void SoftVolume::prepare(LightPart& part, const Light& light) {
+void SoftVolume::prepare(CountedPart& part, const Light& light) {
   part.light = light;
   part.outline = light_outline(light);
   part.texture.reset();
@@ -234,7 +234,7 @@ void SoftVolume::prepare(LightPart& part, const Light& light) {
 }
 
 /// Adds each pixel's V for this part.
-void SoftVolume::add(LightPart& part) {
+void SoftVolume::add(CountedPart& part) {
   using Kind = VolumeCount::Kind;
   if (!(part.weight > 0)) return;
   if (!part.faces) part.faces = faces_of(part.wedges, *samples_, tests_, glm::dvec3(part.count.center()));
@@ -270,10 +270,10 @@ void SoftVolume::add(LightPart& part) {
 }
 
 /// By exact signs, and from another point of the light where an edge ends at its centre.
-void SoftVolume::add_doubtful(LightPart& part, const std::vector<std::size_t>& pixels) {
+void SoftVolume::add_doubtful(CountedPart& part, const std::vector<std::size_t>& pixels) {
   if (pixels.empty()) return;
   doubtful_ += pixels.size();
-  if (!part.host) part.host = std::make_unique<LightPart::Host>(*scene_, part.light);
+  if (!part.host) part.host = std::make_unique<CountedPart::Host>(*scene_, part.light);
   const std::size_t first = std::size_t{tile_.first_row} * samples_->width;
   tbb::parallel_for(std::size_t{0}, pixels.size(), [&](std::size_t i) {
     const std::size_t pixel = first + pixels[i];
@@ -284,7 +284,7 @@ void SoftVolume::add_doubtful(LightPart& part, const std::vector<std::size_t>& p
 }
 
 /// Of the part, above the plane of the pixel's carrier.
-double SoftVolume::share_above(const LightPart& part, std::size_t pixel) const {
+double SoftVolume::share_above(const CountedPart& part, std::size_t pixel) const {
   const auto [a, b, c] = scene_->corners(static_cast<std::uint32_t>(samples_->triangle[pixel]));
   const glm::dvec3 n = static_cast<double>(samples_->facing[pixel]) *
                        glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
