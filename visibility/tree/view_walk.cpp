@@ -11,27 +11,70 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace penumbra::visibility {
 namespace {
 
+Bounds box_around(const SceneFloats& scene, const PinholeCamera& camera, std::uint32_t triangle) {
+  const auto [a, b, c] = scene.corners(triangle);
+  const glm::vec3 lower = glm::min(a, glm::min(b, c)), upper = glm::max(a, glm::max(b, c));
+  const glm::dvec3 far = glm::max(glm::abs(glm::dvec3(lower) - camera.eye), glm::abs(glm::dvec3(upper) - camera.eye));
+  const double half = camera.half_height ? *camera.half_height : camera.tan_half_fov * glm::length(far);
+  // At least the rounding of the sum to float.
+  const double pixel = 2 * half / camera.height + 0x1p-22 * glm::length(glm::max(glm::abs(lower), glm::abs(upper)));
+  const auto pad = static_cast<float>(std::min(pixel, 0x1p100));
+  return {lower - pad, upper + pad};
+}
+
 TriangleTree tree_for(const SceneFloats& scene, const PinholeCamera& camera, std::span<const std::uint32_t> triangles) {
   std::vector<Bounds> boxes;
   boxes.reserve(triangles.size());
-  for (const std::uint32_t triangle : triangles) {
-    const auto [a, b, c] = scene.corners(triangle);
-    const glm::vec3 lower = glm::min(a, glm::min(b, c)), upper = glm::max(a, glm::max(b, c));
-    const glm::dvec3 far = glm::max(glm::abs(glm::dvec3(lower) - camera.eye), glm::abs(glm::dvec3(upper) - camera.eye));
-    const double half = camera.half_height ? *camera.half_height : camera.tan_half_fov * glm::length(far);
-    // At least the rounding of the sum to float.
-    const double pixel = 2 * half / camera.height + 0x1p-22 * glm::length(glm::max(glm::abs(lower), glm::abs(upper)));
-    const auto pad = static_cast<float>(std::min(pixel, 0x1p100));
-    boxes.push_back({lower - pad, upper + pad});
-  }
+  for (const std::uint32_t triangle : triangles) boxes.push_back(box_around(scene, camera, triangle));
   return make_tree_over(boxes);
 }
+
+/// The part of space that a rectangle of pixels sees: what is behind none of the four planes through its sides.
+class SeenThrough {
+ public:
+  SeenThrough(const PinholeCamera& camera, std::span<const std::uint32_t> pixels) {
+    std::uint32_t left = camera.width, top = camera.height, right = 0, bottom = 0;
+    for (const std::uint32_t pixel : pixels) {
+      const std::uint32_t x = pixel % camera.width, y = pixel / camera.width;
+      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+    // A pixel more where there is one: the planes differ.
+    left -= left > 0 ? 1 : 0, top -= top > 0 ? 1 : 0, ++right, ++bottom;
+    const std::array corners{camera.ray(left, top), camera.ray(right, top), camera.ray(right, bottom),
+                             camera.ray(left, bottom)};
+    const glm::dvec3 inside = 0.5 * (corners[0].start + corners[2].start + corners[0].direction + corners[2].direction);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const ViewRay &a = corners[i], &b = corners[(i + 1) % 4];
+      Plane& plane = planes_[i];
+      plane.at = a.start;
+      plane.n = glm::cross(a.direction, b.start - a.start + b.direction);
+      if (glm::dot(plane.n, inside - a.start) < 0) plane.n = -plane.n;
+    }
+  }
+
+  /// Certainly not of a box outside; boxes have a pixel to spare, beside which double rounds nothing.
+  [[nodiscard]] bool may_meet(const Bounds& box) const {
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(box.lower) + glm::dvec3(box.upper)),
+                     half = 0.5 * (glm::dvec3(box.upper) - glm::dvec3(box.lower));
+    return std::ranges::all_of(planes_, [&](const Plane& plane) {
+      return !(glm::dot(plane.n, middle - plane.at) + glm::dot(glm::abs(plane.n), half) < 0);
+    });
+  }
+
+ private:
+  struct Plane {
+    glm::dvec3 at{0}, n{0};
+  };
+  std::array<Plane, 4> planes_;
+};
 
 /// Background stays where nothing is found.
 ViewSamples complete(const SceneFloats& scene, const PinholeCamera& camera, const ViewWalk& walk,
@@ -95,8 +138,10 @@ ViewSamples look_through(const SceneFloats& scene, const PinholeCamera& camera, 
     if (!may_carry(scene, static_cast<std::uint32_t>(solid.triangle[i]), ray)) pixels.push_back(i);
   }
   if (pixels.empty()) return solid;
-  return complete(scene, camera, ViewWalk(scene, camera, triangles_with_area(scene)), pixels,
-                  std::move(solid.triangle));
+  std::vector<std::uint32_t> triangles = triangles_with_area(scene);
+  const SeenThrough seen(camera, pixels);
+  std::erase_if(triangles, [&](std::uint32_t triangle) { return !seen.may_meet(box_around(scene, camera, triangle)); });
+  return complete(scene, camera, ViewWalk(scene, camera, std::move(triangles)), pixels, std::move(solid.triangle));
 }
 
 }  // namespace penumbra::visibility

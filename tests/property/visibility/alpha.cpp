@@ -320,6 +320,41 @@ TEST(ViewsThroughHoles, AreOfWhatIsBehind) {
   }
 }
 
+/// Only what may be behind a hole is looked at again: nothing that is may be forgotten, wherever in the picture, or
+/// beside or behind the eye, a small card with holes and all others are.
+TEST(ViewsThroughHoles, AreFoundWhereverTheyAre) {
+  std::size_t looked_through = 0;
+  for (std::uint32_t seed = 0; seed < 120; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    std::vector<tests::Corners> soup;
+    for (int i = 0; i < 60; ++i) {
+      const glm::dvec3 middle = point(3);
+      soup.push_back({middle + point(1), middle + point(1), middle + point(1)});
+    }
+    tests::add_object(scene, "soup", soup);
+    scenes::Object& card = tests::add_quad(scene, point(1.5), point(0.4), point(0.4));
+    card.alpha = {Alpha::Mode::mask, 1, 0.5};
+    card.picture = PictureUse{0};
+    scene.pictures.push_back({"card", 2, 1, {{0, 0, 0, 255}, {}}});
+    for (std::size_t i = 0; i < scene.soup.positions.size(); ++i) scene.looks.places.emplace_back(real(random), 0.5);
+    scene.lights.push_back(tests::ceiling_light(4, 0.5));
+    scenes::Camera camera = tests::camera(point(1) + glm::dvec3(0, 0, 3), point(0.5), 50);
+    if (seed % 3 == 0) camera.height = 4;
+    const SceneFloats floats = make_scene_floats(scene);
+    const std::uint32_t width = seed % 10 == 9 ? 1 : 31, height = seed % 10 == 8 ? 1 : 23;
+    const PinholeCamera view = make_camera(camera, floats.origin, width, height);
+    const ViewSamples truth = brute_force_view_samples(floats, view);
+    scene.objects[1].alpha = {};
+    const ViewSamples solid = brute_force_view_samples(make_scene_floats(scene), view);
+    looked_through += solid.triangle != truth.triangle ? 1 : 0;
+    EXPECT_EQ(look_through(floats, view, solid).triangle, truth.triangle) << "seed " << seed;
+  }
+  EXPECT_GT(looked_through, 30u);
+}
+
 /// The rays of an orthographic camera are parallel: p is where its pixel is, whatever the distance.
 TEST(OrthographicViews, KeepDistancesAcross) {
   Card card;
