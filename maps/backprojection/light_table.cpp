@@ -16,7 +16,8 @@ namespace penumbra::maps {
 namespace {
 
 constexpr std::uint32_t kCells = 256;
-/// A rectangle's sides are perpendicular up to the rounding of its stored corners.
+/// The share of its bounding rectangle that a light may leave out, by the rounding of its stored corners, and still be
+/// taken for all of it: V is off by no more than that. One that leaves more has a table, as any polygon.
 constexpr double kPerpendicular = 1e-6;
 
 /// ∫ √(1 − t²) dt from 0.

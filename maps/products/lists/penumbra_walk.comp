@@ -68,6 +68,7 @@ void walk(vec3 o, vec3 d, vec2 lower, vec2 upper, uint map, float far, float nea
   const vec2 width = (upper - lower) / float(push.size);
   const vec2 turn = vec2(d.x * o.z - o.x * d.z, d.y * o.z - o.y * d.z);
   // The first texel: of a place a little behind the entry, since the entry itself lies on a border.
+  // A texel of which less than 1e-4 of t is crossed may be left out there.
   const float within = t + min(1e-4 * t, 0.5 * (last - t));
   const vec3 entry = o + within * d;
   ivec2 at = clamp(ivec2(floor((entry.xy / entry.z - lower) / width)), ivec2(0), ivec2(push.size - 1));

@@ -80,6 +80,7 @@ struct UpwardEdge {
   store(kWayY, way_y);
   store(kJump, hn::IfThenElse(up, hn::Neg(k), k));
   store(kNear, hn::MulAdd(around, hn::Add(wide, way_y), hn::Mul(rounding, hn::Mul(wide, way_y))));
+  // A flatter one may be beside any light sample of a row: right at every limit, which only keeps slopes finite.
   const M leans = hn::Gt(way_y, hn::Mul(set(1e-6F), wide));
   const V slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
   const V beside =
