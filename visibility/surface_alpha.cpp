@@ -1,6 +1,7 @@
 #include "visibility/surface_alpha.hpp"
 
 #include "scenes/texel_number.hpp"
+#include "visibility/alpha/shares.hpp"
 #include "visibility/scene_floats.hpp"
 
 #include <glm/geometric.hpp>
@@ -42,13 +43,16 @@ Alpha::Mode alpha_mode(const SceneFloats& scene, std::uint32_t triangle) {
   return scene.alphas.empty() ? Alpha::Mode::opaque : scene.alphas.surfaces[scene.object[triangle]].alpha.mode;
 }
 
-glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& way, const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a = glm::dvec3(corners[0]) - p, b = glm::dvec3(corners[1]) - p, c = glm::dvec3(corners[2]) - p;
-  const glm::dvec3 volumes(glm::dot(way, glm::cross(b, c)), glm::dot(way, glm::cross(c, a)),
-                           glm::dot(way, glm::cross(a, b)));
+glm::dvec3 shares_from(const glm::dvec3& volumes) {
   const glm::dvec3 shares = volumes / (volumes.x + volumes.y + volumes.z);
   const bool finite = std::isfinite(shares.x) && std::isfinite(shares.y) && std::isfinite(shares.z);
   return finite ? shares : glm::dvec3(1, 0, 0);
+}
+
+glm::dvec3 shares_on_line(const glm::dvec3& p, const glm::dvec3& way, const std::array<glm::vec3, 3>& corners) {
+  const glm::dvec3 a = glm::dvec3(corners[0]) - p, b = glm::dvec3(corners[1]) - p, c = glm::dvec3(corners[2]) - p;
+  return shares_from(
+      {glm::dot(way, glm::cross(b, c)), glm::dot(way, glm::cross(c, a)), glm::dot(way, glm::cross(a, b))});
 }
 
 namespace {

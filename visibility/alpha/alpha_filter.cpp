@@ -4,6 +4,7 @@
 #include "visibility/alpha/alpha_filter.hpp"
 
 #include "base/assert.hpp"
+#include "visibility/alpha/shares.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
 
@@ -192,6 +193,8 @@ class PixelFilter {
     // way · (a × b) is rounded by fewer than 16 · 2⁻⁵³ · 6 of the product of the lengths (visibility/certain_meeting).
     const double reach = std::max({glm::length(d[0]), glm::length(d[1]), glm::length(d[2])});
     const double error = 0x1p-46 * reach * reach;
+    // p's height over the triangle, times twice its area; rounded like these.
+    const double height = glm::dot(d[0], edges[1]), height_error = 4 * error * reach;
     const bool is_mask = alpha_mode(scene_, triangle) == scenes::Alpha::Mode::mask;
     const std::optional<Slopes> around = pyramid.slopes_around(d);
     for (std::size_t i = 0; i < lit_.size(); ++i) {
@@ -204,8 +207,13 @@ class PixelFilter {
       const double ab = glm::dot(way, edges[0]), bc = glm::dot(way, edges[1]), ca = glm::dot(way, edges[2]);
       const double off = error * (std::abs(way.x) + std::abs(way.y) + std::abs(way.z));
       if (std::min({ab, bc, ca}) < -off && std::max({ab, bc, ca}) > off) continue;
-      if (!segment_meets_triangle(p, points_[lit_[i]], corners, light_).meets) continue;
-      const double left = transmittance_at(scene_, triangle, shares_on_line(from, way, corners));
+      // The way goes down by this much; it ends below the plane where that is more than p's height.
+      const double drop = ab + bc + ca, drop_error = 4 * off;
+      const bool inside = std::min({ab, bc, ca}) > off || std::max({ab, bc, ca}) < -off;
+      const bool crosses = std::abs(height) > height_error && (height > 0) == (drop > 0) &&
+                           (light_.sun || std::abs(drop) - std::abs(height) > drop_error + height_error);
+      if (!(inside && crosses) && !segment_meets_triangle(p, points_[lit_[i]], corners, light_).meets) continue;
+      const double left = transmittance_at(scene_, triangle, shares_from({bc, ca, ab}));
       WayEnd& end = ends_[i];
       if (is_mask) {
         end.by_mask = true;
