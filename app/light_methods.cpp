@@ -1,6 +1,7 @@
 #include "app/light_methods.hpp"
 
 #include "app/methods.hpp"
+#include "app/whole_lights.hpp"
 #include "base/error.hpp"
 
 #include <fmt/ranges.h>
@@ -75,14 +76,24 @@ LightMethod choose(const Light& light, const MethodWish& wish) {
   return chosen;
 }
 
+/// Pieces of one light are done by one method, if some of those chosen can do all.
+void unite(const std::vector<Light>& lights, const WholeLight& whole, std::vector<LightMethod>& chosen) {
+  const auto first = static_cast<std::ptrdiff_t>(whole.first), end = first + static_cast<std::ptrdiff_t>(whole.count);
+  const std::vector<Light> pieces(lights.begin() + first, lights.begin() + end);
+  const auto for_all = std::find_if(chosen.begin() + first, chosen.begin() + end,
+                                    [&](const LightMethod& one) { return can_do(one.description, pieces); });
+  if (for_all == chosen.begin() + end) return;
+  const LightMethod one = *for_all;
+  std::fill(chosen.begin() + first, chosen.begin() + end, one);
+}
+
 }  // namespace
 
 std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const MethodWish& wish) {
   std::vector<LightMethod> all;
-  for (const Light& light : lights) {
-    all.push_back(choose(light, wish));
-    check_light(all.back().description, light);
-  }
+  for (const Light& light : lights) all.push_back(choose(light, wish));
+  for (const WholeLight& whole : whole_lights(lights)) unite(lights, whole, all);
+  for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, lights[i]);
   for (const auto& [key, value] : wish.options) {
     if (std::ranges::any_of(all, [&](const LightMethod& one) { return one.options.contains(key); })) continue;
     std::set<std::string> names;

@@ -33,34 +33,39 @@ visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibi
 
 }  // namespace
 
-std::uint32_t samples_of(const LabelledLights& all, std::size_t light) {
-  return counts_light_samples(all.label(light).description) ? all.lights[light].sample_count() : 0;
+std::uint32_t samples_of(const LabelledLights& all, const WholeLight& whole) {
+  std::uint32_t count = 0;
+  for (std::size_t piece = whole.first; piece < whole.first + whole.count; ++piece) {
+    if (counts_light_samples(all.label(piece).description)) count += all.lights[piece].sample_count();
+  }
+  return count;
 }
 
-std::optional<std::string> pattern_of(const LabelledLights& all, std::size_t light) {
-  if (!counts_light_samples(all.label(light).description)) return std::nullopt;
-  return visibility::name_of(all.lights[light].pattern);
+std::optional<std::string> pattern_of(const LabelledLights& all, const WholeLight& whole) {
+  if (samples_of(all, whole) == 0) return std::nullopt;
+  return visibility::name_of(all.lights[whole.first].pattern);
 }
 
-compare::LightStats light_stats(const LabelledLights& all, std::size_t light) {
-  const MethodLabel& label = all.label(light);
-  return {.name = all.lights[light].name,
+compare::LightStats light_stats(const LabelledLights& all, const WholeLight& whole) {
+  const MethodLabel& label = all.label(whole.first);
+  return {.name = all.lights[whole.first].name,
           .method = label.description.name,
           .options = label.options,
-          .area = !counts_light_samples(label.description),
-          .light_samples = samples_of(all, light),
-          .sample_pattern = pattern_of(all, light).value_or("")};
+          .area = samples_of(all, whole) == 0,
+          .light_samples = samples_of(all, whole),
+          .sample_pattern = pattern_of(all, whole).value_or("")};
 }
 
 BeautyAccumulator::BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights)
     : session_(session),
       lights_(lights),
+      whole_of_(wholes_of_pieces(lights)),
       looks_(compare::look_at(session.scene, session.floats, session.samples, session.shading_normals)),
-      parts_(lights.size()) {}
+      parts_(whole_lights(lights).size()) {}
 
 void BeautyAccumulator::add(const TileResult& result) {
   // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
-  std::vector<glm::vec3>& pixels = parts_[result.light];
+  std::vector<glm::vec3>& pixels = parts_[whole_of_[result.light]];
   pixels.resize(session_.pixel_count(), glm::vec3(0));
   const visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
   compare::LightVisibility seen;
@@ -82,7 +87,7 @@ void BeautyAccumulator::add(const TileResult& result) {
                                                .normals = rows_from(looks_.normals)},
                                               {&seen, 1});
   for (std::size_t i = 0; i < band.size(); ++i) {
-    if (!std::isnan(result.visibility[i])) pixels[first_pixel + i] = band[i];  // what was not evaluated stays black
+    if (!std::isnan(result.visibility[i])) pixels[first_pixel + i] += band[i];  // what was not evaluated stays black
   }
 }
 
@@ -106,10 +111,15 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, s
   return compare::auto_exposure(black ? beauty : std::span<const glm::vec3>(surfaces));
 }
 
-void check_bits(const visibility::MethodDescription& description, const visibility::Light& light) {
+void check_bits(const visibility::MethodDescription& description, std::span<const visibility::Light> lights) {
+  const visibility::Light& light = lights.front();
   if (description.output != visibility::Output::mask) {
     throw UsageError("--bits: method {} gives V alone, not one bit a light sample; see `penumbra methods`",
                      description.name);
+  }
+  if (const std::size_t pieces = whole_lights(lights).front().count; pieces > 1) {
+    throw UsageError("--bits: light \"{}\" is cut in {} pieces, and the file is of one; choose another with --light",
+                     light.name, pieces);
   }
   if (light.kind == visibility::LightKind::sphere) {
     throw UsageError(
@@ -139,6 +149,7 @@ std::string device_of(const std::string& method, const visibility::MethodOptions
 
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run) {
   const MethodLabel& label = lights.label(0);
+  const std::vector<WholeLight> wholes = whole_lights(lights.lights);
   compare::Stats stats;
   stats.scene = session.scene.name;
   stats.width = session.width;
@@ -147,10 +158,10 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.triangles = session.floats.triangles.size();
   stats.method = label.description.name;
   stats.options = label.options;
-  stats.light_samples = samples_of(lights, 0);
-  stats.sample_pattern = pattern_of(lights, 0).value_or("");
-  for (std::size_t light = 0; light < lights.lights.size(); ++light) {
-    stats.lights.push_back(light_stats(lights, light));
+  stats.light_samples = samples_of(lights, wholes.front());
+  stats.sample_pattern = pattern_of(lights, wholes.front()).value_or("");
+  for (std::size_t light = 0; light < wholes.size(); ++light) {
+    stats.lights.push_back(light_stats(lights, wholes[light]));
     if (light >= run.times.lights.size()) continue;  // it failed
     stats.lights.back().light = run.times.lights[light].light;
     stats.lights.back().evaluate = run.times.lights[light].evaluate;

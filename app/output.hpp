@@ -3,6 +3,7 @@
 #include "app/process/interrupt.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
+#include "app/whole_lights.hpp"
 #include "compare/stats.hpp"
 #include "compare/surface.hpp"
 #include "visibility/masks/bits_file.hpp"
@@ -19,14 +20,14 @@
 
 namespace penumbra::app {
 
-/// The linear beauty of a run, of each light alone, tile by tile and light by light as results come, so that no light's
-/// masks need be kept.
+/// The linear beauty of a run, of each whole light alone, tile by tile and light by light as results come, so that no
+/// light's masks need be kept.
 class BeautyAccumulator {
  public:
   /// Both must outlive it.
   BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights);
   void add(const TileResult& result);
-  /// For each light each pixel; empty for a light of which nothing came.
+  /// For each of whole_lights each pixel; empty for a light of which nothing came.
   [[nodiscard]] const std::vector<std::vector<glm::vec3>>& parts() const { return parts_; }
   /// All lights together, added in their order: what does not depend on the order in which they were done.
   [[nodiscard]] std::vector<glm::vec3> sum() const;
@@ -34,6 +35,7 @@ class BeautyAccumulator {
  private:
   const Session& session_;
   std::span<const visibility::Light> lights_;
+  std::vector<std::size_t> whole_of_;  // each of lights_
   compare::SurfaceLooks looks_;
   std::vector<std::vector<glm::vec3>> parts_;
 };
@@ -43,8 +45,8 @@ class BeautyAccumulator {
 float auto_exposure(const Session& session, std::span<const glm::vec3> beauty,
                     std::span<const std::uint8_t> lamps = {});
 
-/// Throws UsageError if `--bits` cannot be had of this method and light.
-void check_bits(const visibility::MethodDescription& description, const visibility::Light& light);
+/// Throws UsageError if `--bits` cannot be had of this method and the first of these lights.
+void check_bits(const visibility::MethodDescription& description, std::span<const visibility::Light> lights);
 
 /// `--bits` as tiles come. The file is opened with the first of them: until then an interrupt need not wait.
 class BitsOutput {
@@ -75,7 +77,7 @@ struct MethodLabel {
 std::string device_of(const std::string& method, const visibility::MethodOptions& options,
                       const visibility::Light& light, DeviceSource& devices);
 
-/// Lights with what each was done with: one label a light, or one for all of them.
+/// Lights, as in Session::lights, with what each was done with: one label a light, or one for all of them.
 struct LabelledLights {
   std::span<const visibility::Light> lights;
   std::span<const MethodLabel> labels;
@@ -83,13 +85,14 @@ struct LabelledLights {
   [[nodiscard]] const MethodLabel& label(std::size_t light) const { return labels[labels.size() == 1 ? 0 : light]; }
 };
 
-/// Of one of them: 0 if V is an area, exactly or about.
-std::uint32_t samples_of(const LabelledLights& all, std::size_t light);
+/// Of one of whole_lights, all pieces together: 0 if V is an area, exactly or about.
+std::uint32_t samples_of(const LabelledLights& all, const WholeLight& whole);
 /// Nothing if V is an area.
-std::optional<std::string> pattern_of(const LabelledLights& all, std::size_t light);
+std::optional<std::string> pattern_of(const LabelledLights& all, const WholeLight& whole);
 /// What stats.json says of it, but for its seconds.
-compare::LightStats light_stats(const LabelledLights& all, std::size_t light);
+compare::LightStats light_stats(const LabelledLights& all, const WholeLight& whole);
 
+/// `run`: of whole lights.
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run);
 
 /// One line a method for people: its name, the picture's size, triangles, light samples, seconds of `shadow`, device.

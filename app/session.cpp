@@ -11,9 +11,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 namespace penumbra::app {
 namespace {
@@ -46,11 +48,11 @@ std::vector<std::size_t> wanted_lights(const scenes::Scene& scene, const std::ve
 }
 
 /// Refuses an image that this machine has no memory for, before minutes of work end in a killed process.
-void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights) {
-  // A pixel: view sample 48, scene colours, normals, depths and ids in the EXR 120, beauty 12 bytes; a light: V, class
-  // and channel 9, beauty and channels 24.
-  require_memory(width * height * (180 + 33 * lights), fmt::format("an image of {}x{} pixels", width, height),
-                 "choose a smaller --size");
+void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights, std::uint64_t pieces) {
+  // A pixel: view sample 48, scene colours, normals, depths and ids in the EXR 120, beauty 12 bytes; a light: channel
+  // of V 4, beauty and channels 24; each piece of it: V and class 5.
+  require_memory(width * height * (180 + 28 * lights + 5 * pieces),
+                 fmt::format("an image of {}x{} pixels", width, height), "choose a smaller --size");
 }
 
 /// Do the two scenes, with the objects' flags, give the same scene floats?
@@ -120,7 +122,12 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   session_.camera_index = camera.empty() ? 0 : find_named(session_.scene.cameras, camera, "--camera", scene_name);
   const scenes::Camera& seen_by = session_.scene.cameras[session_.camera_index];
   std::tie(session_.width, session_.height) = size_.value_or(scenes::picture_size(session_.scene, seen_by));
-  require_image_memory(session_.width, session_.height, wanted.size());
+  std::size_t pieces = 0;
+  for (const std::size_t light : wanted) {
+    const auto* cut = std::get_if<scenes::Pieces>(&session_.scene.lights[light].shape);
+    pieces += cut == nullptr ? 1 : cut->pieces.size();
+  }
+  require_image_memory(session_.width, session_.height, wanted.size(), pieces);
 
   if (changed) {
     session_.floats = visibility::make_scene_floats(session_.scene);
@@ -130,9 +137,10 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   const auto casters = casters_of(session_.lights);
   session_.lights.clear();
   for (const std::size_t light : wanted) {
-    session_.lights.push_back(visibility::make_light(session_.scene, static_cast<std::uint32_t>(light),
-                                                     session_.floats.origin, request_,
-                                                     light == wanted.front() ? &session_.warnings : nullptr));
+    std::ranges::move(
+        visibility::make_light_pieces(session_.scene, static_cast<std::uint32_t>(light), session_.floats.origin,
+                                      request_, light == wanted.front() ? &session_.warnings : nullptr),
+        std::back_inserter(session_.lights));
   }
   if (changed || casters != casters_of(session_.lights)) {
     link_casters(session_);

@@ -26,7 +26,8 @@ struct Session {
   std::size_t camera_index = 0;                 ///< the chosen one of scene.cameras
   visibility::PinholeCamera camera;
   visibility::ViewSamples samples;
-  std::vector<visibility::Light> lights;                     ///< those asked for, in that order, or all of the scene's
+  std::vector<visibility::Light> lights;  ///< those asked for, in that order, or all of the scene's; pieces of one
+                                          ///< (app/whole_lights.hpp) one after the other
   std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
   bool shading_normals = false;                              ///< of beauty: vertices' normals, where there are any
   std::uint64_t mesh_version = 0;                            ///< another number, another scene to prepare methods for

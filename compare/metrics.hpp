@@ -91,6 +91,11 @@ struct PairVerdicts {
   std::uint64_t zero_predicate = 0;  ///< `pairsZeroPredicate`
 
   bool operator==(const PairVerdicts&) const = default;
+  PairVerdicts& operator+=(const PairVerdicts& other) {
+    decided += other.decided, zero_predicate += other.zero_predicate;
+    method_right += other.method_right, reference_right += other.reference_right;
+    return *this;
+  }
 };
 
 /// The part of the differing pairs that was decided; 1 where none differ.

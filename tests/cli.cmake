@@ -5,6 +5,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/bad_input.cpp
   cli/compare.cpp
   cli/covering_array.cpp
+  cli/emitters.cpp
   cli/error_budget.cpp
   cli/explain.cpp
   cli/exact_by_default.cpp

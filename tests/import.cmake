@@ -3,6 +3,7 @@ penumbra_test(import FULL ImportCorpus.*
   SOURCES
   agreement/mesh/import_corpus.cpp
   property/polygon_property.cpp
+  unit/import/emitter.cpp
   unit/import/flat_light.cpp
   unit/import/gltf_animation.cpp
   unit/import/gltf_lamps.cpp

@@ -12,6 +12,7 @@
 #include "app/process/failure.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
+#include "app/whole_lights.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -25,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -70,13 +72,14 @@ class Comparison {
       spdlog::warn("{} has no animation: every frame shows the same", session_.scene.name);
     for (const std::string& warning : session_.warnings) spdlog::warn("{}", warning);
     for (const Light& light : session_.lights) check_light(reference_.description, light);
-    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights.front());
+    if (wants_bits(reference_)) check_bits(reference_.description, session_.lights);
     entries_ = choose_entries(options, session_, [this](std::string text) { warn(std::move(text)); });
     reference_lights_ = same_samples_ ? session_.lights : lights_of_reference();
     truths_ = choose_pixels(session_, options.sample_pixels);
+    const std::vector<std::string> names = whole_names(session_.lights);
     for (std::size_t light = 0; light < truths_.size(); ++light) {
       if (!truths_[light].judged.empty()) continue;
-      const std::string of_light = truths_.size() > 1 ? fmt::format("light {}: ", session_.lights[light].name) : "";
+      const std::string of_light = truths_.size() > 1 ? fmt::format("light {}: ", names[light]) : "";
       warn(of_light +
            "no pixel is judged (none sees the whole light above its tangent plane, or --sample-pixels chose none): "
            "there is no error to report");
@@ -115,9 +118,11 @@ class Comparison {
 
   [[nodiscard]] std::vector<Light> lights_of_reference() const {
     std::vector<Light> lights;
-    for (const Light& light : session_.lights) {
-      lights.push_back(visibility::make_light(session_.scene, static_cast<std::uint32_t>(light.index),
-                                              session_.floats.origin, reference_request_));
+    for (const WholeLight& whole : whole_lights(session_.lights)) {
+      const auto index = static_cast<std::uint32_t>(session_.lights[whole.first].index);
+      std::ranges::move(
+          visibility::make_light_pieces(session_.scene, index, session_.floats.origin, reference_request_),
+          std::back_inserter(lights));
     }
     return lights;
   }
@@ -131,9 +136,11 @@ class Comparison {
 
   /// Masks of rays are kept whole, light by light: every method's are held against them.
   [[nodiscard]] TileSink keep_rays() {
-    return [this](const TileResult& tile) {
-      auto& masks = truths_[tile.light].ray_masks;
-      masks.insert(masks.end(), tile.masks.begin(), tile.masks.end());
+    return [this, whole_of = wholes_of_pieces(session_.lights)](const TileResult& tile) {
+      auto& pieces = truths_[whole_of[tile.light]].ray_masks;
+      const std::size_t piece = session_.lights[tile.light].piece;
+      pieces.resize(std::max(pieces.size(), piece + 1));
+      pieces[piece].insert(pieces[piece].end(), tile.masks.begin(), tile.masks.end());
     };
   }
 
@@ -173,13 +180,14 @@ class Comparison {
     PackedMasks masks(session_.lights.size());
     const TileSink keep = keep_rays();
     Finished done;
-    done.run = run_method(
+    MethodRun run = run_method(
         *method, session_, {.lights = session_.lights, .runs = 1, .pixels = wanted_},
         [&](const TileResult& tile) {
           keep(tile);
           masks.add(tile);
         },
         progress_);
+    done.run = of_whole_lights(std::move(run), session_);
     progress_.clear();
     compare::SampleCost cost;
     cost.stats = stats_of(rays, session_.lights, done.run);
@@ -257,7 +265,7 @@ class Comparison {
     }
     PackedMasks masks(lights.size());
     Finished done;
-    done.run = run_method(
+    MethodRun run = run_method(
         *method, session_, plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
@@ -266,6 +274,7 @@ class Comparison {
           sink(tile);
         },
         progress_);
+    done.run = of_whole_lights(std::move(run), session_);
     done.beauty = beauty.sum();
     done.masks = masks.finish();
     devices_.check_validation();
@@ -324,12 +333,18 @@ class Comparison {
 
   /// The errors' scale is known: pictures of what repairs change have the same.
   void explain_errors() {
+    const std::vector<WholeLight> wholes = whole_lights(session_.lights);
+    for (const WholeLight& whole : wholes) {
+      if (whole.count == 1) continue;
+      warn(fmt::format("no error budget under light \"{}\": it is cut in {} pieces", session_.lights[whole.first].name,
+                       whole.count));
+    }
     for (std::size_t i = 0; i < entries_.size() && !hang_; ++i) {
       if (entries_[i].description.repairs == nullptr || visibility_[i].empty()) continue;
       try {
         for (std::size_t light = 0; light < truths_.size(); ++light) {
-          if (truths_[light].judged.empty()) continue;
-          BudgetAnswer answer = measure_error_budget({session_, session_.lights[light], truths_[light],
+          if (truths_[light].judged.empty() || wholes[light].count > 1) continue;
+          BudgetAnswer answer = measure_error_budget({session_, session_.lights[wholes[light].first], truths_[light],
                                                       reference_request_, entries_[i], visibility_[i][light]},
                                                      report_.error_limit, devices_, progress_);
           report_.metrics.methods[i].lights[light].error_budget = std::move(answer.budget);

@@ -61,7 +61,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
       continue;
     }
     for (const visibility::Light& light : session.lights) check_light(entry.description, light);
-    if (wants_bits(entry, options)) check_bits(entry.description, session.lights.front());
+    if (wants_bits(entry, options)) check_bits(entry.description, session.lights);
     entries.push_back(std::move(entry));
   }
   if (entries.empty()) {

@@ -12,7 +12,8 @@ namespace penumbra::app {
 
 std::vector<LightTruth> choose_pixels(const Session& session, const std::string& sample_pixels) {
   std::vector<LightTruth> truths;
-  for (const auto& classes : session.classes) {
+  for (const WholeLight& whole : whole_lights(session.lights)) {
+    const std::vector<visibility::PixelClass> classes = whole_classes(whole, session.classes);
     const auto chosen = [&](visibility::PixelClass wanted) {
       return app::sample_pixels(compare::pixels_of_class(classes, wanted), sample_pixels, session.width,
                                 session.height);
@@ -36,10 +37,13 @@ std::vector<std::uint32_t> all_pixels(std::span<const LightTruth> truths) {
 }
 
 LightJudge::LightJudge(const Session& session, std::span<const LightTruth> truths, std::size_t most_decided)
-    : session_(session), truths_(truths), masks_(truths.size()) {
-  for (std::size_t light = 0; light < truths.size(); ++light) {
-    if (truths[light].ray_masks.empty()) continue;
-    masks_[light].emplace(session, MaskQuestion{light, truths[light].ray_masks, most_decided});
+    : session_(session), truths_(truths), wholes_(whole_lights(session.lights)), masks_(session.lights.size()) {
+  for (std::size_t whole = 0; whole < wholes_.size(); ++whole) {
+    const auto& [first, count] = wholes_[whole];
+    for (std::size_t piece = 0; piece < truths[whole].ray_masks.size(); ++piece) {
+      masks_[first + piece].emplace(
+          session, MaskQuestion{first + piece, truths[whole].ray_masks[piece], std::max(most_decided / count, 1UL)});
+    }
   }
 }
 
@@ -54,15 +58,19 @@ std::vector<compare::LightResult> LightJudge::judge(const MethodRun& run, Progre
   for (std::size_t light = 0; light < truths_.size(); ++light) {
     const LightTruth& truth = truths_[light];
     compare::LightResult& result = results.emplace_back();
-    result.name = session_.lights[light].name;
+    const auto& [first, count] = wholes_[light];
+    result.name = session_.lights[first].name;
     result.judged_pixels = truth.judged.size();
     result.horizon_pixels = truth.horizon.size();
     result.error = compare::visibility_error(run.visibility[light], truth.reference, truth.judged);
     result.horizon_error = compare::visibility_error(run.visibility[light], truth.reference, truth.horizon);
-    if (!has_masks_ || !masks_[light]) continue;
+    if (!has_masks_ || truth.ray_masks.empty()) continue;
     result.same_samples =
-        compare::SameSamples{compare::visibility_error(run.visibility[light], truth.rays, truth.judged),
-                             masks_[light]->counts(), masks_[light]->decide(progress)};
+        compare::SameSamples{compare::visibility_error(run.visibility[light], truth.rays, truth.judged), {}, {}};
+    for (std::size_t piece = first; piece < first + count; ++piece) {
+      result.same_samples->pairs += masks_[piece]->counts();
+      result.same_samples->verdicts += masks_[piece]->decide(progress);
+    }
   }
   return results;
 }
@@ -80,7 +88,8 @@ void LightJudge::fill(compare::MethodResult& result, const MethodRun& run, bool 
   result.stats.counters["exactDecided"] = result.verdicts->decided;
   result.stats.counters["methodRight"] = result.verdicts->method_right;
   result.stats.counters["referenceRight"] = result.verdicts->reference_right;
-  if (!masks_.front()->kept_all()) {
+  const auto of_first = std::span(masks_).first(wholes_.front().count);
+  if (!std::ranges::all_of(of_first, [](const auto& piece) { return piece->kept_all(); })) {
     result.stats.warnings.push_back(fmt::format("{}: {} pairs differ; {} of them, evenly spaced, were decided exactly",
                                                 result.entry, result.pairs->differing, result.verdicts->decided));
   }

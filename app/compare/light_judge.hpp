@@ -4,6 +4,7 @@
 #include "app/process/progress.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
+#include "app/whole_lights.hpp"
 #include "compare/stats.hpp"
 
 #include <cstdint>
@@ -14,15 +15,15 @@
 
 namespace penumbra::app {
 
-/// What is held against the methods under one light.
+/// What is held against the methods under one of whole_lights.
 struct LightTruth {
   std::vector<std::uint32_t> judged, horizon;  ///< pixels that errors are taken over
   std::vector<float> reference;                ///< V of each pixel
   std::vector<float> rays;                     ///< V of each pixel by rays on the methods' light samples; empty: none
-  std::vector<std::uint32_t> ray_masks;        ///< of the same rays
+  std::vector<std::vector<std::uint32_t>> ray_masks;  ///< of the same rays, of each piece; empty: none
 };
 
-/// For each of the session's lights the pixels that --sample-pixels chooses, and nothing else yet.
+/// For each of the session's whole lights the pixels that --sample-pixels chooses, and nothing else yet.
 std::vector<LightTruth> choose_pixels(const Session& session, const std::string& sample_pixels);
 
 /// All pixels of all lights, ascending.
@@ -35,7 +36,7 @@ class LightJudge {
   LightJudge(const Session& session, std::span<const LightTruth> truths, std::size_t most_decided);
 
   void add(const TileResult& tile);
-  /// Once all tiles came.
+  /// Once all tiles came. `run`: of whole lights.
   std::vector<compare::LightResult> judge(const MethodRun& run, Progress& progress);
   /// Errors and verdicts as metrics.json has them: light by light, of all lights, and of the first light again.
   void fill(compare::MethodResult& result, const MethodRun& run, bool pairs_of_reference, Progress& progress);
@@ -43,7 +44,8 @@ class LightJudge {
  private:
   const Session& session_;
   std::span<const LightTruth> truths_;
-  std::vector<std::optional<MaskComparison>> masks_;  ///< of each light
+  std::vector<WholeLight> wholes_;                    ///< whose truths_ are
+  std::vector<std::optional<MaskComparison>> masks_;  ///< of each of the session's lights
   bool has_masks_ = false;                            ///< the method's: known once its tiles came
 };
 

@@ -1,5 +1,6 @@
 #include "app/compare/report_views.hpp"
 
+#include "app/whole_lights.hpp"
 #include "compare/error_picture.hpp"
 #include "compare/report_data.hpp"
 
@@ -31,18 +32,20 @@ std::vector<std::string> PackedMasks::finish() {
 std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
                                                 bool same_samples) {
   std::vector<compare::ReportLight> lights;
-  for (std::size_t i = 0; i < session.lights.size(); ++i) {
-    const visibility::Light& light = session.lights[i];
+  for (const WholeLight& whole : whole_lights(session.lights)) {
+    const visibility::Light& light = session.lights[whole.first];
     compare::ReportLight& shown = lights.emplace_back();
     shown.name = light.name;
-    shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(session.classes[i])));
+    const std::vector<visibility::PixelClass> classes = whole_classes(whole, session.classes);
+    shown.packed_classes = compare::pack_bytes(std::as_bytes(std::span(classes)));
+    if (whole.count > 1) continue;  // many samples of many shapes: no drawing has them
     shown.round = is_round(light.kind);
     if (light.kind == visibility::LightKind::rectangle || light.kind == visibility::LightKind::ellipse) {
       const visibility::LightFrame frame = visibility::light_frame(light);
       shown.aspect = glm::length(frame.u) / glm::length(frame.v);
     }
     shown.samples = light.coordinates;
-    if (!same_samples) shown.reference_samples = reference[i].coordinates;
+    if (!same_samples) shown.reference_samples = reference[whole.first].coordinates;
   }
   return lights;
 }
@@ -55,11 +58,12 @@ compare::ReportEntry report_entry(const Session& session, const visibility::Meth
     entry.beauty = to_srgb(session.width, session.height, seen.beauty, exposure);
     entry.packed_beauty = compare::pack_radiance(session.width, seen.beauty);
   }
+  const std::vector<WholeLight> wholes = whole_lights(session.lights);
   for (std::size_t light = 0; light < seen.run.visibility.size(); ++light) {
     compare::ReportLightView& view = entry.lights.emplace_back();
     view.visibility = compare::visibility_picture(session.samples, seen.run.visibility[light]);
     view.packed_visibility = compare::pack_floats(seen.run.visibility[light]);
-    view.packed_masks = std::move(seen.masks[light]);
+    if (wholes[light].count == 1) view.packed_masks = std::move(seen.masks[wholes[light].first]);
   }
   return entry;
 }

@@ -36,15 +36,15 @@ class PackedMasks {
   std::vector<One> lights_;
 };
 
-/// What the report's read-out needs to know of each light. `reference`: the lights as the reference sampled them.
+/// What the report's read-out needs to know of each whole light. `reference`: the lights as the reference sampled them.
 std::vector<compare::ReportLight> report_lights(const Session& session, std::span<const visibility::Light> reference,
                                                 bool same_samples);
 
-/// Pictures and packed numbers of a run, without errors.
+/// Pictures and packed numbers of a run of whole lights, without errors.
 struct SeenByRun {
   const MethodRun& run;
   std::span<const glm::vec3> beauty;  ///< empty: none is shown
-  std::vector<std::string> masks;     ///< PackedMasks::finish()
+  std::vector<std::string> masks;     ///< PackedMasks::finish(), of each of the session's lights
 };
 compare::ReportEntry report_entry(const Session& session, const visibility::MethodDescription& description,
                                   float exposure, SeenByRun seen);

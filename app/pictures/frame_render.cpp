@@ -5,6 +5,7 @@
 #include "app/pictures/picture_file.hpp"
 #include "app/process/process.hpp"
 #include "app/process/stopwatch.hpp"
+#include "app/whole_lights.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/exr.hpp"
@@ -37,17 +38,12 @@ std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std
   return sum;
 }
 
-std::vector<std::string> names_of(const std::vector<visibility::Light>& lights) {
-  std::vector<std::string> names;
-  for (const visibility::Light& light : lights) names.push_back(light.name);
-  return names;
-}
-
 /// Is any pixel on a side that the light shines to?
 bool lights_anything(std::span<const visibility::PixelClass> classes) {
   using visibility::PixelClass;
   return std::ranges::any_of(classes, [](PixelClass one) {
-    return one == PixelClass::judged || one == PixelClass::horizon || one == PixelClass::unshadowed;
+    return one == PixelClass::judged || one == PixelClass::horizon || one == PixelClass::unshadowed ||
+           one == PixelClass::other_body;
   });
 }
 
@@ -117,12 +113,13 @@ void FrameRenderer::say_warnings() {
   if (cameras.size() > 1 && options_.camera.empty() && said_.empty())
     spdlog::info("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size());
   std::vector<std::string> warnings = lit().warnings;
-  for (std::size_t light = 0; light < lit().lights.size(); ++light) {
-    const bool shines = lit().lights[light].radiance != glm::dvec3(0);
-    if (!shines || lights_anything(lit().classes[light])) continue;
+  for (const WholeLight& whole : whole_lights(lit().lights)) {
+    const visibility::Light& light = lit().lights[whole.first];
+    const auto pieces = std::span(lit().classes).subspan(whole.first, whole.count);
+    const bool shines = light.radiance != glm::dvec3(0);
+    if (!shines || std::ranges::any_of(pieces, [](const auto& piece) { return lights_anything(piece); })) continue;
     warnings.push_back(fmt::format("no visible point is before light \"{}\": nothing in the picture is lit by it{}",
-                                   lit().lights[light].name,
-                                   lit().lights[light].two_sided ? "" : " (does it shine the other way?)"));
+                                   light.name, light.two_sided ? "" : " (does it shine the other way?)"));
   }
   for (const std::string& warning : warnings) {
     if (std::ranges::find(said_, warning) != said_.end()) continue;
@@ -140,7 +137,7 @@ void FrameRenderer::choose_methods(const std::vector<visibility::Light>& lights)
     const LightMethod& one = chosen_[light];
     labels_.push_back(
         {one.description, one.options, device_of(one.description.name, one.options, lights[light], devices_)});
-    if (one.note.empty()) continue;
+    if (one.note.empty() || std::ranges::find(notes_, one.note) != notes_.end()) continue;  // pieces say the same
     notes_.push_back(one.note);
     if (std::ranges::find(said_, one.note) != said_.end()) continue;
     spdlog::info("{}", one.note);
@@ -173,7 +170,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   choose_methods(lit().lights);
   load_seconds_ += watch.seconds();
   if (!bits.empty()) {
-    check_bits(chosen_.front().description, lit().lights.front());
+    check_bits(chosen_.front().description, lit().lights);
     bits_.emplace(bits, lit(), lit().lights.front());
   }
   watch.restart();
@@ -212,7 +209,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     add_run(all, std::move(run));
   }
   view_seconds_ += all.times.view;
-  return all;
+  return of_whole_lights(std::move(all), lit());
 }
 
 /// Notes in which of the picture's pixels the surfaces that are looked at are bodies of lights.
@@ -302,7 +299,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     MethodRun before = std::exchange(run_, {});
     run_methods({});
     if (!mean_) mean_.emplace(lit().width / side, lit().height / side);
-    const std::vector<std::string> names = names_of(lit().lights);
+    const std::vector<std::string> names = whole_names(lit().lights);
     const Stopwatch watch;
     mean_->add(alpha_, names, run_.visibility, beauty_, side);
     beauty_seconds_ += watch.seconds();
@@ -324,7 +321,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
   // What is written of lights is about those of the frame's own time.
   choose_methods(session().lights);
   run_.times.lights.clear();
-  const std::vector<std::string> own = names_of(session().lights);
+  const std::vector<std::string> own = whole_names(session().lights);
   for (const std::string& light : own) run_.times.lights.push_back(times[light]);
   for (const std::string& light : mean_->lights()) {
     if (std::ranges::find(own, light) != own.end()) continue;
@@ -337,7 +334,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
 compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure) {
   const Stopwatch write;
   const LabelledLights lights{session().lights, labels_};
-  const std::vector<std::string> own = names_of(session().lights);
+  const std::vector<std::string> own = whole_names(session().lights);
   const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty(own) : std::move(beauty_);
   const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility(own) : std::move(run_.visibility);
   const std::vector<float> alpha = mean_ ? mean_->alpha() : std::move(alpha_);

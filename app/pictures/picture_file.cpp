@@ -45,13 +45,16 @@ std::string text_of(const nlohmann::ordered_json& json) {
 /// emits.
 std::string lights_text(const Session& session, const LabelledLights& all, std::span<const std::string> layers) {
   auto rows = nlohmann::ordered_json::array();
-  for (std::size_t light = 0; light < all.lights.size(); ++light) {
-    rows.push_back(compare::to_json(light_stats(all, light)));
+  for (const WholeLight& whole : whole_lights(all.lights)) {
+    const visibility::Light& light = all.lights[whole.first];
+    const std::string& layer = layers[rows.size()];
+    rows.push_back(compare::to_json(light_stats(all, whole)));
     auto& row = rows.back();
     row.erase("seconds");
-    row["layer"] = layers[light];
-    row["kind"] = visibility::name_of(all.lights[light].kind);
-    const glm::dvec3& radiance = session.scene.lights[static_cast<std::size_t>(all.lights[light].index)].radiance;
+    row["layer"] = layer;
+    row["kind"] = whole.count == 1 ? visibility::name_of(light.kind) : "pieces";
+    if (whole.count > 1) row["pieces"] = whole.count;
+    const glm::dvec3& radiance = session.scene.lights[static_cast<std::size_t>(light.index)].radiance;
     row["radiance"] = {radiance.r, radiance.g, radiance.b};
   }
   return text_of(rows);
@@ -133,8 +136,7 @@ CameraMatrices matrices_of(const Session& session) {
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights) {
   std::set<std::string> taken(kOwnLayers.begin(), kOwnLayers.end());
   std::vector<std::string> names;
-  for (const visibility::Light& light : lights) {
-    std::string plain = light.name;
+  for (std::string plain : whole_names(lights)) {
     std::ranges::replace_if(
         plain, [](char c) { return c == '.' || c == '/'; }, '_');
     std::string name = plain;
@@ -195,8 +197,8 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
                       {"penumbra.options", options_text(label.options)},
                       {"penumbra.output", visibility::name_of(label.description.output)},
                       {"penumbra.beauty", beauty_text(label.description.output)},
-                      {"penumbra.lightSamples", fmt::format("{}", samples_of(all, 0))},
-                      {"penumbra.samplePattern", pattern_of(all, 0).value_or("null")},
+                      {"penumbra.lightSamples", fmt::format("{}", samples_of(all, whole_lights(all.lights).front()))},
+                      {"penumbra.samplePattern", pattern_of(all, whole_lights(all.lights).front()).value_or("null")},
                       {"penumbra.lights", lights_text(session, all, layers)},
                       {"penumbra.objects", text_of(surfaces.objects)},
                       {"penumbra.materials", text_of(surfaces.materials)},

@@ -13,11 +13,11 @@
 
 namespace penumbra::app {
 
-/// The names of lights' layers: the light's own, with dots and slashes, which make layers in layers, as "_". Where this
-/// makes two equal, or one that the picture has for something else, the later one gets "_2", "_3" and so on.
+/// The names of whole lights' layers: the light's own, with dots and slashes, which make layers in layers, as "_".
+/// Where this makes two equal, or one that the picture has for something else, the later one gets "_2", "_3" and so on.
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
-/// What goes into OUT.exr. V and beauty of each light, each pixel; beauty is empty where none came.
+/// What goes into OUT.exr. V and beauty of each whole light, each pixel; beauty is empty where none came.
 struct PictureContent {
   const Session& session;
   LabelledLights lights;

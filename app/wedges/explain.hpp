@@ -30,7 +30,7 @@ struct Explanation {
   visibility::PixelClass kind = visibility::PixelClass::background;
   std::string object;  ///< that carries p
   volumes::LitPoint sample;
-  double given = 1;  ///< V where nothing is to be summed: of background, emitters, what receives no shadow; behind
+  double given = 1;  ///< V where nothing is to be summed: of background, its body, what receives no shadow; behind
   std::vector<ExplainedWedge> wedges;
   std::vector<std::uint32_t> outside;  ///< edges that appear on the light, yet p is in none of their wedges: a flaw
   std::optional<volumes::LayerSum> center, receiver;  ///< nothing where V is `given`

@@ -14,29 +14,6 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Corners by number of distinct position: exporters split vertices where normals or texture coordinates differ.
-struct Welded {
-  std::vector<glm::dvec3> points;
-  std::vector<mesh::Triangle> triangles;  ///< those with three different corners
-};
-
-Welded weld(std::span<const glm::dvec3> positions, std::span<const mesh::Triangle> triangles) {
-  Welded welded;
-  std::map<std::tuple<double, double, double>, std::uint32_t> numbers;
-  const auto number_of = [&](std::uint32_t index) {
-    const glm::dvec3& p = positions[index];
-    const auto next = static_cast<std::uint32_t>(welded.points.size());
-    const auto [entry, is_new] = numbers.try_emplace({p.x, p.y, p.z}, next);
-    if (is_new) welded.points.push_back(p);
-    return entry->second;
-  };
-  for (const mesh::Triangle& t : triangles) {
-    const mesh::Triangle w{number_of(t[0]), number_of(t[1]), number_of(t[2])};
-    if (w[0] != w[1] && w[1] != w[2] && w[2] != w[0]) welded.triangles.push_back(w);
-  }
-  return welded;
-}
-
 /// The edges that have a triangle on one side only, joined into one loop; nothing if they do not form exactly one.
 std::optional<std::vector<std::uint32_t>> outline_of(const Welded& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -96,9 +73,22 @@ bool is_convex(std::span<const glm::dvec3> loop, const glm::dvec3& normal) {
 
 }  // namespace
 
-FlatLight recognise_flat_light(std::span<const glm::dvec3> positions, std::span<const mesh::Triangle> triangles,
-                               double rounding) {
-  const Welded mesh = weld(positions, triangles);
+FlatLight light_of_outline(std::vector<glm::dvec3> corners, const glm::dvec3& normal, double rounding) {
+  corners = true_corners(std::move(corners), rounding);
+  if (!is_convex(corners, normal)) return "its outline is not convex";
+  if (corners.size() == 4) {
+    const glm::dvec3 &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
+    const glm::dvec3 half_u = ((b - a) + (c - d)) / 4.0, half_v = ((d - a) + (c - b)) / 4.0;
+    const bool parallelogram = glm::length(a - b + c - d) <= 4 * rounding;
+    // Each half side is off by at most the rounding, so their product is by at most this.
+    const bool right_angled =
+        std::abs(glm::dot(half_u, half_v)) <= 2 * rounding * (glm::length(half_u) + glm::length(half_v));
+    if (parallelogram && right_angled) return Rectangle{(a + b + c + d) / 4.0, half_u, half_v};
+  }
+  return Polygon{std::move(corners)};
+}
+
+FlatLight recognise_flat_light(const Welded& mesh, double rounding) {
   glm::dvec3 area(0);  // twice the vector area
   double total = 0;
   for (const mesh::Triangle& t : mesh.triangles) {
@@ -125,19 +115,7 @@ FlatLight recognise_flat_light(std::span<const glm::dvec3> positions, std::span<
   if (!loop) return "its triangles do not form one piece with a single outline and without holes";
   std::vector<glm::dvec3> corners;
   for (const std::uint32_t point : *loop) corners.push_back(mesh.points[point]);
-  corners = true_corners(std::move(corners), rounding);
-  if (!is_convex(corners, normal)) return "its outline is not convex";
-
-  if (corners.size() == 4) {
-    const glm::dvec3 &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
-    const glm::dvec3 half_u = ((b - a) + (c - d)) / 4.0, half_v = ((d - a) + (c - b)) / 4.0;
-    const bool parallelogram = glm::length(a - b + c - d) <= 4 * rounding;
-    // Each half side is off by at most the rounding, so their product is by at most this.
-    const bool right_angled =
-        std::abs(glm::dot(half_u, half_v)) <= 2 * rounding * (glm::length(half_u) + glm::length(half_v));
-    if (parallelogram && right_angled) return Rectangle{(a + b + c + d) / 4.0, half_u, half_v};
-  }
-  return Polygon{std::move(corners)};
+  return light_of_outline(std::move(corners), normal, rounding);
 }
 
 }  // namespace penumbra::scenes

@@ -1,7 +1,7 @@
 #include "import/gltf/gltf_import.hpp"
 
 #include "base/error.hpp"
-#include "import/gltf/flat_light.hpp"
+#include "import/gltf/emitter.hpp"
 #include "import/gltf/gltf_animation.hpp"
 #include "import/gltf/gltf_camera.hpp"
 #include "import/gltf/gltf_deform.hpp"
@@ -13,7 +13,6 @@
 #include "import/gltf/gltf_primitive.hpp"
 #include "import/gltf/gltf_surface.hpp"
 #include "import/gltf/punctual_lights.hpp"
-#include "import/gltf/sphere_light.hpp"
 
 #include <tiny_gltf.h>
 
@@ -101,10 +100,6 @@ class GltfImport {
       scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
     }
     complete_looks();
-    for (const std::string& name : faint_) {
-      if (scene_.lights.size() > 1)
-        losses_.mention("shines faintly, and shows that alone: the light of others on it is left out", name);
-    }
     for (const std::string& extension : model_.extensionsRequired) {
       if (!is_understood(extension))
         losses_.refuse("is an extension that the file requires (extensionsRequired) and that is not supported",
@@ -313,27 +308,21 @@ class GltfImport {
       const auto first = static_cast<std::uint32_t>(first_position);
       body.push_back({t[0] - first, t[1] - first, t[2] - first});
     }
-    AreaLight light;
-    const FlatLight shape = recognise_flat_light(positions, body, rounding);
-    if (const auto* why_not = std::get_if<std::string>(&shape)) {
-      const auto sphere = recognise_sphere(positions, body, rounding);
-      if (!sphere) {
-        losses_.refuse(fmt::format("is emissive, but no area light, because {}; it would be plain geometry", *why_not),
-                       name);
-        refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", name, *why_not);
-        return std::nullopt;
-      }
-      light.shape = *sphere;
-    } else if (const auto* rectangle = std::get_if<Rectangle>(&shape)) {
-      light.shape = *rectangle;
-    } else {
-      light.shape = std::get<Polygon>(shape);
+    auto recognised = recognise_emitter(positions, body, look.two_sided, rounding);
+    if (const auto* why_not = std::get_if<std::string>(&recognised)) {
+      losses_.refuse(fmt::format("is emissive, but no area light, because {}; it would be plain geometry", *why_not),
+                     name);
+      refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", name, *why_not);
+      return std::nullopt;
     }
-    light.name = unique_name(light_names_, name);
-    light.radiance = radiance;
-    light.two_sided = look.two_sided && !std::holds_alternative<Sphere>(light.shape);
-    if (std::max({radiance.x, radiance.y, radiance.z}) < 1 && look.color != glm::dvec3(0)) faint_.push_back(name);
-    scene_.lights.push_back(std::move(light));
+    auto& emitter = std::get<Emitter>(recognised);
+    if (emitter.hides_itself)
+      losses_.mention("is an emitter with parts that stand in one another's light; a light's own mesh hides none of it",
+                      name);
+    scene_.lights.push_back({.name = unique_name(light_names_, name),
+                             .shape = std::move(emitter.shape),
+                             .radiance = radiance,
+                             .two_sided = emitter.two_sided});
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
   }
 
@@ -381,7 +370,6 @@ class GltfImport {
   SurfaceReader surfaces_;
   std::set<std::string> object_names_, camera_names_, light_names_;
   std::string refused_lights_;
-  std::vector<std::string> faint_;  // emitters whose base colour would show beside their own light
   SkippedPrimitives skipped_;
   ObjectFlags flags_;  // of the mesh at hand
   std::uint64_t emissive_ = 0;

@@ -11,7 +11,7 @@
 namespace penumbra::scenes {
 namespace {
 
-constexpr double kNearest = 0.9;  // of the radius: a plane of a triangle from the centre
+constexpr double kNearest = 0.98;  // of the radius: a plane of a triangle from the centre
 
 /// The centre that fits |p − c|² = r² best for all points: least squares of 2 c · p + (r² − |c|²) = |p|², which is
 /// linear. Points are taken relative to their mean and scaled to 1, so that nothing cancels.
@@ -37,8 +37,8 @@ std::optional<glm::dvec3> center_of(std::span<const glm::dvec3> points) {
 
 }  // namespace
 
-std::optional<Sphere> recognise_sphere(std::span<const glm::dvec3> positions, std::span<const mesh::Triangle> triangles,
-                                       double rounding) {
+std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding) {
+  const std::vector<glm::dvec3>& positions = mesh.points;
   const auto center = center_of(positions);
   if (!center) return std::nullopt;
   double least = glm::distance(positions.front(), *center), most = least;
@@ -49,7 +49,7 @@ std::optional<Sphere> recognise_sphere(std::span<const glm::dvec3> positions, st
   // Corners are off by the rounding, so is the centre that they give, and who computed them had single precision, too.
   if (!(least > 0) || most - least > 8 * rounding) return std::nullopt;
   double solid_angle = 0, area = 0;
-  for (const mesh::Triangle& t : triangles) {
+  for (const mesh::Triangle& t : mesh.triangles) {
     const glm::dvec3 a = positions[t[0]] - *center, b = positions[t[1]] - *center, c = positions[t[2]] - *center;
     const glm::dvec3 normal = glm::cross(b - a, c - a);
     const double twice = glm::length(normal);
@@ -62,7 +62,7 @@ std::optional<Sphere> recognise_sphere(std::span<const glm::dvec3> positions, st
                                   x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
   }
   // Once around, to the rounding of a sum of that many angles.
-  if (std::abs(solid_angle - 4 * std::numbers::pi) > 1e-9 * static_cast<double>(triangles.size()) + 1e-6)
+  if (std::abs(solid_angle - 4 * std::numbers::pi) > 1e-9 * static_cast<double>(mesh.triangles.size()) + 1e-6)
     return std::nullopt;
   return Sphere{*center, std::sqrt(area / (4 * std::numbers::pi)), {}};
 }

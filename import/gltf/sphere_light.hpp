@@ -1,20 +1,18 @@
 #pragma once
 
-#include "mesh/triangle_soup.hpp"
+#include "import/gltf/welded.hpp"
 #include "scenes/scene.hpp"
 
-#include <glm/vec3.hpp>
-
 #include <optional>
-#include <span>
 
 namespace penumbra::scenes {
 
-/// Recognises the sphere that the given triangles approximate: their corners lie on it (`rounding` is how far each may
+/// Recognises the sphere that the mesh approximates: its corners lie on it (`rounding` is how far each may
 /// be from where its author meant it to be), they close around its centre once, facing outward, and none comes nearer
-/// to the centre than 0.9 of its radius (an icosphere of 80 faces: 0.92; a cube, whose corners lie on a sphere too:
-/// 0.58). What comes back has the triangles' surface area, so that it emits the same power: 4 π r² = Σ areas.
-std::optional<Sphere> recognise_sphere(std::span<const glm::dvec3> positions, std::span<const mesh::Triangle> triangles,
-                                       double rounding);
+/// to the centre than 0.98 of its radius. Such a polyhedron and the sphere light surfaces alike to 0.25 % (measured for
+/// an icosphere of 320 faces, whose nearest is 0.982, and a UV sphere of 32 × 16, 0.990; unshadowed, facing it
+/// from 1.5, 3 and 10 radii); one of 80 faces (0.934) would be off by up to 1.4 %, 16 × 8 (0.963) by 0.8 %. What comes
+/// back has the triangles' surface area, so that it emits the same power: 4 π r² = Σ areas.
+std::optional<Sphere> recognise_sphere(const Welded& mesh, double rounding);
 
 }  // namespace penumbra::scenes

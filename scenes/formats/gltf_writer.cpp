@@ -5,6 +5,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "mesh/shapes/shapes.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -176,7 +177,45 @@ std::vector<glm::dvec3> outline(const AreaLight& light) {
   return points;
 }
 
+/// All pieces in one mesh, spheres with flat sides and their area.
+void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, Notes& notes) {
+  constexpr std::uint32_t kSubdivisions = 3;
+  std::vector<glm::vec3> positions;
+  std::vector<std::uint32_t> indices;
+  bool round = false;
+  for (const Pieces::Piece& piece : shape.pieces) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    if (const auto* sphere = std::get_if<Sphere>(&piece)) {
+      round = true;
+      const mesh::TriangleSoup unit = mesh::make_icosphere(glm::dvec3(0), 1, kSubdivisions);
+      double area = 0;
+      for (const auto& [a, b, c] : unit.triangles) {
+        const glm::dvec3& from = unit.positions[a];
+        area += glm::length(glm::cross(unit.positions[b] - from, unit.positions[c] - from)) / 2;
+      }
+      const double radius = sphere->radius * std::sqrt(4 * std::numbers::pi / area);
+      const mesh::TriangleSoup ball = mesh::make_icosphere(sphere->center, radius, kSubdivisions);
+      positions.insert(positions.end(), ball.positions.begin(), ball.positions.end());
+      for (const mesh::Triangle& t : ball.triangles)
+        indices.insert(indices.end(), {first + t[0], first + t[1], first + t[2]});
+    } else {
+      AreaLight one;
+      one.shape = std::visit([](const auto& its) { return LightShape(its); }, piece);
+      const std::vector<glm::dvec3> corners = outline(one);
+      positions.insert(positions.end(), corners.begin(), corners.end());
+      for (std::uint32_t i = 1; i + 1 < corners.size(); ++i)
+        indices.insert(indices.end(), {first, first + i, first + i + 1});
+    }
+  }
+  if (round)
+    notes.push_back(fmt::format("light \"{}\": its spheres are written with {} flat sides", light.name,
+                                mesh::icosphere_size(kSubdivisions).triangles));
+  glb.add_mesh(light.name, positions, indices, glb.add_material(light.name, glm::dvec3(0.8), &light),
+               {{"body", tinygltf::Value(false)}});
+}
+
 void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
+  if (const auto* pieces = std::get_if<Pieces>(&light.shape)) return add_pieces(light, *pieces, glb, notes);
   const std::vector<glm::dvec3> points = outline(light);
   if (points.empty()) return glb.add_lamp(light);
   if (std::holds_alternative<Disk>(light.shape) || std::holds_alternative<Ellipse>(light.shape)) {

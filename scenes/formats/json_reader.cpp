@@ -90,6 +90,37 @@ void read_sun_light(const json& value, const Place& place, AreaLight& light, Sce
   }
 }
 
+Polygon read_polygon(const json& corners) {
+  Polygon polygon;
+  for (const json& corner : corners) polygon.vertices.push_back(read_vector(corner));
+  return polygon;
+}
+
+Sphere read_sphere(const json& shape) {
+  Sphere sphere{read_vector(shape["center"]), shape["radius"].get<double>(), {}};
+  if (shape.contains("cone")) {
+    const json& cone = shape["cone"];
+    sphere.cone = Cone{unit(read_vector(cone["direction"])), cone["inner"].get<double>(), cone["outer"].get<double>()};
+  }
+  return sphere;
+}
+
+Pieces read_pieces(const json& list) {
+  Pieces pieces;
+  for (const json& value : list) {
+    if (value.contains("rectangle")) {
+      const json& shape = value["rectangle"];
+      pieces.pieces.emplace_back(
+          Rectangle{read_vector(shape["center"]), read_vector(shape["halfU"]), read_vector(shape["halfV"])});
+    } else if (value.contains("polygon")) {
+      pieces.pieces.emplace_back(read_polygon(value["polygon"]));
+    } else {
+      pieces.pieces.emplace_back(read_sphere(value["sphere"]));
+    }
+  }
+  return pieces;
+}
+
 AreaLight read_light(const json& value, const Place& place, std::string fallback_name, const ReadOptions& options,
                      Scene& scene) {
   AreaLight light;
@@ -116,24 +147,18 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
     light.shape = Disk{read_vector(shape["center"]), unit(read_vector(shape["normal"])), shape["radius"].get<double>()};
     check("disk");
   } else if (value.contains("polygon")) {
-    Polygon polygon;
-    for (const json& vertex : value["polygon"]) polygon.vertices.push_back(read_vector(vertex));
-    light.shape = std::move(polygon);
+    light.shape = read_polygon(value["polygon"]);
     check("polygon");
+  } else if (value.contains("pieces")) {
+    light.shape = read_pieces(value["pieces"]);
+    check("pieces");
   } else if (value.contains("sun")) {
     const json& shape = value["sun"];
     light.shape = Sun{unit(read_vector(shape["direction"])), shape["angle"].get<double>()};
     check("sun");
     read_sun_light(value, place, light, scene);
   } else {
-    const json& shape = value["sphere"];
-    Sphere sphere{read_vector(shape["center"]), shape["radius"].get<double>(), {}};
-    if (shape.contains("cone")) {
-      const json& cone = shape["cone"];
-      sphere.cone =
-          Cone{unit(read_vector(cone["direction"])), cone["inner"].get<double>(), cone["outer"].get<double>()};
-    }
-    light.shape = sphere;
+    light.shape = read_sphere(value["sphere"]);
     check("sphere");
   }
   if (value.contains("irradiance") && !value.contains("sun")) {

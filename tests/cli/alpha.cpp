@@ -219,7 +219,10 @@ TEST_F(AlphaSurfaces, InspectListsWhatTheSceneHas) {
   gltf.at("/meshes").push_back(json(gltf.at("/meshes/1")));
   gltf.at("/meshes/4/primitives/0/attributes/POSITION") =
       gltf.add_floats("VEC3", {-1, 0, 1, 1, 0, 1, -1, 0, -1, 1, 1, -1});  // not flat
-  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+  gltf.at("/meshes").push_back(json(gltf.at("/meshes/1")));
+  gltf.at("/meshes/5/primitives/0/attributes/POSITION") = gltf.add_floats("VEC3", {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0});
+  gltf.at("/nodes").push_back({{"name", "Thread"}, {"mesh", 5}});
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4, 5};
   write("scene.glb", gltf.glb());
   const Outcome outcome = run({"inspect", path("scene.glb")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -227,7 +230,8 @@ TEST_F(AlphaSurfaces, InspectListsWhatTheSceneHas) {
               AllOf(HasSubstr("light     \"Lamp\": a rectangle of 2 × 2"), HasSubstr("its body is \"Lamp\""),
                     HasSubstr("camera    \"Camera\""), HasSubstr("material  \"Leaf\": picture"),
                     HasSubstr("holes where alpha is below 0.5"), HasSubstr("animation from 0 s to 2 s")));
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("'Star' is emissive, but no area light"), HasSubstr("it is not flat")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("light     \"Star\": 2 pieces: 2 polygons"),
+                                 HasSubstr("'Thread' is emissive, but no area light"), HasSubstr("it has no area")));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("pcss +refused +light passes through \"Card\""));
   const json scene = json::parse(run({"inspect", path("scene.glb"), "--json", "-"}).out).at("scene");
   EXPECT_EQ(scene.at("lights").at(0).at("name"), "Lamp");

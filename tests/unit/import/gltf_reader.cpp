@@ -118,7 +118,7 @@ TEST_F(GltfReader, ReadsEveryKindOfAccessor) {
   EXPECT_EQ(corners(read(gltf), 0), (std::vector<glm::dvec3>{{0, -1, 0}, {0, 0, 1}, {1, 0, 0}}));  // never below −1
 }
 
-TEST_F(GltfReader, EmissiveMeshesThatAreNoAreaLightStayGeometry) {
+TEST_F(GltfReader, EmissiveMeshesThatAreNotFlatAreLightsInPieces) {
   Gltf gltf;
   gltf.at("/meshes/0/primitives/0/material") = 1;  // the triangle: a polygon light
   const std::size_t view = gltf.add_view(bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.1f, 0.f, 1.f, 0.f));
@@ -127,17 +127,35 @@ TEST_F(GltfReader, EmissiveMeshesThatAreNoAreaLightStayGeometry) {
       {{"primitives", {{{"attributes", {{"POSITION", 4}}}, {"indices", 3}, {"material", 1}}}}});
   gltf.at("/nodes").push_back({{"name", "Bent"}, {"mesh", 2}});
   gltf.at("/scenes/0/nodes").push_back(3);
+  const Scene scene = read(gltf);
+  EXPECT_EQ(scene.objects.size(), 3u);
+  ASSERT_EQ(scene.lights.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<Polygon>(scene.lights[0].shape));
+  EXPECT_EQ(scene.objects[2].emits, 2u);
+  EXPECT_EQ(scene.lights[2].name, "Bent");
+  EXPECT_EQ(std::get<Pieces>(scene.lights[2].shape).pieces.size(), 2u);
+  EXPECT_TRUE(scene.lights[2].two_sided);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Bent' is an emitter with parts that stand in one another's light")));
+}
+
+TEST_F(GltfReader, EmissiveMeshesThatAreNoAreaLightStayGeometry) {
+  Gltf gltf;
+  const std::size_t view = gltf.add_view(bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 2.f, 0.f, 0.f, 3.f, 0.f, 0.f));
+  gltf.at("/accessors").push_back({{"bufferView", view}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}});
+  gltf.at("/meshes").push_back(
+      {{"primitives", {{{"attributes", {{"POSITION", 4}}}, {"indices", 3}, {"material", 1}}}}});
+  gltf.at("/nodes").push_back({{"name", "Thread"}, {"mesh", 2}});
+  gltf.at("/scenes/0/nodes").push_back(3);
   EXPECT_THAT(refusal(gltf),
-              ::testing::AllOf(HasSubstr("'Bent'"), HasSubstr("it is not flat"), HasSubstr("--lenient")));
+              ::testing::AllOf(HasSubstr("'Thread'"), HasSubstr("it has no area"), HasSubstr("--lenient")));
   ReadOptions lenient;
   lenient.lenient = true;
   const Scene scene = read_gltf(write("scene.glb", gltf.glb()), lenient);
   EXPECT_EQ(scene.objects.size(), 3u);
-  ASSERT_EQ(scene.lights.size(), 2u);
-  EXPECT_TRUE(std::holds_alternative<Polygon>(scene.lights[0].shape));
+  ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.objects[2].emits, std::nullopt);
   EXPECT_THAT(scene.warnings,
-              Contains("'Bent' is emissive, but no area light, because it is not flat; it would be plain geometry"));
+              Contains("'Thread' is emissive, but no area light, because it has no area; it would be plain geometry"));
 }
 
 TEST_F(GltfReader, NamesAreUniqueAndHarmless) {

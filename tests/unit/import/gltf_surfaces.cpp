@@ -199,21 +199,6 @@ TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("\"Lamp\""), HasSubstr("extras/body")));
 }
 
-/// A sign that glows shows nothing of the light on it: said, where there is another light.
-TEST_F(GltfSurfaces, FaintEmittersAreNamed) {
-  Gltf gltf;
-  gltf.at("/materials/1")["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 0.02;
-  EXPECT_THAT(read(gltf).warnings, IsEmpty()) << "there is no other light";
-  gltf.at("/nodes").push_back({{"name", "Key"}, {"mesh", 2}});
-  gltf.at("/meshes").push_back(nlohmann::json(gltf.at("/meshes/1")));
-  gltf.at("/meshes/2/primitives/0/material") = 2;
-  gltf.at("/materials").push_back(nlohmann::json(gltf.at("/materials/1")));
-  gltf.at("/materials/2")["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 20;
-  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3};
-  EXPECT_THAT(read(gltf).warnings,
-              ::testing::ElementsAre(AllOf(HasSubstr("'Lamp' shines faintly"), HasSubstr("others"))));
-}
-
 TEST_F(GltfSurfaces, CamerasHaveTheirShape) {
   Gltf gltf;
   EXPECT_EQ(read(gltf).cameras[0].aspect, 1.7777);

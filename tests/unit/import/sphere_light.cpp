@@ -42,20 +42,20 @@ Ball uv_sphere(std::uint32_t segments, std::uint32_t rings, double stretch = 1) 
 }
 
 TEST(SphereLight, HasTheAreaOfItsMesh) {
-  for (const std::uint32_t segments : {16u, 32u, 64u}) {
+  for (const std::uint32_t segments : {32u, 64u}) {
     const Ball ball = uv_sphere(segments, segments / 2);
-    const auto sphere = recognise_sphere(ball.points, ball.triangles, 1e-6);
+    const auto sphere = recognise_sphere(weld(ball.points, ball.triangles), 1e-6);
     ASSERT_TRUE(sphere) << segments;
     EXPECT_LT(glm::distance(sphere->center, glm::dvec3(5, -3, 2)), 1e-6);
     EXPECT_NEAR(4 * kPi * sphere->radius * sphere->radius, ball.area(), 1e-12);
     EXPECT_LT(sphere->radius, 0.7);
-    EXPECT_GT(sphere->radius, 0.96 * 0.7);
+    EXPECT_GT(sphere->radius, 0.99 * 0.7);
   }
 }
 
 TEST(SphereLight, IsNothingElse) {
   const auto is_sphere = [](const Ball& ball) {
-    return recognise_sphere(ball.points, ball.triangles, 1e-6).has_value();
+    return recognise_sphere(weld(ball.points, ball.triangles), 1e-6).has_value();
   };
   EXPECT_FALSE(is_sphere(uv_sphere(32, 16, 1.001))) << "an ellipsoid";
   EXPECT_FALSE(is_sphere(uv_sphere(4, 2))) << "an octahedron: its corners are on a sphere";
@@ -65,10 +65,7 @@ TEST(SphereLight, IsNothingElse) {
   Ball inward = uv_sphere(32, 16);
   for (mesh::Triangle& t : inward.triangles) std::swap(t[0], t[1]);
   EXPECT_FALSE(is_sphere(inward));
-  Ball twice = uv_sphere(32, 16);
-  const std::vector<mesh::Triangle> again = twice.triangles;
-  twice.triangles.insert(twice.triangles.end(), again.begin(), again.end());
-  EXPECT_FALSE(is_sphere(twice));
+  EXPECT_FALSE(is_sphere(uv_sphere(16, 8))) << "a polyhedron, which shines up to 0.8 % brighter or darker";
   EXPECT_FALSE(is_sphere({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}})) << "flat";
 }
 

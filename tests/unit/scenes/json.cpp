@@ -112,7 +112,12 @@ const BadScene kStructure[] = {
      R"(/meshes/0: the keys ["fit","transform"] exclude one another)"},
     {"NoLightShape", light(R"("radiance": [1,1,1])"),
      "/lights/0: expected exactly one of the keys \"rectangle\", \"disk\", \"ellipse\", \"polygon\", \"sphere\", "
-     "\"sun\", found none"},
+     "\"sun\", \"pieces\", found none"},
+    {"EmptyPieces", light(R"("pieces": [])"), "/lights/0/pieces: expected an array of 1 to 1024 pieces"},
+    {"PieceOfTwoShapes",
+     light(R"("pieces": [{"sphere": {"center": [0,5,0], "radius": 1}, "polygon": [[0,0,0],[1,0,0],[0,1,0]]}])"),
+     "/lights/0/pieces/0: expected exactly one of the keys \"rectangle\", \"polygon\", \"sphere\", found"},
+    {"PieceIsASun", light(R"("pieces": [{"sun": {"direction": [0,-1,0], "angle": 1}}])"), "/lights/0/pieces/0:"},
     {"ColorTooBright", mesh(R"("shape": {"type": "box"}, "color": [1, 1, 1.5])"),
      "/meshes/0/color/2: expected a number from 0 to 1, found the number 1.5"},
     {"NegativeRadiance", light(R"("sphere": {"center": [0,5,0], "radius": 1}, "radiance": [-1, 0, 0])"),
