@@ -63,6 +63,7 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(make_devices_command(app));
   commands.push_back(make_convert_command(app));
   commands.push_back(make_wedges_command(app));
+  commands.push_back(make_submit_command(app));
   refuse_values_of_flags(app);
 
   try {

@@ -39,5 +39,6 @@ std::unique_ptr<Command> make_methods_command(CLI::App& app);
 std::unique_ptr<Command> make_devices_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);
 std::unique_ptr<Command> make_wedges_command(CLI::App& app);
+std::unique_ptr<Command> make_submit_command(CLI::App& app);
 
 }  // namespace penumbra::app

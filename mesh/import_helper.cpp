@@ -1,5 +1,6 @@
 #include "mesh/import_helper.hpp"
 
+#include "base/child.hpp"
 #include "base/descriptor.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -31,62 +32,6 @@ using Clock = std::chrono::steady_clock;
 std::string reason(int error) {
   return std::generic_category().message(error);
 }
-
-struct Pipe {
-  Descriptor read, write;
-};
-
-Pipe make_pipe() {
-  std::array<int, 2> fds{};
-  if (::pipe2(fds.data(), O_CLOEXEC) != 0) throw ResourceError("cannot make a pipe: {}", reason(errno));
-  Pipe pipe{Descriptor(fds[0]), Descriptor(fds[1])};
-  // If this program was started without standard streams, the ends may have got the numbers 0 to 2, which the child's
-  // own redirections are about to overwrite one after the other: move them out of the way.
-  for (Descriptor* end : {&pipe.read, &pipe.write}) {
-    if (end->get() > 2) continue;
-    const int moved = ::fcntl(end->get(), F_DUPFD_CLOEXEC, 3);
-    if (moved < 0) throw ResourceError("cannot duplicate a file descriptor: {}", reason(errno));
-    *end = Descriptor(moved);
-  }
-  return pipe;
-}
-
-/// Owns a child process: it never outlives this object, and never stays behind as a zombie.
-class Child {
- public:
-  explicit Child(pid_t pid) : pid_(pid) {}
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  ~Child() {
-    kill();
-    wait();
-  }
-  void kill() const {
-    if (!ended_) ::kill(pid_, SIGKILL);  // not reaped yet, so the number is still its own
-  }
-  bool has_ended() {
-    reap(WNOHANG);
-    return ended_;
-  }
-  /// The exit status as waitpid gives it.
-  int wait() {
-    reap(0);
-    return status_;
-  }
-
- private:
-  void reap(int options) {
-    while (!ended_) {
-      const pid_t result = ::waitpid(pid_, &status_, options);
-      if (result == 0) return;
-      // ECHILD: somebody ignores SIGCHLD, so the kernel reaped it; the answer's own length says whether it is whole.
-      ended_ = result == pid_ || errno != EINTR;
-    }
-  }
-  pid_t pid_;
-  bool ended_ = false;
-  int status_ = 0;
-};
 
 std::filesystem::path find_helper() {
   if (const char* named = std::getenv("PENUMBRA_IMPORT_HELPER"); named != nullptr && *named != '\0') return named;

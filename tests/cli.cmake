@@ -10,6 +10,9 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/explain.cpp
   cli/exact_by_default.cpp
   cli/exr_layers.cpp
+  cli/farm.cpp
+  cli/farm_slurm.cpp
+  cli/farm_tasks.cpp
   cli/frames.cpp
   cli/inspect.cpp
   cli/interrupt.cpp

@@ -3,6 +3,7 @@ penumbra_test(faults PREFIX faults. FULL *Long*
   SOURCES
   faults/child.cpp
   faults/disks.cpp
+  faults/farm.cpp
   faults/kills.cpp
   faults/limits.cpp
   faults/memory.cpp

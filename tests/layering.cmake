@@ -50,18 +50,19 @@ set(backprojection maps/backprojection/patches maps/backprojection/contours maps
 set(may_app/process render base)
 set(may_app app/process selftest compare reference areas engines engines/vectors maps/filters maps/sampling ${backprojection} vsm volumes/scatter volumes/counters volumes/soft volumes/wedges render/opengl render ${all_visibility}
     scenes/formats scenes mesh/repair mesh/diagnosis mesh base)
-foreach(room commands compare inspect pictures wedges)
+foreach(room commands compare farm inspect pictures wedges)
   set(may_app/${room} ${may_app} app)
 endforeach()
 list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
+list(APPEND may_app/farm app/pictures)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours
     maps/backprojection/soft_shadow_map selftest reference compare
-    app/process app app/pictures app/commands app/compare app/inspect app/wedges bench)
+    app/process app app/pictures app/commands app/compare app/farm app/inspect app/wedges bench)
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 

@@ -78,9 +78,19 @@ bool FrameFiles::all_there() const {
 Exposure parse_exposure(const std::string& text) {
   if (text.empty() || text == "auto") return {};
   if (text == "first") return {Exposure::Kind::first, std::nanf("")};
+  if (std::filesystem::path(text).extension() == ".exr") {
+    const auto written = written_exposure(text);
+    if (written) return {Exposure::Kind::fixed, *written};
+    throw InputError(
+        "--exposure {}: {}", text,
+        is_there(text) ? "its header does not say how it was exposed (penumbra.exposure)" : "there is no such picture");
+  }
   const auto stops = parse_number(text);
   if (!stops || !(std::abs(*stops) <= 100)) {
-    throw UsageError("--exposure {}: expected auto, first, or stops from -100 to 100 (0: as it is)", text);
+    throw UsageError(
+        "--exposure {}: expected auto, first, stops from -100 to 100 (0: as it is), or a picture's name "
+        "(.exr)",
+        text);
   }
   return {Exposure::Kind::fixed, static_cast<float>(*stops)};
 }

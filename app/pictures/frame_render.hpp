@@ -35,7 +35,8 @@ struct Exposure {
   float stops = 0;  ///< fixed; first: once it is known
 };
 
-/// "auto", "first" or a number of stops. Throws UsageError.
+/// "auto", "first", a number of stops, or FILE.exr: those that this picture's header says. Throws UsageError;
+/// InputError for a picture that does not say.
 Exposure parse_exposure(const std::string& text);
 
 /// The stops that an earlier run wrote into a picture's header; nothing if there is no such picture, or it does

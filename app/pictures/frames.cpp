@@ -84,6 +84,14 @@ bool has_frame_number(const std::filesystem::path& out) {
   return number_place(out.filename().string()).has_value();
 }
 
+std::string sequence_name(const std::filesystem::path& out) {
+  std::string name = out.filename().string();
+  const auto place = number_place(name);
+  if (!place) return out.stem().string();
+  name.erase(place->at);
+  return name.erase(name.find_last_not_of("._-") + 1);
+}
+
 std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame) {
   std::string name = out.filename().string();
   if (const auto place = number_place(name))

@@ -22,6 +22,8 @@ std::vector<std::int64_t> numbers_of(const FrameRange& range);
 
 /// Does the file's name say where a frame's number goes: "####" (at least so many digits) or "%04d"?
 bool has_frame_number(const std::filesystem::path& out);
+/// What the names of all frames begin with, without what parts it from the number: OUT.####.exr → OUT. May be empty.
+std::string sequence_name(const std::filesystem::path& out);
 /// The name with the frame's number there, else before its extension: OUT.exr and frame 7 → OUT.0007.exr. Of several
 /// such places it is the last.
 std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame);

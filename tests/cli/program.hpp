@@ -40,6 +40,8 @@ class ProgramTest : public testing::Test {
 
   /// A box on a floor under a square light, 48 × 32 pixels; every kind of pixel is in it.
   std::string tiny_scene() const;
+  /// A second of animation: a body over a floor that its lamp shines down on, seen by two cameras from above.
+  std::string moving_scene() const;
   Outcome run(std::vector<std::string> arguments, std::map<std::string, std::string> environment = {}) const;
 
   std::filesystem::path folder_;

@@ -22,7 +22,7 @@ TEST_F(Tables, VersionAndHelpGoToStdout) {
   EXPECT_EQ(version.code, 0);
   EXPECT_THAT(version.out, HasSubstr("penumbra "));
   EXPECT_THAT(run({"--help"}).out, testing::AllOf(HasSubstr("render"), HasSubstr("Exit codes")));
-  for (const char* command : {"render", "compare", "inspect", "methods", "devices", "convert", "wedges"}) {
+  for (const char* command : {"render", "compare", "inspect", "methods", "devices", "convert", "wedges", "submit"}) {
     const Outcome help = run({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
     EXPECT_THAT(help.out, HasSubstr("--")) << command;

@@ -1,0 +1,360 @@
+#include "app/commands.hpp"
+#include "app/farm/batch_script.hpp"
+#include "app/farm/slurm.hpp"
+#include "app/farm/tasks.hpp"
+#include "app/farm/workers.hpp"
+#include "app/pictures/picture_file.hpp"
+#include "app/pictures/request.hpp"
+#include "app/process/child_program.hpp"
+#include "app/process/output_files.hpp"
+#include "app/session.hpp"
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+std::string text_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class SubmitCommand : public Command {
+ public:
+  explicit SubmitCommand(CLI::App& app)
+      : Command(app, "submit", "render a sequence on a farm: as a Slurm array, or here with several workers") {
+    add_picture_options(cli_, options_);
+    cli_.get_option("--frames")->required();
+    auto* dry_run = cli_.add_flag("--dry-run", dry_run_, "print the batch script; renders, writes and asks nothing");
+    auto* jobs = cli_.add_option("--jobs", jobs_, "render here, without Slurm, by so many processes at a time")
+                     ->type_name("N")
+                     ->check(CLI::Range(1, 1024))
+                     ->excludes(dry_run);
+    const auto add = [&](const char* name, auto& value, const char* help) {
+      return cli_.add_option(name, value, help)->excludes(jobs);
+    };
+    add("--chunk", chunk_,
+        "frames a task of the array (default: enough for a minute, by the first frame, which is rendered here)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100'000));
+    add("--rounds", rounds_, "how often frames that are missing at the end are submitted, the first time included")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    add("--round", round_, "which of them this is: what the summary says after each")
+        ->type_name("N")
+        ->check(CLI::Range(1, 101))
+        ->capture_default_str();
+    add("--sbatch", sbatch_, "option for sbatch: partition=NAME, time=HOURS:MM:SS, mem=8G …; may be given again")
+        ->type_name("KEY[=VALUE]")
+        ->allow_extra_args(false);
+  }
+
+  int run(const GlobalOptions& global) override {
+    if (options_.exposure.empty()) options_.exposure = "first";
+    request_ = parse_request(options_);
+    range_ = parse_frames(options_.frames);
+    frames_ = numbers_of(range_);
+    for (const std::string& option : sbatch_) refuse_option(option);
+    read_cameras();
+    outputs_of(options_, request_.frames, cameras_);  // refuses files that are one
+    words_ = words_for_all(global);
+    folder_ = folder_of(absolute(options_.run.out));
+    if (jobs_ > 0) return render_here();
+    if (folder_.string().find('\\') != std::string::npos) {
+      // Slurm takes it as a sign that no %A of the name is to be replaced.
+      throw UsageError("{}: Slurm cannot write logs into a folder with a backslash in its name; rename it",
+                       folder_.string());
+    }
+    return dry_run_ ? print_script() : submit();
+  }
+
+ private:
+  // The command line.
+
+  static std::filesystem::path absolute(const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+  }
+
+  static void refuse_option(const std::string& option) {
+    const std::string name = option.substr(0, option.find('='));
+    const bool plain =
+        !name.empty() && std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
+    if (!plain || name.starts_with('-') || option.find('\n') != std::string::npos)
+      throw UsageError("--sbatch {}: expected a long option of sbatch without its dashes, such as partition=render",
+                       option);
+    if (is_own_option(name)) throw UsageError("--sbatch {}: `submit` sets this one itself", option);
+  }
+
+  /// All of render's options that were given, but those that tasks get each its own of; paths are absolute.
+  [[nodiscard]] std::vector<std::string> words_for_all(const GlobalOptions& global) const {
+    const std::vector<std::string> own = {"--frames", "--exposure", "--skip-existing", "--dry-run", "--jobs",
+                                          "--chunk",  "--rounds",   "--round",         "--sbatch",  "--help"};
+    const std::vector<std::string> files = {"SCENE", "--output", "--stats", "--png", "--bits"};
+    const auto is_one_of = [](const std::vector<std::string>& names, const CLI::Option* option) {
+      return std::ranges::any_of(names, [&](const std::string& name) { return option->check_name(name); });
+    };
+    std::vector<std::string> words;
+    for (const CLI::Option* option : cli_.get_options()) {
+      if (option->count() == 0 || is_one_of(own, option)) continue;
+      const bool positional = option->get_lnames().empty();
+      for (const std::string& given : option->results()) {
+        const std::string value = is_one_of(files, option) ? absolute(given).string() : given;
+        const std::string name = positional ? "" : "--" + option->get_lnames().front();
+        words.push_back(positional ? value : option->get_items_expected_max() == 0 ? name : name + "=" + value);
+      }
+    }
+    if (global.quiet) words.emplace_back("--quiet");
+    if (global.verbose) words.emplace_back("--verbose");
+    for (const std::string& word : words) {
+      if (word.find('\n') != std::string::npos)
+        throw UsageError("{}: a name with a line break in it cannot be submitted; rename it", shell_word(word));
+    }
+    return words;
+  }
+
+  /// Beside the pictures, named after them: OUT.####.exr → OUT.farm.
+  static std::filesystem::path folder_of(const std::filesystem::path& out) {
+    const std::string name = sequence_name(out);
+    return out.parent_path() / ((name.empty() ? "frames" : name) + ".farm");
+  }
+
+  void read_cameras() {
+    cameras_ = {options_.run.camera};
+    if (options_.run.camera != "all") return;
+    cameras_.clear();  // their names are in the scene
+    const double time = static_cast<double>(frames_.front()) * request_.seconds_per_frame;
+    for (const scenes::Camera& camera : read_session_scene(options_.run, time).cameras) cameras_.push_back(camera.name);
+  }
+
+  // What is there.
+
+  [[nodiscard]] bool has(std::int64_t frame) const { return is_there(options_, frame, cameras_); }
+  [[nodiscard]] std::vector<std::int64_t> missing() const {
+    std::vector<std::int64_t> frames = frames_;
+    std::erase_if(frames, [this](std::int64_t frame) { return has(frame); });
+    return frames;
+  }
+  [[nodiscard]] std::filesystem::path picture(std::int64_t frame) const {
+    return files_of(options_, frame, cameras_.front()).picture;
+  }
+
+  // Rendering here.
+
+  [[nodiscard]] Workers workers(const std::string& exposure, std::size_t at_once) const {
+    std::vector<std::string> command = {own_program(), "render"};
+    command.insert(command.end(), words_.begin(), words_.end());
+    command.insert(command.end(), {"--exposure=" + exposure, "--skip-existing"});
+    return {std::move(command), range_.step, at_once, [this](std::int64_t frame) { return has(frame); }};
+  }
+
+  /// How the frames are exposed, as --exposure takes it. The first frame decides where none was asked for: it is
+  /// rendered if it is not there. If it cannot be, the next one decides, and so on; those that failed go into `failed`.
+  std::string decide_exposure(std::vector<FailedFrame>& failed) {
+    if (request_.exposure.kind == Exposure::Kind::automatic) return "auto";
+    if (request_.exposure.kind == Exposure::Kind::fixed) return fmt::format("{}", request_.exposure.stops);
+    for (const std::int64_t frame : frames_) {
+      if (!has(frame)) {
+        const std::vector<FailedFrame> now = render_frames(workers("first", 1), {frame});
+        failed.insert(failed.end(), now.begin(), now.end());
+        constexpr std::size_t kEnough = 3;
+        if (failed.size() == kEnough) throw Error(static_cast<ExitCode>(now.front().code), give_up(failed));
+        if (!now.empty()) continue;
+      }
+      if (const auto stops = written_exposure(picture(frame))) return fmt::format("{}", *stops);
+      spdlog::warn("{} does not say how it was exposed: the next frame decides", picture(frame).string());
+    }
+    return "auto";  // nothing is left to be exposed
+  }
+
+  static std::string give_up(const std::vector<FailedFrame>& failed) {
+    std::string text = "the first frames fail, and the others were not tried:";
+    for (const FailedFrame& one : failed) text += fmt::format("\nframe {}: {}", one.frame, one.reason);
+    return text;
+  }
+
+  int render_here() {
+    const std::size_t before = missing().size();
+    if (before == 0) {
+      spdlog::info("all {} frames are there", frames_.size());
+      return 0;
+    }
+    std::vector<FailedFrame> failed;
+    const std::string exposure = decide_exposure(failed);
+    std::vector<std::int64_t> rest = missing();
+    std::erase_if(rest, [&](std::int64_t frame) {
+      return std::ranges::find(failed, frame, &FailedFrame::frame) != failed.end();
+    });
+    if (!rest.empty()) {
+      const auto more = render_frames(workers(exposure, static_cast<std::size_t>(jobs_)), rest);
+      failed.insert(failed.end(), more.begin(), more.end());
+    }
+    for (const FailedFrame& one : failed) spdlog::error("frame {}: {}", one.frame, one.reason);
+    if (failed.empty()) {
+      spdlog::info("all {} frames are there", frames_.size());
+      return 0;
+    }
+    spdlog::error("{} of {} frames failed; the same command renders those alone", failed.size(), frames_.size());
+    return failed.front().code;
+  }
+
+  // The farm.
+
+  /// Renders a frame here as the farm would, and says what it cost. Throws what the frame fails with.
+  FrameCost measure(std::int64_t frame, const std::string& exposure) {
+    PictureOptions named = options_;
+    Workers here = workers(exposure, 1);
+    if (named.stats.empty()) {
+      named.stats = folder_ / "first-frame.json";
+      here.command.push_back("--stats=" + named.stats.string());
+    }
+    here.is_there = [&](std::int64_t one) { return is_there(named, one, cameras_); };
+    spdlog::info("frame {} is rendered here, to see how many frames a task can do", frame);
+    const std::vector<FailedFrame> failed = render_frames(here, {frame});
+    if (!failed.empty()) {
+      throw Error(static_cast<ExitCode>(failed.front().code),
+                  fmt::format("frame {}: {}; nothing was submitted", frame, failed.front().reason));
+    }
+    FrameCost cost;
+    for (const std::string& camera : cameras_) {
+      const auto seconds = nlohmann::json::parse(text_of_file(files_of(named, frame, camera).stats)).at("seconds");
+      const double total = seconds.at("total").get<double>();
+      double own = 0;
+      for (const char* phase : {"view", "light", "evaluate", "beauty", "write"}) own += seconds.value(phase, 0.0);
+      if (camera == cameras_.front()) cost.begin = std::max(total - own, 0.0);
+      cost.frame += own;
+    }
+    return cost;
+  }
+
+  [[nodiscard]] BatchJob job_of(const std::vector<std::int64_t>& frames, std::size_t chunk, std::size_t most) const {
+    BatchJob job;
+    job.program = own_program();
+    job.words = words_;
+    for (const FrameRange& task : cut_into_tasks(frames, range_.step, chunk, most)) job.tasks.push_back(text_of(task));
+    job.sbatch = sbatch_;
+    job.folder = folder_;
+    job.name = "penumbra-" + file_name_of(folder_.stem().string());
+    job.summary = {"--frames=" + text_of(range_), "--exposure=" + asked_exposure(), fmt::format("--chunk={}", chunk),
+                   fmt::format("--rounds={}", rounds_), fmt::format("--round={}", round_ + 1)};
+    for (const std::string& option : sbatch_) job.summary.push_back("--sbatch=" + option);
+    return job;
+  }
+
+  [[nodiscard]] std::string asked_exposure() const {
+    using Kind = Exposure::Kind;
+    const Kind kind = request_.exposure.kind;
+    return kind == Kind::first       ? "first"
+           : kind == Kind::automatic ? "auto"
+                                     : fmt::format("{}", request_.exposure.stops);
+  }
+
+  int print_script() {
+    const std::vector<std::int64_t> frames = missing();
+    if (frames.empty()) {
+      spdlog::info("all {} frames are there", frames_.size());
+      return 0;
+    }
+    BatchJob job = job_of(frames, static_cast<std::size_t>(chunk_.value_or(1)), kDefaultMostTasks);
+    job.exposure = asked_exposure();
+    if (request_.exposure.kind == Exposure::Kind::first) {
+      const std::filesystem::path first = absolute(picture(frames_.front()));
+      job.exposure = first.string();
+      if (!has(frames_.front()))
+        job.first_frame = fmt::format("--frames={}-{} --exposure=first", frames_.front(), frames_.front());
+    }
+    if (!chunk_) spdlog::info("nothing is measured for --dry-run: one frame a task; --chunk N says how many");
+    fmt::print("{}", text_of(job));
+    return 0;
+  }
+
+  int submit() {
+    const std::filesystem::path queued = folder_ / "array-job";
+    const std::string before = text_of_file(queued);
+    if (round_ == 1 && !before.empty() && is_queued(before)) {
+      throw UsageError("these frames are being rendered as job {} (squeue --jobs={}); wait, or scancel it first",
+                       before, before);
+    }
+    std::vector<std::int64_t> frames = missing();
+    if (frames.empty()) {
+      spdlog::info("all {} frames are there", frames_.size());
+      return 0;
+    }
+    if (round_ > rounds_ || (round_ > 1 && !before.empty() && was_cancelled(before))) return report(frames);
+
+    OutputFolder made;
+    made.make(folder_);
+    const std::size_t most = most_tasks(run_slurm({"scontrol", "show", "config"}));
+    std::string exposure = asked_exposure();
+    std::optional<FrameCost> cost;
+    if (request_.exposure.kind == Exposure::Kind::first) {
+      const std::int64_t first = frames_.front();
+      if (!has(first)) cost = measure(first, "first");
+      const auto stops = written_exposure(picture(first));
+      if (!stops) {
+        throw InputError("{} does not say how it was exposed; remove it, or give --exposure in stops",
+                         picture(first).string());
+      }
+      exposure = fmt::format("{}", *stops);
+    }
+    if (!chunk_ && !cost) cost = measure(frames.front(), exposure);
+    frames = missing();
+    if (frames.empty()) {
+      spdlog::info("all {} frames are there", frames_.size());
+      return 0;
+    }
+    const std::size_t chunk = chunk_ ? static_cast<std::size_t>(*chunk_) : frames_per_task(*cost);
+    if (cost) spdlog::info("{:.2f} s to begin and {:.2f} s a frame: {} frames a task", cost->begin, cost->frame, chunk);
+    BatchJob job = job_of(frames, chunk, most);
+    job.exposure = exposure;
+    write_file_atomically(script_of(job), text_of(job));
+    const std::string array = job_number(run_slurm(sbatch_array(job)));
+    write_file_atomically(queued, array);
+    const std::string summary = job_number(run_slurm(sbatch_summary(job, array)));
+    spdlog::info("{} frames in {} tasks are job {}, its summary is job {}; scripts and logs are in {}", frames.size(),
+                 job.tasks.size(), array, summary, folder_.string());
+    fmt::print("{} {}\n", array, summary);
+    return 0;
+  }
+
+  [[nodiscard]] int report(const std::vector<std::int64_t>& frames) const {
+    spdlog::error("{} of {} frames are missing: {}", frames.size(), frames_.size(), list_of(frames, range_.step));
+    spdlog::error("grep 'frame {}:' {}/*.log says why; the same `penumbra submit` renders what is missing alone",
+                  frames.front(), shell_word(folder_.string()));
+    return static_cast<int>(ExitCode::answer_is_no);
+  }
+
+  PictureOptions options_;
+  bool dry_run_ = false;
+  int jobs_ = 0;
+  std::optional<int> chunk_;
+  int rounds_ = 2, round_ = 1;
+  std::vector<std::string> sbatch_;
+
+  // What they come to:
+  PictureRequest request_;
+  FrameRange range_;
+  std::vector<std::int64_t> frames_;
+  std::vector<std::string> cameras_;
+  std::vector<std::string> words_;  // after the subcommand's name, for every task
+  std::filesystem::path folder_;    // of script and logs
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_submit_command(CLI::App& app) {
+  return std::make_unique<SubmitCommand>(app);
+}
+
+}  // namespace penumbra::app

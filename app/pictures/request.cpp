@@ -1,0 +1,140 @@
+#include "app/pictures/request.hpp"
+
+#include "app/methods.hpp"
+#include "app/parse.hpp"
+#include "app/pictures/frames.hpp"
+#include "base/error.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+std::uint32_t parse_count(const std::string& text, const char* option, std::uint32_t most, const char* wanted) {
+  const auto value = parse_integer<std::uint32_t>(text.empty() ? "1" : text);
+  if (!value || *value < 1 || *value > most) throw UsageError("{} {}: expected {}", option, text, wanted);
+  return *value;
+}
+
+/// --pixel-samples, --motion-samples and --shutter.
+void parse_means(const PictureOptions& options, PictureRequest& request) {
+  const char* const squares = "a square number from 1 to 64, such as 4, 9 or 16";
+  const std::uint32_t samples = parse_count(options.pixel_samples, "--pixel-samples", 64, squares);
+  while (request.pixel_side * request.pixel_side < samples) ++request.pixel_side;
+  if (request.pixel_side * request.pixel_side != samples)
+    throw UsageError("--pixel-samples {}: expected {}", options.pixel_samples, squares);
+  request.moments = parse_count(options.motion_samples, "--motion-samples", 256, "a number from 1 to 256");
+  const auto shutter = parse_number(options.shutter.empty() ? "0.5" : options.shutter);
+  if (!shutter || !(*shutter >= 0 && *shutter <= 100))
+    throw UsageError("--shutter {}: expected frames from 0 to 100, such as 0.5", options.shutter);
+  request.shutter_frames = *shutter;
+  if (!options.bits.empty() && (samples > 1 || request.moments > 1))
+    throw UsageError(
+        "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples and --motion-samples");
+  if (request.moments > 1 && options.frames.empty() && !options.frame)
+    throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", options.motion_samples);
+}
+
+}  // namespace
+
+void add_picture_options(CLI::App& command, PictureOptions& options) {
+  add_run_options(command, options.run);
+  command
+      .add_option("-o,--output", options.run.out,
+                  "image to write: linear beauty and V, of each light too, positions, normals, ids")
+      ->required()
+      ->type_name("OUT.exr");
+  command
+      .add_option("--method", options.method,
+                  "shadow method, see `penumbra methods` (default: for each light the best one that gives its exact "
+                  "area; where light samples are asked for, or none does, the best geometry-based one, or raytrace)")
+      ->type_name("NAME");
+  command.add_option("--stats", options.stats, "times, counters and warnings as JSON; times of one run, the first")
+      ->type_name("FILE.json");
+  command.add_option("--png", options.png, "the beauty for eyes")->type_name("FILE.png");
+  command
+      .add_option("--exposure", options.exposure,
+                  "of the PNG: auto (lit surfaces fill it; light bodies do not count), first (a sequence's first "
+                  "frame decides for all), stops, or a picture whose own it is to have")
+      ->type_name("auto|first|EV|FILE.exr");
+  command.add_option("--bits", options.bits, "every pair's answer for the first light (penumbra-bits/1; mask methods)")
+      ->type_name("FILE");
+  command
+      .add_option("--frames", options.frames,
+                  "a sequence, every N-th frame of it; files are numbered where their names say \"####\" or \"%04d\", "
+                  "else before the extension")
+      ->type_name("A-B[xN]");
+  command.add_option("--fps", options.fps, "frame F is F / fps seconds of a glTF animation (default: 24)")
+      ->type_name("N");
+  command
+      .add_option("--pixel-samples", options.pixel_samples,
+                  "view samples a pixel on a square grid, of which R G B A and V are the mean: 1, 4, 9 … 64 "
+                  "(default: 1, the pixel's centre)")
+      ->type_name("S");
+  command
+      .add_option("--motion-samples", options.motion_samples,
+                  "moments of an open shutter, of which R G B A and V are the mean: 1 to 256 (default: 1, the frame's)")
+      ->type_name("N");
+  command
+      .add_option("--shutter", options.shutter,
+                  "how long it is open, in frames, around the frame's time (default: 0.5)")
+      ->type_name("FRAMES");
+  command.add_flag("--skip-existing", options.skip_existing,
+                   "leave out pictures whose files are all there: resumes a sequence");
+}
+
+PictureRequest parse_request(const PictureOptions& options) {
+  PictureRequest request;
+  request.wish.method = options.method;
+  request.wish.options = parse_method_options(options.run.method_options);
+  if (!options.method.empty()) describe_method(options.method, request.wish.options);  // refuses now, not later
+  request.wish.samples =
+      !options.run.light_samples.empty() || !options.run.sample_pattern.empty() || !options.bits.empty();
+  request.exposure = parse_exposure(options.exposure);
+  request.seconds_per_frame = 1 / parse_fps(options.fps);
+  parse_means(options, request);
+  if (options.run.out.extension() != ".exr") {
+    throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
+                     options.run.out.string());
+  }
+  if (!options.png.empty() && options.png.extension() != ".png") {
+    throw UsageError("--png {}: expected a name that ends in .png", options.png.string());
+  }
+  if (options.frames.empty()) {
+    request.frames = {options.frame};
+  } else {
+    for (const std::int64_t frame : numbers_of(parse_frames(options.frames))) request.frames.emplace_back(frame);
+  }
+  return request;
+}
+
+FrameFiles files_of(const PictureOptions& options, std::optional<std::int64_t> frame, const std::string& camera) {
+  const auto named = [&](std::filesystem::path path) {
+    if (path.empty()) return path;
+    if (options.run.camera == "all") path = camera_path(path, camera);
+    return frame && (!options.frames.empty() || has_frame_number(path)) ? frame_path(path, *frame) : path;
+  };
+  return {named(options.run.out), named(options.stats), named(options.png), named(options.bits)};
+}
+
+bool is_there(const PictureOptions& options, std::optional<std::int64_t> frame,
+              const std::vector<std::string>& cameras) {
+  return std::ranges::all_of(cameras, [&](const auto& camera) { return files_of(options, frame, camera).all_there(); });
+}
+
+OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<std::int64_t>>& frames,
+                       const std::vector<std::string>& cameras) {
+  OutputFiles outputs;
+  for (const auto& frame : frames) {
+    for (const std::string& camera : cameras) {
+      for (const auto& [option, path] : files_of(options, frame, camera).all()) outputs.add(option, path);
+    }
+  }
+  outputs.refuse_inputs({&options.run.scene, 1});
+  return outputs;
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "app/light_methods.hpp"
+#include "app/options.hpp"
+#include "app/pictures/frame_render.hpp"
+#include "app/process/output_files.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace penumbra::app {
+
+/// What `render` and `submit` are asked for, as the user gave it; what is empty was not said.
+struct PictureOptions {
+  RunOptions run;
+  std::string method, exposure, frames, fps, pixel_samples, motion_samples, shutter;
+  std::optional<std::int64_t> frame;  ///< of `render` alone
+  bool skip_existing = false;
+  std::filesystem::path stats, png, bits;
+};
+
+/// Adds all of them but --frame.
+void add_picture_options(CLI::App& command, PictureOptions& options);
+
+/// What they mean, as far as that can be told before the scene is read.
+struct PictureRequest {
+  MethodWish wish;
+  Exposure exposure;
+  double seconds_per_frame = 0;
+  std::uint32_t pixel_side = 1, moments = 1;
+  double shutter_frames = 0.5;
+  std::vector<std::optional<std::int64_t>> frames;  ///< one entry without a number if no frame was asked for
+};
+
+/// Throws UsageError; InputError for a picture that --exposure names and that does not say how it was exposed.
+PictureRequest parse_request(const PictureOptions& options);
+
+/// Where the picture of a frame goes: named after camera and frame, where there are several.
+FrameFiles files_of(const PictureOptions& options, std::optional<std::int64_t> frame, const std::string& camera);
+/// Are the frame's files there, of all cameras?
+bool is_there(const PictureOptions& options, std::optional<std::int64_t> frame,
+              const std::vector<std::string>& cameras);
+/// All files of these frames and cameras. UsageError if two are one, or one is the scene.
+OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<std::int64_t>>& frames,
+                       const std::vector<std::string>& cameras);
+
+}  // namespace penumbra::app
