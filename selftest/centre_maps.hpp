@@ -15,21 +15,20 @@
 namespace penumbra::selftest {
 
 struct CentreMaps {
-  /// What else is rendered: peeled layers, the farthest after them; whether all that stands before the light fits; and
-  /// who draws.
+  /// What else is rendered: peeled layers, the farthest after them; whether all that stands before the light fits, or
+  /// all casters; and who draws.
   struct More {
     std::uint32_t layers = 1;
-    bool farthest = false, whole_light = false;
+    bool farthest = false, whole_light = false, all_casters = false;
     maps::Rasteriser rasteriser = maps::Rasteriser::vulkan;
   };
   CentreMaps(const render::Device& device, const Stage& stage, std::uint32_t texels, const glm::dvec2& beside,
              const More& more)
       : size(texels),
-        basis(maps::light_basis(stage.light)),
+        basis(maps::light_basis(stage.light, stage.floats)),
         centre(basis.center),
-        fitted(maps::fit_views(
-            stage.floats, stage.light, basis, std::span(&centre, 1),
-            {.size = texels, .beside = beside, .reach = more.whole_light ? reach_of(stage, basis) : glm::dvec2(0)})),
+        fitted(maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1),
+                               {.size = texels, .beside = beside, .reach = reach_of(stage, basis, more)})),
         views(render::make_buffer<maps::gpu::LightView>(device, "views", fitted.views)),
         depths(device, "depths", texel_count() * (more.layers + (more.farthest ? 1 : 0)) * sizeof(float)) {
     maps::CasterMaps casters(device, size, more.rasteriser);
@@ -68,7 +67,9 @@ struct CentreMaps {
   render::Buffer views, depths;
 
  private:
-  static glm::dvec2 reach_of(const Stage& stage, const maps::LightBasis& basis) {
+  static glm::dvec2 reach_of(const Stage& stage, const maps::LightBasis& basis, const More& more) {
+    if (more.all_casters) return maps::reach_of_all(stage.floats);
+    if (!more.whole_light) return glm::dvec2(0);
     const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
     return glm::max(-bounds.lower, bounds.upper);
   }

@@ -24,11 +24,13 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/products.cpp
   analytic/maps/pyramids.cpp
   analytic/maps/rasterisers.cpp
+  analytic/maps/receiver_plane.cpp
   analytic/maps/repairs.cpp
   analytic/maps/resolution_table.cpp
   analytic/maps/slices.cpp
   analytic/maps/soft_shadow_map.cpp
   analytic/maps/soft_shadow_map_errors.cpp
+  analytic/maps/sphere_form.cpp
   analytic/maps/subsampled.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)

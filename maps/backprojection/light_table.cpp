@@ -88,7 +88,7 @@ std::vector<float> shares_of_polygon(const std::vector<glm::dvec2>& outline, con
 LightTableData light_table(const visibility::Light& light, const LightBasis& basis) {
   const LightBounds bounds = light_bounds(light, basis);
   LightTableData data{{bounds.lower, bounds.upper, 0, static_cast<float>(light.area), 0, kCells, kCells}, {}, {}};
-  if (light.kind == visibility::LightKind::disk) {
+  if (light.kind == visibility::LightKind::disk || light.kind == visibility::LightKind::sphere) {
     data.head.radius = static_cast<float>(light.radius);
     data.shares = shares_at_nodes([](const glm::dvec2& at) { return disk_share(2 * at.x - 1, 2 * at.y - 1); });
     return data;

@@ -11,7 +11,7 @@ namespace penumbra::maps {
 /// A planar light as patches cut it: how much of it lies in any axis-parallel rectangle, by differences of a table of
 /// prefix sums (Crow 1984), bilinear between its nodes. Exact for a rectangle light: one cell, or one for each texel of
 /// its texture, whose luminance it weighs by. Others have 256 × 256 cells over their bounding rectangle, with the exact
-/// share of the light below and left of each node.
+/// share of the light below and left of each node. A sphere's is that of its disk.
 struct LightTableData {
   gpu::LightTableHead head;
   std::vector<float> outline;  ///< x, y of each corner

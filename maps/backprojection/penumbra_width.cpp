@@ -17,8 +17,8 @@ std::unique_ptr<visibility::Method> make_penumbra_widths(const render::Device& d
                                    .paper = "Guennebaud et al. 2007",
                                    .output = visibility::Output::scalar,
                                    .exact_for = "nothing",
-                                   .lights = planar_lights(),
-                                   .options = single_map_option_descriptions()},
+                                   .lights = with_spheres(planar_lights()),
+                                   .options = compared_map_option_descriptions()},
                    .look_up_name = "penumbra widths",
                    .look_up = shaders::kPenumbraWidthComp};
   recipe.whole_light = true;

@@ -17,7 +17,7 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
   const float least_facing = m.z + min(m.x * lower.x, m.x * upper.x) + min(m.y * lower.y, m.y * upper.y);
   const float h = dot(m, asked.e);
   float limit = asked.e.z, slope = 0.0;
-  if (h > 0.0) {
+  if (h > 0.0 && lookup.own_depth == 0) {
     if (h < limit * facing) limit = h / facing;
     const float across = abs(m.x) + abs(m.y);
     slope = across < kSteepest * least_facing ? across / least_facing : kSteepest;
@@ -25,10 +25,11 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
   return deepest < limit - lookup.bias * max(face.texel.x, face.texel.y) * asked.e.z * (1.0 + slope);
 }
 
-// near: of the whole map, and then the kernel's; lower, upper, padding: as kernel_on takes them. `umbra`: whether a
-// kernel that hides as a whole ends the search.
-Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, int padding, bool umbra) {
-  Kernel kernel = kernel_on(face, lookup.size, asked.e, lower, upper, near, padding);
+// near: of the whole map, and then the kernel's; lower, upper, padding: as kernel_on takes them. `begins`: what stands for
+// a texel reaches up to so much of its height, 1 if it is all there. `umbra`: whether a kernel that hides as a whole ends
+// the search.
+Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, float begins, int padding, bool umbra) {
+  Kernel kernel = kernel_on(face, lookup.size, asked.e, lower, upper, begins * near, padding);
   for (int round = 0; round < kSearchRounds && !is_empty(kernel); ++round) {
     const vec2 range = depth_range(face.map, uvec2(kernel.first), uvec2(kernel.last));
     if (range.x >= 1.0) return kNoKernel;
@@ -42,7 +43,7 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, int
     }
     if (height <= near) break;
     near = height;
-    const Kernel narrower = kernel_on(face, lookup.size, asked.e, lower, upper, near, padding);
+    const Kernel narrower = kernel_on(face, lookup.size, asked.e, lower, upper, begins * near, padding);
     const bool same = narrower.first == kernel.first && narrower.last == kernel.last;
     kernel = narrower;
     if (same) break;

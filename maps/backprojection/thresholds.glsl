@@ -54,7 +54,8 @@ vec2 product_range(vec2 m, vec2 x) {
 
 // Over texels lower ... upper of a face; never beyond `far`, where there is nothing: what is empty shades nobody.
 vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far) {
-  if (group.above < 0) return vec2(-1e30, far);
+  const bool planes = lookup.own_depth == 0;
+  if (planes && group.above < 0) return vec2(-1e30, far);
   const vec2 from = face.lower + (vec2(lower) + 0.5) * face.texel, to = face.lower + (vec2(upper) + 0.5) * face.texel;
   vec2 limit = vec2(group.z_low, group.z_high);
   if (face.axis != 2) limit = vec2(group.z_low / to.y, group.z_high / max(from.y, 0.25 * face.texel.y));
@@ -62,7 +63,7 @@ vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far)
   const bool nearest_alone = lookup.depth_use == kDepthFirst;
   const vec2 forgiven = (nearest_alone ? lookup.bias : 0.0) * max(face.texel.x, face.texel.y) * limit;
   vec2 plane = limit, slope = vec2(0.0);
-  if (group.above > 0) {
+  if (planes && group.above > 0) {
     const vec2 a = product_range(vec2(group.m_low.x, group.m_high.x), vec2(from.x, to.x));
     const vec2 b = product_range(vec2(group.m_low.y, group.m_high.y), vec2(from.y, to.y));
     const float slack = kSlack * (max(abs(a.x), abs(a.y)) + max(abs(b.x), abs(b.y)) +

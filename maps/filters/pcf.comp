@@ -17,10 +17,8 @@ vec3 neighbour(Tap own, vec2 step, vec2 offset) {
 }
 
 bool texel_blocks(Tap tap, vec3 m, float h, float along, float texels_away) {
-  if (own.receiver_plane != 0) {
-    return blocks(tap, m, h, along * (1.0 + kSteepest * tap.texel * max(texels_away, 1.0)), lookup.bias);
-  }
-  return is_before(tap, along, lookup.bias * tap.texel * along);
+  if (lookup.own_depth != 0) return is_before_depth(tap, along, lookup.bias);
+  return blocks(tap, m, h, along * (1.0 + kSteepest * tap.texel * max(texels_away, 1.0)), lookup.bias);
 }
 
 float visibility_of(LightView view, vec3 d, vec3 m) {

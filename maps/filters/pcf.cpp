@@ -17,8 +17,6 @@ namespace penumbra::maps {
 namespace {
 
 constexpr visibility::IntegerOption kWindow{"window", 1, 64, 7, "texels on a side of the window that is averaged"};
-constexpr auto kReceiverPlane = visibility::flag_option(
-    "receiverPlane", true, "compare each texel with the receiver's plane; off: with the receiver's own depth");
 
 visibility::MeshVerdict pcf_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
@@ -35,18 +33,17 @@ visibility::MethodDescription pcf_description() {
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
       .lights = planar_lights(),
       .textures = false,
-      .options = single_map_option_descriptions(),
+      .options = compared_map_option_descriptions(),
       .verdict_on = pcf_verdict,
       .repairs = pcf_repairs};
   description.options.push_back(kWindow.description());
-  description.options.push_back(kReceiverPlane.description());
   return description;
 }
 
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = pcf_description(), .look_up_name = "pcf look-up", .look_up = shaders::kPcfComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const gpu::PcfPush push{parsed[kWindow], parsed[kReceiverPlane] ? 1U : 0U};
+  const gpu::PcfPush push{parsed[kWindow]};
   // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window
   // holds: no window of receivers is wider than ±kWidestTangent.
   const double beside = 2 * kWidestTangent * (push.window / 2) / parsed[kMapSize];

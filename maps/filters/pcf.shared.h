@@ -6,8 +6,7 @@ namespace penumbra::maps::gpu {
 #endif
 
 struct PcfPush {
-  uint window;          // texels on a side
-  uint receiver_plane;  // each texel is compared with the receiver's plane; else with the receiver's own depth
+  uint window;  // texels on a side
 };
 
 #ifdef __cplusplus

@@ -31,7 +31,6 @@ ErrorRepairs pcf_repairs(const MethodDescription& method, const MethodOptions& g
   MapRepairs repairs = one_surface();
   // The window is counted in texels: as many again keep it as wide.
   repairs.doubled = {"size", "window"};
-  repairs.bias["receiverPlane"] = "on";
   return map_repairs(method, given, repairs);
 }
 

@@ -26,7 +26,7 @@ visibility::MethodDescription shadow_map_description() {
           .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
           .lights = planar_lights(),
           .textures = false,
-          .options = single_map_option_descriptions(),
+          .options = compared_map_option_descriptions(),
           .verdict_on = shadow_map_verdict,
           .repairs = filter_repairs};
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace penumbra::maps {
@@ -103,9 +104,12 @@ std::vector<RepairRun> from_finest(const MethodDescription& method, const Repair
 ErrorRepairs map_repairs(const MethodDescription& method, const MethodOptions& given, const MapRepairs& repairs) {
   MethodOptions exact = repairs.bias;
   // What stands in place of a bias moves the beginning of shadows as well.
-  const bool has_depth =
-      std::ranges::find(method.options, "depth", &visibility::OptionDescription::name) != method.options.end();
+  const auto has = [&](std::string_view name) {
+    return std::ranges::find(method.options, name, &visibility::OptionDescription::name) != method.options.end();
+  };
+  const bool has_depth = has("depth");
   if (has_depth) exact["depth"] = "first";
+  if (has("receiverPlane")) exact["receiverPlane"] = "on";
   const RepairRun best{method.name, options_with(method, given, exact)};
   ErrorRepair view = parted_light(method, given);
   if (repairs.ends_at_points) view = points_of_light(visibility::complete_options(method, given));

@@ -23,8 +23,23 @@ LightBasis light_basis(const visibility::Light& light) {
   return basis;
 }
 
+LightBasis light_basis(const visibility::Light& light, const visibility::SceneFloats& scene) {
+  if (light.kind != visibility::LightKind::sphere) return light_basis(light);
+  LightBasis basis;
+  basis.center = light.center;
+  const glm::dvec3 way = 0.5 * (glm::dvec3(scene.lower) + glm::dvec3(scene.upper)) - basis.center, far = glm::abs(way);
+  int axis = 1;
+  if (far.x > far[axis]) axis = 0;
+  if (far.z > far[axis]) axis = 2;
+  basis.n[axis] = way[axis] > 0 ? 1 : -1;
+  basis.u[(axis + 1) % 3] = 1;
+  basis.v = glm::cross(basis.n, basis.u);
+  return basis;
+}
+
 LightBounds light_bounds(const visibility::Light& light, const LightBasis& basis) {
-  if (light.kind == visibility::LightKind::disk) return {glm::dvec2(-light.radius), glm::dvec2(light.radius)};
+  if (light.kind == visibility::LightKind::disk || light.kind == visibility::LightKind::sphere)
+    return {glm::dvec2(-light.radius), glm::dvec2(light.radius)};
   LightBounds bounds;
   if (light.kind == visibility::LightKind::ellipse) {
     const LightAxes axes = light_axes(light, basis);

@@ -2,6 +2,7 @@
 
 #include "maps/host/map_view.shared.h"
 #include "visibility/light_samples.hpp"
+#include "visibility/scene_floats.hpp"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -10,7 +11,7 @@
 
 namespace penumbra::maps {
 
-/// Axes of a planar light: orthonormal, n toward its emitting side, u along its first stored axis.
+/// Axes of a light's maps: orthonormal; of a planar light n is toward its emitting side, u along its first stored axis.
 struct LightBasis {
   glm::dvec3 center{0};  ///< the light's centroid (a polygon's is not Light::center)
   glm::dvec3 u{0}, v{0}, n{0};
@@ -22,8 +23,10 @@ struct LightBasis {
 
 /// The light must be planar (no sphere).
 LightBasis light_basis(const visibility::Light& light);
+/// A sphere's, too: along the world's axes, n toward the middle of the scene along the one on which that is farthest.
+LightBasis light_basis(const visibility::Light& light, const visibility::SceneFloats& scene);
 
-/// The light's bounding rectangle along u and v.
+/// The light's bounding rectangle along u and v; of a sphere that of its disk.
 struct LightBounds {
   glm::dvec2 lower{0}, upper{0};
 };

@@ -39,7 +39,7 @@ uint this_receiver() {
 #endif
 }
 
-bool on_emitting_side(vec3 d) { return d.z > 0.0 || (lookup.two_sided != 0 && d.z < 0.0); }
+bool on_emitting_side(vec3 d) { return d.z > 0.0 || (lookup.two_sided != 0 && d.z < 0.0) || lookup.two_sided == 2; }
 
 // Williams 1978: is the light point seen? Not from below the receiver's own horizon.
 bool light_point_is_seen(LightView view, uint first_map, vec3 d, vec3 m) {

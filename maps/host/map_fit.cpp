@@ -159,6 +159,10 @@ double farthest(const visibility::SceneFloats& scene, const glm::dvec3& x) {
 
 }  // namespace
 
+glm::dvec2 reach_of_all(const visibility::SceneFloats& scene) {
+  return glm::dvec2(0x1p20 * glm::length(glm::dvec3(scene.upper) - glm::dvec3(scene.lower)));
+}
+
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options) {
   std::vector<glm::dvec3> local(scene.positions.size());
@@ -172,7 +176,8 @@ FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Li
     // Strictly beyond everything: a depth of 1 means that there is nothing.
     fitted.views[i].far = static_cast<float>(std::max(farthest(scene, points[i]) * 1.0625, 1e-30));
   }
-  for (int s = 0; s < (light.two_sided ? 2 : 1); ++s) {
+  const bool both_sides = light.two_sided || light.kind == visibility::LightKind::sphere;
+  for (int s = 0; s < (both_sides ? 2 : 1); ++s) {
     const double sign = s == 0 ? 1 : -1;
     const SideTriangles receivers =
         triangles_on_side(scene, local, sign, [&](std::size_t i) { return receives(scene, light, i); });

@@ -35,6 +35,9 @@ struct FitOptions {
   glm::dvec2 reach{0};
 };
 
+/// FitOptions::reach of a light that is so large that every caster shades something.
+glm::dvec2 reach_of_all(const visibility::SceneFloats& scene);
+
 /// Fits each point's maps to the receivers of the scene, so that no receiver on an emitting side is ever outside.
 /// Depends on mesh and light only, not on the camera.
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,

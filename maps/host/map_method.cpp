@@ -133,7 +133,7 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   visibility::check_light(recipe_.description, light);
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
   light_ = &light;
-  basis_ = light_basis(light);
+  basis_ = light_basis(light, *scene_);
   parts_ = visibility::light_parts(light, recipe_.sub_lights);
   std::vector<glm::vec3> centres;
   for (const visibility::LightPart& part : parts_) centres.emplace_back(visibility::center_of(part.light));
@@ -145,6 +145,7 @@ void MapMethod::prepare_light(const visibility::Light& light) {
       fit.reach = glm::max(fit.reach, glm::max(-bounds.lower, bounds.upper));
     }
   }
+  if (recipe_.all_casters) fit.reach = reach_of_all(*scene_);
   fitted_ =
       fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
@@ -244,7 +245,9 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
     gpu::LookupPush push{.basis = basis_.rounded(),
                          .bias = static_cast<float>(options_.bias),
                          .size = options_.size,
-                         .two_sided = light_->two_sided ? 1u : 0u,
+                         .two_sided = light_->kind == visibility::LightKind::sphere ? 2u
+                                      : light_->two_sided                           ? 1u
+                                                                                    : 0u,
                          .first_receiver = part.first_receiver,
                          .receiver_count = part.count,
                          .first_result = part.first_result,
@@ -256,7 +259,8 @@ void MapMethod::ask(render::Commands& commands, const visibility::Tile& tile, st
                          .depth_use = static_cast<std::uint32_t>(options_.depth),
                          .first_row = 0,
                          .last_row = 0,
-                         .width = receivers_.width()};
+                         .width = receivers_.width(),
+                         .own_depth = options_.receiver_plane ? 0u : 1u};
     std::vector<render::BufferReference> buffers{*part.receivers, *views_, *depths_, *results_};
     for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
       std::ranges::copy(product->buffers(), std::back_inserter(buffers));
@@ -360,6 +364,11 @@ std::uint64_t MapMethod::memory_bytes() const {
 std::vector<visibility::LightKind> planar_lights() {
   return {visibility::LightKind::rectangle, visibility::LightKind::disk, visibility::LightKind::ellipse,
           visibility::LightKind::polygon};
+}
+
+std::vector<visibility::LightKind> with_spheres(std::vector<visibility::LightKind> lights) {
+  lights.push_back(visibility::LightKind::sphere);
+  return lights;
 }
 
 std::unique_ptr<visibility::Method> make_map_method(const render::Device& device, MapRecipe recipe,

@@ -114,6 +114,8 @@ struct MapRecipe {
   std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};
   /// The look-up asks for all that stands between a receiver and any point of the light (FitOptions::reach).
   bool whole_light = false;
+  /// It asks for casters that stand elsewhere, too: windows hold all that there are, or become hemicubes.
+  bool all_casters = false;
   /// A workgroup answers one receiver, looking at many texels (group_scalar_main.glsl, group_mask_main.glsl).
   bool group_a_receiver = false;
   /// With group_a_receiver: it answers so many pixels across and down (GROUP_A_PACKET).
@@ -133,5 +135,7 @@ std::unique_ptr<visibility::Method> make_map_method(const render::Device& device
 
 /// The shapes that methods of this family can do: all planar ones.
 std::vector<visibility::LightKind> planar_lights();
+/// What does not need a plane does spheres, too.
+std::vector<visibility::LightKind> with_spheres(std::vector<visibility::LightKind> lights);
 
 }  // namespace penumbra::maps

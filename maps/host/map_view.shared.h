@@ -70,7 +70,7 @@ struct LookupPush {
   LightBasis basis;
   float bias;  // in texels
   uint size;   // of a face, texels on a side
-  uint two_sided;
+  uint two_sided;       // 1: the light emits to both sides of its plane; 2: it is a sphere, whose plane is only its maps'
   uint first_receiver;  // in the receivers' buffer
   uint receiver_count;
   uint first_result;     // where the results of the first receiver go, counted in receivers
@@ -82,7 +82,8 @@ struct LookupPush {
   uint depth_use;  // kDepthFirst ...
   uint first_row;  // rows of a map that are looked at now; the others, before or after
   uint last_row;
-  uint width;  // receivers a row of the picture
+  uint width;      // receivers a row of the picture
+  uint own_depth;  // 1: texels are compared with the receiver's own depth, as published; 0: with its plane
 };
 
 #ifdef __cplusplus

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 namespace penumbra::maps {
 
@@ -16,12 +17,20 @@ std::vector<visibility::OptionDescription> single_map_option_descriptions(DepthU
           kRasteriser.description()};
 }
 
+std::vector<visibility::OptionDescription> compared_map_option_descriptions(DepthUse otherwise) {
+  std::vector<visibility::OptionDescription> options = single_map_option_descriptions(otherwise);
+  options.push_back(kReceiverPlane.description());
+  return options;
+}
+
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,
                        const visibility::ParsedOptions& options) {
   MapOptions chosen{.size = options[kMapSize], .bias = options[kBias], .rasteriser = options[kRasteriser]};
-  if (std::ranges::any_of(method.options, [](const auto& option) { return option.name == kDepth.name(); })) {
-    chosen.depth = options[kDepth];
-  }
+  const auto has = [&](std::string_view name) {
+    return std::ranges::find(method.options, name, &visibility::OptionDescription::name) != method.options.end();
+  };
+  if (has(kDepth.name())) chosen.depth = options[kDepth];
+  if (has(kReceiverPlane.name())) chosen.receiver_plane = options[kReceiverPlane];
   if (chosen.size > device.limits().max_image_size) {
     throw UsageError("method {}: option {} is {}; this device draws images of up to {} texels a side", method.name,
                      kMapSize.name(), chosen.size, device.limits().max_image_size);

@@ -45,12 +45,17 @@ constexpr visibility::ChoiceOption<DepthUse, 4> depth_option(DepthUse otherwise)
 }
 inline constexpr auto kDepth = depth_option(DepthUse::first);
 
-/// What all methods here have: texels on a side of a map, the bias in texels, and who draws the maps; and `depth`, if
-/// the method has it.
+/// Of a single-map method that compares texels with a receiver one by one: taps.glsl.
+inline constexpr auto kReceiverPlane = visibility::flag_option(
+    "receiverPlane", true, "compare each texel with the receiver's plane; off: with the receiver's own depth");
+
+/// What all methods here have: texels on a side of a map, the bias in texels, and who draws the maps; `depth` and
+/// `receiverPlane`, if the method has them.
 struct MapOptions {
   std::uint32_t size = kMapSize.otherwise;
   double bias = kBias.otherwise;
   DepthUse depth = DepthUse::first;
+  bool receiver_plane = true;
   Rasteriser rasteriser = Rasteriser::vulkan;
 };
 
@@ -59,6 +64,8 @@ std::vector<visibility::OptionDescription> map_option_descriptions(const visibil
                                                                    const visibility::RealOption& bias = kBias);
 /// Those of a method that asks one map, from the light's centre: the same, and `depth`.
 std::vector<visibility::OptionDescription> single_map_option_descriptions(DepthUse otherwise = DepthUse::first);
+/// Those of one that compares its texels with a receiver one by one: the same, and `receiverPlane`.
+std::vector<visibility::OptionDescription> compared_map_option_descriptions(DepthUse otherwise = DepthUse::first);
 
 /// Throws UsageError for a size that the device cannot draw.
 MapOptions map_options(const render::Device& device, const visibility::MethodDescription& method,

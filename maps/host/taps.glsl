@@ -4,7 +4,8 @@
 // the texel. Comparing the two depths as they are shades a tilted receiver by itself (acne). So the map is asked where it
 // knows the answer: at the point of the receiver's own plane in the direction of the texel's centre (the receiver-plane
 // depth of Isidoro 2006, here exact: 1/depth of a plane is affine in the map's coordinates). What remains for the bias are
-// neighbouring faces that rise above the receiver's plane within the texel, and rounding.
+// neighbouring faces that rise above the receiver's plane within the texel, and rounding. (receiverPlane=off: the
+// receiver's own depth is compared, as papers have it, and acne is there.)
 
 // A receiver's plane is not followed further than this many texels in depth: so steep, half a texel is half the scene.
 const float kSteepest = 8.0;
@@ -148,6 +149,9 @@ bool is_before(Tap tap, float receiver, float forgiven) {
   return tap.depth < receiver - forgiven;
 }
 
+// Is what the map has nearer to the light than this depth, whatever the slope of what receives?
+bool is_before_depth(Tap tap, float depth, float bias) { return is_before(tap, depth, bias * tap.texel * tap.along); }
+
 // Is what the map has nearer to the light than the receiver's plane (normal m away from the light, at distance h = m . p
 // > 0 from the light point)? A plane that the direction misses, or meets beyond `limit`, is taken to be at `limit`.
 bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
@@ -165,9 +169,9 @@ bool blocks(Tap tap, vec3 m, float h, float limit, float bias) {
 bool blocks_light(Tap tap, vec3 d, vec3 m, float bias) {
   const float limit = d.z / tap.direction.z;
   const float h = dot(m, d);
-  if (h > 0.0) return blocks(tap, m, h, limit, bias);
+  if (h > 0.0 && lookup.own_depth == 0) return blocks(tap, m, h, limit, bias);
   // Where the light's centre is below the receiver's horizon its plane says nothing about the centre's map.
-  return is_before(tap, limit, bias * tap.texel * tap.along);
+  return is_before_depth(tap, limit, bias);
 }
 
 vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis.v, x), dot(basis.n, x)); }
@@ -175,5 +179,6 @@ vec3 to_basis(LightBasis basis, vec3 x) { return vec3(dot(basis.u, x), dot(basis
 // The hard shadow test: receiver at d from the light point, m as above; both in the light's basis.
 bool hard_shadow(LightView view, uint first_map, uint size, vec3 d, vec3 m, float bias) {
   const Tap tap = fetch(view, first_map, size, d);
+  if (lookup.own_depth != 0) return is_before_depth(tap, tap.along, bias);
   return blocks(tap, m, dot(m, d), tap.along * (1.0 + kSteepest * tap.texel), bias);
 }

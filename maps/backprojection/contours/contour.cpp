@@ -32,7 +32,7 @@ visibility::MethodDescription contour_description() {
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
       .textures = false,
-      .options = single_map_option_descriptions(),
+      .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,
       .repairs = contour_repairs};
   description.options.push_back(kSearch.description());

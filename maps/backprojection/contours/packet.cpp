@@ -78,7 +78,7 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
-      .options = single_map_option_descriptions(),
+      .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,
       .repairs = contour_repairs};
   description.options.push_back(packet_option());

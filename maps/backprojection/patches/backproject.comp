@@ -9,9 +9,9 @@
 #define LIGHT_TABLE 5
 #include "maps/backprojection/light_table.glsl"
 #include "maps/backprojection/patches/fill.glsl"
-#include "maps/backprojection/patches/sphere.glsl"
 #define PYRAMID_BINDING 6
 #include "maps/backprojection/search.glsl"
+#include "maps/backprojection/patches/sphere.glsl"
 
 // Guennebaud, Barthe and Paulin 2006: V = 1 - the sum of what the patches of the kernel's texels cover of the light.
 
@@ -19,7 +19,8 @@ layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
-  if (own.search != 0) return search_kernel(face, light.lower, light.upper, near, 0, true);
+  if (own.form == kFormSphere) return sphere_kernel(face, near, own.search != 0);
+  if (own.search != 0) return search_kernel(face, light.lower, light.upper, near, 1.0, 0, true);
   return kernel_on(face, lookup.size, asked.e, light.lower, light.upper, near, 0);
 }
 
@@ -29,7 +30,7 @@ bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
   return none_hides(face, first - 1, last, own.layers, own.form == kFormPatch, depths);
 }
 
-float share_above() { return light_above_horizon(asked.e, asked.m); }
+float share_above() { return own.ball != 0 ? sphere_above_horizon() : light_above_horizon(asked.e, asked.m); }
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }
 

@@ -14,6 +14,7 @@
 #include "maps/backprojection/patches/repairs.hpp"
 #include "maps/backprojection/subsampled.hpp"
 #include "maps/products/depth_pyramid.hpp"
+#include "maps/products/light_shape.hpp"
 #include "maps/products/nearest_caster.hpp"
 
 #include <utility>
@@ -26,7 +27,7 @@ constexpr visibility::ChoiceOption kForm{
     "form",
     {{"patch", gpu::kFormPatch}, {"sphere", gpu::kFormSphere}},
     gpu::kFormPatch,
-    "rectangles on the light, or bounding spheres before the disk of the light's area (without fill)"};
+    "rectangles on the light, or bounding spheres before the disk of the light's area or a sphere (without fill)"};
 constexpr visibility::IntegerOption kDeepestLayers{
     "layers", 1, 16, 1, "layers of surfaces that are asked, of which the deepest that hides some of the light counts"};
 constexpr auto kPatchSearch = search_option(Search::hsm);
@@ -37,7 +38,7 @@ visibility::MeshVerdict backproject_verdict(const mesh::Diagnosis& mesh) {
 
 }  // namespace
 
-visibility::MethodDescription backproject_description() {
+visibility::MethodDescription backproject_description(const visibility::MethodOptions& options) {
   visibility::MethodDescription description{
       .name = "backproject",
       .family = visibility::Family::image,
@@ -45,7 +46,7 @@ visibility::MethodDescription backproject_description() {
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
       .lights = planar_lights(),
-      .options = single_map_option_descriptions(),
+      .options = compared_map_option_descriptions(),
       .verdict_on = backproject_verdict,
       .repairs = backproject_repairs};
   description.options.push_back(kPatchFill.description());
@@ -54,12 +55,16 @@ visibility::MethodDescription backproject_description() {
   description.options.push_back(kPatchSearch.description());
   description.options.push_back(kSubsample.description());
   description.options.push_back(kSubsampleBy.description());
+  if (visibility::parse_options(description, options)[kForm] == gpu::kFormSphere) {
+    description.lights = with_spheres(planar_lights());
+    description.textures = false;  // a cap of directions is as bright everywhere
+  }
   return description;
 }
 
 std::unique_ptr<visibility::Method> make_backproject(const render::Device& device,
                                                      const visibility::MethodOptions& options) {
-  MapRecipe recipe{.description = backproject_description(),
+  MapRecipe recipe{.description = backproject_description(options),
                    .look_up_name = "backproject look-up",
                    .look_up = shaders::kBackprojectComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
@@ -71,10 +76,16 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   const Search search = parsed[kPatchSearch];
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
-  const gpu::BackprojectPush push{parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u,
-                                  parsed[kDeepestLayers]};
+  recipe.all_casters = parsed[kForm] == gpu::kFormSphere;
+  const gpu::BackprojectPush push{
+      parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kDeepestLayers], 0u, 0.0F};
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
-  recipe.push = [push](const visibility::Light&) { return push_words(push); };
+  recipe.push = [push](const visibility::Light& light) {
+    gpu::BackprojectPush of_light = push;
+    of_light.ball = light.kind == visibility::LightKind::sphere ? 1 : 0;
+    of_light.radius = static_cast<float>(half_width(light));  // a sphere's area is that of the disk of its radius
+    return push_words(of_light);
+  };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }
 

@@ -11,7 +11,7 @@ namespace penumbra::maps {
 std::unique_ptr<visibility::Method> make_backproject(const render::Device& device,
                                                      const visibility::MethodOptions& options);
 
-/// What it is; needs no device.
-visibility::MethodDescription backproject_description();
+/// What these options make of it; needs no device. Spheres (form=sphere) do sphere lights, too, and no textures.
+visibility::MethodDescription backproject_description(const visibility::MethodOptions& options = {});
 
 }  // namespace penumbra::maps

@@ -14,6 +14,8 @@ struct BackprojectPush {
   uint form;    // kFormPatch or kFormSphere
   uint search;  // whether a pyramid is asked
   uint layers;  // that are asked
+  uint ball;    // 1: the light is a sphere
+  float radius; // its, or that of the disk of the light's area
 };
 
 #ifdef __cplusplus

@@ -104,7 +104,7 @@ Kernel kernel_of(MapFace face) {
   coarser_share = 1.0;
   Kernel kernel = kNoKernel;
   if (own.search != 0) {
-    kernel = search_kernel(face, light.lower, light.upper, near, padding(), true);
+    kernel = search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true);
     if (is_empty(kernel)) return kernel;
   }
   if (own.search == 0 || level > 0) kernel = kernel_at_level(face);

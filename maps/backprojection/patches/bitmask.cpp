@@ -58,7 +58,7 @@ visibility::MethodDescription bitmask_description() {
           "light's centre sees",
       .lights = planar_lights(),
       .on_request = true,
-      .options = single_map_option_descriptions(),
+      .options = compared_map_option_descriptions(),
       .verdict_on = bitmask_verdict,
       .repairs = bitmask_repairs};
   for (const auto& option :

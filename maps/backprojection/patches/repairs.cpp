@@ -31,7 +31,7 @@ ErrorRepair& of(ErrorRepairs& repairs, ErrorCause cause) {
 /// Those of these options that patches have in every method.
 MethodOptions patch_options(const MethodOptions& options, const MethodOptions& more) {
   MethodOptions chosen = more;
-  for (const char* key : {"size", "bias", "depth", "rasteriser"}) chosen.emplace(key, options.at(key));
+  for (const char* key : {"size", "bias", "depth", "receiverPlane", "rasteriser"}) chosen.emplace(key, options.at(key));
   return chosen;
 }
 
@@ -57,7 +57,8 @@ ErrorRepair shared_borders(RepairRun run) {
 /// All but the view that can be combined for patches: the finest union of all layers.
 std::vector<RepairRun> patches_of_one_view(const MethodOptions& options) {
   const RepairRun run =
-      joined(options, {{"layers", "16"}, {"fill", "shared"}, {"bias", "0.015625"}, {"depth", "first"}});
+      joined(options,
+             {{"layers", "16"}, {"fill", "shared"}, {"bias", "0.015625"}, {"depth", "first"}, {"receiverPlane", "on"}});
   const std::string doubled[] = {"size"};
   return from_finest(bitmask_description(), run, doubled);
 }

@@ -1,36 +1,87 @@
-// The patch as its bounding sphere, the light as the disk of its area that faces the receiver (Bavoil and Silva 2006): the
-// share of the light's cap of directions that the sphere's cap covers. Included after group_kernel.glsl, light_table.glsl.
+// The patch as its bounding sphere, the light as a sphere or as the disk of its area that faces the receiver (Bavoil and
+// Silva 2006): the share of the light's cap of directions that the sphere's cap covers. Included after group_kernel.glsl,
+// light_table.glsl; the shader has own.radius, the light's, and own.ball, whether it is a sphere.
 
-// The area that two circles of a plane share.
+const float kHalfDiagonal = 0.70710678118655;
+
+// A part of a disk of radius r behind a chord 2 half_chord long, that far from the centre. Small ones, too, to a float.
+float segment(float r, float half_chord, float away) {
+  const float turn = 2.0 * atan(half_chord, away);
+  const float square = turn * turn;
+  // turn - sin turn
+  const float bulge = turn < 0.6 ? turn * square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)) : turn - sin(turn);
+  return 0.5 * r * r * bulge;
+}
+
+// The area that two disks of a plane share.
 float lens(float r, float s, float apart) {
   const float small = min(r, s), large = max(r, s);
-  if (apart >= small + large) return 0.0;
-  if (apart <= large - small) return 3.14159265358979 * small * small;
-  const float x = (apart * apart + large * large - small * small) / (2.0 * apart);  // the chord, from the larger's centre
-  const float y = apart - x;
-  const float half_chord = sqrt(max(0.0, large * large - x * x));
-  return large * large * acos(clamp(x / large, -1.0, 1.0)) + small * small * acos(clamp(y / small, -1.0, 1.0)) -
-         apart * half_chord;
+  const float gap = apart - large;  // of the small one's centre
+  if (gap >= small) return 0.0;
+  if (gap <= -small) return 3.14159265358979 * small * small;
+  const float rise = (small - gap) * (small + gap) / (2.0 * apart);  // of the large one, beyond their common chord
+  const float half_chord = sqrt(max(0.0, rise * (2.0 * large - rise)));
+  return segment(large, half_chord, large - rise) + segment(small, half_chord, gap + rise);
+}
+
+// Half the angle that a sphere is seen under; from within it half of all directions. (Not asin: drivers may be 1e-4 off.)
+float sphere_angle(float radius, float away) {
+  return radius < away ? atan(radius, sqrt((away - radius) * (away + radius))) : 1.57079632679490;
 }
 
 uint sphere_hides(MapFace face, Tap tap) {
   const vec3 to_light = -asked.e, to_sphere = tap.depth * tap.direction - asked.e;
   const float radius = 0.5 * length(face.texel) * tap.depth;
   const float distance_to_light = length(to_light), distance_to_sphere = length(to_sphere);
-  // A sphere around the receiver covers the half of all directions.
-  const float sphere_angle = radius < distance_to_sphere ? asin(radius / distance_to_sphere) : 1.57079632679490;
-  const float light_angle = atan(sqrt(light.area / 3.14159265358979), distance_to_light);
+  const float angle = sphere_angle(radius, distance_to_sphere);
+  const float light_angle =
+      own.ball != 0 ? sphere_angle(own.radius, distance_to_light) : atan(own.radius, distance_to_light);
   const float between = 2.0 * atan(length(to_light * distance_to_sphere - to_sphere * distance_to_light),
                                    length(to_light * distance_to_sphere + to_sphere * distance_to_light));
-  // Chords stand for angles: the disk of a cap's chord has the cap's area, and where one cap lies in the other, or beside
-  // it, the shared area is exact.
-  float covered;
-  const float r = 2.0 * sin(0.5 * light_angle), s = 2.0 * sin(0.5 * sphere_angle);
-  if (between >= light_angle + sphere_angle) return 0;
-  if (between <= abs(light_angle - sphere_angle)) {
-    covered = 3.14159265358979 * min(r, s) * min(r, s);
-  } else {
-    covered = lens(r, s, 2.0 * sin(0.5 * between));
-  }
-  return uint(clamp(covered / (3.14159265358979 * r * r), 0.0, 1.0) * float(kWholeLight) + 0.5);
+  // Seen from the point opposite the light's middle (stereographically) all caps are disks: of the smaller one's disk
+  // the share that is covered, times its cap.
+  const float light_radius = tan(0.5 * light_angle);
+  const float near_end = tan(0.5 * (between - angle)), far_end = tan(min(0.5 * (between + angle), 1.55));
+  const float radius_there = 0.5 * (far_end - near_end), smaller = min(light_radius, radius_there);
+  const float covered = lens(light_radius, radius_there, 0.5 * (far_end + near_end)) / (3.14159265358979 * smaller * smaller);
+  const float cap = sin(0.5 * min(light_angle, angle)) / sin(0.5 * light_angle);
+  return uint(clamp(covered * cap * cap, 0.0, 1.0) * float(kWholeLight) + 0.5);
+}
+
+// Where the cone of lines from the receiver that meet a sphere of the light's radius around its middle cuts the light's
+// plane: the bounding rectangle; larger than the scene where the receiver is no higher than the sphere.
+void cone_bounds(out vec2 lower, out vec2 upper) {
+  const float r = own.radius * 1.0001, z = asked.e.z;
+  const float below = (z - r) * (z + r);
+  lower = vec2(-1e3 * asked.view.far);
+  upper = -lower;
+  if (z < 1.01 * r) return;
+  const vec2 middle = -r * r * asked.e.xy, half_width = r * z * sqrt(asked.e.xy * asked.e.xy + below);
+  lower = (middle - half_width) / below;
+  upper = (middle + half_width) / below;
+}
+
+// Texels whose spheres may meet that cone, no sphere's middle nearer to the light's plane than `near`. A point of a
+// sphere is up to its radius, half a texel's diagonal, beside its middle and nearer to the light; on the map that is half a
+// diagonal times 1 + the tangent that it is seen under.
+Kernel sphere_kernel(MapFace face, inout float near, bool search) {
+  // Sideways a texel's lowest row reaches down to the light's plane.
+  if (face.axis != 2) return Kernel(ivec2(0), ivec2(int(lookup.size) - 1), true);
+  vec2 lower, upper;
+  cone_bounds(lower, upper);
+  const vec2 widest = max(abs(face.lower), abs(face.lower + float(lookup.size) * face.texel));
+  const int padding = 1 + int(ceil(kHalfDiagonal * (1.0 + max(widest.x, widest.y))));
+  const float begins = 1.0 - kHalfDiagonal * max(face.texel.x, face.texel.y);
+  if (search) return search_kernel(face, lower, upper, near, max(begins, 0.0), padding, true);
+  return kernel_on(face, lookup.size, asked.e, lower, upper, max(begins, 0.0) * near, padding);
+}
+
+// Of the light the share above the receiver's horizon, by area of the disk that a sphere is seen as: within the circle
+// along which lines from the receiver touch it.
+float sphere_above_horizon() {
+  const float away = length(asked.e);
+  if (away <= own.radius) return 0.0;
+  const float facing = dot(asked.m, asked.e) / away, aside = sqrt(max(0.0, 1.0 - facing * facing));
+  const float touching = sqrt((away - own.radius) * (away + own.radius));
+  return disk_beside_line(facing * touching / max(aside * own.radius, 1e-30));
 }

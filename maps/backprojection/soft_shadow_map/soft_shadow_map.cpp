@@ -3,12 +3,13 @@
 // and map need not have the same aspect; the second pass draws the farthest surface in place of the farthest back face,
 // which closed meshes do not tell apart and soups can be asked for; sums are integers in place of blended floats
 // (precision=fp16: 16-bit floats, as published); each receiver texel gathers occluders (form=scatter: as published),
-// which are the same sums.
+// which are the same sums; what the paper leaves out, shadows on occluders, another method may do (self=backproject).
 
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "maps/backprojection/patches/backproject.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_gather.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_resolve.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_scatter.comp.spv.hpp"
@@ -28,7 +29,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <memory>
 #include <optional>
+#include <utility>
 
 namespace penumbra::maps {
 namespace {
@@ -52,6 +56,13 @@ constexpr visibility::ChoiceOption kForm{
     "form", {{"gather", Form::gather}, {"scatter", Form::scatter}}, Form::gather, "which map is walked: the same sums"};
 constexpr visibility::ChoiceOption kFilter{
     "filter", {{"linear", Filter::linear}, {"nearest", Filter::nearest}}, Filter::linear, "how V is read from its map"};
+
+enum class Self : std::uint8_t { none, backproject };
+constexpr visibility::ChoiceOption kSelf{"self",
+                                         {{"none", Self::none}, {"backproject", Self::backproject}},
+                                         Self::none,
+                                         "V of pixels on occluders, which the paper leaves out: the light above their "
+                                         "horizon, or what backproject says with a map of this size"};
 
 visibility::MeshVerdict soft_shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a sum of texels, each projected onto the light; objects do not shade themselves", mesh);
@@ -83,7 +94,7 @@ visibility::MethodDescription soft_shadow_map_description() {
       .repairs = repairs};
   for (const visibility::OptionDescription& option :
        {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
-        kForm.description(), kFilter.description()}) {
+        kForm.description(), kFilter.description(), kSelf.description()}) {
     description.options.push_back(option);
   }
   return description;
@@ -104,19 +115,29 @@ struct Settings {
 
 class SoftShadowMap final : public visibility::Method {
  public:
-  SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings);
+  /// `self`: who says what V is on occluders; none: their horizon.
+  SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings,
+                std::unique_ptr<visibility::Method> self);
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
-  void prepare_mesh(const visibility::SceneFloats& scene) override { scene_ = &scene; }
+  void prepare_mesh(const visibility::SceneFloats& scene) override {
+    scene_ = &scene;
+    if (self_) self_->prepare_mesh(scene);
+  }
   void prepare_light(const visibility::Light& light) override;
   void prepare_view(const visibility::ViewSamples& samples) override;
   [[nodiscard]] std::uint32_t max_tile_rows() const override {
-    return receivers_.max_rows(*device_, sizeof(std::uint32_t));
+    const std::uint32_t rows = receivers_.max_rows(*device_, sizeof(std::uint32_t));
+    return self_ ? std::min(rows, self_->max_tile_rows()) : rows;
   }
   void evaluate(const visibility::Tile& tile) override;
-  void read_visibility(std::span<float> visibility) override { results_.read(visibility); }
+  void read_visibility(std::span<float> visibility) override;
 
-  std::vector<visibility::PassTime> take_pass_times() override { return times_.take(); }
+  std::vector<visibility::PassTime> take_pass_times() override {
+    std::vector<visibility::PassTime> times = times_.take();
+    if (self_) std::ranges::copy(self_->take_pass_times(), std::back_inserter(times));
+    return times;
+  }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
@@ -139,6 +160,8 @@ class SoftShadowMap final : public visibility::Method {
   visibility::MethodDescription description_;
   MapOptions map_;
   Settings settings_;
+  std::unique_ptr<visibility::Method> self_;
+  std::vector<std::uint32_t> on_occluder_;  ///< of the tile last evaluated, 1 a pixel
   CasterMaps occluder_maps_, receiver_maps_;
   render::ComputePass gather_, scatter_, resolve_, look_up_;
   Receivers receivers_;
@@ -157,11 +180,13 @@ class SoftShadowMap final : public visibility::Method {
   std::unique_ptr<render::Buffer> occluders_, receiver_depths_, visible_, sums_, counts_, views_;
 };
 
-SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings)
+SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings,
+                             std::unique_ptr<visibility::Method> self)
     : device_(&device),
       description_(soft_shadow_map_description()),
       map_(map),
       settings_(settings),
+      self_(std::move(self)),
       occluder_maps_(device, map.size, map.rasteriser),
       receiver_maps_(device, settings.receiver_size, map.rasteriser),
       gather_(device, {.name = "gather occluders",
@@ -211,6 +236,7 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   visibility::check_light(description_, light);
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", description_.name);
   light_ = &light;
+  if (self_) self_->prepare_light(light);
   basis_ = light_basis(light);
   const LightTableData shape = light_table(light, basis_);
   light_table_.write(shape);
@@ -315,19 +341,21 @@ void SoftShadowMap::add_up(const Map& occluders, std::uint32_t pass) {
 void SoftShadowMap::prepare_view(const visibility::ViewSamples& samples) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: prepare_view before prepare_light", description_.name);
   samples_ = &samples;
+  if (self_) self_->prepare_view(samples);
   receivers_.upload(*device_, *scene_, *light_, samples);
 }
 
 void SoftShadowMap::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(light_ != nullptr, "{}: evaluate before prepare_light", description_.name);
   if (!results_.begin(*device_, tile, receivers_)) return;
-  std::vector<std::uint32_t> on_occluder(results_.pixels(), 0);
-  for (std::size_t i = 0; i < on_occluder.size(); ++i) {
+  if (self_) self_->evaluate(tile);
+  on_occluder_.assign(results_.pixels(), 0);
+  for (std::size_t i = 0; i < on_occluder_.size(); ++i) {
     const std::int32_t triangle = samples_->triangle[std::size_t{tile.first_row} * receivers_.width() + i];
-    on_occluder[i] = triangle >= 0 && parts_.receivers[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
+    on_occluder_[i] = triangle >= 0 && parts_.receivers[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
   }
-  counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder, 1u));
-  results_.buffer().write<std::uint32_t>(on_occluder);
+  counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder_, 1u));
+  results_.buffer().write<std::uint32_t>(on_occluder_);
   const gpu::SoftLookupPush own{.size = settings_.receiver_size,
                                 .linear = settings_.filter == Filter::linear ? 1u : 0u};
   render::Commands commands(*device_);
@@ -346,9 +374,19 @@ void SoftShadowMap::evaluate(const visibility::Tile& tile) {
   times_.add(commands.submit());
 }
 
+void SoftShadowMap::read_visibility(std::span<float> visibility) {
+  results_.read(visibility);
+  if (!self_ || visibility.empty()) return;
+  std::vector<float> on_themselves(visibility.size());
+  self_->read_visibility(on_themselves);
+  for (std::size_t i = 0; i < visibility.size(); ++i) {
+    if (on_occluder_[i] != 0) visibility[i] = on_themselves[i];
+  }
+}
+
 std::uint64_t SoftShadowMap::memory_bytes() const {
-  std::uint64_t bytes = occluder_maps_.memory_bytes() + receiver_maps_.memory_bytes() + receivers_.memory_bytes() +
-                        results_.memory_bytes();
+  std::uint64_t bytes = (self_ ? self_->memory_bytes() : 0) + occluder_maps_.memory_bytes() +
+                        receiver_maps_.memory_bytes() + receivers_.memory_bytes() + results_.memory_bytes();
   for (const auto* buffer : {&occluders_, &receiver_depths_, &visible_, &sums_, &counts_, &views_}) {
     bytes += *buffer ? (*buffer)->bytes() : 0;
   }
@@ -372,7 +410,15 @@ std::unique_ptr<visibility::Method> make_soft_shadow_map(const render::Device& d
         "form=gather, "
         "which adds patches in the order of their texels, or precision=fp32");
   }
-  return std::make_unique<SoftShadowMap>(device, map_options(device, description, parsed), settings);
+  const MapOptions map = map_options(device, description, parsed);
+  std::unique_ptr<visibility::Method> self;
+  if (parsed[kSelf] == Self::backproject) {
+    const visibility::MethodOptions whole = visibility::complete_options(description, options);
+    visibility::MethodOptions alike;
+    for (const char* key : {"size", "depth", "rasteriser"}) alike[key] = whole.at(key);
+    self = make_backproject(device, alike);
+  }
+  return std::make_unique<SoftShadowMap>(device, map, settings, std::move(self));
 }
 
 }  // namespace penumbra::maps

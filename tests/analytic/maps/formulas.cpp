@@ -152,14 +152,15 @@ TEST(LightPattern, IsSpreadEvenly) {
 }
 
 /// A receiver and a board parallel to it that rises above it by as much, in depth, as the bias forgives somewhere:
-/// blocked where rise / (m · c) > bias · t · w · (1 + slope), c the texel's centre, m the plane's normal.
+/// blocked where rise / (m · c) > bias · t · w · (1 + slope), c the texel's centre, m the plane's normal. By the
+/// receiver's own depth w (receiverPlane=off) where w − (h − rise) / (m · c) > bias · t · w.
 class Bias : public MapsTest {
  protected:
   static constexpr std::uint32_t kSize = 256;
   static constexpr double kBias = 24, kLight = 5;
 
   /// The floor tilted by `tilt` about z; the board above it, twice as large.
-  static void expect_forgiven(double tilt, double share) {
+  static void expect_forgiven(double tilt, double share, bool own_depth = false) {
     const glm::dvec3 along(std::cos(tilt), std::sin(tilt), 0), up(-std::sin(tilt), std::cos(tilt), 0);
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, 2.0 * along, {0, 0, -2});
@@ -169,7 +170,7 @@ class Bias : public MapsTest {
     const double texel = window.widest() / (kSize - 2);
     // At the middle of the floor the board is where the bias ends: rise / (m · c) there is bias t w (1 + slope).
     const glm::dvec3 middle(0, -kLight, 0);
-    const double rise = share * forgiven(middle, up, texel) * cosine(middle, up);
+    const double rise = share * forgiven(middle, up, texel, own_depth) * cosine(middle, up);
     add_quad(scene, rise * up, 4.0 * along, {0, 0, -4}).receives_shadow = false;
     // View samples by hand: the board hides the floor from any camera above it.
     const auto grid = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
@@ -187,8 +188,13 @@ class Bias : public MapsTest {
       return samples;
     };
     const Stage stage(scene, kSide, kSide, light_samples(1), grid);
-    const visibility::MethodOptions options{{"size", fmt::format("{}", kSize)}, {"bias", fmt::format("{}", kBias)}};
-    for (const Factory& factory : {Factory(maps::make_shadow_map), Factory(maps::make_accumulate)}) {
+    visibility::MethodOptions options{{"size", fmt::format("{}", kSize)}, {"bias", fmt::format("{}", kBias)}};
+    std::vector<Factory> factories{maps::make_shadow_map, maps::make_accumulate};
+    if (own_depth) {
+      options["receiverPlane"] = "off";
+      factories = {maps::make_shadow_map};
+    }
+    for (const Factory& factory : factories) {
       const Masks found = run(factory, stage, options);
       std::size_t lit = 0, dark = 0, near = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
@@ -198,9 +204,10 @@ class Bias : public MapsTest {
         for (const double a : {-0.5, 0.5}) {
           for (const double b : {-0.5, 0.5}) {
             const glm::dvec3 c = d / -d.y + texel * glm::dvec3(a, 0, b);
-            least = std::min(least, rise / cosine(c, up));
-            most = std::max(most, rise / cosine(c, up));
-            const double forgives = kBias * texel * -d.y * (1 + slope(c, up));
+            const double beyond = own_depth ? -d.y - glm::dot(-up, d) / cosine(c, up) : 0.0;
+            least = std::min(least, beyond + rise / cosine(c, up));
+            most = std::max(most, beyond + rise / cosine(c, up));
+            const double forgives = kBias * texel * -d.y * (own_depth ? 1.0 : 1 + slope(c, up));
             allowed_least = std::min(allowed_least, forgives);
             allowed_most = std::max(allowed_most, forgives);
           }
@@ -214,7 +221,8 @@ class Bias : public MapsTest {
       }
       fmt::print("tilt {}, board at {} of the bias: {} lit, {} dark, {} of all within 2 %\n", tilt, share, lit, dark,
                  near);
-      if (tilt == 0) {
+      // (By its own depth a tilted receiver is forgiven the same share everywhere.)
+      if (tilt == 0 || own_depth) {
         EXPECT_EQ(share < 1 ? lit : dark, stage.samples.size());
         EXPECT_EQ(near, stage.samples.size());
       } else {
@@ -248,8 +256,8 @@ class Bias : public MapsTest {
   static double slope(const glm::dvec3& c, const glm::dvec3& up) {
     return (std::abs(up.x) + std::abs(up.z)) / cosine(c, up);
   }
-  static double forgiven(const glm::dvec3& d, const glm::dvec3& up, double texel) {
-    return kBias * texel * -d.y * (1 + slope(d, up));
+  static double forgiven(const glm::dvec3& d, const glm::dvec3& up, double texel, bool own_depth) {
+    return kBias * texel * -d.y * (own_depth ? 1.0 : 1 + slope(d, up));
   }
 };
 
@@ -261,6 +269,13 @@ TEST_F(Bias, ForgivesWhatItSaysOverALevelFloor) {
 TEST_F(Bias, GrowsWithTheSlope) {
   expect_forgiven(0.5, 1);
   expect_forgiven(-0.8, 1);
+}
+
+TEST_F(Bias, OfAReceiversOwnDepthDoesNot) {
+  expect_forgiven(0, 0.985, true);
+  expect_forgiven(0, 1.015, true);
+  expect_forgiven(0.3, 0.98, true);
+  expect_forgiven(0.3, 1.02, true);
 }
 
 }  // namespace

@@ -289,6 +289,24 @@ TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) 
   EXPECT_GT(dark, 5U);
 }
 
+// What the paper leaves out is another method's: on occluders its bytes, elsewhere one's own.
+TEST_F(SoftShadowMap, OnOccludersBackprojectMayAnswer) {
+  scenes::Scene scene = ball(0.5);
+  add_quad(scene, {0.3, 3.6, 0.3}, {0.4, 0, 0}, {0, 0, 0.4});  // shades the ball
+  const Stage stage(scene, 32, 32, light_samples(1));
+  const Run alone = soft(stage, {{"size", "64"}}), both = soft(stage, {{"size", "64"}, {"self", "backproject"}}),
+            tiled = soft(stage, {{"size", "64"}, {"self", "backproject"}}, 5);
+  const Masks other = run(maps::make_backproject, stage, {{"size", "64"}});
+  std::size_t shaded = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    const bool on_occluder = on_object(stage, i, 1) || on_object(stage, i, 2);
+    EXPECT_EQ(both.picture.visibility[i], on_occluder ? other.visibility[i] : alone.picture.visibility[i]);
+    shaded += on_occluder && other.visibility[i] != alone.picture.visibility[i] ? 1 : 0;
+  }
+  EXPECT_GT(shaded, 5U);
+  EXPECT_EQ(tiled.picture.visibility, both.picture.visibility);
+}
+
 TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
   scenes::Scene nothing = floor_and_light(0.5), crossing = ball(0.5), touching = floor_and_light(0.5), inside,
                 room = ball(0.5);

@@ -1,0 +1,58 @@
+#pragma once
+
+// Methods of maps/ by the words of the command line: "bitmask:occluder=quad:layers=2".
+
+#include "maps/filters/convolution.hpp"
+#include "maps/filters/occlusion_textures.hpp"
+#include "maps/filters/pcf.hpp"
+#include "maps/filters/vssm.hpp"
+#include "tests/analytic/maps/fixture.hpp"
+
+#include <map>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace penumbra::tests {
+
+/// A method and its options.
+struct Way {
+  std::string method;
+  visibility::MethodOptions options;
+
+  explicit Way(const std::string& words) {
+    std::stringstream fields(words);
+    std::getline(fields, method, ':');
+    for (std::string field; std::getline(fields, field, ':');) {
+      const std::size_t equals = field.find('=');
+      options[field.substr(0, equals)] = field.substr(equals + 1);
+    }
+  }
+  /// As it is, with more options, which say what it does not.
+  [[nodiscard]] Way with(const visibility::MethodOptions& more) const {
+    Way way = *this;
+    way.options.insert(more.begin(), more.end());
+    return way;
+  }
+  [[nodiscard]] std::unique_ptr<visibility::Method> make(const render::Device& device) const {
+    static const std::map<std::string, Factory> kFactories{{"shadow-map", maps::make_shadow_map},
+                                                           {"pcf", maps::make_pcf},
+                                                           {"pcss", maps::make_pcss},
+                                                           {"vssm", maps::make_vssm},
+                                                           {"convolution", maps::make_convolution},
+                                                           {"occlusion-textures", maps::make_occlusion_textures},
+                                                           {"backproject", maps::make_backproject},
+                                                           {"backproject-peel", maps::make_backproject_peel},
+                                                           {"bitmask", maps::make_bitmask},
+                                                           {"contour", maps::make_contour},
+                                                           {"packet", maps::make_packet},
+                                                           {"soft-shadow-map", maps::make_soft_shadow_map},
+                                                           {"accumulate", maps::make_accumulate},
+                                                           {"adaptive-light", maps::make_adaptive_light},
+                                                           {"deep-penumbra", maps::make_deep_penumbra},
+                                                           {"layered-attenuation", maps::make_layered_attenuation}};
+    return kFactories.at(method)(device, options);
+  }
+};
+
+}  // namespace penumbra::tests
