@@ -42,6 +42,7 @@ set(may_maps/backprojection maps/products maps/host render ${all_visibility} sce
 foreach(room patches contours soft_shadow_map)
   set(may_maps/backprojection/${room} ${may_maps/backprojection} maps/backprojection)
 endforeach()
+list(APPEND may_maps/backprojection/soft_shadow_map maps/backprojection/patches)  # self=backproject
 set(may_selftest maps/products/lists maps/products maps/host vsm engines/vectors volumes/scatter volumes/counters volumes/raster volumes/edges volumes/wedges render/opengl render
     ${all_visibility} scenes mesh/shapes mesh base)
 set(may_reference areas ${all_visibility} scenes mesh base)
