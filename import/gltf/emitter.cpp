@@ -32,8 +32,8 @@ struct Component {
 
 /// Winds all triangles alike, if each edge has two and they can be: then the mesh is closed.
 std::optional<Welded> wound_alike(const Welded& mesh) {
-  using Edge = std::pair<std::uint32_t, std::uint32_t>;
-  std::map<Edge, std::vector<std::size_t>> triangles_of;
+  using Side = std::pair<std::uint32_t, std::uint32_t>;
+  std::map<Side, std::vector<std::size_t>> triangles_of;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = mesh.triangles[i][k], b = mesh.triangles[i][(k + 1) % 3];
@@ -42,7 +42,7 @@ std::optional<Welded> wound_alike(const Welded& mesh) {
   }
   if (std::ranges::any_of(triangles_of, [](const auto& edge) { return edge.second.size() != 2; })) return std::nullopt;
   Welded wound = mesh;
-  const auto runs = [&](std::size_t triangle, const Edge& edge) {  // from the first to the second?
+  const auto runs = [&](std::size_t triangle, const Side& edge) {  // from the first to the second?
     const mesh::Triangle& t = wound.triangles[triangle];
     for (std::size_t k = 0; k < 3; ++k) {
       if (t[k] == edge.first && t[(k + 1) % 3] == edge.second) return true;
