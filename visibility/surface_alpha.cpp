@@ -1,7 +1,7 @@
 #include "visibility/surface_alpha.hpp"
 
 #include "scenes/texel_number.hpp"
-#include "visibility/alpha/shares.hpp"
+#include "visibility/alpha_shares.hpp"
 #include "visibility/scene_floats.hpp"
 
 #include <glm/geometric.hpp>

@@ -4,7 +4,7 @@
 #include "visibility/alpha/alpha_filter.hpp"
 
 #include "base/assert.hpp"
-#include "visibility/alpha/shares.hpp"
+#include "visibility/alpha_shares.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
 

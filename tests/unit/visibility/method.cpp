@@ -42,7 +42,8 @@ TEST(Method, RefusesLightsItCannotDoAndSaysWhichItCan) {
     check_light(description(), light);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("light \"bulb\" is a sphere; method pcss, as asked for, can do: rectangle, disk"),
+    EXPECT_NE(std::string(error.what())
+                  .find("light \"bulb\" is a sphere; method pcss, as asked for, can do: rectangle, disk"),
               std::string::npos);
   }
 }
