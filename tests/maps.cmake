@@ -8,6 +8,8 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/closed_form.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp
+  analytic/maps/fusion.cpp
+  analytic/maps/identities.cpp
   analytic/maps/layers.cpp
   analytic/maps/left_out.cpp
   analytic/maps/contour.cpp

@@ -1,5 +1,6 @@
 // adaptive-light against accumulate on the same points, against areas in closed form, and what its maps are refined by.
 
+#include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
 
 #include "base/error.hpp"
@@ -108,6 +109,59 @@ TEST_F(AdaptiveLight, OnALineIsAccumulateOverItsPoints) {
   stage.light = with_points(stage.light, points);
   EXPECT_EQ(all.picture.visibility, run(maps::make_accumulate, stage, {{"size", "128"}}).visibility);
   EXPECT_EQ(adaptive(stage, {{"levels", "3"}, {"epsilon", "1"}, {"form", "line"}}).maps, 2U);
+}
+
+// D4: of n points in a row with equal weights the outermost count as much as all others, though they stand for half as
+// much of the light. Over the penumbra of a straight edge V is a ramp, and the root of the mean square error is a sum
+// of steps'.
+TEST_F(AdaptiveLight, CornersAreNotTheLightsMean) {
+  scenes::Scene scene = bare_floor(1, 1.5);
+  scene.lights.front() = rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.001});
+  add_quad(scene, {1.5, 2.5, 0}, {1.5, 0, 0}, {0, 0, -1}).receives_shadow = false;  // from x = 0 on
+  constexpr int kPlaces = 400;
+  std::vector<double> places;
+  for (int i = 0; i < kPlaces; ++i) places.push_back(-1 + (2 * i + 1.0) / kPlaces);
+  const Stage stage = along_floor(scene, places, {9, 1, 9, visibility::SamplePattern::grid, 0});
+  const auto off = [&](const std::function<double(std::size_t)>& v) {
+    double sum = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) sum += std::pow(v(i) - (1 - places[i]) / 2, 2);
+    return std::sqrt(sum / kPlaces);
+  };
+  // Points from -1 to 1 of which those at less than -x are seen: each with its weight.
+  const auto steps = [&](const std::function<double(int)>& weight, const std::function<double(int)>& at) {
+    return off([&](std::size_t i) {
+      double v = 0;
+      for (int k = 0; k < 9; ++k) v += at(k) < -places[i] ? weight(k) : 0.0;
+      return v;
+    });
+  };
+  const auto corner = [](int k) { return -1 + k / 4.0; };
+  const auto ninth = [](int /*k*/) { return 1.0 / 9; };
+  const double equal = steps(ninth, corner),
+               trapezoid = steps([](int k) { return k % 8 == 0 ? 1.0 / 16 : 1.0 / 8; }, corner),
+               cells = steps(ninth, [](int k) { return -1 + (2 * k + 1) / 9.0; });
+  EXPECT_NEAR(equal, 0.0481, 1e-4);
+  EXPECT_NEAR(trapezoid, 0.0361, 1e-4);
+  EXPECT_NEAR(cells, 0.0321, 1e-4);
+  const auto found = [&](const char* weights) {
+    const Run nine = adaptive(
+        stage,
+        {{"form", "line"}, {"levels", "3"}, {"epsilon", "0"}, {"pcf", "off"}, {"weights", weights}, {"size", "2048"}});
+    EXPECT_EQ(nine.maps, 9U);
+    return off([&](std::size_t i) { return static_cast<double>(nine.picture.visibility[i]); });
+  };
+  const Masks accumulated = run(maps::make_accumulate, stage, {{"size", "2048"}});
+  const double found_cells = off([&](std::size_t i) { return static_cast<double>(accumulated.visibility[i]); });
+  fmt::print("nine points: equal {:.4f}, area {:.4f}, cells {:.4f}\n", found("equal"), found("area"), found_cells);
+  // A step is half a texel of 1.2 / 2046 off on the map, and a texel 2.5 · 2 as wide on the floor, of a penumbra 2
+  // wide; the places are 1/200 apart. A step of 1/9 that is off by d is wrong by 1/9 over d: 9 of them move the mean
+  // square by 9 · 2 · the error there · d / 9.
+  const double shift = 0.5 * 1.2 / 2046 * 5 + 1.0 / kPlaces, moved = 2 * (1.0 / 9) * shift;
+  for (const auto& [measured, expected] :
+       {std::pair(found("equal"), equal), {found("area"), trapezoid}, {found_cells, cells}}) {
+    EXPECT_NEAR(measured * measured, expected * expected, moved);
+    EXPECT_NEAR(measured, expected, 0.02 * expected);
+  }
 }
 
 TEST_F(AdaptiveLight, FewerMapsForLargerTolerances) {

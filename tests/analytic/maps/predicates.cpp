@@ -13,66 +13,6 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// The casters of `scene` that `keep` names, object by object.
-scenes::Scene only(scenes::Scene scene, const std::function<bool(std::size_t)>& keep) {
-  for (std::size_t object = 1; object < scene.objects.size(); ++object) {
-    if (!keep(object)) scene.objects[object].casts_shadow = false;
-  }
-  return scene;
-}
-
-// I18 (Eisemann et al. 2009, equation 1.5): with exact shares B of the parts of any caster, the whole hides at least
-// the largest and at most their sum; the product of what they leave lies between.
-TEST_F(MapsPredicates, WhatPartsHideBoundsWhatTheWholeHides) {
-  double nearest_to_max = 1, nearest_to_sum = 1, off = 0;
-  for (std::uint32_t seed = 0; seed < 6; ++seed) {
-    std::mt19937 random(seed);
-    const auto number = [&](int low, int high) {
-      return static_cast<double>(low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1))) / 2;
-    };
-    scenes::Scene scene = bare_floor(1, 2);
-    for (int part = 0; part < 3; ++part) {
-      std::vector<Corners> triangles(3);
-      for (Corners& corners : triangles) {
-        for (glm::dvec3& corner : corners) corner = {number(-3, 3), number(1, 7), number(-3, 3)};
-      }
-      add_object(scene, fmt::format("part {}", part), triangles).receives_shadow = false;
-    }
-    const auto on_the_floor = [&](const scenes::Scene& s) { return on_floor(s, 12, light_samples(1)); };
-    const Masks whole = exact(on_the_floor(scene));
-    std::vector<Masks> parts;
-    for (std::size_t part = 1; part <= 3; ++part) {
-      parts.push_back(exact(on_the_floor(only(scene, [&](std::size_t object) { return object == part; }))));
-    }
-    for (std::size_t i = 0; i < whole.visibility.size(); ++i) {
-      const double hidden = 1 - static_cast<double>(whole.visibility[i]);
-      double most = 0, sum = 0, left = 1;
-      for (const Masks& part : parts) {
-        const double share = 1 - static_cast<double>(part.visibility[i]);
-        most = std::max(most, share);
-        sum += share;
-        left *= 1 - share;
-      }
-      // V is a float: each is off by 2^-25.
-      constexpr double kRounding = 4 * 0x1p-25;
-      EXPECT_GE(hidden, most - kRounding) << "seed " << seed << ", pixel " << i;
-      EXPECT_LE(hidden, std::min(1.0, sum) + kRounding) << "seed " << seed << ", pixel " << i;
-      EXPECT_GE(1 - left, most - kRounding);
-      EXPECT_LE(1 - left, std::min(1.0, sum) + kRounding);
-      if (most > 0.05 && most < 0.95 && sum - most > 0.05) {
-        nearest_to_max = std::min(nearest_to_max, hidden - most);
-        nearest_to_sum = std::min(nearest_to_sum, std::min(1.0, sum) - hidden);
-        off = std::max(off, std::abs(1 - left - hidden));
-      }
-    }
-  }
-  record("I18 least of whole - max", nearest_to_max);
-  record("I18 least of sum - whole", nearest_to_sum);
-  record("I18 product off by up to", off);
-  EXPECT_LT(nearest_to_max, 0.01) << "both bounds are reached";
-  EXPECT_LT(nearest_to_sum, 0.01);
-}
-
 /// One ball, whose map from the light's centre is the receivers' window: four specks at its corners.
 scenes::Scene ball_and_specks() {
   scenes::Scene scene = bare_floor(0.5, 4);
