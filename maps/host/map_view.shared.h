@@ -68,9 +68,9 @@ struct PeelPush {
 // What every look-up needs; its own push constants follow.
 struct LookupPush {
   LightBasis basis;
-  float bias;  // in texels
-  uint size;   // of a face, texels on a side
-  uint two_sided;       // 1: the light emits to both sides of its plane; 2: it is a sphere, whose plane is only its maps'
+  float bias;      // in texels
+  uint size;       // of a face, texels on a side
+  uint two_sided;  // 1: the light emits to both sides of its plane; 2: it is a sphere, whose plane is only its maps'
   uint first_receiver;  // in the receivers' buffer
   uint receiver_count;
   uint first_result;     // where the results of the first receiver go, counted in receivers

@@ -169,6 +169,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            ((on_device || is("engine", "vulkan") || searches) && !all_planar) ||
            (searches && (on_device || is("engine", "vulkan")));
   }
+  if (method == "backproject") return is("form", "sphere") && scene.texture;
   if (method == "soft-shadow-map") return is("form", "scatter") && is("precision", "fp16");
   return false;
 }
