@@ -132,6 +132,7 @@ class RenderCommand : public Command {
   [[nodiscard]] OutputFiles claim(const std::vector<std::string>& cameras) const {
     OutputFiles outputs = outputs_of(options_, request_.frames, cameras);
     outputs.require_writable();
+    check_png_name(options_);
     return outputs;
   }
 

@@ -69,6 +69,7 @@ class SubmitCommand : public Command {
     for (const std::string& option : sbatch_) refuse_option(option);
     read_cameras();
     outputs_of(options_, request_.frames, cameras_);  // refuses files that are one
+    check_png_name(options_);
     words_ = words_for_all(global);
     folder_ = folder_of(absolute(options_.run.out));
     if (jobs_ > 0) return render_here();

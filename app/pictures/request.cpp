@@ -100,9 +100,6 @@ PictureRequest parse_request(const PictureOptions& options) {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                      options.run.out.string());
   }
-  if (!options.png.empty() && options.png.extension() != ".png") {
-    throw UsageError("--png {}: expected a name that ends in .png", options.png.string());
-  }
   if (options.frames.empty()) {
     request.frames = {options.frame};
   } else {
@@ -123,6 +120,11 @@ FrameFiles files_of(const PictureOptions& options, std::optional<std::int64_t> f
 bool is_there(const PictureOptions& options, std::optional<std::int64_t> frame,
               const std::vector<std::string>& cameras) {
   return std::ranges::all_of(cameras, [&](const auto& camera) { return files_of(options, frame, camera).all_there(); });
+}
+
+void check_png_name(const PictureOptions& options) {
+  if (!options.png.empty() && options.png.extension() != ".png")
+    throw UsageError("--png {}: expected a name that ends in .png", options.png.string());
 }
 
 OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<std::int64_t>>& frames,

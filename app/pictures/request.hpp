@@ -42,6 +42,9 @@ struct PictureRequest {
 /// Throws UsageError; InputError for a picture that --exposure names and that does not say how it was exposed.
 PictureRequest parse_request(const PictureOptions& options);
 
+/// Throws UsageError for a --png that does not end so. After outputs_of, whose reasons say more.
+void check_png_name(const PictureOptions& options);
+
 /// Where the picture of a frame goes: named after camera and frame, where there are several.
 FrameFiles files_of(const PictureOptions& options, std::optional<std::int64_t> frame, const std::string& camera);
 /// Are the frame's files there, of all cameras?

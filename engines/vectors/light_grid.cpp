@@ -199,7 +199,9 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   at.window = {glm::vec2(-0.5F), 2.0F * grid.half_cells - 0.5F};
   at.lean = (glm::vec2(-0.5F) - at.foot) / at.height;
   at.end = at.height;
-  at.per_lean = kRound * (8 * grid.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean));
+  // What floats leave open is decided in double at the corner of what is stored, which is not quite this frame's.
+  at.per_lean = kRound * (8 * grid.per_length * (1 + lengths) + (16 + 8 * lengths) * glm::length(at.lean)) +
+                kMore * (grid.per_length + glm::length(at.lean)) * grid.deviation / at.height;
   if (grid.cones) see_cone(grid, at);
   return at;
 }
