@@ -19,6 +19,7 @@ penumbra_test(volumes
   SOURCES
   agreement/volumes/contacts.cpp
   agreement/volumes/wide_cones.cpp
+  agreement/volumes/cut_edges.cpp
   agreement/volumes/window_corners.cpp
   agreement/volumes/depth_complexity_scenes.cpp
   agreement/volumes/edge_crop.cpp

@@ -188,8 +188,7 @@ ClusterSample complete(const LightGrid& grid, const Cluster& cluster, const Grid
   place.per_way = kMore * (8 * kRound * grid.per_length * at.height + cells);
   place.per_reach = 8 * kRound;
   place.per_foot = kMore * (kRound * (4 * lengths + 8) + grid.deviation / at.height);
-  place.fixed =
-      kMore * (kRound * grid.per_length * (4 * at.away + grid.cut_reach) + cells + grid.per_length * grid.deviation);
+  place.fixed = kMore * (kRound * grid.per_length * 4 * at.away + cells + grid.per_length * grid.deviation);
   // A way is off by 8 ε of its lengths, and aside by as many cells: seen from a small light's height, that is more.
   const glm::vec2 off = glm::abs(at.foot - grid.first_cell), window = 2.0F * grid.half_cells + 2.0F;
   place.per_lift = 64 * kRound *

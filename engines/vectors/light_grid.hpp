@@ -106,6 +106,14 @@ struct Placing {
   float per_lift = 0;
   float through_p = 0;  ///< and one of which (far_x + far) times this is left does
 };
+/// An edge's end that is at height w over p and no more than this below the light's plane may have been cut there.
+inline float near_cut(const LightGrid& grid) {
+  return 256 * kRound * grid.reach;
+}
+/// What the rounding of an end that was cut comes to, as lengths added to far_x. (bound cut)
+inline float cut_far(const LightGrid& grid) {
+  return grid.cut_reach / 8;
+}
 
 /// A GridSample of a cluster that has casters: p relative to the cluster's middle, in world axes (`local`) and in the
 /// grid's (`in_grid`: across, along, axis), and error bounds.

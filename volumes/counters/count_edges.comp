@@ -63,7 +63,7 @@ precise vec3 project(vec3 d) {
 // The error of a projected point's coordinates. (bound X)
 float error_of(float far, float w, float from_foot, float away) {
   const float q = at.height / w, along_normal = (4.0 + 4.0 * skew) * (far / w + away / at.height);
-  return kRound * (8.0 * per_length * far * q + from_foot * (along_normal + 8.0) + per_length * (4.0 * away + push.cut_reach) +
+  return kRound * (8.0 * per_length * far * q + from_foot * (along_normal + 8.0) + per_length * 4.0 * away +
                    16.0 * (half_cells.x + half_cells.y)) +
          (per_length + from_foot / at.height) * push.deviation;
 }
@@ -109,7 +109,9 @@ Edge see(uint slot, bool used) {
   const float wa = -dot(axis, da), wb = -dot(axis, db);
   const vec2 xa = vec2(dot(across, da), dot(along, da)) * at.height + (at.foot - first_cell) * wa;
   const vec2 xb = vec2(dot(across, db), dot(along, db)) * at.height + (at.foot - first_cell) * wb;
-  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b), lift = lift_per_length * far;
+  const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
+  const vec2 cut_off_by = vec2(cut_far(at.height - wa), cut_far(at.height - wb));
+  const float lift = lift_per_length * (far + max(cut_off_by.x, cut_off_by.y));
   const vec2 wide_a = window * (wa + lift), wide_b = window * (wb + lift);
   const vec4 inside_a = vec4(wide_a - xa, wide_a + xa), inside_b = vec4(wide_b - xb, wide_b + xb);
   const vec4 t = inside_a / (inside_a - inside_b);
@@ -127,11 +129,14 @@ Edge see(uint slot, bool used) {
   const float foot_a = length(seen_a.xy - foot), foot_b = length(seen_b.xy - foot);
   // p within rounding of a triangle's plane: seen from it that is a sliver. (bound sliver)
   const float sliver = open ? 16.0 * kRound * max(length(anchor1 - at.p), length(anchor2 - at.p)) : 0.0;
-  const float error_a = error_of(cut ? far : far_a, seen_a.z, foot_a, away) + (at.height * per_length + foot_a) / seen_a.z * sliver;
-  const float error_b = error_of(cut ? far : far_b, seen_b.z, foot_b, away) + (at.height * per_length + foot_b) / seen_b.z * sliver;
+  const float far_start = (cut ? far : far_a) + (from > 0.0 ? mix(cut_off_by.x, cut_off_by.y, from) : cut_off_by.x);
+  const float far_end = (cut ? far : far_b) + (to < 1.0 ? mix(cut_off_by.x, cut_off_by.y, to) : cut_off_by.y);
+  const float error_a = error_of(far_start, seen_a.z, foot_a, away) + (at.height * per_length + foot_a) / seen_a.z * sliver;
+  const float error_b = error_of(far_end, seen_b.z, foot_b, away) + (at.height * per_length + foot_b) / seen_b.z * sliver;
 
   const bool seen = used && (both != 0 || open) && from <= to;
-  const bool through_p = seen && min(seen_a.z, seen_b.z) < 64.0 * kRound * far;
+  const float least = 64.0 * kRound;
+  const bool through_p = seen && (seen_a.z < least * max(far, far_start) || seen_b.z < least * max(far, far_end));
   open_pixel = open_pixel || through_p;                   // it passes through p within rounding
   side_in_doubt = side_in_doubt || (seen && open);
   Edge edge;

@@ -90,6 +90,10 @@ float lift_of(ViewSample at, vec2 window) {
   return 64.0 * kRound * (1.0 + 0.125 * (max(off.x, off.y) + per_length * at.height) / min(window.x, window.y));
 }
 
+// What the rounding of an end at this height over the light's plane, which may have been cut there, comes to, as lengths
+// added to its way. (bound cut)
+float cut_far(float over_light) { return over_light < 512.0 * kRound * push.reach ? push.cut_reach / 4.0 : 0.0; }
+
 // Is p on the triangle with corners p + da, p + db, p + dc, within rounding? (bound on)
 bool is_on_triangle(vec3 da, vec3 db, vec3 dc) {
   const vec3 n = cross(db - da, dc - da);

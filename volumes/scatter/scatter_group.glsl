@@ -45,7 +45,7 @@ Range range_of(vec3 x, GroupBounds g) {
   const vec2 e0 = way.xy - g.in_grid_high.xy, e1 = way.xy - g.in_grid_low.xy;
   const vec2 p0 = e0 * at_low, p1 = e0 * at_high, p2 = e1 * at_low, p3 = e1 * at_high;
   const vec2 low = above + min(min(p0, p1), min(p2, p3)), high = above + max(max(p0, p1), max(p2, p3));
-  const float far = length(x - g.middle) + length(g.half_size);
+  const float far = length(x - g.middle) + length(g.half_size) + cut_far(h);
   const vec2 spread = max(abs(high - g.foot_low), abs(low - g.foot_high)) + (g.foot_high - g.foot_low);
   const float error = error_of(far, w_low, g.height_high, spread.x + spread.y, g.away);
   range.low = low - 4.0 * error;

@@ -52,7 +52,7 @@ vec2 appears(vec3 way) {
 float error_of(float far, float w, float height, float from_foot, float away) {
   const float q = height / w;
   return kRound * (4.0 * per_length * far * q + from_foot * (4.0 * far / w + 4.0 * away / height + 8.0) +
-                   per_length * (4.0 * away + push.cut_reach) + 16.0 * skew * (half_cells.x + half_cells.y) * (1.0 + far / w)) +
+                   per_length * 4.0 * away + 16.0 * skew * (half_cells.x + half_cells.y) * (1.0 + far / w)) +
          (per_length + from_foot / height) * push.deviation;
 }
 
@@ -143,7 +143,8 @@ void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) 
   const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
   const vec2 window = 2.0 * half_cells + 2.0, xa = way_a.xy * at.height + (at.foot - first_cell) * way_a.z,
              xb = way_b.xy * at.height + (at.foot - first_cell) * way_b.z;
-  const float lift = lift_per_length * far;
+  const vec2 cut_off_by = vec2(cut_far(at.height - way_a.z), cut_far(at.height - way_b.z));
+  const float lift = lift_per_length * (far + max(cut_off_by.x, cut_off_by.y));
   const vec2 wide_a = window * (way_a.z + lift), wide_b = window * (way_b.z + lift);
   const vec4 inside_a = vec4(wide_a - xa, wide_a + xa), inside_b = vec4(wide_b - xb, wide_b + xb);
   const vec4 t = inside_a / (inside_a - inside_b);
@@ -155,10 +156,13 @@ void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) 
   const vec3 start = from > 0.0 ? mix(way_a, way_b, from) : way_a, end = to < 1.0 ? mix(way_a, way_b, to) : way_b;
   const vec2 seen_a = appears(start), seen_b = appears(end);
   const float foot_a = length(seen_a - at.foot), foot_b = length(seen_b - at.foot), off = open ? sliver : 0.0;
-  const float error_a = error_of(cut ? far : far_a, start.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / start.z * off;
-  const float error_b = error_of(cut ? far : far_b, end.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / end.z * off;
+  const float far_start = (cut ? far : far_a) + (from > 0.0 ? mix(cut_off_by.x, cut_off_by.y, from) : cut_off_by.x);
+  const float far_end = (cut ? far : far_b) + (to < 1.0 ? mix(cut_off_by.x, cut_off_by.y, to) : cut_off_by.y);
+  const float error_a = error_of(far_start, start.z, at.height, foot_a, away) + (at.height * per_length + foot_a) / start.z * off;
+  const float error_b = error_of(far_end, end.z, at.height, foot_b, away) + (at.height * per_length + foot_b) / end.z * off;
   const bool matters = (k != 0 || open) && from <= to;
-  const bool through_p = !settled && min(start.z, end.z) < 64.0 * kRound * far;
+  const float least = 64.0 * kRound;
+  const bool through_p = !settled && (start.z < least * max(far, far_start) || end.z < least * max(far, far_end));
   if (matters && through_p) open_pixel = true;            // it passes through p within rounding
   side_in_doubt = side_in_doubt || open;
   if (matters && !through_p) scatter(seen_a, seen_b, k, error_a, error_b);

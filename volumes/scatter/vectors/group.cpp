@@ -221,7 +221,10 @@ class GroupFilter {
     };
     const V foot =
         hn::Add(away(low_x, high_x, g_.foot_low.x, g_.foot_high.x), away(low_y, high_y, g_.foot_low.y, g_.foot_high.y));
-    const V way = hn::Mul(hn::Add(column(kFar, i), set(g_.far)), inverse);
+    V far = hn::Add(column(kFar, i), set(g_.far));
+    if (in_.grid.cut_reach > 0)  // (bound cut)
+      far = hn::Add(far, hn::IfThenElseZero(hn::Lt(r.level, set(2 * near_cut(in_.grid))), set(cut_far(in_.grid))));
+    const V way = hn::Mul(far, inverse);
     // (bound X), a tenth more: the differences of height are not computed like the view samples'
     r.error = hn::Mul(set(1.1F), hn::MulAdd(way, hn::MulAdd(set(g_.per_reach), foot, set(g_.per_way)),
                                             hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));

@@ -28,9 +28,13 @@ Way turned(const LightGrid& grid, const ClusterSample& at, const Way& way) {
 }
 
 /// (bound X)
-float error_of(const ClusterSample& at, float far, float w, float from_foot) {
-  const Placing& place = at.on_light;
-  return (far + at.far) / w * (place.per_way + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
+float error_of(const Placing& place, float far, float w, float from_foot) {
+  return far / w * (place.per_way + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
+}
+
+/// Of an end's way, as the bounds take it: with what the end is off if the light's plane cut it. (bound cut)
+float far_of(const LightGrid& grid, const Placing& place, const Way& way, float far) {
+  return place.height - way.z < near_cut(grid) ? far + cut_far(grid) : far;
 }
 
 class Marks {
@@ -187,11 +191,14 @@ void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from,
 /// The part of an edge in a window of about twice the light. (bound window)
 struct WindowPart {
   Way start, end;
+  float far_start, far_end;
   bool is_empty = false;
 };
 
-/// Widened by `lift`, so that rounding cannot put an edge at p's own height below the window.
-WindowPart cut_to_window(const LightGrid& grid, const Placing& place, const Way& a, const Way& b, float lift) {
+/// Widened by the lift, so that rounding cannot put an edge at p's own height below the window.
+WindowPart cut_to_window(const LightGrid& grid, const Placing& place, const Way& a, const Way& b, float far_a,
+                         float far_b) {
+  const float lift = place.per_lift * std::max(far_a, far_b);
   const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place.foot - grid.first_cell;
   float from = 0, to = 1;
   const auto cut = [&](float inside_a, float inside_b) {
@@ -205,7 +212,11 @@ WindowPart cut_to_window(const LightGrid& grid, const Placing& place, const Way&
       cut(window[axis] * (a.z + lift) + sign * xa, window[axis] * (b.z + lift) + sign * xb);
   }
   if (grid.cones && grid.cones->end) cut(place.height - a.z, place.height - b.z);
-  return {.start = from > 0 ? glm::mix(a, b, from) : a, .end = to < 1 ? glm::mix(a, b, to) : b, .is_empty = from > to};
+  return {.start = from > 0 ? glm::mix(a, b, from) : a,
+          .end = to < 1 ? glm::mix(a, b, to) : b,
+          .far_start = from > 0 ? glm::mix(far_a, far_b, from) : far_a,
+          .far_end = to < 1 ? glm::mix(far_a, far_b, to) : far_b,
+          .is_empty = from > to};
 }
 
 }  // namespace
@@ -252,21 +263,21 @@ std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
   };
   const Way a = way_to(edges[kAx][edge], edges[kAy][edge], edges[kAh][edge]);
   const Way b = way_to(edges[kBx][edge], edges[kBy][edge], edges[kBh][edge]);
-  const float far = edges[kFar][edge], through_p = place.through_p * (far + at.far);
-  const WindowPart part =
-      in.settled ? WindowPart{a, b} : cut_to_window(grid, place, a, b, place.per_lift * (far + at.far));
+  const float far = edges[kFar][edge] + at.far, far_a = far_of(grid, place, a, far),
+              far_b = far_of(grid, place, b, far);
+  const WindowPart part = in.settled ? WindowPart{a, b, far_a, far_b} : cut_to_window(grid, place, a, b, far_a, far_b);
   if (part.is_empty || in.k == 0) return std::nullopt;
-  if (!in.settled && std::min(part.start.z, part.end.z) < through_p) {
+  if (!in.settled && (part.start.z < place.through_p * part.far_start || part.end.z < place.through_p * part.far_end)) {
     open.pixel = true;
     return std::nullopt;
   }
   const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : appears(place, part.start);
   const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : appears(place, part.end);
   const float foot_a = glm::length(projected_a - place.foot), foot_b = glm::length(projected_b - place.foot);
-  ProjectedEdge edge_on_light = project_edge(grid, projected_a, projected_b, error_of(at, far, part.start.z, foot_a),
-                                             error_of(at, far, part.end.z, foot_b));
-  const float lowest_over_light = at.height - std::max(a.z, b.z);
-  edge_on_light.may_be_cut = grid.cut_reach > 0 && lowest_over_light < 256 * kRound * grid.reach;
+  ProjectedEdge edge_on_light =
+      project_edge(grid, projected_a, projected_b, error_of(place, part.far_start, part.start.z, foot_a),
+                   error_of(place, part.far_end, part.end.z, foot_b));
+  edge_on_light.may_be_cut = std::max(far_a, far_b) > far;
   return edge_on_light;
 }
 

@@ -120,8 +120,9 @@ class Projection {
     const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place_.foot - grid.first_cell;
     // Beyond the table's end there is anything.
     const V edge = hn::IfThenElseZero(first_lanes(table.count - i), hn::Load(d, table[kGroupEdge] + i));
-    const V far = hn::Add(far_of(edge), set(at_.far)), through_p = hn::Mul(set(place_.through_p), far);
-    const V lift = hn::Mul(set(place_.per_lift), far);
+    const V far = hn::Add(far_of(edge), set(at_.far));
+    const V far_a = with_cut(far, a.w), far_b = with_cut(far, b.w);
+    const V lift = hn::Mul(set(place_.per_lift), hn::Max(far_a, far_b));
     V from = set(0), to = set(1);
     const auto keep_inside = [&](V inside_a, V inside_b) {
       const V t = hn::Div(inside_a, hn::Sub(inside_a, inside_b));
@@ -147,15 +148,24 @@ class Projection {
     const M cut_a = hn::Gt(from, set(0)), cut_b = hn::Lt(to, set(1));
     const Ways start{at(from, cut_a, a.x, b.x, a.x), at(from, cut_a, a.y, b.y, a.y), at(from, cut_a, a.w, b.w, a.w)};
     const Ways end{at(to, cut_b, a.x, b.x, b.x), at(to, cut_b, a.y, b.y, b.y), at(to, cut_b, a.w, b.w, b.w)};
-    const M near_p = hn::Lt(hn::Min(start.w, end.w), through_p);
+    const V far_start = at(from, cut_a, far_a, far_b, far_a), far_end = at(to, cut_b, far_a, far_b, far_b);
+    const V through_p = set(place_.through_p);
+    const M near_p = hn::Or(hn::Lt(start.w, hn::Mul(through_p, far_start)), hn::Lt(end.w, hn::Mul(through_p, far_end)));
     const M other = hn::And(live, hn::Or(open_ones(m), near_p));
     if (!hn::AllFalse(d, other)) special({table, i, other, m, false});
     const LightPoints place_a = appears(start), place_b = appears(end);
-    const V error = hn::Mul(set(1.01F), hn::Max(error_of(place_a, start.w, far), error_of(place_b, end.w, far)));
+    const V error =
+        hn::Mul(set(1.01F), hn::Max(error_of(place_a, start.w, far_start), error_of(place_b, end.w, far_end)));
     keep_crossing({place_a, place_b, m.k, error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(other, live));
   }
 
   [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
+  /// (bound cut)
+  [[nodiscard]] V with_cut(V far, V w) const {
+    if (in_.grid.cut_reach == 0) return far;
+    const M may_be_cut = hn::Lt(hn::Sub(set(place_.height), w), set(near_cut(in_.grid)));
+    return hn::Add(far, hn::IfThenElseZero(may_be_cut, set(cut_far(in_.grid))));
+  }
   /// (bound X)
   [[nodiscard]] V error_of(const LightPoints& place, V w, V far) const {
     const V foot =
