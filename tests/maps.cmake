@@ -2,6 +2,7 @@
 penumbra_test(maps FULL MapsTable.*
   SOURCES
   analytic/maps/adaptive_light.cpp
+  analytic/maps/adaptive_light_maps.cpp
   analytic/maps/backproject.cpp
   analytic/maps/bitmask.cpp
   analytic/maps/bitmask_predicates.cpp

@@ -4,6 +4,7 @@
 #include "app/compare/comparison_files.hpp"
 #include "app/compare/error_budget.hpp"
 #include "app/compare/light_judge.hpp"
+#include "app/compare/reference_samples.hpp"
 #include "app/compare/report_views.hpp"
 #include "app/device_source.hpp"
 #include "app/methods.hpp"
@@ -26,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -57,7 +57,7 @@ class Comparison {
         same_samples_(options.reference_samples == "same"),
         files_(run.out, {.png = options.png, .bits = options.bits}),
         devices_(run.device) {
-    reference_request_ = parse_reference_samples();
+    reference_request_ = reference_samples(run, options.reference_samples);
     if (options.error_budget) require_explainable(options.methods);
     files_.claim(run.scene, options.methods, options.stats);
     session_ = open_session(run, options.time, devices_, options.runs, progress);
@@ -74,7 +74,7 @@ class Comparison {
     for (const Light& light : session_.lights) check_light(reference_.description, light);
     if (wants_bits(reference_)) check_bits(reference_.description, session_.lights);
     entries_ = choose_entries(options, session_, [this](std::string text) { warn(std::move(text)); });
-    reference_lights_ = same_samples_ ? session_.lights : lights_of_reference();
+    reference_lights_ = same_samples_ ? session_.lights : with_samples(session_, reference_request_);
     truths_ = choose_pixels(session_, options.sample_pixels);
     const std::vector<std::string> names = whole_names(session_.lights);
     for (std::size_t light = 0; light < truths_.size(); ++light) {
@@ -104,29 +104,6 @@ class Comparison {
   }
 
  private:
-  [[nodiscard]] visibility::SampleRequest parse_reference_samples() const {
-    RunOptions reference = run_;
-    if (!same_samples_) reference.light_samples = options_.reference_samples;
-    try {
-      return parse_light_samples(reference);
-    } catch (const UsageError&) {
-      if (same_samples_) throw;
-      throw UsageError("--reference-samples {}: expected a number of light samples from 1 to 4096, or same",
-                       options_.reference_samples);
-    }
-  }
-
-  [[nodiscard]] std::vector<Light> lights_of_reference() const {
-    std::vector<Light> lights;
-    for (const WholeLight& whole : whole_lights(session_.lights)) {
-      const auto index = static_cast<std::uint32_t>(session_.lights[whole.first].index);
-      std::ranges::move(
-          visibility::make_light_pieces(session_.scene, index, session_.floats.origin, reference_request_),
-          std::back_inserter(lights));
-    }
-    return lights;
-  }
-
   /// Of all lights' masks, on the methods' light samples.
   [[nodiscard]] std::uint64_t mask_bytes() const {
     std::uint64_t words = 0;

@@ -12,6 +12,7 @@
 #include "import/gltf/gltf_nodes.hpp"
 #include "import/gltf/gltf_primitive.hpp"
 #include "import/gltf/gltf_surface.hpp"
+#include "import/gltf/gltf_triangles.hpp"
 #include "import/gltf/punctual_lights.hpp"
 
 #include <tiny_gltf.h>
@@ -22,7 +23,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
@@ -99,7 +99,7 @@ class GltfImport {
       scene_.cameras.push_back(camera_that_sees_all(scene_.soup.positions));
       scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
     }
-    complete_looks();
+    complete_looks(scene_);
     for (const std::string& extension : model_.extensionsRequired) {
       if (!is_understood(extension))
         losses_.refuse("is an extension that the file requires (extensionsRequired) and that is not supported",
@@ -186,110 +186,27 @@ class GltfImport {
               own_name);
         break;
     }
-    add_object({positions, skinned, look}, std::move(mesh->triangles), placed, {place, own_name});
+    add_object({positions, skinned, look, placed, place}, std::move(mesh->triangles), own_name);
   }
 
-  /// A primitive's vertices as they were modelled; of skinned ones also what takes each into the world.
-  struct Vertices {
-    std::span<const glm::dvec3> local;
-    const std::optional<std::vector<glm::dmat4>>& skinned;
-    const Look& look;
-
-    [[nodiscard]] const glm::dmat4& to_world(const PlacedNode& placed, std::uint32_t vertex) const {
-      return skinned ? (*skinned)[vertex] : placed.to_world;
-    }
-  };
-
-  struct Named {
-    std::string place, name;
-  };
-
-  /// Adds the triangles in world space, with only the vertices that they use: exporters share one long list of
-  /// vertices among many primitives.
-  void add_object(const Vertices& vertices, std::vector<mesh::Triangle> triangles, const PlacedNode& placed,
-                  const Named& named) {
-    auto& soup = scene_.soup;
-    const auto number = static_cast<std::uint32_t>(scene_.objects.size());
-    const std::size_t first_position = soup.positions.size(), first_triangle = soup.triangles.size();
-    // A mirroring node turns the front of its triangles (glTF 2.0, 3.7.4); swapped corners turn it back outward.
-    constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
-    for (mesh::Triangle& triangle : triangles) {
-      const bool mirrored = glm::determinant(glm::dmat3(vertices.to_world(placed, triangle[0]))) < 0;
-      for (std::uint32_t& index : triangle) {
-        std::uint32_t& target = renumbered[index];
-        if (target == kUnused) {
-          if (soup.positions.size() >= kUnused) throw InputError("{}: more than 4,294,967,294 vertices", named.place);
-          target = static_cast<std::uint32_t>(soup.positions.size());
-          const glm::dvec3 p(vertices.to_world(placed, index) * glm::dvec4(vertices.local[index], 1));
-          if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-            throw InputError("{}: vertex {} is not finite after the transform of /nodes/{}", named.place, index,
-                             placed.number);
-          }
-          soup.positions.push_back(p);
-          add_look(vertices, placed, index);
-        }
-        index = target;
-      }
-      if (mirrored) std::swap(triangle[1], triangle[2]);
-      soup.source_face.push_back(static_cast<std::uint32_t>(soup.triangles.size() - first_triangle));
-      soup.triangles.push_back(triangle);
-      soup.object.push_back(number);
-    }
+  void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
+    const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     Object object;
-    object.name = named.name;
+    object.name = name;
     object.casts_shadow = flags_.casts_shadow;
     object.receives_shadow = flags_.receives_shadow;
     object.color = vertices.look.color;
     object.material = vertices.look.material;
     object.picture = vertices.look.picture;
     object.alpha = vertices.look.alpha;
-    object.emits = add_light(vertices.look, named.name, placed, first_position, first_triangle);
-    if (object.emits && !flags_.body) return remove_from(first_position, first_triangle);
+    object.emits = add_light(vertices.look, name, vertices.placed, before);
+    if (object.emits && !flags_.body) return shorten(scene_, before);  // they only said where the light is
     scene_.objects.push_back(std::move(object));
   }
 
-  /// The triangles that were added last were there to say where a light is.
-  void remove_from(std::size_t position, std::size_t triangle) {
-    mesh::TriangleSoup& soup = scene_.soup;
-    soup.positions.resize(position);
-    soup.triangles.resize(triangle);
-    soup.source_face.resize(triangle);
-    soup.object.resize(triangle);
-    const auto shorten = [position](auto& list) { list.resize(std::min(list.size(), position)); };
-    shorten(scene_.looks.normals), shorten(scene_.looks.colors), shorten(scene_.looks.places);
-  }
-
-  /// What the vertex that was added last looks like.
-  void add_look(const Vertices& vertices, const PlacedNode& placed, std::uint32_t index) {
-    const Look& look = vertices.look;
-    const std::size_t count = scene_.soup.positions.size();
-    const auto put = [count](auto& list, const auto& value, const auto& otherwise) {
-      list.resize(count - 1, otherwise);
-      list.push_back(value);
-    };
-    if (!look.normals.empty()) {
-      const glm::dmat3 turned = glm::transpose(glm::inverse(glm::dmat3(vertices.to_world(placed, index))));
-      const glm::dvec3 normal = turned * look.normals[index];
-      const double length = glm::length(normal);
-      const bool is_normal = length > 0 && std::isfinite(length);
-      put(scene_.looks.normals, is_normal ? glm::vec3(normal / length) : glm::vec3(0), glm::vec3(0));
-    }
-    if (!look.colors.empty()) put(scene_.looks.colors, look.colors[index], glm::vec4(1));
-    if (!look.places.empty()) put(scene_.looks.places, look.places[index], glm::dvec2(0));
-  }
-
-  /// Vertices without a look after the last that has one.
-  void complete_looks() {
-    const std::size_t count = scene_.soup.positions.size();
-    if (!scene_.looks.normals.empty()) scene_.looks.normals.resize(count, glm::vec3(0));
-    if (!scene_.looks.colors.empty()) scene_.looks.colors.resize(count, glm::vec4(1));
-    if (!scene_.looks.places.empty()) scene_.looks.places.resize(count, glm::dvec2(0));
-  }
-
-  /// The number of the light that the triangles from `first_triangle` on are the body of, if they are one.
+  /// The number of the light that the triangles since `before` are the body of, if they are one.
   std::optional<std::uint32_t> add_light(const Look& look, const std::string& name, const PlacedNode& placed,
-                                         std::size_t first_position, std::size_t first_triangle) {
+                                         const SoupEnd& before) {
     const glm::dvec3& radiance = look.radiance;
     if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) return std::nullopt;
     if (purpose_ == Purpose::mesh) {
@@ -298,14 +215,14 @@ class GltfImport {
     }
     // Files hold single precision: a position is rounded by half a float's step at its distance from the node's
     // origin, and so is each coordinate; the world's own double rounding is nothing beside it.
-    const auto positions = std::span(scene_.soup.positions).subspan(first_position);
+    const auto positions = std::span(scene_.soup.positions).subspan(before.position);
     const glm::dvec3 origin(placed.to_world[3]);
     double distance = 0;
     for (const glm::dvec3& p : positions) distance = std::max(distance, glm::distance(p, origin));
     const double rounding = distance * static_cast<double>(std::numeric_limits<float>::epsilon());
     std::vector<mesh::Triangle> body;
-    for (const mesh::Triangle& t : std::span(scene_.soup.triangles).subspan(first_triangle)) {
-      const auto first = static_cast<std::uint32_t>(first_position);
+    for (const mesh::Triangle& t : std::span(scene_.soup.triangles).subspan(before.triangle)) {
+      const auto first = static_cast<std::uint32_t>(before.position);
       body.push_back({t[0] - first, t[1] - first, t[2] - first});
     }
     auto recognised = recognise_emitter(positions, body, look.two_sided, rounding);

@@ -8,19 +8,17 @@
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
 
 #include "base/assert.hpp"
-#include "base/error.hpp"
 #include "maps/backprojection/patches/backproject.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_gather.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_resolve.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_scatter.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_settings.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.comp.spv.hpp"
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.shared.h"
 #include "maps/host/caster_maps.hpp"
-#include "maps/host/error_repairs.hpp"
 #include "maps/backprojection/light_table.hpp"
 #include "maps/host/map_method.hpp"
-#include "maps/host/mesh_verdict.hpp"
 #include "maps/host/receivers.hpp"
 #include "maps/host/tile_visibility.hpp"
 #include "render/compute_pass.hpp"
@@ -37,86 +35,14 @@
 namespace penumbra::maps {
 namespace {
 
-enum class Precision : std::uint8_t { fp32, fp16 };
-enum class Form : std::uint8_t { gather, scatter };
-enum class Filter : std::uint8_t { linear, nearest };
-
-constexpr visibility::IntegerOption kSize{"size", 8, 16384, 128, "texels on a side of the map of occluders"};
-constexpr visibility::RealOption kNoBias{
-    "bias", 0, 1024, 0, "how far, in the occluders' texels, an occluder must be in front of a receiver"};
-constexpr visibility::IntegerOption kReceiverSize{"receiverSize", 8, 4096, 256,
-                                                  "texels on a side of the map of receivers, which holds V"};
-constexpr visibility::ChoiceOption kPasses{
-    "passes", {{"1", 1u}, {"2", 2u}}, 1u, "2: the farthest surfaces too, and the smaller V of the two"};
-constexpr visibility::ChoiceOption kPrecision{"precision",
-                                              {{"fp32", Precision::fp32}, {"fp16", Precision::fp16}},
-                                              Precision::fp32,
-                                              "fp16: adds in 16-bit floats, as the published blending did"};
-constexpr visibility::ChoiceOption kForm{
-    "form", {{"gather", Form::gather}, {"scatter", Form::scatter}}, Form::gather, "which map is walked: the same sums"};
-constexpr visibility::ChoiceOption kFilter{
-    "filter", {{"linear", Filter::linear}, {"nearest", Filter::nearest}}, Filter::linear, "how V is read from its map"};
-
-enum class Self : std::uint8_t { none, backproject };
-constexpr visibility::ChoiceOption kSelf{"self",
-                                         {{"none", Self::none}, {"backproject", Self::backproject}},
-                                         Self::none,
-                                         "V of pixels on occluders, which the paper leaves out: the light above their "
-                                         "horizon, or what backproject says with a map of this size"};
-
-visibility::MeshVerdict soft_shadow_map_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("a sum of texels, each projected onto the light; objects do not shade themselves", mesh);
-}
-
-visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
-  return map_repairs(method, given,
-                     {.doubled = {"size", "receiverSize"},
-                      .layers = "passes=2 adds the farthest surfaces; no form of the method has those between",
-                      .fusion = "patches are added, or the smaller V of two passes taken; no form joins them",
-                      .gaps = "no form of the method fills what is between patches",
-                      .bias = {{"bias", "0"}}});
-}
-
-}  // namespace
-
-visibility::MethodDescription soft_shadow_map_description() {
-  visibility::MethodDescription description{
-      .name = "soft-shadow-map",
-      .family = visibility::Family::image,
-      .paper = "Atty et al. 2006",
-      .output = visibility::Output::scalar,
-      .exact_for =
-          "nothing; in the limit of large maps a receiver below occluders that are flat and parallel to the light "
-          "and do not overlap",
-      .lights = planar_lights(),
-      .options = map_option_descriptions(kSize, kNoBias),
-      .verdict_on = soft_shadow_map_verdict,
-      .repairs = repairs};
-  for (const visibility::OptionDescription& option :
-       {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
-        kForm.description(), kFilter.description(), kSelf.description()}) {
-    description.options.push_back(option);
-  }
-  return description;
-}
-
-namespace {
-
 /// Turns of one invocation's loop: drivers for processors end all loops of a workgroup after 65,535.
 constexpr std::uint32_t kMostTurns = 60000;
 constexpr std::uint32_t kPassesPerSubmission = 96;
 
-struct Settings {
-  std::uint32_t receiver_size, passes;
-  Precision precision;
-  Form form;
-  Filter filter;
-};
-
 class SoftShadowMap final : public visibility::Method {
  public:
   /// `self`: who says what V is on occluders; none: their horizon.
-  SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings,
+  SoftShadowMap(const render::Device& device, const MapOptions& map, const SoftSettings& settings,
                 std::unique_ptr<visibility::Method> self);
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
@@ -159,7 +85,7 @@ class SoftShadowMap final : public visibility::Method {
   const render::Device* device_;
   visibility::MethodDescription description_;
   MapOptions map_;
-  Settings settings_;
+  SoftSettings settings_;
   std::unique_ptr<visibility::Method> self_;
   std::vector<std::uint32_t> on_occluder_;  ///< of the tile last evaluated, 1 a pixel
   CasterMaps occluder_maps_, receiver_maps_;
@@ -180,7 +106,7 @@ class SoftShadowMap final : public visibility::Method {
   std::unique_ptr<render::Buffer> occluders_, receiver_depths_, visible_, sums_, counts_, views_;
 };
 
-SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map, const Settings& settings,
+SoftShadowMap::SoftShadowMap(const render::Device& device, const MapOptions& map, const SoftSettings& settings,
                              std::unique_ptr<visibility::Method> self)
     : device_(&device),
       description_(soft_shadow_map_description()),
@@ -290,7 +216,7 @@ gpu::SoftMapPush SoftShadowMap::push_for(const Map& occluders, int side, std::ui
   push.receiver_size = receiver_size;
   push.occluder_first = from.first_face * size * size;
   push.receiver_first = to.first_face * receiver_size * receiver_size;
-  push.half_floats = settings_.precision == Precision::fp16 ? 1 : 0;
+  push.half_floats = settings_.precision == SoftPrecision::fp16 ? 1 : 0;
   push.later = pass > 0 ? 1 : 0;
   // The farthest surfaces have none behind them.
   push.depth_use = pass > 0 ? gpu::kDepthFirst : static_cast<std::uint32_t>(map_.depth);
@@ -313,7 +239,7 @@ void SoftShadowMap::add_up(const Map& occluders, std::uint32_t pass) {
   for (int side = 0; side < 2; ++side) {
     if (occluders.view.side[side].face_count == 0 || receiver_map_.view.side[side].face_count == 0) continue;
     gpu::SoftMapPush push = push_for(occluders, side, pass);
-    const bool gathers = settings_.form == Form::gather;
+    const bool gathers = settings_.form == SoftForm::gather;
     const auto groups = [](std::uint64_t texels) { return (texels + gpu::kLookupGroup - 1) / gpu::kLookupGroup; };
     const std::uint64_t receiver_texels = std::uint64_t{push.receiver_size} * push.receiver_size;
     const std::uint64_t occluder_texels = std::uint64_t{push.occluder_size} * push.occluder_size;
@@ -357,7 +283,7 @@ void SoftShadowMap::evaluate(const visibility::Tile& tile) {
   counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder_, 1u));
   results_.buffer().write<std::uint32_t>(on_occluder_);
   const gpu::SoftLookupPush own{.size = settings_.receiver_size,
-                                .linear = settings_.filter == Filter::linear ? 1u : 0u};
+                                .linear = settings_.filter == SoftFilter::linear ? 1u : 0u};
   render::Commands commands(*device_);
   for (const Receivers::Part& part : receivers_.parts(tile)) {
     gpu::LookupPush push{};
@@ -399,20 +325,10 @@ std::unique_ptr<visibility::Method> make_soft_shadow_map(const render::Device& d
                                                          const visibility::MethodOptions& options) {
   const visibility::MethodDescription description = soft_shadow_map_description();
   const visibility::ParsedOptions parsed = visibility::parse_options(description, options);
-  const Settings settings{.receiver_size = parsed[kReceiverSize],
-                          .passes = parsed[kPasses],
-                          .precision = parsed[kPrecision],
-                          .form = parsed[kForm],
-                          .filter = parsed[kFilter]};
-  if (settings.precision == Precision::fp16 && settings.form == Form::scatter) {
-    throw UsageError(
-        "method soft-shadow-map: 16-bit floats depend on the order of sums, and scattered ones have none; take "
-        "form=gather, "
-        "which adds patches in the order of their texels, or precision=fp32");
-  }
+  const SoftSettings settings = soft_settings(parsed);
   const MapOptions map = map_options(device, description, parsed);
   std::unique_ptr<visibility::Method> self;
-  if (parsed[kSelf] == Self::backproject) {
+  if (settings.self == SoftSelf::backproject) {
     const visibility::MethodOptions whole = visibility::complete_options(description, options);
     visibility::MethodOptions alike;
     for (const char* key : {"size", "depth", "rasteriser"}) alike[key] = whole.at(key);

@@ -1,0 +1,33 @@
+#include "app/compare/reference_samples.hpp"
+
+#include "app/whole_lights.hpp"
+#include "base/error.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+
+namespace penumbra::app {
+
+visibility::SampleRequest reference_samples(const RunOptions& run, const std::string& wanted) {
+  if (wanted == "same") return parse_light_samples(run);
+  RunOptions reference = run;
+  reference.light_samples = wanted;
+  try {
+    return parse_light_samples(reference);
+  } catch (const UsageError&) {
+    throw UsageError("--reference-samples {}: expected a number of light samples from 1 to 4096, or same", wanted);
+  }
+}
+
+std::vector<visibility::Light> with_samples(const Session& session, const visibility::SampleRequest& request) {
+  std::vector<visibility::Light> lights;
+  for (const WholeLight& whole : whole_lights(session.lights)) {
+    const auto index = static_cast<std::uint32_t>(session.lights[whole.first].index);
+    std::ranges::move(visibility::make_light_pieces(session.scene, index, session.floats.origin, request),
+                      std::back_inserter(lights));
+  }
+  return lights;
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,88 @@
+#include "import/gltf/gltf_triangles.hpp"
+
+#include "base/error.hpp"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace penumbra::scenes {
+namespace {
+
+/// What the vertex that was added last looks like.
+void add_look(Scene& scene, const PrimitiveVertices& vertices, std::uint32_t index) {
+  const Look& look = vertices.look;
+  const std::size_t count = scene.soup.positions.size();
+  const auto put = [count](auto& list, const auto& value, const auto& otherwise) {
+    list.resize(count - 1, otherwise);
+    list.push_back(value);
+  };
+  if (!look.normals.empty()) {
+    const glm::dmat3 turned = glm::transpose(glm::inverse(glm::dmat3(vertices.to_world(index))));
+    const glm::dvec3 normal = turned * look.normals[index];
+    const double length = glm::length(normal);
+    const bool is_normal = length > 0 && std::isfinite(length);
+    put(scene.looks.normals, is_normal ? glm::vec3(normal / length) : glm::vec3(0), glm::vec3(0));
+  }
+  if (!look.colors.empty()) put(scene.looks.colors, look.colors[index], glm::vec4(1));
+  if (!look.places.empty()) put(scene.looks.places, look.places[index], glm::dvec2(0));
+}
+
+}  // namespace
+
+SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles) {
+  auto& soup = scene.soup;
+  const auto number = static_cast<std::uint32_t>(scene.objects.size());
+  const SoupEnd before{soup.positions.size(), soup.triangles.size()};
+  // A mirroring node turns the front of its triangles (glTF 2.0, 3.7.4); swapped corners turn it back outward.
+  constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
+  for (mesh::Triangle& triangle : triangles) {
+    const bool mirrored = glm::determinant(glm::dmat3(vertices.to_world(triangle[0]))) < 0;
+    for (std::uint32_t& index : triangle) {
+      std::uint32_t& target = renumbered[index];
+      if (target == kUnused) {
+        if (soup.positions.size() >= kUnused) throw InputError("{}: more than 4,294,967,294 vertices", vertices.place);
+        target = static_cast<std::uint32_t>(soup.positions.size());
+        const glm::dvec3 p(vertices.to_world(index) * glm::dvec4(vertices.local[index], 1));
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+          throw InputError("{}: vertex {} is not finite after the transform of /nodes/{}", vertices.place, index,
+                           vertices.placed.number);
+        }
+        soup.positions.push_back(p);
+        add_look(scene, vertices, index);
+      }
+      index = target;
+    }
+    if (mirrored) std::swap(triangle[1], triangle[2]);
+    soup.source_face.push_back(static_cast<std::uint32_t>(soup.triangles.size() - before.triangle));
+    soup.triangles.push_back(triangle);
+    soup.object.push_back(number);
+  }
+  return before;
+}
+
+void shorten(Scene& scene, const SoupEnd& end) {
+  mesh::TriangleSoup& soup = scene.soup;
+  soup.positions.resize(end.position);
+  soup.triangles.resize(end.triangle);
+  soup.source_face.resize(end.triangle);
+  soup.object.resize(end.triangle);
+  const auto cut = [&end](auto& list) { list.resize(std::min(list.size(), end.position)); };
+  cut(scene.looks.normals), cut(scene.looks.colors), cut(scene.looks.places);
+}
+
+void complete_looks(Scene& scene) {
+  const std::size_t count = scene.soup.positions.size();
+  if (!scene.looks.normals.empty()) scene.looks.normals.resize(count, glm::vec3(0));
+  if (!scene.looks.colors.empty()) scene.looks.colors.resize(count, glm::vec4(1));
+  if (!scene.looks.places.empty()) scene.looks.places.resize(count, glm::dvec2(0));
+}
+
+}  // namespace penumbra::scenes

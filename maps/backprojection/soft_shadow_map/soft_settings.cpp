@@ -1,0 +1,91 @@
+// What soft-shadow-map can be asked for, and what it says of itself.
+
+#include "maps/backprojection/soft_shadow_map/soft_settings.hpp"
+
+#include "base/error.hpp"
+#include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
+#include "maps/host/error_repairs.hpp"
+#include "maps/host/map_method.hpp"
+#include "maps/host/mesh_verdict.hpp"
+
+namespace penumbra::maps {
+namespace {
+
+constexpr visibility::IntegerOption kSize{"size", 8, 16384, 128, "texels on a side of the map of occluders"};
+constexpr visibility::RealOption kNoBias{
+    "bias", 0, 1024, 0, "how far, in the occluders' texels, an occluder must be in front of a receiver"};
+constexpr visibility::IntegerOption kReceiverSize{"receiverSize", 8, 4096, 256,
+                                                  "texels on a side of the map of receivers, which holds V"};
+constexpr visibility::ChoiceOption kPasses{
+    "passes", {{"1", 1u}, {"2", 2u}}, 1u, "2: the farthest surfaces too, and the smaller V of the two"};
+constexpr visibility::ChoiceOption kPrecision{"precision",
+                                              {{"fp32", SoftPrecision::fp32}, {"fp16", SoftPrecision::fp16}},
+                                              SoftPrecision::fp32,
+                                              "fp16: adds in 16-bit floats, as the published blending did"};
+constexpr visibility::ChoiceOption kForm{"form",
+                                         {{"gather", SoftForm::gather}, {"scatter", SoftForm::scatter}},
+                                         SoftForm::gather,
+                                         "which map is walked: the same sums"};
+constexpr visibility::ChoiceOption kFilter{"filter",
+                                           {{"linear", SoftFilter::linear}, {"nearest", SoftFilter::nearest}},
+                                           SoftFilter::linear,
+                                           "how V is read from its map"};
+
+constexpr visibility::ChoiceOption kSelf{"self",
+                                         {{"none", SoftSelf::none}, {"backproject", SoftSelf::backproject}},
+                                         SoftSelf::none,
+                                         "V of pixels on occluders, which the paper leaves out: the light above their "
+                                         "horizon, or what backproject says with a map of this size"};
+
+visibility::MeshVerdict soft_shadow_map_verdict(const mesh::Diagnosis& mesh) {
+  return judge_for_maps("a sum of texels, each projected onto the light; objects do not shade themselves", mesh);
+}
+
+visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
+  return map_repairs(method, given,
+                     {.doubled = {"size", "receiverSize"},
+                      .layers = "passes=2 adds the farthest surfaces; no form of the method has those between",
+                      .fusion = "patches are added, or the smaller V of two passes taken; no form joins them",
+                      .gaps = "no form of the method fills what is between patches",
+                      .bias = {{"bias", "0"}}});
+}
+
+}  // namespace
+
+visibility::MethodDescription soft_shadow_map_description() {
+  visibility::MethodDescription description{
+      .name = "soft-shadow-map",
+      .family = visibility::Family::image,
+      .paper = "Atty et al. 2006",
+      .output = visibility::Output::scalar,
+      .exact_for =
+          "nothing; in the limit of large maps a receiver below occluders that are flat and parallel to the light "
+          "and do not overlap",
+      .lights = planar_lights(),
+      .options = map_option_descriptions(kSize, kNoBias),
+      .verdict_on = soft_shadow_map_verdict,
+      .repairs = repairs};
+  for (const visibility::OptionDescription& option :
+       {kDepth.description(), kReceiverSize.description(), kPasses.description(), kPrecision.description(),
+        kForm.description(), kFilter.description(), kSelf.description()}) {
+    description.options.push_back(option);
+  }
+  return description;
+}
+
+SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {
+  const SoftSettings settings{.receiver_size = parsed[kReceiverSize],
+                              .passes = parsed[kPasses],
+                              .precision = parsed[kPrecision],
+                              .form = parsed[kForm],
+                              .filter = parsed[kFilter],
+                              .self = parsed[kSelf]};
+  if (settings.precision == SoftPrecision::fp16 && settings.form == SoftForm::scatter) {
+    throw UsageError(
+        "method soft-shadow-map: 16-bit floats depend on the order of sums, and scattered ones have none; take "
+        "form=gather, which adds patches in the order of their texels, or precision=fp32");
+  }
+  return settings;
+}
+
+}  // namespace penumbra::maps

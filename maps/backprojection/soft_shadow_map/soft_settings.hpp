@@ -1,0 +1,30 @@
+#pragma once
+
+#include "maps/host/options.hpp"
+#include "render/device.hpp"
+#include "visibility/method.hpp"
+#include "visibility/method_options.hpp"
+
+#include <cstdint>
+
+namespace penumbra::maps {
+
+enum class SoftPrecision : std::uint8_t { fp32, fp16 };
+enum class SoftForm : std::uint8_t { gather, scatter };
+enum class SoftFilter : std::uint8_t { linear, nearest };
+enum class SoftSelf : std::uint8_t { none, backproject };
+
+/// What soft-shadow-map was asked for, beside what all methods with a map are.
+struct SoftSettings {
+  std::uint32_t receiver_size;  ///< texels on a side of the map of receivers
+  std::uint32_t passes;         ///< 2: with the farthest surfaces
+  SoftPrecision precision;
+  SoftForm form;
+  SoftFilter filter;
+  SoftSelf self;
+};
+
+/// Throws UsageError for settings that exclude each other.
+SoftSettings soft_settings(const visibility::ParsedOptions& parsed);
+
+}  // namespace penumbra::maps

@@ -1,0 +1,144 @@
+// How many maps adaptive-light takes, and what they are refined by.
+
+#include "tests/analytic/maps/adaptive_light.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace penumbra::tests {
+namespace {
+
+TEST_F(AdaptiveLight, FewerMapsForLargerTolerances) {
+  const Stage stage(sphere_scene(0.5), 48, 48, light_samples(4));
+  for (const char* compare : {"camera", "light"}) {
+    std::uint64_t last = 81;
+    std::set<std::uint64_t> counts;
+    for (const char* epsilon : {"0", "0.0001", "0.001", "0.003", "0.01", "0.03", "0.1", "1"}) {
+      const std::uint64_t maps = adaptive(stage, {{"epsilon", epsilon}, {"compare", compare}}).maps;
+      EXPECT_LE(maps, last) << "epsilon " << epsilon;
+      EXPECT_GE(maps, 4U);
+      counts.insert(last = maps);
+    }
+    EXPECT_EQ(last, 4U);
+    EXPECT_GT(counts.size(), 2U);
+    last = 81;
+    counts.clear();
+    for (const char* gamma : {"0", "0.01", "0.02", "0.1", "0.5", "1"}) {
+      const std::uint64_t maps = adaptive(stage, {{"gamma", gamma}, {"epsilon", "0.01"}, {"compare", compare}}).maps;
+      fmt::print("{} gamma {}: {} maps\n", compare, gamma, maps);
+      EXPECT_LE(maps, last) << "gamma " << gamma;
+      EXPECT_GE(maps, 4U);
+      counts.insert(last = maps);
+    }
+    EXPECT_GT(counts.size(), 1U);
+  }
+  const std::uint64_t bounded = adaptive(stage, {{"epsilon", "0"}, {"maps", "20"}}).maps;
+  EXPECT_LE(bounded, 20U);
+  EXPECT_GT(bounded, 20U - 5);
+}
+
+// Equation 7 at one pixel: two boards whose heights under the light are as 1 : 1.1 and that one corner each sees.
+TEST_F(AdaptiveLight, HeightsDifferFromGammaOn) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {0.5, 0, 0}, {0, 0, -0.5});
+  // The light at 5 is 2 wide on its line along x. Toward its left end the floor sees a board at 2, toward the right end
+  // one at 2.3: 3 and 2.7 below the light.
+  add_quad(scene, {-4.2, 2, 0}, {4, 0, 0}, {0, 0, 4}).receives_shadow = false;
+  add_quad(scene, {4.2, 2.3, 0}, {4, 0, 0}, {0, 0, 4}).receives_shadow = false;
+  scene.lights.push_back(rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.1}));
+  scene.cameras.push_back(camera({0, 1.5, 0}, {0, 0, -0.001}, 10));
+  const Stage stage(scene, 8, 8, light_samples(1));
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) ASSERT_TRUE(on_floor(stage, i));
+  const auto maps = [&](const char* gamma, const char* epsilon = "0.5") {
+    return adaptive(stage, {{"levels", "1"},
+                            {"epsilon", epsilon},
+                            {"gamma", gamma},
+                            {"form", "line"},
+                            {"shareOf", "pixels"},
+                            {"bias", "0.1"}})
+        .maps;
+  };
+  // |1 - 3 / 2.7| = 0.111: the first of a pair is the one at the lower coordinate.
+  EXPECT_EQ(maps("0.110"), 3U);
+  EXPECT_EQ(maps("0.112"), 2U);
+  EXPECT_EQ(maps("0.110", "1"), 3U) << "all pixels differ: not less than all of them";
+}
+
+TEST_F(AdaptiveLight, EpsilonIsAShareOfTheMapsTexelsOrOfThePixels) {
+  const Stage stage(sphere_scene(0.5), 48, 48, light_samples(4));
+  // 48^2 pixels are 0.1406 of 128^2 texels: as a share of the texels no more can differ.
+  EXPECT_EQ(adaptive(stage, {{"epsilon", "0.141"}, {"gamma", "0"}}).maps, 4U);
+  EXPECT_EQ(adaptive(stage, {{"epsilon", "0.141"}, {"gamma", "0"}, {"shareOf", "pixels"}}).maps, 81U);
+}
+
+// A camera far away sees few pixels of penumbra: the paper's own failure (5.1). Compared from the light nothing
+// changes.
+TEST_F(AdaptiveLight, FromFarAwayOnlyTheLightsOwnViewRefines) {
+  const Stage near(sphere_scene(0.5), 64, 64, light_samples(4)), far(sphere_scene(0.5, 4), 64, 64, light_samples(4));
+  const MethodOptions camera{{"epsilon", "0.007"}}, light{{"epsilon", "0.007"}, {"compare", "light"}};
+  const Run close_up = adaptive(near, camera), distant = adaptive(far, camera);
+  EXPECT_EQ(distant.maps, 4U);
+  EXPECT_GT(close_up.maps, 20U);
+  EXPECT_EQ(adaptive(near, light).maps, adaptive(far, light).maps);
+  EXPECT_GT(adaptive(far, light).maps, 4U);
+  const auto in_penumbra = [&](const Stage& stage, const Run& found) {
+    const Masks truth = exact(stage);
+    return rmse(
+        stage, [&](std::size_t i) { return on_floor(stage, i) && truth.visibility[i] > 0 && truth.visibility[i] < 1; },
+        [&](std::size_t i) {
+          return static_cast<double>(found.picture.visibility[i]) - static_cast<double>(truth.visibility[i]);
+        });
+  };
+  const double near_error = in_penumbra(near, close_up), far_error = in_penumbra(far, distant);
+  fmt::print("maps near {} far {}; RMSE in the penumbra {:.4f}, {:.4f}\n", close_up.maps, distant.maps, near_error,
+             far_error);
+  EXPECT_GT(far_error, 2 * near_error);
+}
+
+// As good as 128 fixed maps with fewer of them where penumbrae are small; more maps for larger lights.
+TEST_F(AdaptiveLight, MapsGrowWithThePenumbraAndAreFewForSmallLights) {
+  std::uint64_t last = 4;
+  for (const double half : {0.1, 0.5, 2.0}) {
+    const Stage stage(sphere_scene(half), 64, 64, light_samples(128));
+    const Run found = adaptive(stage, {{"epsilon", "0.0018"}, {"size", "256"}});
+    const Masks truth = exact(stage), fixed = run(maps::make_accumulate, stage, {{"size", "256"}});
+    const double adaptive_error = floor_rmse(stage, found.picture, truth),
+                 fixed_error = floor_rmse(stage, fixed, truth);
+    fmt::print("light half {}: {} maps, RMSE {:.5f}; 128 fixed maps {:.5f}\n", half, found.maps, adaptive_error,
+               fixed_error);
+    EXPECT_GE(found.maps, last);
+    last = found.maps;
+    if (half == 0.1) {
+      EXPECT_LE(found.maps, 64U);
+      EXPECT_LE(adaptive_error, 1.3 * fixed_error);
+    }
+  }
+  EXPECT_EQ(last, 81U);
+}
+
+// Figure 4 of the paper: a tilted receiver stretches the penumbra.
+TEST_F(AdaptiveLight, ATiltedReceiverNeedsMoreMaps) {
+  std::uint64_t last = 4;
+  for (const double degrees : {0.0, 30.0, 60.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    scenes::Scene scene;
+    const glm::dvec3 along(std::cos(angle), -std::sin(angle), 0);
+    add_quad(scene, glm::dvec3(0, -3 * std::sin(angle), 0), 4.0 * along, {0, 0, -4});
+    add_quad(scene, {0, 2.5, 0}, {0.6, 0, 0}, {0, 0, 0.6}).receives_shadow = false;
+    scene.lights.push_back(ceiling_light(5, 0.3));
+    const glm::dvec3 up(std::sin(angle), std::cos(angle), 0);
+    scene.cameras.push_back(camera(7.0 * up + glm::dvec3(0, 0, 3), {0, -2 * std::sin(angle), 0}, 60));
+    const Stage stage(scene, 64, 64, light_samples(1));
+    const std::uint64_t maps = adaptive(stage, {{"epsilon", "0.01"}, {"gamma", "0.1"}}).maps;
+    fmt::print("receiver tilted by {}: {} maps\n", degrees, maps);
+    EXPECT_GE(maps, last);
+    last = maps;
+  }
+  EXPECT_GT(last, 14U);
+}
+
+}  // namespace
+}  // namespace penumbra::tests
