@@ -13,6 +13,7 @@
 namespace penumbra::vsm {
 namespace {
 
+using visibility::Bounds;
 using visibility::SceneFloats;
 
 constexpr std::uint32_t kNone = 0xffffffffU;
@@ -36,8 +37,8 @@ Casters casters_of(const SceneFloats& scene) {
 
 ClosedPart bounds_of(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  constexpr Box kEmpty{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
-  const auto add = [](Box& box, const glm::vec3& at) { box = {glm::min(box.lower, at), glm::max(box.upper, at)}; };
+  constexpr Bounds kEmpty{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
+  const auto add = [](Bounds& box, const glm::vec3& at) { box = {glm::min(box.lower, at), glm::max(box.upper, at)}; };
   ClosedPart part{kEmpty, {kEmpty, kEmpty, kEmpty, kEmpty, kEmpty, kEmpty}};
   for (const std::uint32_t t : triangles) {
     for (const glm::vec3& corner : scene.corners(t)) add(part.box, corner);
@@ -85,7 +86,7 @@ int side_shown(const std::array<glm::vec3, 3>& corners, const visibility::Device
   return at_center < -(span + margin) ? -1 : 0;
 }
 
-bool apart_from_light(const Box& box, const visibility::DeviceLight& frame, float scale) {
+bool apart_from_light(const Bounds& box, const visibility::DeviceLight& frame, float scale) {
   const glm::vec3 reach = glm::abs(frame.u) + glm::abs(frame.v);
   const glm::vec3 margin = 0x1p-20F * (glm::abs(frame.center) + reach) + frame.deviation;
   const glm::vec3 lower = frame.center - reach - margin, upper = frame.center + reach + margin;
@@ -147,7 +148,7 @@ std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Ligh
   const visibility::PointBounds around = light.sun ? visibility::PointBounds() : visibility::point_bounds(light);
   std::uint32_t apart = 0;
   for (std::size_t i = 0; i < closed.parts.size(); ++i) {
-    const Box& box = closed.parts[i].box;
+    const Bounds& box = closed.parts[i].box;
     bool is_apart = light.sun.has_value();
     for (int axis = 0; axis < 3; ++axis)
       is_apart = is_apart || box.upper[axis] < around.lower[axis] || box.lower[axis] > around.upper[axis];

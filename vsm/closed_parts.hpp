@@ -1,10 +1,9 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
-#include "visibility/scene_floats.hpp"
 #include "visibility/lights/device_light.hpp"
-
-#include <glm/vec3.hpp>
+#include "visibility/scene_floats.hpp"
+#include "visibility/tree/triangle_tree.hpp"
 
 #include <array>
 #include <cstdint>
@@ -12,15 +11,12 @@
 
 namespace penumbra::vsm {
 
-struct Box {
-  glm::vec3 lower{0}, upper{0};
-};
-
 /// A closed part of the scene, as seen from outside its box. A segment between two points outside enters the part as
 /// often as it leaves it, so the triangles by which it can only enter (or only leave) need not be tested.
 struct ClosedPart {
-  Box box;
-  std::array<Box, 6> touching;  ///< bounds of the part's vertices on each face of the box: lower x, y, z, upper x, y, z
+  visibility::Bounds box;
+  /// Bounds of the part's vertices on each face of the box: lower x, y, z, upper x, y, z.
+  std::array<visibility::Bounds, 6> touching;
 };
 
 /// The parts (at most kMost, the largest) whose triangles meet two at an edge and can be wound alike, none of them

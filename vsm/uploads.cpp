@@ -51,13 +51,13 @@ void mark_dispensable(const TriangleTree& tree, std::span<const std::uint8_t> di
 
 std::vector<Texel> part_texels(const ClosedParts& closed, float scale) {
   std::vector<Texel> texels;
-  const auto add = [&](const Box& box) {
+  const auto add = [&](const visibility::Bounds& box) {
     texels.push_back({box.lower * scale, 0});
     texels.push_back({box.upper * scale, 0});
   };
   for (const ClosedPart& part : closed.parts) {
     add(part.box);
-    for (const Box& box : part.touching) add(box);
+    for (const visibility::Bounds& box : part.touching) add(box);
   }
   if (texels.empty()) texels.emplace_back();  // a buffer is never empty
   return texels;

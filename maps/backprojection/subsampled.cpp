@@ -33,10 +33,11 @@ constexpr std::uint64_t key_of(std::uint32_t object, std::uint32_t x, std::uint3
   return std::uint64_t{object} << 40 | std::uint64_t{y} << 20 | x;
 }
 
-struct Place {
+/// What a key says.
+struct ObjectPixel {
   std::uint32_t object, x, y;
 };
-constexpr Place place_of(std::uint64_t key) {
+constexpr ObjectPixel pixel_of(std::uint64_t key) {
   constexpr std::uint64_t kAxis = (1u << 20) - 1;
   return {static_cast<std::uint32_t>(key >> 40), static_cast<std::uint32_t>(key & kAxis),
           static_cast<std::uint32_t>(key >> 20 & kAxis)};
@@ -45,12 +46,12 @@ constexpr Place place_of(std::uint64_t key) {
 Level pulled(const Level& fine) {
   Level coarse;
   for (const auto& [key, node] : fine) {
-    const Place at = place_of(key);
+    const ObjectPixel at = pixel_of(key);
     coarse.try_emplace(key_of(at.object, at.x / 2, at.y / 2));
   }
   // Children in a fixed order: the map's own must not decide how sums round.
   for (auto& [key, node] : coarse) {
-    const Place at = place_of(key);
+    const ObjectPixel at = pixel_of(key);
     double count = 0;
     for (std::uint32_t k = 0; k < 4; ++k) {
       const auto child = fine.find(key_of(at.object, 2 * at.x + (k & 1), 2 * at.y + (k >> 1)));
@@ -71,7 +72,7 @@ Level pulled(const Level& fine) {
 
 /// V at a node's place from those of the coarser level around it, `spacing` pixels wide each: tents as wide as that,
 /// which on a regular grid are bilinear.
-double between(const Level& coarse, const Place& at, const Node& node, double spacing) {
+double between(const Level& coarse, const ObjectPixel& at, const Node& node, double spacing) {
   double sum = 0, weights = 0;
   for (std::int64_t dy = -1; dy <= 1; ++dy) {
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
@@ -278,7 +279,7 @@ void fill_in(std::span<KnownPixel> pixels, std::uint32_t width) {
     const double side = std::ldexp(1.0, static_cast<int>(level));
     for (auto& [key, node] : levels[level]) {
       if (node.known) continue;
-      const Place at = place_of(key);
+      const ObjectPixel at = pixel_of(key);
       // Where the grid's own pixels are: in a square's first.
       node.x = side * at.x;
       node.y = side * at.y;

@@ -25,9 +25,9 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const float h = dot(m, d);
   if (h <= 0.0) return 0.0;  // the light's centre is below the receiver's horizon
   const Tap own_tap = fetch(view, 0, lookup.size, d);
-  const Place place = place_of(view, d);
-  const vec2 step = (place.upper - place.lower) / float(lookup.size);
-  const vec2 at = (place.f.xy / place.f.z - place.lower) / step;
+  const FaceHit hit = face_hit(view, d);
+  const vec2 step = (hit.upper - hit.lower) / float(lookup.size);
+  const vec2 at = (hit.f.xy / hit.f.z - hit.lower) / step;
   // As many texels on either side of the receiver as there can be: an odd window is centred on the receiver's texel, an
   // even one on the texel border nearest to it.
   const vec2 first = floor(at - 0.5 * float(own.window) + 0.5) - floor(at);

@@ -11,7 +11,7 @@
 const float kSteepest = 8.0;
 
 // Where the direction of d, a vector in the light's basis, meets the maps. d must not lie in the light's plane.
-struct Place {
+struct FaceHit {
   uint face;         // of its side
   int axis;          // the face's axis: 0, 1, 2
   vec3 f;            // d as (a, b, w): across and along the face
@@ -19,28 +19,28 @@ struct Place {
 };
 
 // Faces and coordinates as in face_push (map_fit.cpp).
-Place place_of(LightView view, vec3 d) {
+FaceHit face_hit(LightView view, vec3 d) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
   const vec3 e = vec3(d.xy, abs(d.z));
   const vec2 across = abs(e.xy);
-  Place place = Place(0, 2, e, side.lower, side.upper);
+  FaceHit hit = FaceHit(0, 2, e, side.lower, side.upper);
   if (side.face_count > 1) {
-    place.lower = vec2(-1.0);
-    place.upper = vec2(1.0);
+    hit.lower = vec2(-1.0);
+    hit.upper = vec2(1.0);
     if (max(across.x, across.y) > e.z) {
-      place.lower.y = 0.0;
+      hit.lower.y = 0.0;
       if (across.x >= across.y) {
-        place.face = e.x > 0.0 ? 1 : 2;
-        place.f = vec3(e.y, e.z, across.x);
-        place.axis = 0;
+        hit.face = e.x > 0.0 ? 1 : 2;
+        hit.f = vec3(e.y, e.z, across.x);
+        hit.axis = 0;
       } else {
-        place.face = e.y > 0.0 ? 3 : 4;
-        place.f = vec3(e.x, e.z, across.y);
-        place.axis = 1;
+        hit.face = e.y > 0.0 ? 3 : 4;
+        hit.f = vec3(e.x, e.z, across.y);
+        hit.axis = 1;
       }
     }
   }
-  return place;
+  return hit;
 }
 
 // One face of a light point's maps. Directions are taken on the receiver's side of the light's plane: (x, y, |z|).
@@ -112,12 +112,12 @@ Tap tap_of(LightView view, uint size, MapFace face, uvec2 cell) {
 // d must not lie in the light's plane.
 Tap fetch(LightView view, uint first_map, uint size, vec3 d) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
-  const Place place = place_of(view, d);
-  const MapFace face = face_of(side, first_map, size, place.face);
-  const vec2 cell = side.face_count == 0 ? vec2(0.0) : floor((place.f.xy / place.f.z - face.lower) / face.texel);
+  const FaceHit hit = face_hit(view, d);
+  const MapFace face = face_of(side, first_map, size, hit.face);
+  const vec2 cell = side.face_count == 0 ? vec2(0.0) : floor((hit.f.xy / hit.f.z - face.lower) / face.texel);
   const vec2 at = clamp(cell, vec2(0.0), vec2(float(size - 1)));
   Tap tap = tap_of(view, size, face, uvec2(at));
-  tap.along = place.f.z;
+  tap.along = hit.f.z;
   tap.mirrored = d.z < 0.0 ? -1.0 : 1.0;
   tap.direction.z *= tap.mirrored;
   // Beside a window there is nothing to find (map_fit.cpp); a hemicube's faces meet, and only rounding leads beside one.

@@ -150,19 +150,19 @@ float mean_over(uint index, Box box, float log2_scale) {
 // half_box (1/z - 1/|d.z|) in x/z and y/z, but no narrower than a texel: then the receiver's own.
 Box box_through(LightView view, vec3 d, vec2 half_box, float z) {
   const float height = abs(d.z);
-  const Place place = place_of(view, d);
-  const vec2 texel = (place.upper - place.lower) / float(table.size);
-  const vec2 at = place.f.xy / place.f.z;
+  const FaceHit hit = face_hit(view, d);
+  const vec2 texel = (hit.upper - hit.lower) / float(table.size);
+  const vec2 at = hit.f.xy / hit.f.z;
   vec2 reach = half_box * max(1.0 / z - 1.0 / height, 0.0);
   // On a sideways face, a = other / side and b = height / side: the box that holds the window, to first order.
-  if (place.axis == 0) reach = at.y * vec2(reach.y + abs(at.x) * reach.x, at.y * reach.x);
-  if (place.axis == 1) reach = at.y * vec2(reach.x + abs(at.x) * reach.y, at.y * reach.y);
-  const vec2 center = (at - place.lower) / texel, width = 2.0 * reach / texel;
+  if (hit.axis == 0) reach = at.y * vec2(reach.y + abs(at.x) * reach.x, at.y * reach.x);
+  if (hit.axis == 1) reach = at.y * vec2(reach.x + abs(at.x) * reach.y, at.y * reach.y);
+  const vec2 center = (at - hit.lower) / texel, width = 2.0 * reach / texel;
   const vec2 own = mix(floor(center) + 0.5, center, min(width, vec2(1.0)));
   const vec2 extent = max(width, vec2(1.0));
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
   Box box;
-  box.face = side.first_face + place.face;
+  box.face = side.first_face + hit.face;
   box.lower = clamp(own - 0.5 * extent, vec2(0.0), vec2(table.size));
   box.upper = clamp(own + 0.5 * extent, vec2(0.0), vec2(table.size));
   const vec2 inside = box.upper - box.lower;
@@ -175,10 +175,10 @@ Box box_through(LightView view, vec3 d, vec2 half_box, float z) {
 
 // The receiver's height less what the bias forgives: as in blocks(), bias texels in depth, more on a slope.
 float height_less_bias(LightView view, vec3 d, vec3 m) {
-  const Place place = place_of(view, d);
-  const vec2 texels = (place.upper - place.lower) / float(lookup.size);
-  const float facing = dot(m, d) / place.f.z;
-  const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[place.axis]);
+  const FaceHit hit = face_hit(view, d);
+  const vec2 texels = (hit.upper - hit.lower) / float(lookup.size);
+  const float facing = dot(m, d) / hit.f.z;
+  const float across = abs(m.x) + abs(m.y) + abs(m.z) - abs(m[hit.axis]);
   const float slope = across < kSteepest * facing ? across / facing : kSteepest;
   return abs(d.z) * max(1.0 - lookup.bias * max(texels.x, texels.y) * (1.0 + slope), 0.0);
 }

@@ -16,7 +16,7 @@
 namespace penumbra::vsm {
 namespace {
 
-bool is_outside(const Box& box, const glm::vec3& p) {
+bool is_outside(const visibility::Bounds& box, const glm::vec3& p) {
   for (int axis = 0; axis < 3; ++axis) {
     if (p[axis] < box.lower[axis] || p[axis] > box.upper[axis]) return true;
   }
