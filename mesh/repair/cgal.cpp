@@ -56,7 +56,7 @@ double volume(const TriangleSoup& soup, const std::vector<std::uint32_t>& triang
 }
 
 /// The closed parts that CGAL turns so that together they bound a volume.
-std::vector<std::uint32_t> inverted_parts(const TriangleSoup& soup, const Components& parts, CgalSurface& surface) {
+std::vector<std::uint32_t> inverted_parts(const TriangleSoup& soup, const SurfaceParts& parts, CgalSurface& surface) {
   pmp::orient_to_bound_a_volume(surface.mesh);
   std::set<std::uint32_t> inverted;
   for (const Face face : surface.mesh.faces()) {
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> inverted_parts(const TriangleSoup& soup, const Compon
 }
 
 /// Where that is not defined: parts of negative volume that are in no other's bounds.
-std::vector<std::uint32_t> inside_out_parts(const TriangleSoup& soup, const Components& parts) {
+std::vector<std::uint32_t> inside_out_parts(const TriangleSoup& soup, const SurfaceParts& parts) {
   std::vector<std::uint32_t> closed;
   std::vector<Box> boxes;
   for (std::uint32_t part = 0; part < parts.closed.size(); ++part) {
@@ -223,7 +223,7 @@ std::array<CgalMesh::Vertex_index, 3> corners(const CgalMesh& mesh, Face face) {
   return {mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))};
 }
 
-Components find_components(const TriangleSoup& soup) {
+SurfaceParts surface_parts(const TriangleSoup& soup) {
   struct Rim {  // a triangle's side
     std::uint32_t a, b, triangle;
     auto operator<=>(const Rim&) const = default;
@@ -254,24 +254,24 @@ Components find_components(const TriangleSoup& soup) {
       open.push_back(sides[i].triangle);
     }
   }
-  Components components;
-  components.of_triangle.resize(soup.triangles.size());
+  SurfaceParts parts;
+  parts.of_triangle.resize(soup.triangles.size());
   for (std::uint32_t t = 0; t < soup.triangles.size(); ++t) {
     if (root(t) == t) {
-      components.of_triangle[t] = static_cast<std::uint32_t>(components.triangles.size());
-      components.triangles.emplace_back();
+      parts.of_triangle[t] = static_cast<std::uint32_t>(parts.triangles.size());
+      parts.triangles.emplace_back();
     }
-    components.of_triangle[t] = components.of_triangle[root(t)];
-    components.triangles[components.of_triangle[t]].push_back(t);
+    parts.of_triangle[t] = parts.of_triangle[root(t)];
+    parts.triangles[parts.of_triangle[t]].push_back(t);
   }
-  components.closed.assign(components.triangles.size(), true);
-  for (const std::uint32_t t : open) components.closed[components.of_triangle[t]] = false;
-  return components;
+  parts.closed.assign(parts.triangles.size(), true);
+  for (const std::uint32_t t : open) parts.closed[parts.of_triangle[t]] = false;
+  return parts;
 }
 
 TriangleSoup turn_outward(const TriangleSoup& soup, RepairRecord& record) {
   const QuietCgal quiet;
-  const Components parts = find_components(soup);
+  const SurfaceParts parts = surface_parts(soup);
   std::vector<std::uint32_t> closed;
   for (std::uint32_t part = 0; part < parts.closed.size(); ++part) {
     if (parts.closed[part]) closed.insert(closed.end(), parts.triangles[part].begin(), parts.triangles[part].end());

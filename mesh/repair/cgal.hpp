@@ -47,12 +47,13 @@ std::array<CgalMesh::Vertex_index, 3> corners(const CgalMesh& mesh, CgalMesh::Fa
 /// split in two.)
 std::vector<std::pair<CgalMesh::Face_index, CgalMesh::Face_index>> intersections(const CgalMesh& mesh);
 
-/// For each triangle, its component (through edges that it shares by its indices), numbered by their first triangles.
-struct Components {
+/// The parts of a soup that are connected through edges, which triangles share by their indices; numbered by their
+/// first triangles. (closed_components.hpp has those of a mesh whose equal positions are one vertex.)
+struct SurfaceParts {
   std::vector<std::uint32_t> of_triangle;
   std::vector<std::vector<std::uint32_t>> triangles;
   std::vector<bool> closed;
 };
-Components find_components(const TriangleSoup& soup);
+SurfaceParts surface_parts(const TriangleSoup& soup);
 
 }  // namespace penumbra::mesh

@@ -120,7 +120,7 @@ std::vector<FacePair> intersections(const CgalMesh& mesh) {
 TriangleSoup resolve_intersections(const TriangleSoup& soup, RepairRecord& record) {
   const QuietCgal quiet;
   const CgalSurface whole = to_cgal(soup);
-  const Components parts = find_components(soup);
+  const SurfaceParts parts = surface_parts(soup);
   std::vector<std::uint64_t> within(parts.triangles.size(), 0);
   std::uint64_t left = 0, failed = 0;
   for (const auto& [f, g] : intersections(whole.mesh)) {

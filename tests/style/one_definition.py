@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""one_definition.py SOURCE: no two files define different types of one name in one namespace.
+
+Compilers see one file at a time, and linkers keep one of all constructors and destructors of a name: with two types of that
+name, which of them run depends on what the optimiser made of calls, and on the order of linking. Anonymous namespaces and
+types inside types are left out; so are specialisations of others' templates, and tests, which are programs of their own.
+"""
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+
+# Built instead of the files that define the same.
+ALTERNATIVES = {"render/opengl/absent.cpp"}
+
+TOKEN = re.compile(
+    r"(?:inline\s+)?namespace\s*(?P<namespace>[\w:]*)\s*\{"
+    r"|\b(?:struct|class|union|enum(?:\s+class)?)\s+(?:\[\[\w+\]\]\s*|alignas\(\w+\)\s*)*(?P<type>[\w:]+)(?P<rest>[^;{}()=]*)\{"
+    r"|[{}]")
+NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.S)
+
+
+def types_of(text):
+    """The qualified names of the types that a file defines outside anonymous namespaces, functions and other types."""
+    scopes = []  # of each brace that is open: a namespace's name, or None
+    for token in TOKEN.finditer(NOT_CODE.sub(" ", text)):
+        if token[0] == "}":
+            if scopes:
+                scopes.pop()
+        elif token["namespace"] is not None:
+            scopes.append(token["namespace"])
+        else:
+            name = token["type"]
+            if name and all(scopes) and "<" not in token["rest"].split(":")[0]:
+                yield "::".join([*scopes, name])
+            scopes.append(None)
+
+
+def main(source):
+    listed = subprocess.run(["find", ".", "(", "-name", "CMakeCache.txt", "-printf", "%h\\n", ")"], cwd=source,
+                            capture_output=True, text=True, check=True).stdout.split()
+    builds = [pathlib.PurePath(build) for build in listed]
+    places = collections.defaultdict(set)
+    for path in sorted(source.rglob("*")):
+        file = path.relative_to(source)
+        if path.suffix not in {".cpp", ".hpp", ".h"} or str(file) in ALTERNATIVES:
+            continue
+        if file.parts[0] == "tests" or any(build in file.parents for build in builds):
+            continue
+        for name in types_of(path.read_text(errors="replace")):
+            places[name].add(str(file))
+    twice = {name: files for name, files in places.items() if len(files) > 1}
+    for name, files in sorted(twice.items()):
+        print(f"{name} is defined in {' and in '.join(sorted(files))}", file=sys.stderr)
+    print(f"{len(places)} types")
+    return 1 if twice else 0
+
+
+sys.exit(main(pathlib.Path(sys.argv[1])))
