@@ -102,15 +102,29 @@ inline std::string text_of(const glm::vec3& v) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
 }
 
-/// One pair in numbers, enough to write a test for it alone.
+/// What a light's stored numbers are: of a sphere its centre and radius, of a sun its directions.
+inline std::string text_of(const visibility::Light& light) {
+  const std::string kind = visibility::name_of(light.kind), center = text_of(light.center);
+  if (light.kind == visibility::LightKind::sphere)
+    return fmt::format("{} {} radius {:.17g}", kind, center, light.radius);
+  if (light.sun) {
+    return fmt::format("{} {} axes {} {} tangent {:.17g}", kind, center, text_of(light.sun->axis_u),
+                       text_of(light.sun->axis_v), light.sun->tangent);
+  }
+  return fmt::format("{} {} {} {}", kind, center, text_of(light.center_u), text_of(light.center_v));
+}
+
+/// One pair in numbers, enough to write a test for it alone. The pixel shows a triangle.
 inline std::string describe_pair(const visibility::SceneFloats& floats, const visibility::ViewSamples& samples,
                                  std::size_t pixel, const visibility::Light& light, std::uint32_t j) {
   const auto truth = visibility::decide_pair(floats, samples, pixel, light, j);
   const auto corners = floats.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
-  return fmt::format("pixel {} sample {}: truth {}{}; p {} facing {} on {} {} {}; l {}; light {} {} {}", pixel, j,
+  std::vector<glm::vec3> points(light.sample_count());  // a sphere has its own for each p
+  visibility::light_points_for(light, samples.p[pixel], points.data());
+  return fmt::format("pixel {} sample {}: truth {}{}; p {} facing {} on {} {} {}; l {}; light {}", pixel, j,
                      name_of(truth.outcome), truth.zero_predicate ? " (zero)" : "", text_of(samples.p[pixel]),
                      samples.facing[pixel], text_of(corners[0]), text_of(corners[1]), text_of(corners[2]),
-                     text_of(light.points[j]), text_of(light.center), text_of(light.center_u), text_of(light.center_v));
+                     text_of(points[j]), text_of(light));
 }
 
 /// How the pairs of a picture turned out, so that a test can say that it saw what it is about.

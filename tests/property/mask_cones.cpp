@@ -162,5 +162,28 @@ TEST_P(AimedSpheres, EveryPairIsTheExactDecision) {
 INSTANTIATE_TEST_SUITE_P(Of, AimedSpheres, testing::ValuesIn(tests::kConeMethods),
                          [](const auto& it) { return std::string(it.param.name); });
 
+/// Of a sphere a wrong bit is told with the point that its p sees, of a sun with the direction.
+TEST(WrongBits, AreToldWithTheirLightPoints) {
+  for (const scenes::LightShape& shape :
+       {scenes::LightShape(scenes::Sphere{{0, 4, 0}, 0.5}), scenes::LightShape(scenes::Sun{{0, -1, 0}, 10})}) {
+    scenes::Scene scene;
+    tests::add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
+    scene.lights.push_back(tests::ceiling_light(4, 0.5));
+    scene.lights[0].shape = shape;
+    scene.cameras.push_back(tests::camera({0, 3, 0.5}, {0, 0, 0}, 30));
+    const tests::Stage stage(scene, 2, 2, tests::light_samples(4));
+    tests::Masks dark;
+    dark.words_per_pixel = 1;
+    dark.words.resize(4);
+    dark.visibility.resize(4);
+    const testing::AssertionResult told = tests::equals_truth(stage.floats, stage.light, stage.samples, dark);
+    std::vector<glm::vec3> points(stage.light.sample_count());
+    visibility::light_points_for(stage.light, stage.samples.p[0], points.data());
+    EXPECT_FALSE(told);
+    EXPECT_NE(std::string(told.message()).find("; l " + tests::text_of(points[0]) + ";"), std::string::npos)
+        << told.message();
+  }
+}
+
 }  // namespace
 }  // namespace penumbra

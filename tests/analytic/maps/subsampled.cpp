@@ -198,5 +198,15 @@ TEST(MapsFillIn, BetweenFourPixelsIsBilinear) {
   }
 }
 
+// Of a row's pixels 0 to 3 all but 1 are known. The coarser level has 0 at its own place, and 2 and 3 at 2.5: from 1
+// they are 1 and 1.5 away, and tents 2 wide weigh them by 1 / 2 and 1 / 4.
+TEST(MapsFillIn, TentsAreTwoPixelsOfTheirLevelWide) {
+  std::vector<KnownPixel> row(4, KnownPixel{0, true, 1});
+  row[0].v = 0;
+  row[1].known = false;
+  maps::fill_in(row, 4);
+  EXPECT_NEAR(row[1].v, 1.0 / 3, 1e-7);
+}
+
 }  // namespace
 }  // namespace penumbra::tests
