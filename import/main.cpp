@@ -133,7 +133,7 @@ Answer message(mesh::HelperStatus status) {
 }
 
 mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& arguments) {
-  if (scenes::is_gltf(input.name)) return scenes::import_gltf_mesh(input, arguments.options.allow_outside);
+  if (scenes::is_gltf(input.name)) return scenes::import_gltf_mesh(input, arguments.options);
   return mesh::read_mesh(input);
 }
 

@@ -12,9 +12,10 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& 
   return import_mesh(open_input(file), limits);
 }
 
-ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits, bool allow_outside) {
+ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits, GltfMeshOptions gltf) {
   HelperJob job{"mesh", input, {}};
-  if (allow_outside) job.flags.emplace_back("--allow-outside");
+  if (gltf.allow_outside) job.flags.emplace_back("--allow-outside");
+  if (gltf.lenient) job.flags.emplace_back("--lenient");
   HelperAnswer answer = run_import_helper(job, limits);
   try {
     WireReader from(answer.payload);

@@ -36,8 +36,13 @@ struct ImportLimits {
 /// that is not finite, a file shorter than its header promises.
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits = {});
 
-/// Reads a mesh file that has been opened already. glTF finds its buffers in the file's folder and below, or anywhere
-/// if `allow_outside`.
-ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits = {}, bool allow_outside = false);
+/// Of glTF files.
+struct GltfMeshOptions {
+  bool allow_outside = false;  ///< buffers may be anywhere; else in the file's folder and below
+  bool lenient = true;         ///< what changes shadows and a mesh cannot hold (alpha) is a note; else InputError
+};
+
+/// Reads a mesh file that has been opened already.
+ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits = {}, GltfMeshOptions gltf = {});
 
 }  // namespace penumbra::mesh

@@ -166,6 +166,7 @@ AreaLight get_light(WireReader& from) {
   light.shape = get_shape(from);
   light.radiance = get_vector(from);
   light.two_sided = from.get_bool();
+  light.unshaded_by = from.get_array<std::uint32_t>();
   return light;
 }
 
@@ -248,6 +249,7 @@ void put_scene(WireWriter& to, const Scene& scene) {
     put_shape(to, light.shape);
     to.put(light.radiance);
     put_bool(to, light.two_sided);
+    to.put_array(std::span<const std::uint32_t>(light.unshaded_by));
   }
   put_count(to, scene.cameras.size());
   for (const Camera& camera : scene.cameras) {
@@ -292,6 +294,11 @@ Scene get_scene(WireReader& from) {
   for (const Object& object : scene.objects) {
     if (object.emits && *object.emits >= scene.lights.size()) throw WireError("an object emits an unknown light");
     if (object.picture && object.picture->picture >= scene.pictures.size()) throw WireError("a picture is missing");
+  }
+  for (const AreaLight& light : scene.lights) {
+    for (const std::uint32_t object : light.unshaded_by) {
+      if (object >= scene.objects.size()) throw WireError("a light is not shaded by an object that is none");
+    }
   }
   if (scene.cameras.empty()) throw WireError("there is no camera");
   return scene;

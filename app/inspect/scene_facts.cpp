@@ -25,6 +25,16 @@ std::string alpha_text(const Alpha& alpha) {
   return "";
 }
 
+/// Does the object shade any light? Not the one that it is the body of. Of a mesh without lights: it may.
+bool dims_light(const scenes::Scene& scene, const scenes::Object& object) {
+  const auto number = static_cast<std::uint32_t>(&object - scene.objects.data());
+  const auto shades = [&](const scenes::AreaLight& light) {
+    const auto index = static_cast<std::uint32_t>(&light - scene.lights.data());
+    return object.emits != index && std::ranges::find(light.unshaded_by, number) == light.unshaded_by.end();
+  };
+  return object.casts_shadow && (scene.lights.empty() || std::ranges::any_of(scene.lights, shades));
+}
+
 const char* alpha_name(const Alpha& alpha) {
   return alpha.mode == Alpha::Mode::mask ? "mask" : alpha.mode == Alpha::Mode::blend ? "blend" : "opaque";
 }
@@ -42,7 +52,7 @@ SceneFacts facts_of(const scenes::Scene& scene) {
   }
   for (const scenes::Camera& camera : scene.cameras) facts.cameras.push_back({camera.name, compare::words_of(camera)});
   for (const scenes::Object& object : scene.objects) {
-    if (object.alpha.mode != Alpha::Mode::opaque && object.casts_shadow && facts.filter.empty())
+    if (object.alpha.mode != Alpha::Mode::opaque && facts.filter.empty() && dims_light(scene, object))
       facts.filter = object.name;
     if (object.material.empty()) continue;
     auto same = std::ranges::find(facts.materials, object.material, &SceneFacts::Material::name);

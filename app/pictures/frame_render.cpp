@@ -117,25 +117,42 @@ FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, 
       maker_(options, devices),
       fine_options_(options) {}
 
-void FrameRenderer::say_warnings() {
+void FrameRenderer::say_once(const std::vector<std::string>& warnings) {
   progress_.clear();
-  const auto& cameras = session().scene.cameras;
-  if (cameras.size() > 1 && options_.camera.empty() && said_.empty())
-    spdlog::info("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size());
-  std::vector<std::string> warnings = lit().warnings;
-  for (const WholeLight& whole : whole_lights(lit().lights)) {
-    const visibility::Light& light = lit().lights[whole.first];
-    const auto pieces = std::span(lit().classes).subspan(whole.first, whole.count);
-    const bool shines = light.radiance != glm::dvec3(0);
-    if (!shines || std::ranges::any_of(pieces, [](const auto& piece) { return lights_anything(piece); })) continue;
-    warnings.push_back(fmt::format("no visible point is before light \"{}\": nothing in the picture is lit by it{}",
-                                   light.name, light.two_sided ? "" : " (does it shine the other way?)"));
-  }
   for (const std::string& warning : warnings) {
     if (std::ranges::find(said_, warning) != said_.end()) continue;
     spdlog::warn("{}", warning);
     said_.push_back(warning);
   }
+}
+
+void FrameRenderer::say_warnings() {
+  progress_.clear();
+  const auto& cameras = session().scene.cameras;
+  if (cameras.size() > 1 && options_.camera.empty() && !std::exchange(camera_said_, true))
+    spdlog::info("camera \"{}\", the first of {}; --camera NAME or all", cameras.front().name, cameras.size());
+  say_once(lit().warnings);
+}
+
+void FrameRenderer::mark_lights() {
+  const std::vector<WholeLight> lights = whole_lights(lit().lights);
+  lights_something_.resize(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto pieces = std::span(lit().classes).subspan(lights[i].first, lights[i].count);
+    if (std::ranges::any_of(pieces, [](const auto& piece) { return lights_anything(piece); })) lights_something_[i] = 1;
+  }
+}
+
+void FrameRenderer::say_idle_lights() {
+  std::vector<std::string> warnings;
+  const std::vector<WholeLight> lights = whole_lights(lit().lights);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const visibility::Light& light = lit().lights[lights[i].first];
+    if (light.radiance == glm::dvec3(0) || lights_something_[i] != 0) continue;
+    warnings.push_back(fmt::format("no visible point is before light \"{}\": nothing in the picture is lit by it{}",
+                                   light.name, light.two_sided ? "" : " (does it shine the other way?)"));
+  }
+  say_once(warnings);
 }
 
 /// Says, and notes, where light samples are looked at though nobody asked for them.
@@ -177,6 +194,8 @@ void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
 void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   Stopwatch watch;
   say_warnings();
+  lights_something_.clear();
+  mark_lights();
   choose_methods(lit().lights);
   load_seconds_ += watch.seconds();
   if (!bits.empty()) {
@@ -194,6 +213,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
     alpha_.push_back(triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f);
   beauty_seconds_ += watch.seconds();
   add_panes();
+  say_idle_lights();
 }
 
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
@@ -254,6 +274,7 @@ void FrameRenderer::add_panes() {
     if (behind.size() == 0) behind = std::move(before);
     view_seconds_ += watch.seconds();
     watch.restart();
+    mark_lights();
     mark_lamps();
     BeautyAccumulator beauty(lit(), lit().lights);
     beauty_seconds_ += watch.seconds();

@@ -91,6 +91,11 @@ class FrameRenderer {
   [[nodiscard]] SessionMaker& lit_maker() { return fine_ ? *fine_ : maker_; }
   Kept& method_for(const LightMethod& wanted);
   void say_warnings();
+  void say_once(const std::vector<std::string>& warnings);
+  /// Notes which lights some view sample that is looked at is before.
+  void mark_lights();
+  /// Once all view samples have been looked at.
+  void say_idle_lights();
 
   const RunOptions& options_;
   const MethodWish& wish_;
@@ -101,6 +106,7 @@ class FrameRenderer {
   std::optional<SessionMaker> fine_;
   std::vector<Kept> kept_;
   std::vector<std::string> said_;  // warnings, once each
+  bool camera_said_ = false;
 
   // Of the picture computed last:
   Frame frame_;
@@ -110,6 +116,7 @@ class FrameRenderer {
   MethodRun run_;
   std::vector<std::vector<glm::vec3>> beauty_;  // of each light
   std::vector<float> alpha_;                    // of each pixel
+  std::vector<std::uint8_t> lights_something_;  // of each whole light: a view sample is before it
   std::vector<std::uint8_t> lamps_;             // of each pixel: a translucent body of a light is seen; empty: none is
   std::optional<PictureMean> mean_;             // nothing: the picture is that of one moment and of pixels' centres
   std::optional<BitsOutput> bits_;

@@ -29,4 +29,8 @@ ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
   return {read("castsShadow"), read("receivesShadow"), read("body")};
 }
 
+bool lamp_casts_shadows(const tinygltf::Node& node) {
+  return flag(node.extras, "castsShadow", fmt::format("node \"{}\"", node.name)).value_or(true);
+}
+
 }  // namespace penumbra::scenes

@@ -18,4 +18,7 @@ struct ObjectFlags {
 /// Throws InputError for an entry of these names that says neither.
 ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh);
 
+/// Does a lamp cast shadows? "castsShadow" of its node; throws likewise.
+bool lamp_casts_shadows(const tinygltf::Node& node);
+
 }  // namespace penumbra::scenes

@@ -1,6 +1,7 @@
 #include "import/gltf/gltf_import.hpp"
 
 #include "base/error.hpp"
+#include "import/gltf/area_lamp.hpp"
 #include "import/gltf/emitter.hpp"
 #include "import/gltf/gltf_animation.hpp"
 #include "import/gltf/gltf_camera.hpp"
@@ -24,6 +25,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -61,7 +63,7 @@ class GltfImport {
   GltfImport(const tinygltf::Model& model, std::string name, Purpose purpose, const ReadOptions& options)
       : model_(model),
         purpose_(purpose),
-        lenient_(options.lenient || purpose != Purpose::lit_scene),
+        lenient_(options.lenient || purpose == Purpose::any_scene || purpose == Purpose::rest),
         lamps_(model, options),
         surfaces_(model, scene_.pictures, losses_) {
     scene_.name = std::move(name);
@@ -80,7 +82,13 @@ class GltfImport {
       if (node.mesh >= 0) add_mesh_or_hidden(node, placed, name);
       if (is_mesh()) continue;
       if (node.camera >= 0) add_camera(node, placed, name);
-      if (node.extensions.contains("KHR_lights_punctual")) add_lamp(node, lamp_place(placed), name);
+      if (node.extensions.contains("KHR_lights_punctual"))
+        add_lamp(lamps_.light_of(node, lamp_place(placed)), node, name);
+      if (const auto lamp = area_lamp_of(node, placed)) add_lamp(*lamp, node, name);
+    }
+    for (const std::size_t light : shadeless_) {
+      scene_.lights[light].unshaded_by.resize(scene_.objects.size());
+      std::iota(scene_.lights[light].unshaded_by.begin(), scene_.lights[light].unshaded_by.end(), 0U);
     }
     if (scene_.soup.triangles.empty()) {
       throw InputError(
@@ -106,7 +114,8 @@ class GltfImport {
                        extension);
     }
     add_warnings();
-    is_mesh() ? losses_.warn_of_refused(scene_.warnings) : losses_.report(lenient_, scene_.warnings);
+    if (!lenient_) losses_.throw_refused();
+    is_mesh() ? losses_.warn_of_refused(scene_.warnings) : losses_.warn(scene_.warnings);
     return std::move(scene_);
   }
 
@@ -243,10 +252,10 @@ class GltfImport {
     return static_cast<std::uint32_t>(scene_.lights.size() - 1);
   }
 
-  void add_lamp(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
-    AreaLight light = lamps_.light_of(node, placed);
+  void add_lamp(AreaLight light, const tinygltf::Node& node, const std::string& name) {
     if (light.radiance == glm::dvec3(0)) return;  // off
     light.name = unique_name(light_names_, name);
+    if (!lamp_casts_shadows(node)) shadeless_.push_back(scene_.lights.size());
     scene_.lights.push_back(std::move(light));
   }
 
@@ -288,7 +297,8 @@ class GltfImport {
   std::set<std::string> object_names_, camera_names_, light_names_;
   std::string refused_lights_;
   SkippedPrimitives skipped_;
-  ObjectFlags flags_;  // of the mesh at hand
+  ObjectFlags flags_;                   // of the mesh at hand
+  std::vector<std::size_t> shadeless_;  // lights that cast no shadows
   std::uint64_t emissive_ = 0;
 };
 
@@ -336,8 +346,8 @@ Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options) {
   return import_for(options.needs_light ? Purpose::lit_scene : Purpose::any_scene, input, options);
 }
 
-mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside) {
-  Scene scene = import_for(Purpose::mesh, input, {.allow_outside = allow_outside});
+mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const ReadOptions& options) {
+  Scene scene = import_for(Purpose::mesh, input, options);
   mesh::ImportedMesh mesh{std::move(scene.soup), std::move(scene.warnings), {}};
   // One object, whose faces are numbered through.
   std::uint32_t number = 0;

@@ -10,8 +10,9 @@ namespace penumbra::scenes {
 /// read_gltf. Throws InputError; std::bad_alloc.
 Scene import_gltf(const mesh::InputFile& input, const ReadOptions& options);
 
-/// Reads only the triangles of a glTF file, as one mesh. Scenes and mesh files share this reader.
-mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, bool allow_outside);
+/// Reads only the triangles of a glTF file, as one mesh. Scenes and mesh files share this reader. Surfaces with an
+/// alpha that lets light through would be solid: refused unless `options` are lenient.
+mesh::ImportedMesh import_gltf_mesh(const mesh::InputFile& input, const ReadOptions& options);
 
 /// Whether the file's name says that it is glTF.
 bool is_gltf(const std::filesystem::path& file);

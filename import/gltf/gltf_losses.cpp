@@ -25,14 +25,16 @@ void Losses::warn_of_refused(std::vector<std::string>& warnings) const {
   for (const Loss& loss : refused_) warnings.push_back(text_of(loss));
 }
 
-void Losses::report(bool lenient, std::vector<std::string>& warnings) const {
+void Losses::throw_refused() const {
+  if (refused_.empty()) return;
+  std::string all;
+  for (const Loss& loss : refused_) all += (all.empty() ? "" : "; ") + text_of(loss);
+  throw InputError("{}. Shadows would be wrong: --lenient renders all the same, and warns", all);
+}
+
+void Losses::warn(std::vector<std::string>& warnings) const {
   std::vector<std::string> texts;
-  for (const Loss& loss : refused_) texts.push_back(text_of(loss));
-  if (!lenient && !texts.empty()) {
-    std::string all;
-    for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
-    throw InputError("{}. Shadows would be wrong: --lenient renders all the same, and warns", all);
-  }
+  warn_of_refused(texts);
   for (const Loss& loss : mentioned_) texts.push_back(text_of(loss));
   warnings.insert(warnings.begin(), texts.begin(), texts.end());
 }

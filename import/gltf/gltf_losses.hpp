@@ -17,8 +17,10 @@ class Losses {
   /// Warnings of what is refused elsewhere, alone: how a surface looks is nobody's concern here.
   void warn_of_refused(std::vector<std::string>& warnings) const;
 
-  /// Throws InputError with all that is refused; if `lenient`, that becomes warnings. What matters more comes first.
-  void report(bool lenient, std::vector<std::string>& warnings) const;
+  /// Throws InputError with all that is refused, if anything is.
+  void throw_refused() const;
+  /// Warnings of everything, before those that are there. What matters more comes first.
+  void warn(std::vector<std::string>& warnings) const;
 
  private:
   struct Loss {

@@ -31,7 +31,8 @@ using nlohmann::json;
 mesh::TriangleSoup import_file(const SceneFile& file, const std::string& shown, const Place& place,
                                const ReadOptions& options, Scene& scene) {
   return at_place(place, [&] {
-    mesh::ImportedMesh imported = mesh::import_mesh(file.input, {}, options.allow_outside);
+    mesh::ImportedMesh imported = mesh::import_mesh(
+        file.input, {}, {.allow_outside = options.allow_outside, .lenient = options.lenient || !options.needs_light});
     scene.sources.push_back(file.path);
     std::ranges::copy_if(imported.sources, std::back_inserter(scene.sources),
                          [&](const std::filesystem::path& source) { return source != file.path; });

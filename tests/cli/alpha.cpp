@@ -113,6 +113,22 @@ TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
   EXPECT_EQ(picture("default.exr").floats.at("R"), both.floats.at("R")) << "the same masks, by another method";
 }
 
+/// Of a light that nothing but a pane is before something in the picture is lit.
+TEST_F(AlphaSurfaces, PanesAreLitToo) {
+  look_from_above();
+  translucent(0.4);
+  gltf.at("/nodes").push_back({{"name", "Low"}, {"mesh", 1}, {"translation", {0, 0.5, 0}}, {"rotation", {0, 0, 0, 1}}});
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};  // over the floor, shining up at the pane alone
+  gltf.at("/nodes/4")["extras"] = {{"body", false}};
+  gltf.at("/materials/1")["doubleSided"] = false;
+  const Outcome outcome = render({"--light-samples", "16"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, Not(HasSubstr("no visible point")));
+  translucent(1);
+  gltf.at("/nodes/3/translation") = {0, 0.25, 0};  // below it
+  EXPECT_THAT(render({"--light-samples", "16"}).err, HasSubstr("no visible point is before light \"Low\""));
+}
+
 /// Exposure leaves out what shines itself, translucent or not.
 TEST_F(AlphaSurfaces, PanesThatShineAreNotExposedFor) {
   look_from_above();
@@ -233,6 +249,12 @@ TEST_F(AlphaSurfaces, InspectListsWhatTheSceneHas) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("light     \"Star\": 2 pieces: 2 polygons"),
                                  HasSubstr("'Thread' is emissive, but no area light"), HasSubstr("it has no area")));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("pcss +refused +light passes through \"Card\""));
+  // A light's own body dims none of its light.
+  gltf.at("/scenes/0/nodes") = {0, 1, 2};
+  gltf.at("/materials/1")["alphaMode"] = "BLEND";
+  gltf.at("/materials/1/pbrMetallicRoughness")["baseColorFactor"] = {1, 1, 1, 0.5};
+  write("own.glb", gltf.glb());
+  EXPECT_THAT(run({"inspect", path("own.glb")}).out, Not(HasSubstr("light passes through")));
   const json scene = json::parse(run({"inspect", path("scene.glb"), "--json", "-"}).out).at("scene");
   EXPECT_EQ(scene.at("lights").at(0).at("name"), "Lamp");
   EXPECT_EQ(scene.at("materials").at(2).at("alpha"), "mask");

@@ -238,6 +238,10 @@ TEST_F(Frames, OfAllCameras) {
   ASSERT_EQ(render({"--camera", "all", "--frames", "2-3", "-o", path("o.####.exr")}).code, 0);
   EXPECT_THAT(files(),
               ElementsAre("o.B.2.0002.exr", "o.B.2.0003.exr", "o.Camera.0002.exr", "o.Camera.0003.exr", "scene.glb"));
+  const Outcome first = render({"--frames", "2-4", "-o", path("p.####.exr")});
+  const auto said = first.err.find("the first of 2");
+  EXPECT_NE(said, std::string::npos) << first.err;
+  EXPECT_EQ(first.err.find("the first of 2", said + 1), std::string::npos) << "once a sequence: " << first.err;
   ASSERT_EQ(render({"--camera", "B.2", "--frame", "3", "-o", path("one.exr")}).code, 0);
   EXPECT_EQ(read("one.exr"), read("o.B.2.0003.exr"));
 }

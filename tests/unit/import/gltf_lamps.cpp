@@ -106,6 +106,67 @@ TEST_F(GltfReader, LampsThatAreNoneAreRefused) {
   EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extensions/KHR_lights_punctual/light"));
 }
 
+/// Node 0 as an area lamp of extras, half as high as wide, turned to shine down.
+Gltf with_area_lamp(const json& lamp) {
+  Gltf gltf = with_lamp({{"type", "point"}, {"intensity", 0}, {"extras", {{"radius", 1}}}});
+  gltf.at("/nodes/0")["scale"] = {2, 3, 5};
+  gltf.at("/nodes/0")["extras"] = {{"areaLamp", lamp}};
+  return gltf;
+}
+
+/// Beside KHR_lights_punctual: what glTF has no word for.
+TEST_F(GltfReader, AreaLampsOfExtras) {
+  Gltf gltf = with_area_lamp({{"shape", "rectangle"}, {"size", {1, 0.5}}, {"radiance", {4, 2, 1}}});
+  const Scene scene = read(gltf);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.lights[0].name, "Body");
+  EXPECT_EQ(scene.lights[0].radiance, glm::dvec3(4, 2, 1));
+  EXPECT_FALSE(scene.lights[0].two_sided);
+  EXPECT_TRUE(scene.lights[0].unshaded_by.empty());
+  const auto& panel = std::get<Rectangle>(scene.lights[0].shape);
+  EXPECT_LT(glm::distance(panel.center, glm::dvec3(1, 2, 3)), 1e-15);
+  EXPECT_LT(glm::distance(panel.half_u, glm::dvec3(1, 0, 0)), 1e-15);
+  EXPECT_LT(glm::distance(glm::cross(panel.half_u, panel.half_v), glm::dvec3(0, -0.75, 0)), 1e-15) << "it shines down";
+  for (const auto& object : scene.objects) EXPECT_FALSE(object.emits) << "it has no body";
+
+  gltf.at("/nodes/0/extras/areaLamp/shape") = "ellipse";
+  EXPECT_NEAR(glm::length(std::get<Ellipse>(read(gltf).lights.at(0).shape).half_v), 0.75, 1e-15);
+  gltf.at("/nodes/0/extras/areaLamp/size") = {1.5, 1};
+  const Scene round = read(gltf);
+  EXPECT_NEAR(std::get<Disk>(round.lights.at(0).shape).radius, 1.5, 1e-15);
+  EXPECT_LT(glm::distance(std::get<Disk>(round.lights[0].shape).normal, glm::dvec3(0, -1, 0)), 1e-15);
+
+  gltf.at("/nodes/0/scale") = {-2, 3, 5};  // a mirror does not turn it
+  EXPECT_LT(glm::distance(std::get<Disk>(read(gltf).lights.at(0).shape).normal, glm::dvec3(0, -1, 0)), 1e-15);
+}
+
+TEST_F(GltfReader, LampsMayCastNoShadows) {
+  Gltf gltf = with_area_lamp({{"shape", "rectangle"}, {"size", {1, 1}}, {"radiance", {1, 1, 1}}});
+  gltf.at("/nodes/0/extras")["castsShadow"] = false;
+  const Scene scene = read(gltf);
+  ASSERT_EQ(scene.lights.at(0).unshaded_by.size(), scene.objects.size());
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) EXPECT_EQ(scene.lights[0].unshaded_by[i], i);
+  EXPECT_TRUE(scene.objects.at(0).casts_shadow == false) << "the node's mesh is asked, too";
+}
+
+TEST_F(GltfReader, AreaLampsThatAreNoneAreRefused) {
+  const json good = {{"shape", "rectangle"}, {"size", {1, 1}}, {"radiance", {1, 1, 1}}};
+  const auto expect = [&](const char* key, const json& value, const std::string& what) {
+    json lamp = good;
+    lamp[key] = value;
+    Gltf gltf = with_area_lamp(lamp);
+    EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extras/areaLamp" + what));
+  };
+  expect("shape", "star", "/shape: expected \"rectangle\" or \"ellipse\"");
+  expect("size", {1}, "/size: expected 2 numbers from 0 up");
+  expect("size", {1, -1}, "/size");
+  expect("size", {1, "x"}, "/size");
+  expect("size", {1, 0}, ": it has no area");
+  expect("radiance", {1, 1, -1}, "/radiance");
+  Gltf gltf = with_area_lamp("big");
+  EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extras/areaLamp: expected an object"));
+}
+
 TEST_F(GltfReader, ALampThatIsOffIsNoLight) {
   Gltf gltf = with_lamp({{"type", "point"}, {"intensity", 0}, {"extras", {{"radius", 1}}}});
   EXPECT_THAT(refusal(gltf), HasSubstr("no light"));

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "import/gltf/gltf_nodes.hpp"
+#include "scenes/scene.hpp"
+
+#include <optional>
+
+namespace tinygltf {
+class Node;
+}
+
+namespace penumbra::scenes {
+
+/// The area lamp that a node's extras describe, for glTF knows none; without a name. "areaLamp": {"shape": "rectangle"
+/// or "ellipse", "size": [width, height] along the node's X and Y, "radiance": [red, green, blue]}. It lies in the
+/// node's XY plane around its origin, turned and stretched by the node's transform, and shines along −Z; nothing is
+/// seen of it, and it is in nothing's way. Throws InputError for what is no such thing, and for one that the transform
+/// leaves no area.
+std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed);
+
+}  // namespace penumbra::scenes
