@@ -12,7 +12,9 @@ set(may_mesh/repair mesh base)
 set(may_mesh/shapes mesh/diagnosis mesh base)
 set(may_scenes mesh base)
 set(may_scenes/formats scenes mesh/shapes mesh base)
-set(may_import scenes/formats scenes mesh base)
+set(may_import/gltf/emitters scenes mesh base)
+set(may_import/gltf import/gltf/emitters scenes/formats scenes mesh base)
+set(may_import import/gltf scenes/formats scenes mesh base)
 set(may_visibility scenes mesh/diagnosis mesh base)
 set(may_visibility/tree visibility scenes mesh base)
 set(may_visibility/lights visibility/tree visibility scenes mesh base)
@@ -58,7 +60,8 @@ list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
 set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
-set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import visibility visibility/tree visibility/lights
+set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import import/gltf import/gltf/emitters visibility
+    visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines
     volumes/wedges volumes/edges volumes/raster volumes/soft volumes/counters volumes/scatter vsm maps/host maps/products maps/products/lists
     maps/filters maps/sampling maps/backprojection maps/backprojection/patches maps/backprojection/contours

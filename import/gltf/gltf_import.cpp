@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "import/gltf/area_lamp.hpp"
-#include "import/gltf/emitter.hpp"
+#include "import/gltf/emitters/emitter.hpp"
 #include "import/gltf/gltf_animation.hpp"
 #include "import/gltf/gltf_camera.hpp"
 #include "import/gltf/gltf_deform.hpp"

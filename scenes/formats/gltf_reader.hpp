@@ -14,10 +14,10 @@ namespace penumbra::scenes {
 ///  - Skins and morph targets; animations of nodes (cameras and lamps too) and weights, at `options.time`.
 ///  - Perspective cameras; without one, a camera that sees everything, and a warning.
 ///  - Base colour factors; textures are counted in a warning.
-///  - A primitive whose material is emissive is an area light (import/gltf/emitter.hpp: a rectangle, a polygon, a
-///  sphere
-///    or pieces) with radiance emissiveFactor × KHR_materials_emissive_strength. It emits to the side from which its
-///    triangles run counter-clockwise, to both if the material is double-sided. It stays an object, with `emits` set.
+///  - A primitive whose material is emissive is an area light (import/gltf/emitters/emitter.hpp: a rectangle, a
+///    polygon, a sphere or pieces) with radiance emissiveFactor × KHR_materials_emissive_strength. It emits to the side
+///    from which its triangles run counter-clockwise, to both if the material is double-sided. It stays an object, with
+///    `emits` set.
 ///
 /// InputError, with a place such as "/accessors/3", for whatever glTF 2.0 forbids and matters here, for a scene
 /// without an area light if `options.needs_light`, and for a buffer outside the file's folder unless

@@ -185,7 +185,7 @@ TEST_F(Emitters, BallsCoarseAndFine) {
   set_lamp(test::ball_lamp({0.3, 3, -0.2}, 0.6, 0), true);
   expect_truth(false);
   set_lamp(test::ball_lamp({0.3, 3, -0.2}, 0.6, 2), true);  // a sphere: recognised
-  expect_truth(false, 0.0025);                              // import/gltf/sphere_light.hpp
+  expect_truth(false, 0.0025);                              // import/gltf/emitters/sphere_light.hpp
 }
 
 /// The same floats, as six lights and as one.

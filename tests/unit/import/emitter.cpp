@@ -1,5 +1,5 @@
 // Emissive meshes as lights: whole, or in pieces.
-#include "import/gltf/emitter.hpp"
+#include "import/gltf/emitters/emitter.hpp"
 
 #include "tests/unit/import/lamp_shapes.hpp"
 

@@ -1,4 +1,4 @@
-#include "import/gltf/flat_light.hpp"
+#include "import/gltf/emitters/flat_light.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

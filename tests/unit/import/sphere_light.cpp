@@ -1,4 +1,4 @@
-#include "import/gltf/sphere_light.hpp"
+#include "import/gltf/emitters/sphere_light.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

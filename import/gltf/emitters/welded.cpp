@@ -1,4 +1,4 @@
-#include "import/gltf/welded.hpp"
+#include "import/gltf/emitters/welded.hpp"
 
 #include <algorithm>
 #include <cstddef>

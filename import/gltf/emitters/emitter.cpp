@@ -1,9 +1,9 @@
-#include "import/gltf/emitter.hpp"
+#include "import/gltf/emitters/emitter.hpp"
 
-#include "import/gltf/convex_parts.hpp"
-#include "import/gltf/flat_light.hpp"
-#include "import/gltf/sphere_light.hpp"
-#include "import/gltf/welded.hpp"
+#include "import/gltf/emitters/convex_parts.hpp"
+#include "import/gltf/emitters/flat_light.hpp"
+#include "import/gltf/emitters/sphere_light.hpp"
+#include "import/gltf/emitters/welded.hpp"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "import/gltf/welded.hpp"
+#include "import/gltf/emitters/welded.hpp"
 
 #include <glm/vec3.hpp>
 

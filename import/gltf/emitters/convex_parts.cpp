@@ -1,4 +1,4 @@
-#include "import/gltf/convex_parts.hpp"
+#include "import/gltf/emitters/convex_parts.hpp"
 
 #include <glm/geometric.hpp>
 
