@@ -3,19 +3,12 @@ penumbra_test(maps FULL MapsTable.*
   SOURCES
   analytic/maps/adaptive_light.cpp
   analytic/maps/adaptive_light_maps.cpp
-  analytic/maps/backproject.cpp
-  analytic/maps/bitmask.cpp
-  analytic/maps/bitmask_predicates.cpp
   analytic/maps/closed_form.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp
-  analytic/maps/fusion.cpp
   analytic/maps/identities.cpp
   analytic/maps/layers.cpp
   analytic/maps/left_out.cpp
-  analytic/maps/contour.cpp
-  analytic/maps/contour_claims.cpp
-  analytic/maps/light_table.cpp
   analytic/maps/light_tree.cpp
   analytic/maps/lists.cpp
   analytic/maps/method.cpp
@@ -23,7 +16,6 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/pcf.cpp
   analytic/maps/predicates.cpp
   analytic/maps/prefilter.cpp
-  analytic/maps/peel.cpp
   analytic/maps/products.cpp
   analytic/maps/pyramids.cpp
   analytic/maps/rasterisers.cpp
@@ -31,10 +23,18 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/repairs.cpp
   analytic/maps/resolution_table.cpp
   analytic/maps/slices.cpp
-  analytic/maps/soft_shadow_map.cpp
-  analytic/maps/soft_shadow_map_errors.cpp
-  analytic/maps/sphere_form.cpp
-  analytic/maps/subsampled.cpp
+  analytic/maps/backprojection/backproject.cpp
+  analytic/maps/backprojection/bitmask.cpp
+  analytic/maps/backprojection/bitmask_predicates.cpp
+  analytic/maps/backprojection/contour.cpp
+  analytic/maps/backprojection/contour_claims.cpp
+  analytic/maps/backprojection/fusion.cpp
+  analytic/maps/backprojection/light_table.cpp
+  analytic/maps/backprojection/peel.cpp
+  analytic/maps/backprojection/soft_shadow_map.cpp
+  analytic/maps/backprojection/soft_shadow_map_errors.cpp
+  analytic/maps/backprojection/sphere_form.cpp
+  analytic/maps/backprojection/subsampled.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

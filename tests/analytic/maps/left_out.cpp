@@ -2,7 +2,7 @@
 // inputs that come nearest to them.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
-#include "tests/analytic/maps/patch_twin.hpp"
+#include "tests/analytic/maps/backprojection/patch_twin.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // What predicates of docs/predicates.md are measured with.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
-#include "tests/analytic/maps/contour_scenes.hpp"
+#include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
-#include "tests/analytic/maps/patch_twin.hpp"
+#include "tests/analytic/maps/backprojection/patch_twin.hpp"
 
 #include "visibility/lights/light_parts.hpp"
 

@@ -2,7 +2,7 @@
 // parallel to the light and known in closed form.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
-#include "tests/analytic/maps/contour_scenes.hpp"
+#include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
 #include <array>
 #include <random>

@@ -1,6 +1,6 @@
 // The error curves of Atty et al. 2006: soft-shadow-map's error and work over passes, resolution, and the light's size.
 
-#include "tests/analytic/maps/soft_shadow_map.hpp"
+#include "tests/analytic/maps/backprojection/soft_shadow_map.hpp"
 
 #include <fmt/format.h>
 

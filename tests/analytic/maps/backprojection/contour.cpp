@@ -6,7 +6,7 @@
 #include "scenes/formats/reader.hpp"
 #include "mesh/shapes/broken_meshes.hpp"
 #include "tests/agreement/differences.hpp"
-#include "tests/analytic/maps/contour_scenes.hpp"
+#include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
 #include <numbers>
 #include <set>

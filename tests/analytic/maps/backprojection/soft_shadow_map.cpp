@@ -1,6 +1,6 @@
 // soft-shadow-map against closed forms, and its two forms against each other and backproject.
 
-#include "tests/analytic/maps/soft_shadow_map.hpp"
+#include "tests/analytic/maps/backprojection/soft_shadow_map.hpp"
 
 #include "base/error.hpp"
 #include "maps/backprojection/patches/backproject.hpp"

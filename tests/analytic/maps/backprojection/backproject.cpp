@@ -1,7 +1,7 @@
 // Backprojection against every texel one by one, against closed forms, and the identities that hold on every scene.
 
 #include "tests/analytic/maps/parallel_square.hpp"
-#include "tests/analytic/maps/patch_twin.hpp"
+#include "tests/analytic/maps/backprojection/patch_twin.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
 
 #include <fmt/format.h>

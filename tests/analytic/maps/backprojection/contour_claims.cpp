@@ -1,7 +1,7 @@
 // What papers say of contours, hierarchies, packets and sub-lights, on scenes of the class they say it of: signs and
 // rough sizes. docs/contour.md and docs/packet.md have the measured numbers.
 
-#include "tests/analytic/maps/contour_scenes.hpp"
+#include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
 namespace penumbra::tests {
 namespace {

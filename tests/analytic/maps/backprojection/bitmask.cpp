@@ -5,7 +5,7 @@
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
 #include "reference/exact_method.hpp"
-#include "tests/analytic/maps/patch_twin.hpp"
+#include "tests/analytic/maps/backprojection/patch_twin.hpp"
 
 #include <random>
 #include <set>

@@ -3,7 +3,7 @@
 #include "maps/backprojection/penumbra_width.hpp"
 #include "maps/backprojection/subsampled.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
-#include "tests/analytic/maps/contour_scenes.hpp"
+#include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
 #include <fmt/format.h>
 
