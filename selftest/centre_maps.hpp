@@ -15,8 +15,8 @@
 namespace penumbra::selftest {
 
 struct CentreMaps {
-  /// What else is rendered: peeled layers, the farthest after them; whether all that stands before the light fits, or
-  /// all casters; and who draws.
+  /// What else is rendered: peeled layers, the farthest after them; whether all that stands in front of the light fits,
+  /// or all casters; and who draws.
   struct More {
     std::uint32_t layers = 1;
     bool farthest = false, whole_light = false, all_casters = false;

@@ -38,7 +38,7 @@ inline long double exact_crossing(const glm::vec3& p, const glm::vec3& l, const 
   return -glm::dot(normal, Exact(l) - from) / glm::dot(normal, Exact(step));
 }
 
-/// The same as both engines compute it (docs/edge-scatter.md, Crossing); nothing where the edge ends near the row.
+/// That distance as both engines compute it (docs/edge-scatter.md, Crossing); nothing where the edge ends near the row.
 inline Rounded crossing_as_rounded(const PlacedEnds& ends, const glm::vec2& half_cells, const CellOfRow& sample,
                                    long double exact) {
   constexpr float kRound = 0x1p-24F;

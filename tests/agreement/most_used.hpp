@@ -21,7 +21,7 @@ class Numbers {
     const double x = real(), y = real(), z = real();
     return {x, y, z};
   }
-  /// The same from the beginning.
+  /// These numbers once more, from the first.
   [[nodiscard]] Numbers again() const {
     Numbers numbers = *this;
     numbers.used_ = 0;

@@ -46,7 +46,7 @@ void look_at_level(uint l) {
   for (uint k = 1; k < l; ++k) level_start += lookup.layers * lookup.faces * side_of_level(k) * side_of_level(k);
 }
 
-// The same face with the level's texels.
+// The face with texels of the level.
 MapFace at_level(MapFace face) {
   face.texel *= float(1u << level);
   return face;

@@ -109,7 +109,7 @@ TEST_F(MapsFusion, WhatPartsHideBoundsWhatTheWholeHides) {
   EXPECT_LT(nearest_to_sum, 0.01);
 }
 
-// The same of our own methods, of three plates that are apart as the light's centre sees them and overlap as the floor
+// What our own methods make of three plates that are apart as the light's centre sees them and overlap as the floor
 // does: patches and outlines are their sum, bits their union, each between what the smallest and the largest texels
 // leave open.
 TEST_F(MapsFusion, SumsAreSumsAndUnionsUnions) {
