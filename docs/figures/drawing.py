@@ -101,13 +101,16 @@ class Drawing:
 
 
 def spans(text, size):
-    """`a_bc` and `*a*` as tspans. What follows an index goes back up to the baseline."""
+    """`a_bc` and `*a*` as tspans; `\\_` is an underscore. What follows an index goes back up to the baseline."""
     drop = number(size * 0.25)
     out, italic, lowered, i = "", False, False, 0
     while i < len(text):
         c = text[i]
         i += 1
-        if c == "*":
+        if c == "\\" and text[i:i + 1] == "_":
+            out += "_"
+            i += 1
+        elif c == "*":
             out += "</tspan>" if italic else '<tspan font-style="italic">'
             italic = not italic
         elif c == "_":

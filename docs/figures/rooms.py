@@ -69,6 +69,20 @@ def rooms_figure():
     for room in sorted(rooms, key=lambda r: -level[r]):
         if users[room]:
             level[room] = min(level[other] for other in users[room]) - 1
+    # Of a row with more boxes than fit, those that nothing keeps there go one lower, and so on down.
+    width, step, margin = 1000, 62, 16
+    box = {room: 7.6 * len(room) + 18 for room in rooms}
+
+    def lowest(room):
+        return 1 + max((level[other] for other in drawn[room]), default=-1)
+
+    for n in range(height - 1, 0, -1):
+        while True:
+            row = [room for room in rooms if level[room] == n]
+            free = [room for room in row if level[room] > lowest(room)]
+            if not free or sum(box[room] + 14 for room in row) < width - 2 * margin:
+                break
+            level[min(free, key=lambda room: (lowest(room), room))] -= 1
     # An arrow over several rows passes each row between at a place of its own, so that none runs behind a box.
     chains = []
     for room in rooms:
@@ -81,8 +95,7 @@ def rooms_figure():
     below = {node: [chain[i + 1] for chain in chains for i in range(len(chain) - 1) if chain[i] == node] for node in nodes}
 
     # Left to right: each row by the mean place of what is above, then of what is below, a few times over.
-    width, step, margin = 1000, 62, 16
-    span = {node: 7.6 * len(node) + 18 if isinstance(node, str) else 14 for node in nodes}
+    span = {node: box.get(node, 14) for node in nodes}
     rows = [[node for node in nodes if level[node] == n] for n in range(height)]
     place = {}
 
@@ -120,7 +133,7 @@ def rooms_figure():
         x, y, w = place[room], top[room], span[room]
         d.polygon([(x - w / 2, y), (x + w / 2, y), (x + w / 2, y + 26), (x - w / 2, y + 26)],
                   FAMILY.get(room.partition("/")[0], "#eef1f4"), INK, 1)
-        d.text((x, y + 17.5), room, 13, anchor="middle")
+        d.text((x, y + 17.5), room.replace("_", "\\_"), 13, anchor="middle")
     d.text((20, height * step + 24), "An arrow: includes. Arrows that follow from others are left out.", 12.5)
     return d.finish()
 
