@@ -1,5 +1,6 @@
 #include "app/output.hpp"
 
+#include "app/method_warnings.hpp"
 #include "app/methods.hpp"
 #include "base/error.hpp"
 #include "compare/beauty.hpp"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -177,6 +179,7 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.peak_memory_bytes = run.memory_bytes;
   stats.counters = run.counters;
   stats.warnings = session.warnings;
+  std::ranges::move(method_warnings(stats.method, stats.options, run.counters), std::back_inserter(stats.warnings));
   return stats;
 }
 

@@ -76,7 +76,7 @@ struct ReportInput {
   std::vector<std::string> warnings;  ///< beside those in the stats
 };
 
-/// The scene in words: size, triangles, objects, each light, the camera.
+/// The scene in words: triangles, objects, each light, the camera.
 std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t camera);
 
 /// One self-contained HTML page: nothing from the network, pictures inside. Readable by someone who has never seen the

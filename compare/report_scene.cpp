@@ -89,7 +89,6 @@ std::vector<ReportFact> describe_scene(const scenes::Scene& scene, std::size_t c
     facts.push_back({fmt::format("Light “{}”", light.name), words_of(light)});
   }
   facts.push_back({"Camera", words_of(scene.cameras.at(camera))});
-  facts.push_back({"Picture", fmt::format("{} × {} pixels", scene.width, scene.height)});
   return facts;
 }
 

@@ -172,7 +172,7 @@ std::string failures_html(const ReportInput& in) {
 std::string seconds_html(const ReportInput& in) {
   const Stats& reference = in.metrics.reference;
   ReportTable table{
-      "Seconds: medians of repeated runs on the machine below. Shadow = light + evaluate. A ratio is given "
+      "Seconds on the machine below; of repeated runs the median. Shadow = light + evaluate. A ratio is given "
       "where a method answers the same question as the reference, with as many light samples; elsewhere "
       "the cell says what the reference was asked.",
       {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory"},

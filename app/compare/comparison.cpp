@@ -217,6 +217,8 @@ class Comparison {
     compare::MethodResult result;
     result.entry = entry.label;
     result.stats = stats_of(entry, session_.lights, done.run);
+    const auto of_method = std::span(result.stats.warnings).subspan(session_.warnings.size());
+    for (const std::string& warning : of_method) spdlog::warn("{}", warning);
     judge.fill(result, done.run, pairs_of_reference, progress_);
     result.beauty_error = compare::beauty_error(done.beauty, reference_beauty_, truths_.front().judged);
     compare::ReportEntry pictures = pictures_of(entry, done);

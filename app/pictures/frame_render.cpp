@@ -395,6 +395,9 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
     png->settle();
   }
   compare::Stats stats = make_stats(session(), lights, run_);
+  for (const std::string& warning : stats.warnings) {
+    if (std::ranges::find(said_, warning) == said_.end()) spdlog::warn("{}", said_.emplace_back(warning));
+  }
   stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
   compare::Seconds& seconds = stats.seconds;
   seconds.load = load_seconds_;

@@ -73,6 +73,16 @@ visibility::MethodDescription soft_shadow_map_description() {
   return description;
 }
 
+std::optional<std::string> soft_shadow_map_warning(const visibility::MethodOptions& options,
+                                                   const std::map<std::string, std::uint64_t>& counters) {
+  const auto found = counters.find(kPixelsOnOccluders);
+  if (found == counters.end() || found->second == 0) return std::nullopt;
+  if (visibility::parse_options(soft_shadow_map_description(), options)[kSelf] != SoftSelf::none) return std::nullopt;
+  return "soft-shadow-map has no shadows on what casts shadows: the pixels that show it (counter pixelsOnOccluders) "
+         "see "
+         "the light above their horizon; method option self=backproject shades them";
+}
+
 SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {
   const SoftSettings settings{.receiver_size = parsed[kReceiverSize],
                               .passes = parsed[kPasses],

@@ -24,6 +24,9 @@ struct SoftSettings {
   SoftSelf self;
 };
 
+/// The counter of pixels on what casts shadow.
+inline constexpr const char* kPixelsOnOccluders = "pixelsOnOccluders";
+
 /// Throws UsageError for settings that exclude each other.
 SoftSettings soft_settings(const visibility::ParsedOptions& parsed);
 

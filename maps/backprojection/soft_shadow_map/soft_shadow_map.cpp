@@ -169,7 +169,7 @@ void SoftShadowMap::prepare_light(const visibility::Light& light) {
   light_shape_ = shape.head;
   upright_ = shape.head.width * shape.head.height == 1;
   parts_ = part_scene(*scene_, light, basis_);
-  counters_ = {{"patches", 0}, {"fragments", 0}, {"pixelsOnOccluders", 0}};
+  counters_ = {{"patches", 0}, {"fragments", 0}, {kPixelsOnOccluders, 0}};
 
   visibility::SceneFloats drawn = *scene_;
   drawn.casts_shadow = parts_.receivers;
@@ -280,7 +280,7 @@ void SoftShadowMap::evaluate(const visibility::Tile& tile) {
     const std::int32_t triangle = samples_->triangle[std::size_t{tile.first_row} * receivers_.width() + i];
     on_occluder_[i] = triangle >= 0 && parts_.receivers[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
   }
-  counters_["pixelsOnOccluders"] += static_cast<std::uint64_t>(std::ranges::count(on_occluder_, 1u));
+  counters_[kPixelsOnOccluders] += static_cast<std::uint64_t>(std::ranges::count(on_occluder_, 1u));
   results_.buffer().write<std::uint32_t>(on_occluder_);
   const gpu::SoftLookupPush own{.size = settings_.receiver_size,
                                 .linear = settings_.filter == SoftFilter::linear ? 1u : 0u};

@@ -57,7 +57,7 @@ TEST(ReportText, SceneInWords) {
                   {"rim", scenes::Disk{{2, 5, 0}, {0, -1, 0}, 0.4}, {1, 2, 3}, true}};
   scene.cameras = {{"main", {4, 3, 5}, {0, 0.8, 0}, {0, 1, 0}, 45}};
   const auto facts = describe_scene(scene, 0);
-  ASSERT_EQ(facts.size(), 7u);
+  ASSERT_EQ(facts.size(), 6u);
   EXPECT_EQ(facts[1].value, "69\u202f668");
   EXPECT_EQ(facts[2].value, "o0, o1, o2, o3, o4, o5, o6, o7 and 2 more");
   EXPECT_EQ(facts[3].value, "a rectangle of 2 × 4 at (0.5, 5, 0.5), radiance (10, 10, 10)");

@@ -307,6 +307,19 @@ TEST_F(SoftShadowMap, OnOccludersBackprojectMayAnswer) {
   EXPECT_EQ(tiled.picture.visibility, both.picture.visibility);
 }
 
+TEST_F(SoftShadowMap, WhereOccludersHaveNoShadowsItSaysSo) {
+  const auto warning = [](const Stage& stage, MethodOptions options) {
+    options["size"] = options["receiverSize"] = "16";
+    const auto method = maps::make_soft_shadow_map(device(), options);
+    run(*method, stage);
+    return maps::soft_shadow_map_warning(options, method->counters()).value_or("");
+  };
+  const Stage stage(ball(0.5), 16, 16, light_samples(1));
+  EXPECT_NE(warning(stage, {}).find("self=backproject"), std::string::npos);
+  EXPECT_EQ(warning(stage, {{"self", "backproject"}}), "");
+  EXPECT_EQ(warning(on_floor(ball(0.5), {{0, 0}, {1, 0}}), {}), "") << "no pixel shows the ball";
+}
+
 TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
   scenes::Scene nothing = floor_and_light(0.5), crossing = ball(0.5), touching = floor_and_light(0.5), inside,
                 room = ball(0.5);
