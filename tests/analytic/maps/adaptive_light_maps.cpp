@@ -140,5 +140,26 @@ TEST_F(AdaptiveLight, ATiltedReceiverNeedsMoreMaps) {
   EXPECT_GT(last, 14U);
 }
 
+// What epsilon's default is a share of grows with the picture; of what the paper's is a share of small pictures have
+// too few pixels, and keep their four maps.
+TEST_F(AdaptiveLight, ByDefaultPicturesOfAnySizeAreRefinedAlike) {
+  for (const double half : {0.04, 0.15}) {
+    std::vector<std::uint64_t> found, published;
+    for (const std::uint32_t side : {24U, 48U, 96U}) {
+      const Stage stage(sphere_scene(half), side, side, light_samples(4));
+      const auto method = maps::make_adaptive_light(device(), {{"size", "128"}});
+      run(*method, stage);
+      found.push_back(method->counters().at("maps"));
+      published.push_back(adaptive(stage, {{"epsilon", "0.01"}}).maps);
+      fmt::print("light half {}, {} pixels a side: {} maps, of a map's texels {}\n", half, side, found.back(),
+                 published.back());
+    }
+    const auto [fewest, most] = std::ranges::minmax(found);
+    EXPECT_LE(static_cast<double>(most), 1.5 * static_cast<double>(fewest)) << half;
+    EXPECT_GT(fewest, 4U) << half;
+    EXPECT_EQ(published.front(), 4U) << half;
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::tests
