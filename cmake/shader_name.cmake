@@ -1,5 +1,6 @@
-# Sets `name` to what a shader is called in C++: view_sample.comp → kViewSampleComp.
-string(REPLACE "." "_" parts ${NAME})
+# Sets `name` to what a shader is called in C++: view_sample.comp → kViewSampleComp, in whatever folder.
+get_filename_component(parts ${NAME} NAME)
+string(REPLACE "." "_" parts ${parts})
 string(REPLACE "_" ";" parts ${parts})
 set(name k)
 foreach(part ${parts})

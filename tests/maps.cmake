@@ -3,6 +3,7 @@ penumbra_test(maps FULL MapsTable.*
   SOURCES
   analytic/maps/adaptive_light.cpp
   analytic/maps/adaptive_light_maps.cpp
+  analytic/maps/box_means.cpp
   analytic/maps/closed_form.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp
@@ -22,6 +23,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/receiver_plane.cpp
   analytic/maps/repairs.cpp
   analytic/maps/resolution_table.cpp
+  analytic/maps/shapes.cpp
   analytic/maps/slices.cpp
   analytic/maps/backprojection/backproject.cpp
   analytic/maps/backprojection/bitmask.cpp
@@ -30,11 +32,12 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/contour_claims.cpp
   analytic/maps/backprojection/fusion.cpp
   analytic/maps/backprojection/light_table.cpp
+  analytic/maps/backprojection/packet_costs.cpp
   analytic/maps/backprojection/peel.cpp
   analytic/maps/backprojection/soft_shadow_map.cpp
   analytic/maps/backprojection/soft_shadow_map_errors.cpp
   analytic/maps/backprojection/sphere_form.cpp
   analytic/maps/backprojection/subsampled.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
-target_include_directories(maps_test PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+penumbra_shaders(maps_test analytic/maps/box_means.comp analytic/maps/box_windows.comp)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

@@ -124,8 +124,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   const float t = kModel == kExponential ? normalised_height(height, nearest[s], frame.deepest[s]) - kHeightRounding
                                          : normalised_height(height_less_bias(view, d, m), nearest[s], frame.deepest[s]);
 
-  const float apart = 1.0 / 1024.0;  // as in normalised_height
-  const float low = nearest[s] * (1.0 - apart), high = max(frame.deepest[s], nearest[s]) * (1.0 + apart);
+  const vec2 ends = height_ends(nearest[s], frame.deepest[s]);
 
   // 1. Blockers in the light-receiver pyramid where it passes the near plane, and their mean height. 2, 3. As if all of
   // them were one plane there: the share of the light seen past it.
@@ -134,7 +133,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     float blocker;
     lit = lit_share(view, box_through(view, d, frame.half_box, z), t, s, window == 0, blocker);
     if (window == 0 && lit >= 1.0) return horizon;
-    z = clamp(low + blocker * (high - low), nearest[s], height);
+    z = clamp(ends.x + blocker * (ends.y - ends.x), nearest[s], height);
   }
   if (kModel == kFourier) lit *= own.scale;
   return min(clamp((lit - own.leak) / (1.0 - own.leak), 0.0, 1.0), horizon);

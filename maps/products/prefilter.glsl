@@ -10,6 +10,10 @@ layout(scalar, binding = PREFILTER_FIRST + 2) readonly buffer Images1 { uint ima
 layout(scalar, binding = PREFILTER_FIRST + 3) readonly buffer Images2 { uint images2[]; };
 layout(scalar, binding = PREFILTER_FIRST + 4) readonly buffer Images3 { uint images3[]; };
 
+#ifndef PREFILTER_FETCHES  // what a test counts
+#define PREFILTER_FETCHES
+#endif
+
 // A box of texels of one face, lower < upper unless it is empty, within [0, size].
 struct Box {
   uint face;     // of the light point
@@ -18,6 +22,7 @@ struct Box {
 };
 
 uint word_at(uint block, uint place) {
+  PREFILTER_FETCHES;
   const uint at = block % table.per_buffer * table.block + place;
   switch (block / table.per_buffer) {
     case 0: return images0[at];

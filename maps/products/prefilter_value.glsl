@@ -21,10 +21,15 @@ float prefilter_value(PrefilterValue value, float t) {
   }
 }
 
-// Height in [0, 1] between the nearest caster and the deepest receiver of a side. Both ends are put a little apart, so
-// that a single plane has a range, too.
-float normalised_height(float height, float nearest, float deepest) {
+// The heights that are 0 and 1: of the nearest caster and of the deepest receiver of a side, put a little apart, so that a
+// single plane has a range, too.
+vec2 height_ends(float nearest, float deepest) {
   const float apart = 1.0 / 1024.0;
-  const float low = nearest * (1.0 - apart), high = max(deepest, nearest) * (1.0 + apart);
-  return clamp((height - low) / (high - low), 0.0, 1.0);
+  return vec2(nearest * (1.0 - apart), max(deepest, nearest) * (1.0 + apart));
+}
+
+// Height in [0, 1] between them.
+float normalised_height(float height, float nearest, float deepest) {
+  const vec2 ends = height_ends(nearest, deepest);
+  return clamp((height - ends.x) / (ends.y - ends.x), 0.0, 1.0);
 }

@@ -149,6 +149,30 @@ TEST_F(DeepPenumbra, WithTheCentreAloneItIsTheShadowMap) {
   }
 }
 
+// A board 1 % behind the nearest caster: rays are walked from no farther on than that.
+TEST_F(DeepPenumbra, WhatIsJustBehindTheNearestCasterIsInItsShadow) {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+  add_quad(scene, {0, 2, 0}, {0.8, 0, 0}, {0, 0, 0.8});
+  add_quad(scene, {0, 1.97, 0}, {0.5, 0, 0}, {0, 0, 0.5});
+  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.cameras.push_back(camera({0, 0.5, 2}, {0, 1.5, 0}, 60));
+  const auto grid = [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+    visibility::ViewSamples samples;
+    samples.width = samples.height = 8;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      samples.triangle.push_back(4);
+      samples.p.emplace_back(glm::dvec3(0.1 * (i % 8) - 0.35, 1.97, 0.1 * (i / 8) - 0.35) - floats.origin);
+      samples.n.emplace_back(0, 1, 0);
+      samples.depth.push_back(1);
+      samples.facing.push_back(1);
+    }
+    return samples;
+  };
+  const Stage stage(scene, 8, 8, light_samples(4), grid);
+  for (const float v : run(maps::make_deep_penumbra, stage, {{"size", "256"}}).visibility) EXPECT_EQ(v, 0.0F);
+}
+
 double distance(const Stage& stage, const Masks& a, const Masks& b) {
   return rmse(
       stage, [&](std::size_t i) { return stage.samples.triangle[i] >= 0; },

@@ -49,16 +49,22 @@ class Vssm : public MapsTest {};
 TEST_F(Vssm, IsItsTwin) {
   const std::vector<decltype(scenes::AreaLight::shape)> shapes{
       scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}, scenes::Disk{{0.2, 4, 0}, {0, -1, 0}, 0.5},
-      scenes::Polygon{{{-0.5, 4, -0.5}, {0.6, 4, -0.4}, {0.1, 4, 0.6}}}};
-  const std::array<VssmSettings, 6> all{
-      VssmSettings{.moments = "vsm"},  {.moments = "vsm", .leak = 0.2, .bias = 3},
-      {.moments = "lvsm", .count = 5}, {.moments = "evsm", .exponent = 40},
-      {.moments = "csm", .count = 3},  {.moments = "esm", .exponent = 30, .fallback = false}};
+      scenes::Polygon{{{-0.5, 4, -0.5}, {0.6, 4, -0.4}, {0.1, 4, 0.6}}},
+      scenes::Rectangle{
+          {0, 4, 0}, {2.5, 0, 0}, {0, 0, 3}}};  // the near plane is its radius away, not the nearest caster
+  const std::array<VssmSettings, 7> all{VssmSettings{.moments = "vsm"},
+                                        {.moments = "vsm", .leak = 0.2, .bias = 3},
+                                        {.moments = "lvsm", .count = 5},
+                                        {.moments = "evsm", .exponent = 40},
+                                        {.moments = "esm"},
+                                        {.moments = "csm", .count = 3},
+                                        {.moments = "esm", .exponent = 30, .fallback = false}};
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     const Stage stage(scene_with(shapes[k]), 24, 24, light_samples(1));
     const CentreMaps maps(device(), stage, kSize, beside(stage));
     ASSERT_EQ(maps.fitted.faces, 1U);
     for (const VssmSettings& settings : all) {
+      if (k == 3 && settings.moments != "vsm") continue;  // its windows are the whole map, and twins are slow
       const Masks found = run(maps::make_vssm, stage, options_of(settings));
       const VssmTwin twin(maps, stage, settings);
       std::size_t receivers = 0, off = 0, soft = 0;
@@ -70,14 +76,36 @@ TEST_F(Vssm, IsItsTwin) {
         soft += v > 0.02 && v < 0.98 ? 1 : 0;
         sum += std::abs(v - is);
         // Where a mean is at the receiver's own height within rounding, the search says blocked or not by a hair, and V
-        // may be anything between the filter's answer and 1.
-        off += std::abs(v - is) > 2e-3 ? 1 : 0;
+        // may be anything between the filter's answer and 1. A series' functions have 12 digits.
+        off += std::abs(v - is) > 2e-4 ? 1 : 0;
       }
       fmt::print("{} of light {}: {} receivers, {} in penumbra, {} off, mean {:.2e}\n", settings.moments, k, receivers,
                  soft, off, sum / static_cast<double>(receivers));
       EXPECT_GT(soft, receivers / 20) << settings.moments;
-      EXPECT_LE(off, receivers / 100) << settings.moments << " of light " << k;
+      // Texel by texel, exponentials of a lit plane are 1 but for a hair, and more of them meet it.
+      const bool hairs = settings.moments == "esm" && settings.fallback;
+      EXPECT_LE(off, receivers / (hairs ? 40 : 100)) << settings.moments << " of light " << k;
     }
+  }
+}
+
+// Receivers in the air, at all heights: whichever layer they are in.
+TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
+  const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}), 24, 24, light_samples(1),
+                    grid_samples(24, {-0.2, 0.6, 0.1}, {0.7, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
+  const CentreMaps maps(device(), stage, kSize, beside(stage));
+  for (const std::uint32_t layers : {5U, 16U}) {
+    const VssmSettings settings{.moments = "lvsm", .count = layers};
+    const Masks found = run(maps::make_vssm, stage, options_of(settings));
+    const VssmTwin twin(maps, stage, settings);
+    std::size_t off = 0, soft = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const double v = twin(i).v;
+      soft += v > 0.02 && v < 0.98 ? 1 : 0;
+      off += std::abs(v - static_cast<double>(found.visibility[i])) > 2e-4 ? 1 : 0;
+    }
+    EXPECT_GT(soft, 50U);
+    EXPECT_LE(off, stage.samples.size() / 100) << layers;
   }
 }
 

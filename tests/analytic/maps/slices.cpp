@@ -76,6 +76,69 @@ TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
   EXPECT_EQ(words_of(maps::DepthUse::dual), std::pair(0b1001U, 0b100U));
 }
 
+// Texel by texel, in windows and hemicubes, with a bias of a slice's thickness and more: the nearest surface leaves its
+// slice unless another is in it, too, and is where its shadow begins.
+TEST_F(SliceProducts, MovedSurfacesAreTheirTwin) {
+  constexpr std::uint32_t kSize = 48, kSlices = 31;
+  constexpr double kBias = 3;
+  for (const bool hemicube : {false, true}) {
+    const Stage stage(selftest::crowd(hemicube, false), 4, 4, light_samples(1));
+    const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = 2});
+    ASSERT_EQ(maps.fitted.faces, hemicube ? 5U : 1U);
+    const std::vector<float> layers = maps.read();
+    const maps::gpu::LightView& view = maps.fitted.views.front();
+    const maps::gpu::SlicePlanes planes = maps::slice_planes(maps.set(stage), maps::SliceRule::equal, kSlices);
+    const auto words_of = [&](maps::DepthUse depth) {
+      maps::Slices product(device(), {.count = kSlices, .depth = depth, .bias = kBias});
+      render::Commands commands(device());
+      product.record(commands, maps.set(stage));
+      commands.submit();
+      std::vector<std::uint32_t> words(maps.texel_count());
+      product.buffer().read<std::uint32_t>(words);
+      return words;
+    };
+    const auto slice_of = [&](double height) {
+      for (std::uint32_t k = 0; k < kSlices; ++k) {
+        if (height <= static_cast<double>(planes.limit[0][k])) return 1U << k;
+      }
+      return 0U;
+    };
+    // Within rounding of a slice's end.
+    const auto unsure = [&](double height) { return slice_of(height * (1 - 1e-6)) != slice_of(height * (1 + 1e-6)); };
+    const std::vector<std::uint32_t> marked = words_of(maps::DepthUse::first);
+    const glm::dvec2 extent = hemicube ? glm::dvec2(2) : glm::dvec2(view.side[0].upper - view.side[0].lower);
+    const double forgiven = kBias * std::max(extent.x, extent.y) / kSize;
+    for (const maps::DepthUse depth : {maps::DepthUse::second, maps::DepthUse::midpoint, maps::DepthUse::dual}) {
+      const std::vector<std::uint32_t> found = words_of(depth);
+      std::size_t moved = 0;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        if (layers[i] == 1) continue;
+        const std::size_t face = i / kSize / kSize, row = i / kSize % kSize;
+        const double along = static_cast<double>(view.far) * (face > 0 ? (static_cast<double>(row) + 0.5) / kSize : 1),
+                     nearest = along * static_cast<double>(layers[i]),
+                     second = along * static_cast<double>(layers[found.size() + i]);
+        const bool single = layers[found.size() + i] == 1;
+        const double middle = 0.5 * (nearest + second) * (1 - forgiven);
+        double begins = nearest;
+        if (!single) {
+          begins = depth == maps::DepthUse::second     ? second * (1 - forgiven)
+                   : depth == maps::DepthUse::midpoint ? middle
+                                                       : std::min(nearest, middle);
+        }
+        if (unsure(nearest) || unsure(second) || unsure(begins)) continue;
+        std::uint32_t expected = marked[i];
+        if (single || slice_of(second) != slice_of(nearest)) expected &= ~slice_of(nearest);
+        if (depth != maps::DepthUse::second) expected |= slice_of(begins);
+        EXPECT_EQ(found[i], expected) << "texel " << i;
+        moved += expected != marked[i] ? 1 : 0;
+      }
+      if (depth != maps::DepthUse::dual) {
+        EXPECT_GT(moved, 50U);
+      }
+    }
+  }
+}
+
 TEST_F(SliceProducts, OnePlaneIsTheBlockersMeanHeightWithoutTheGround) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});

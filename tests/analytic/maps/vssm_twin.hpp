@@ -128,6 +128,20 @@ class VssmTwin {
     return box.inside * sum / (extent.x * extent.y) + (1 - box.inside) * f(1);
   }
 
+  /// Of all texels that the box touches, or of 16 along an axis; whole ones.
+  [[nodiscard]] double texel_by_texel(const Box& box, const std::function<double(double)>& f) const {
+    const glm::dvec2 first = glm::floor(box.lower), extent = glm::ceil(box.upper) - first,
+                     count = glm::min(extent, glm::dvec2(16));
+    double sum = 0;
+    for (double j = 0; j < count.y; ++j) {
+      for (double i = 0; i < count.x; ++i) {
+        const glm::uvec2 at(first + (glm::dvec2(i, j) + 0.5) * extent / count);
+        sum += f(heights_[std::size_t{at.y} * maps_->size + at.x]);
+      }
+    }
+    return box.inside * sum / (count.x * count.y) + 1 - box.inside;
+  }
+
   [[nodiscard]] static double chebyshev(double mean, double square, double x, double least) {
     const double variance = std::max(square - mean * mean, least);
     return x <= mean ? 1 : variance / (variance + (x - mean) * (x - mean));
@@ -162,7 +176,7 @@ class VssmTwin {
       const auto f = [&](double q) { return std::exp(settings_.exponent * (q - t)); };
       result.share = mean(box, f);
       if (result.share > 1 + 0x1p-10 && settings_.fallback) {
-        result.share = mean(box, [&](double q) { return std::min(f(q), 1.0); });
+        result.share = texel_by_texel(box, [&](double q) { return std::min(f(q), 1.0); });
       }
       result.share = std::min(result.share, 1.0);
     }

@@ -106,8 +106,9 @@ TEST_F(MapsBackproject, AHemicubesFacesTooToASquareTexel) {
   ASSERT_EQ(twin.faces(), 5U);
   const auto [most, mean] = off(stage, twin, 48, Fill::none);
   fmt::print("hemicube: off by at most {:.2g}, {:.2g} in the mean\n", most, mean);
-  EXPECT_LT(most, 0.02);
-  EXPECT_LT(mean, 0.0005);
+  // Measured: 0.0011 and 5e-5.
+  EXPECT_LT(most, 0.003);
+  EXPECT_LT(mean, 0.0001);
 }
 
 TEST_F(MapsBackproject, BothSidesOfATwoSidedLight) {
@@ -131,7 +132,9 @@ TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
     for (const char* search : {"hsm", "mssm", "ysm"}) {
       const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}, {"search", search}}, 48));
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        EXPECT_TRUE(found.visibility[i] == plain.visibility[i] || found.visibility[i] == 0)
+        // What all texels hide is nearly dark without the search, but for the gaps between them.
+        EXPECT_TRUE(found.visibility[i] == plain.visibility[i] ||
+                    (found.visibility[i] == 0 && plain.visibility[i] < 0.5F))
             << search << ", pixel " << i << ": " << found.visibility[i] << " for " << plain.visibility[i];
       }
     }

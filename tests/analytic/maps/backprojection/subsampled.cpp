@@ -150,6 +150,36 @@ TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
   EXPECT_LT(shares[1], shares[0]);
 }
 
+// Which pixels: of each the largest step, a power of two, that leaves four computed pixels across its narrowest
+// penumbra, as wide as it is seen on the picture.
+TEST_F(MapsSubsampled, PixelsAreChosenByThePenumbrasWidthOnThePicture) {
+  constexpr std::uint32_t kMost = 16;
+  scenes::Scene scene = bare_floor(0.6, 6);
+  add_quad(scene, {0, 2, 0}, {2, 0, 0}, {0, 0, -5}).receives_shadow = false;
+  scene.cameras.front() = camera({0, 1.4, 8}, {0, 0, 1}, 60);
+  const Stage stage(scene, 160, 120, light_samples(1));
+  const MethodOptions options{{"size", "128"}};
+  const Masks widths = run(*maps::make_penumbra_widths(device(), options), stage);
+  const auto method = maps::make_packet(device(), with(options, kMost, "penumbra"));
+  run(*method, stage);
+  std::uint64_t expected = 0, between = 0;
+  for (std::uint32_t i = 0; i < stage.samples.size(); ++i) {
+    if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
+    const glm::dvec3 way(stage.samples.eye - stage.samples.p[i]);
+    const double slant = std::abs(glm::dot(glm::dvec3(stage.samples.n[i]), way)) / glm::length(way),
+                 pixel = 2 * std::tan(std::numbers::pi / 6) / 120 * static_cast<double>(stage.samples.depth[i]);
+    std::uint32_t step = 1;
+    while (!std::isinf(widths.visibility[i]) && 2 * step <= kMost &&
+           2 * step * 4 <= static_cast<double>(widths.visibility[i]) * slant / pixel) {
+      step *= 2;
+    }
+    between += step > 1 && step < kMost ? 1 : 0;
+    expected += i % 160 % step == 0 && i / 160 % step == 0 ? 1 : 0;
+  }
+  EXPECT_GT(between, 1000U);
+  EXPECT_EQ(method->counters().at("pixelsComputed"), expected);
+}
+
 // Pull-push by hand: a constant stays one, nothing crosses from object to object, and a ramp comes back within its
 // step.
 TEST(MapsFillIn, KeepsConstantsAndObjectsApart) {
