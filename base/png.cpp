@@ -46,19 +46,4 @@ std::string png_data_uri(const Image8& image) {
   return "data:image/png;base64," + base64(encode_png(image));
 }
 
-Image8 decode_png(std::span<const std::byte> bytes) {
-  PngImage png;
-  if (png_image_begin_read_from_memory(&png.image, bytes.data(), bytes.size()) == 0) {
-    throw InputError("not a PNG picture: {}", png.image.message);
-  }
-  png.image.format = PNG_FORMAT_RGB;
-  Image8 image{png.image.width, png.image.height, {}};
-  image.pixels.resize(std::size_t{image.width} * image.height);
-  const png_color black{0, 0, 0};
-  if (png_image_finish_read(&png.image, &black, image.pixels.data(), 0, nullptr) == 0) {
-    throw InputError("a damaged PNG picture: {}", png.image.message);
-  }
-  return image;
-}
-
 }  // namespace penumbra

@@ -21,9 +21,6 @@ void write_png(const std::filesystem::path& path, const Image8& image);
 /// "data:image/png;base64,…", to stand in the src of an HTML picture.
 std::string png_data_uri(const Image8& image);
 
-/// Throws InputError for what is no PNG file. Transparent pixels are put on black.
-Image8 decode_png(std::span<const std::byte> bytes);
-
 /// Any PNG picture in 8 bits, those of 16 rounded to the nearest, with its alpha (255 where it has none); values as the
 /// file has them, whatever a gAMA or iCCP chunk says. InputError for what is no PNG file, is damaged, or has a side of
 /// more than `largest_side` pixels, which is found out before anything is decoded.

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -38,10 +40,14 @@ TEST(Image, ExposureMultipliesLinearColours) {
 
 TEST(Png, KeepsEveryPixel) {
   const Image8 image = small_picture();
-  const Image8 back = decode_png(encode_png(image));
+  const RgbaImage back = decode_rgba_png(encode_png(image), 3);
   EXPECT_EQ(back.width, 3u);
   EXPECT_EQ(back.height, 2u);
-  EXPECT_EQ(back.pixels, image.pixels);
+  ASSERT_EQ(back.pixels.size(), image.pixels.size());
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const auto& [red, green, blue] = image.pixels[i];
+    EXPECT_EQ(back.pixels[i], (std::array<std::uint8_t, 4>{red, green, blue, 255}));
+  }
 }
 
 TEST(Png, IsMarkedAsSrgbAndCarriesNoDate) {
@@ -74,10 +80,10 @@ TEST(Png, FileAppearsWhole) {
 TEST(Png, RefusesWhatIsNoPicture) {
   EXPECT_THROW(encode_png({}), ResourceError);
   const std::vector<std::byte> nonsense(100, std::byte{7});
-  EXPECT_THROW(decode_png(nonsense), InputError);
+  EXPECT_THROW(decode_rgba_png(nonsense, 100), InputError);
   std::vector<std::byte> cut = encode_png(small_picture());
   cut.resize(cut.size() / 2);
-  EXPECT_THROW(decode_png(cut), InputError);
+  EXPECT_THROW(decode_rgba_png(cut, 100), InputError);
 }
 
 }  // namespace

@@ -46,10 +46,6 @@ bool may_touch_light(const LightSide& side, const glm::vec3& a, const glm::vec3&
 
 }  // namespace
 
-double LightSide::height_of(const glm::vec3& x) const {
-  return sign * glm::dot(glm::cross(u, v), glm::dvec3(stored(x)) - center);
-}
-
 int LightSide::place_of(const glm::vec3& x) const {
   return static_cast<int>(mesh::side_of_plane(plane[0], plane[1], plane[2], glm::dvec3(stored(x)))) *
          (sign < 0 ? -1 : 1);

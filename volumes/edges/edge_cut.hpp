@@ -21,9 +21,7 @@ struct LightSide {
 
   /// As devices store it: rounded where its scaled value is subnormal.
   [[nodiscard]] glm::vec3 stored(const glm::vec3& x) const { return x * scale / scale; }
-  /// Over the plane, times |u × v|, in double.
-  [[nodiscard]] double height_of(const glm::vec3& x) const;
-  /// The sign of that: 1 in front of the plane, 0 in it, −1 behind. Exact.
+  /// 1 in front of the plane, 0 in it, −1 behind. Exact.
   [[nodiscard]] int place_of(const glm::vec3& x) const;
 };
 
