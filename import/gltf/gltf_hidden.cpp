@@ -1,6 +1,8 @@
 #include "import/gltf/gltf_hidden.hpp"
 
+#include "base/error.hpp"
 #include "import/gltf/gltf_accessor.hpp"
+#include "import/gltf/gltf_deform.hpp"
 #include "import/gltf/gltf_nodes.hpp"
 
 #include <tiny_gltf.h>
@@ -64,19 +66,37 @@ std::vector<std::optional<glm::dmat4>> unhidden_places(tinygltf::Model& model,
   return places;
 }
 
-bool hides_light(const tinygltf::Model& model, const tinygltf::Node& node, const glm::dmat4& to_world,
-                 const glm::dmat4& unhidden) {
-  if (to_world == unhidden || node.skin >= 0) return false;
-  if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size()) return false;
-  const auto collapses = [&](const tinygltf::Primitive& primitive) {
-    const auto attribute = primitive.attributes.find("POSITION");
-    if (!is_emissive(model, primitive) || attribute == primitive.attributes.end()) return false;
-    std::vector<glm::dvec3> shown = read_positions(model, attribute->second), whole = shown;
-    for (glm::dvec3& p : shown) p = glm::dvec3(to_world * glm::dvec4(p, 1));
-    for (glm::dvec3& p : whole) p = glm::dvec3(unhidden * glm::dvec4(p, 1));
-    return !shown.empty() && are_collinear(shown) && !are_collinear(whole);
-  };
-  return std::ranges::any_of(model.meshes[static_cast<std::size_t>(node.mesh)].primitives, collapses);
+std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int number, Places shown, Places unhidden) {
+  const auto index = static_cast<std::size_t>(number);
+  const tinygltf::Node& node = model.nodes.at(index);
+  if (node.mesh < 0 || static_cast<std::size_t>(node.mesh) >= model.meshes.size() || index >= unhidden.size() ||
+      (node.skin < 0 && shown[index] == unhidden[index])) {
+    return std::nullopt;
+  }
+  const auto& primitives = model.meshes[static_cast<std::size_t>(node.mesh)].primitives;
+  std::optional<glm::dvec3> point;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const std::string place = fmt::format("/meshes/{}/primitives/{}", node.mesh, i);
+    const auto placed = [&](Places places) {
+      const auto attribute = primitives[i].attributes.find("POSITION");
+      std::vector<glm::dvec3> positions;
+      if (attribute != primitives[i].attributes.end()) positions = read_positions(model, attribute->second);
+      const auto skinned = skin(model, node, primitives[i], place, places);
+      for (std::size_t vertex = 0; vertex < positions.size(); ++vertex) {
+        const glm::dmat4& to_world = skinned && vertex < skinned->size() ? (*skinned)[vertex] : places[index].value();
+        positions[vertex] = glm::dvec3(to_world * glm::dvec4(positions[vertex], 1));
+      }
+      return positions;
+    };
+    const bool emissive = is_emissive(model, primitives[i]);
+    if (!emissive && node.skin < 0) continue;
+    const std::vector<glm::dvec3> left = placed(shown);
+    if (left.empty()) continue;
+    const bool squashed = are_collinear(left);
+    if (!squashed && node.skin >= 0) return std::nullopt;
+    if (emissive && squashed && !are_collinear(placed(unhidden))) point = left.front();
+  }
+  return point;
 }
 
 }  // namespace penumbra::scenes

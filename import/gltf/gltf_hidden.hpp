@@ -1,13 +1,14 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tinygltf {
 class Model;
-class Node;
 }  // namespace tinygltf
 
 namespace penumbra::scenes {
@@ -20,9 +21,12 @@ std::vector<std::vector<double>> rest_scales(const tinygltf::Model& model);
 std::vector<std::optional<glm::dmat4>> unhidden_places(tinygltf::Model& model,
                                                        const std::vector<std::vector<double>>& rest);
 
-/// Does this transform squash a mesh with an emissive material to a line or a point, of which `unhidden` would not? So
-/// lamps are hidden in animations: they are keyed to a scale of 0.
-bool hides_light(const tinygltf::Model& model, const tinygltf::Node& node, const glm::dmat4& to_world,
-                 const glm::dmat4& unhidden);
+/// Where each node is, by its number.
+using Places = std::span<const std::optional<glm::dmat4>>;
+
+/// Do these places, of the node or of its skin's joints, squash a mesh with an emissive material to a line or a point,
+/// of which `unhidden` would not? So lamps are hidden in animations: they are keyed to a scale of 0. A point of what is
+/// left of it, or nothing. Of a skinned mesh all must be squashed.
+std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int node, Places shown, Places unhidden);
 
 }  // namespace penumbra::scenes

@@ -29,6 +29,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace penumbra::scenes {
 namespace {
@@ -138,12 +139,15 @@ class GltfImport {
   /// the same lights. What is seen of it is where its transform puts it.
   void add_mesh_or_hidden(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
     const PlacedNode whole = unhidden(placed);
-    if (is_mesh() || !hides_light(model_, node, placed.to_world, whole.to_world)) return add_mesh(node, placed, name);
+    const auto hidden_at = is_mesh() ? std::nullopt : hidden_light(model_, placed.number, to_world_, unhidden_);
+    if (!hidden_at) return add_mesh(node, placed, name);
     const std::size_t first_position = scene_.soup.positions.size(), first_light = scene_.lights.size();
+    const std::vector<std::optional<glm::dmat4>> posed = std::exchange(to_world_, {unhidden_.begin(), unhidden_.end()});
     add_mesh(node, whole, name);
+    to_world_ = posed;
     const glm::dmat4 back = glm::inverse(whole.to_world);
     for (glm::dvec3& p : std::span(scene_.soup.positions).subspan(first_position))
-      p = glm::dvec3(placed.to_world * (back * glm::dvec4(p, 1)));
+      p = node.skin >= 0 ? *hidden_at : glm::dvec3(placed.to_world * (back * glm::dvec4(p, 1)));
     for (AreaLight& light : std::span(scene_.lights).subspan(first_light)) {
       light.radiance = glm::dvec3(0);
       losses_.mention("is scaled to nothing: a light that is dark", light.name);

@@ -194,6 +194,24 @@ TEST_F(GltfAnimation, LampsUnderWhatIsScaledToNothingStay) {
   }
 }
 
+/// A skinned lamp is where its joints are, and hidden where they are scaled to nothing.
+TEST_F(GltfAnimation, ALampWhoseJointsAreScaledToNothingIsDark) {
+  Gltf gltf = skinned({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  gltf.at("/meshes/0/primitives/0")["material"] = 1;
+  gltf.at("/scenes/0/nodes").erase(1);  // the other lamp
+  const Scene still = read(gltf, {});
+  ASSERT_EQ(still.lights.size(), 1u);
+  gltf.animate(3, "scale", {0, 1}, {1, 1, 1, 0, 0, 0}, "STEP");
+  const Scene shown = read(gltf, 0), hidden = read(gltf, 1.5);
+  ASSERT_EQ(shown.lights.size(), 1u);
+  EXPECT_EQ(shown.lights[0].radiance, glm::dvec3(20, 10, 0));
+  ASSERT_EQ(hidden.lights.size(), 1u);
+  EXPECT_EQ(hidden.lights[0].radiance, glm::dvec3(0));
+  EXPECT_EQ(std::get<Polygon>(hidden.lights[0].shape).vertices, std::get<Polygon>(shown.lights[0].shape).vertices);
+  EXPECT_THAT(hidden.warnings, Contains(HasSubstr("'Body' is scaled to nothing")));
+  for (const glm::dvec3& p : hidden.soup.positions) EXPECT_EQ(p, hidden.soup.positions.front()) << "nothing is seen";
+}
+
 /// The usual way to hide a lamp: its scale is keyed to 0.
 TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
   for (const bool by_parent : {false, true}) {
