@@ -130,6 +130,16 @@ TEST(Emitter, FlatOutlinesThatAreNotConvexAreCut) {
   EXPECT_EQ(rectangles_in(emitter_of(frame)), outlines_of(emitter_of(frame)).size());
 }
 
+/// However little an outline bends inward, beyond rounding: its two triangles do not join.
+TEST(Emitter, OutlinesThatBendInwardALittleAreCut) {
+  for (const double dent : {0.3, 0.01, 1e-4}) {
+    LampMesh dart;
+    dart.add({{0, 1, -dent}, {1, 1, 0}, {0, 1, -2}, {-1, 1, 0}});
+    expect_covered(dart, emitter_of(dart));
+    EXPECT_EQ(outlines_of(emitter_of(dart)).size(), 2U) << dent;
+  }
+}
+
 TEST(Emitter, TubesAndPanels) {
   const LampMesh open = test::tube_lamp({0, 3, 0}, 0.1, 1, 12, false),
                  closed = test::tube_lamp({0, 3, 0}, 0.1, 1, 12, true);
