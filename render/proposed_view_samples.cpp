@@ -38,7 +38,7 @@ gpu::VisibilityBufferPush push_of(const visibility::PinholeCamera& camera, const
     push.eye[i] = camera.eye[i];
     push.right[i] = camera.right[i];
     push.up[i] = camera.up[i];
-    push.forward[i] = camera.forward[i];
+    push.middle[i] = camera.middle[i];
   }
   push.tan_half_fov = camera.tan_half_fov;
   push.width = camera.width;

@@ -99,7 +99,7 @@ visibility::ViewSamples VisibilityBuffer::render(const visibility::PinholeCamera
   store(push.eye, camera.eye);
   store(push.right, camera.right);
   store(push.up, camera.up);
-  store(push.forward, camera.forward);
+  store(push.middle, camera.middle);
   push.tan_half_fov = camera.tan_half_fov;
   push.width = camera.width;
   push.height = camera.height;

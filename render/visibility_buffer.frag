@@ -36,7 +36,7 @@ void main() {
   // The same operations in the same order as PinholeCamera::direction: a ray through an edge must hit it here and there.
   precise const double across = ndc_x * aspect;
   precise const dvec3 offset = across * camera.right + ndc_y * camera.up;
-  precise const dvec3 direction = camera.forward + offset * camera.tan_half_fov;
+  precise const dvec3 direction = camera.middle + offset * camera.tan_half_fov;
 
   precise const dvec3 a = dvec3(corners[3 * triangle]) - camera.eye;
   precise const dvec3 b = dvec3(corners[3 * triangle + 1]) - camera.eye;

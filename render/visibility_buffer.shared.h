@@ -13,7 +13,7 @@ struct VisibilityBufferPush {
   DOUBLE3(eye);
   DOUBLE3(right);
   DOUBLE3(up);
-  DOUBLE3(forward);
+  DOUBLE3(middle);  // not forward: a shifted lens looks elsewhere
   double tan_half_fov;
   uint width, height;         // of the whole picture
   uint first_row, row_count;  // the band that the buffers hold

@@ -28,11 +28,14 @@ void main() {
   triangle = INSTANCE;
   const dvec2 size = dvec2(camera.width, camera.height);
   const double tan_x = camera.tan_half_fov * size.x / size.y;
+  // Up to rounding, which the pixel to spare has room for.
+  const dvec3 forward = cross(camera.up, camera.right);
+  const dvec2 middle = dvec2(dot(camera.middle, camera.right), dot(camera.middle, camera.up));
   dvec2 lower = size, upper = dvec2(0.0);
   bool any_in_front = false, any_behind = false;
   for (uint i = 0; i < 3; ++i) {
     const dvec3 d = dvec3(corner_at(3 * triangle + i)) - camera.eye;
-    const double z = dot(d, camera.forward);
+    const double z = dot(d, forward);
     const double reach = abs(d.x) + abs(d.y) + abs(d.z);
     any_in_front = any_in_front || z > 0.0;
     // Below this a projection could be off by a pixel; the whole screen is then proposed.
@@ -40,8 +43,8 @@ void main() {
       any_behind = true;
       continue;
     }
-    const dvec2 at = dvec2((dot(d, camera.right) / (z * tan_x) + 1.0) * 0.5 * size.x,
-                           (1.0 - dot(d, camera.up) / (z * camera.tan_half_fov)) * 0.5 * size.y);
+    const dvec2 at = dvec2(((dot(d, camera.right) / z - middle.x) / tan_x + 1.0) * 0.5 * size.x,
+                           (1.0 - (dot(d, camera.up) / z - middle.y) / camera.tan_half_fov) * 0.5 * size.y);
     lower = min(lower, at);
     upper = max(upper, at);
   }

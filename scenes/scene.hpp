@@ -70,10 +70,11 @@ struct Polygon {
   std::vector<glm::dvec3> vertices;  ///< flat, convex, counter-clockwise seen from the side it emits to
 };
 /// Of a spot lamp, half angles in degrees, 0 ≤ inner < outer ≤ 90: what is lit is full within `inner` of the direction,
-/// dark beyond `outer`, and falls between as KHR_lights_punctual says (visibility::spot_share).
+/// dark beyond `outer`, and falls between as visibility::spot_share says.
 struct Cone {
   glm::dvec3 direction;  ///< unit length
   double inner = 0, outer = 45;
+  bool smooth = false;  ///< falls as Blender's spot lamps do; else as KHR_lights_punctual says
 };
 struct Sphere {
   glm::dvec3 center;
@@ -126,6 +127,9 @@ struct Camera {
   double vertical_fov = 45;           ///< degrees
   std::optional<double> height = {};  ///< of an orthographic camera: the picture's in world units, in place of an angle
   std::optional<double> aspect = {};  ///< the picture's width over its height, if the file says so
+  /// A shifted lens: where the picture's middle is, right of and above what the camera looks at, in heights of the
+  /// picture. What is seen is moved, not turned.
+  glm::dvec2 shift{0};
 };
 
 /// What a file says of vertices beside where they are. Each list is empty, or as long as the soup's positions.

@@ -61,7 +61,9 @@ struct PutShape {
   void operator()(const Polygon& shape) const { to.put_array(std::span<const glm::dvec3>(shape.vertices)); }
   void operator()(const Sphere& shape) const {
     to.put(shape.center), to.put(shape.radius), put_bool(to, shape.cone.has_value());
-    if (shape.cone) to.put(shape.cone->direction), to.put(shape.cone->inner), to.put(shape.cone->outer);
+    if (!shape.cone) return;
+    to.put(shape.cone->direction), to.put(shape.cone->inner), to.put(shape.cone->outer);
+    put_bool(to, shape.cone->smooth);
   }
   void operator()(const Ellipse& shape) const { to.put(shape.center), to.put(shape.half_u), to.put(shape.half_v); }
   void operator()(const Sun& shape) const { to.put(shape.direction), to.put(shape.angle); }
@@ -105,6 +107,7 @@ LightShape get_shape(WireReader& from) {
       if (from.get_bool()) {
         Cone& cone = shape.cone.emplace();
         cone.direction = get_vector(from), cone.inner = get_number(from), cone.outer = get_number(from);
+        cone.smooth = from.get_bool();
       }
       return shape;
     }
@@ -179,6 +182,7 @@ Camera get_camera(WireReader& from) {
   camera.vertical_fov = get_number(from);
   camera.height = get_optional(from);
   camera.aspect = get_optional(from);
+  camera.shift.x = get_number(from), camera.shift.y = get_number(from);
   return camera;
 }
 
@@ -256,6 +260,7 @@ void put_scene(WireWriter& to, const Scene& scene) {
     to.put_string(camera.name);
     to.put(camera.eye), to.put(camera.target), to.put(camera.up), to.put(camera.vertical_fov);
     put_optional(to, camera.height), put_optional(to, camera.aspect);
+    to.put(camera.shift.x), to.put(camera.shift.y);
   }
   put_bool(to, scene.origin.has_value());
   if (scene.origin) to.put(*scene.origin);

@@ -22,6 +22,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/options_together_support.cpp
   cli/program.cpp
   cli/render.cpp
+  cli/shifted_lens.cpp
   cli/tables.cpp
   cli/wedges.cpp
   LIBRARIES penumbra_app penumbra_mesh penumbra_visibility penumbra_base nlohmann_json::nlohmann_json ZLIB::ZLIB)

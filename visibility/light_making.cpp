@@ -133,7 +133,7 @@ struct Builder {
     if (!shape.cone) return;
     const double inner = std::cos(glm::radians(shape.cone->inner)), outer = std::cos(glm::radians(shape.cone->outer));
     const double scale = 1 / std::max(0.001, inner - outer);
-    light.spot = Light::Spot{glm::normalize(shape.cone->direction), scale, -outer * scale};
+    light.spot = Light::Spot{glm::normalize(shape.cone->direction), scale, -outer * scale, shape.cone->smooth};
   }
 
   void operator()(const scenes::Sun& shape) const {

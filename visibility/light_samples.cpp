@@ -86,9 +86,9 @@ double spot_share(const Light& light, const glm::vec3& p) {
   const glm::dvec3 way = glm::dvec3(p) - glm::dvec3(light.center);
   const double length = glm::length(way);
   if (length == 0) return 0;
-  const double share =
-      glm::clamp(glm::dot(way, light.spot->direction) / length * light.spot->scale + light.spot->offset, 0.0, 1.0);
-  return share * share;
+  const double cosine = glm::dot(way, light.spot->direction) / length;
+  const double share = glm::clamp(cosine * light.spot->scale + light.spot->offset, 0.0, 1.0);
+  return share * share * (light.spot->smooth ? cosine * (3 - 2 * share) : 1.0);
 }
 
 PointBounds point_bounds(const Light& light) {

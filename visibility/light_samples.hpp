@@ -66,6 +66,7 @@ struct Light {
   struct Spot {
     glm::dvec3 direction{0, -1, 0};
     double scale = 1, offset = 0;
+    bool smooth = false;
   };
   std::optional<Spot> spot = {};
 
@@ -100,8 +101,9 @@ struct Light {
 glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
 
 /// How bright a spot lamp's cone is at p, in [0, 1], by the formula that KHR_lights_punctual recommends: c the cosine
-/// of the angle at the lamp's centre between its direction and p, clamp((c − cos outer) / max(0.001, cos inner − cos
-/// outer))². 1 of what has no cone. It multiplies radiance; V knows nothing of it.
+/// of the angle at the lamp's centre between its direction and p, t = clamp((c − cos outer) / max(0.001, cos inner −
+/// cos outer)), t²; if the cone is smooth c t² (3 − 2t), as Cycles has it, whose lamps are disks that face along the
+/// cone. 1 of what has no cone. It multiplies radiance; V knows nothing of it.
 double spot_share(const Light& light, const glm::vec3& p);
 
 /// Bounds all light points of all view samples.

@@ -117,12 +117,20 @@ double PinholeCamera::upward(std::uint32_t y) const {
 }
 
 glm::dvec3 PinholeCamera::direction(std::uint32_t x, std::uint32_t y) const {
-  return forward + (across(x) * right + upward(y) * up) * tan_half_fov;
+  return middle + (across(x) * right + upward(y) * up) * tan_half_fov;
 }
 
 ViewRay PinholeCamera::ray(std::uint32_t x, std::uint32_t y) const {
   if (!half_height) return {eye, direction(x, y)};
   return {eye + (across(x) * right + upward(y) * up) * *half_height, forward};
+}
+
+glm::dvec3 PinholeCamera::screen_across() const {
+  return (right - glm::dot(right, middle) * forward) / (tan_half_fov * width / height);
+}
+
+glm::dvec3 PinholeCamera::screen_upward() const {
+  return (up - glm::dot(up, middle) * forward) / tan_half_fov;
 }
 
 PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin, std::uint32_t width,
@@ -161,6 +169,12 @@ PinholeCamera make_camera(const scenes::Camera& camera, const glm::dvec3& origin
     result.half_height = *camera.height / 2;
   else
     result.tan_half_fov = std::tan(glm::radians(camera.vertical_fov) / 2);
+  result.middle = result.forward;
+  if (camera.shift != glm::dvec2(0)) {
+    const double height_seen = 2 * result.half_height.value_or(result.tan_half_fov);
+    (camera.height ? result.eye : result.middle) +=
+        height_seen * (camera.shift.x * result.right + camera.shift.y * result.up);
+  }
   result.width = width;
   result.height = height;
   return result;

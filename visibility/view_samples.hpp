@@ -19,11 +19,12 @@ struct ViewRay {
 };
 
 /// A camera relative to the scene's origin, in double. The ray of pixel (x, y), y down, is
-/// eye + t · (forward + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)), all unit vectors:
-/// t is the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) ·
-/// up) · half_height) + t · forward.
+/// eye + t · (middle + ((2(x + ½)/W − 1) · aspect · right + (1 − 2(y + ½)/H) · up) · tan(fov/2)). All but `middle` are
+/// unit vectors, at right angles; that is the ray through the picture's middle, middle · forward = 1, and `forward`
+/// itself unless the lens is shifted: t is the distance along the view axis. Orthographic: (eye + ((2(x + ½)/W − 1) ·
+/// aspect · right + (1 − 2(y + ½)/H) · up) · half_height) + t · forward; there a shift has moved the eye.
 struct PinholeCamera {
-  glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
+  glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1}, middle{0, 0, -1};
   double tan_half_fov = 1;
   std::optional<double> half_height = {};  ///< of an orthographic camera, in place of the field of view
   std::uint32_t width = 0, height = 0;
@@ -34,6 +35,11 @@ struct PinholeCamera {
   /// Of a perspective camera.
   [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y) const;
   [[nodiscard]] ViewRay ray(std::uint32_t x, std::uint32_t y) const;
+
+  /// What a direction's product with is its place across (up) the picture, from −1 to 1, times its depth. Of a
+  /// perspective camera.
+  [[nodiscard]] glm::dvec3 screen_across() const;
+  [[nodiscard]] glm::dvec3 screen_upward() const;
 };
 
 /// Throws InputError when eye and target coincide or `up` is parallel to the view direction.

@@ -127,6 +127,8 @@ CameraMatrices matrices_of(const Session& session) {
   } else {
     projection[2][3] = -1;
     projection[3][2] = -2;
+    projection[2][0] = glm::dot(camera.middle, camera.right) / (aspect * half);  // of a shifted lens
+    projection[2][1] = glm::dot(camera.middle, camera.up) / half;
   }
   return {glm::mat4(to_camera), glm::mat4(projection * to_camera)};
 }

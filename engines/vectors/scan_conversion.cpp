@@ -124,6 +124,7 @@ class Scan {
   const ScanCamera camera_;
   const PinholeCamera& view_;
   glm::dvec2 size_, scale_;  // pixels; pixels a unit of slope, y down
+  glm::dvec2 middle_;        // where slope 0 is: pixels
   double longest_ray_;
   std::uint32_t tiles_x_, tiles_y_;
   /// x, y in pixels, z, and |corner| / z: what a float can say. The last is infinite where that is too little.
@@ -139,7 +140,9 @@ Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
       view_(camera_.view),
       size_(camera.width, camera.height),
       scale_(size_.y / 2 / camera.tan_half_fov),
-      longest_ray_(size1(camera.forward) +
+      middle_(0.5 * size_.x - glm::dot(camera.middle, camera.right) * scale_.x,
+              0.5 * size_.y + glm::dot(camera.middle, camera.up) * scale_.y),
+      longest_ray_(size1(camera.middle) +
                    (size_.x / size_.y * size1(camera.right) + size1(camera.up)) * camera.tan_half_fov),
       tiles_x_((camera.width + kScanTile - 1) / kScanTile),
       tiles_y_((camera.height + kScanTile - 1) / kScanTile) {
@@ -163,10 +166,9 @@ void Scan::project() {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::dvec3 d = glm::dvec3(scene_.positions[i]) - view_.eye;
       const double z = glm::dot(d, view_.forward), reach = size1(d);
-      projected_[i] = z * kSteepest > reach
-                          ? glm::vec4(0.5 * size_.x + glm::dot(d, view_.right) / z * scale_.x,
-                                      0.5 * size_.y - glm::dot(d, view_.up) / z * scale_.y, z, reach / z)
-                          : glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity());
+      projected_[i] = z * kSteepest > reach ? glm::vec4(middle_.x + glm::dot(d, view_.right) / z * scale_.x,
+                                                        middle_.y - glm::dot(d, view_.up) / z * scale_.y, z, reach / z)
+                                            : glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity());
     }
   });
 }
@@ -217,8 +219,8 @@ std::optional<PixelBox> Scan::careful_box(std::uint32_t triangle) const {
       behind = true;
       continue;
     }
-    const glm::dvec2 at(0.5 * size_.x + glm::dot(corners[i], view_.right) / z * scale_.x,
-                        0.5 * size_.y - glm::dot(corners[i], view_.up) / z * scale_.y);
+    const glm::dvec2 at(middle_.x + glm::dot(corners[i], view_.right) / z * scale_.x,
+                        middle_.y - glm::dot(corners[i], view_.up) / z * scale_.y);
     lower = glm::min(lower, at);
     upper = glm::max(upper, at);
   }

@@ -36,7 +36,7 @@ struct RayRow {
   Values axis(Values across, int i) const {
     const Pixels d;
     const Values offset = hn::Add(hn::Mul(across, hn::Set(d, view.right[i])), hn::Set(d, upward[i]));
-    return hn::Add(hn::Set(d, view.forward[i]), hn::Mul(offset, hn::Set(d, view.tan_half_fov)));
+    return hn::Add(hn::Set(d, view.middle[i]), hn::Mul(offset, hn::Set(d, view.tan_half_fov)));
   }
   Rays at(Values across) const { return {axis(across, 0), axis(across, 1), axis(across, 2)}; }
 };

@@ -35,13 +35,15 @@ double checked(double value, double least, const std::string& place) {
 }
 
 Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, const std::string& place) {
+  const double smooth = extra(lamp.extras, "smooth", place).value_or(0);
+  if (smooth != 0 && smooth != 1) throw InputError("{}/extras/smooth: {}; expected 0 or 1", place, smooth);
   const double inner = lamp.spot.innerConeAngle, outer = lamp.spot.outerConeAngle;
   // Half a turn over four in single precision may be a hair more.
   if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2 * (1 + 1e-6))) {
     throw InputError("{}/spot: innerConeAngle {} and outerConeAngle {}; expected 0 <= inner < outer <= pi / 2", place,
                      inner, outer);
   }
-  return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0)};
+  return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0), smooth == 1};
 }
 
 }  // namespace

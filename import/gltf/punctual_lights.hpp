@@ -17,8 +17,9 @@ namespace penumbra::scenes {
 
 /// What the lamps of KHR_lights_punctual become: a directional lamp a sun, a point lamp a sphere, a spot lamp a sphere
 /// with a cone. They have no size in that extension; `extras` of the lamp, or else of its node, may say `radius` or
-/// `angle` (degrees), else ReadOptions does. Intensities are the extension's: lux of what faces a sun, candela of a
-/// sphere seen from afar, so a radiance of lux / π sin²(angle / 2), of candela / π radius².
+/// `angle` (degrees), else ReadOptions does; and `smooth` 1 that a cone falls as Blender's do. Intensities are the
+/// extension's: lux of what faces a sun, candela of a sphere seen from afar, so a radiance of lux / π sin²(angle / 2),
+/// of candela / π radius².
 class PunctualLights {
  public:
   PunctualLights(const tinygltf::Model& model, const ReadOptions& options) : model_(model), options_(options) {}

@@ -78,7 +78,7 @@ void check_shape(const Sphere& sphere, const std::string& where) {
   check_position(sphere.center, where, "center");
   check_radius(sphere.radius, where);
   if (!sphere.cone) return;
-  const auto& [direction, inner, outer] = *sphere.cone;
+  const auto& [direction, inner, outer, smooth] = *sphere.cone;
   check_position(direction, where, "the cone's direction");
   if (glm::length(direction) == 0)
     throw InputError("{}: the cone's direction is zero; expected the way it shines", where);
@@ -200,6 +200,11 @@ void check_camera(const Camera& camera, const std::string& where) {
   if (!(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
     throw InputError("{}: the vertical field of view is {} degrees; expected more than 0 and less than 180", where,
                      camera.vertical_fov);
+  }
+  constexpr double kFarthestShift = 1000;  // a lens that looks so far aside shows hardly anything
+  if (!(std::abs(camera.shift.x) <= kFarthestShift && std::abs(camera.shift.y) <= kFarthestShift)) {
+    throw InputError("{}: the shift is ({}, {}); expected up to {} heights of the picture", where, camera.shift.x,
+                     camera.shift.y, kFarthestShift);
   }
 }
 

@@ -73,6 +73,11 @@ class GlbBuilder {
       gltf.perspective.znear = 1e-3 * glm::distance(camera.eye, camera.target);
       gltf.perspective.zfar = 0;  // none
     }
+    if (camera.shift != glm::dvec2(0)) {
+      gltf.extras = tinygltf::Value(tinygltf::Value::Object{
+          {"shift",
+           tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(camera.shift.x), tinygltf::Value(camera.shift.y)})}});
+    }
     // A glTF camera looks along its −Z with +Y up.
     const glm::dvec3 back = glm::normalize(camera.eye - camera.target);
     const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back)), up = glm::cross(back, right);
@@ -105,6 +110,7 @@ class GlbBuilder {
         way = sphere.cone->direction;
         lamp.spot.innerConeAngle = sphere.cone->inner * std::numbers::pi / 180;
         lamp.spot.outerConeAngle = sphere.cone->outer * std::numbers::pi / 180;
+        if (sphere.cone->smooth) extras["smooth"] = tinygltf::Value(1);
       }
     }
     // The colour is at most 1; the intensity carries the rest.

@@ -45,6 +45,7 @@ Camera read_camera(const json& value, const Place& place, std::string fallback_n
   if (value.contains("up")) camera.up = read_vector(value["up"]);
   camera.vertical_fov = value.value("verticalFov", camera.vertical_fov);
   if (value.contains("orthographicHeight")) camera.height = value["orthographicHeight"].get<double>();
+  if (value.contains("shift")) camera.shift = {value["shift"][0].get<double>(), value["shift"][1].get<double>()};
   check_camera(camera, place.str());
   return camera;
 }
@@ -100,7 +101,8 @@ Sphere read_sphere(const json& shape) {
   Sphere sphere{read_vector(shape["center"]), shape["radius"].get<double>(), {}};
   if (shape.contains("cone")) {
     const json& cone = shape["cone"];
-    sphere.cone = Cone{unit(read_vector(cone["direction"])), cone["inner"].get<double>(), cone["outer"].get<double>()};
+    sphere.cone = Cone{unit(read_vector(cone["direction"])), cone["inner"].get<double>(), cone["outer"].get<double>(),
+                       cone.value("smooth", false)};
   }
   return sphere;
 }

@@ -20,6 +20,10 @@ void write_camera(const Camera& camera, TextStream& text) {
   text.print(R"({{"name": {}, "eye": )", quoted(camera.name)).array(camera.eye);
   text.print(R"(, "target": )").array(camera.target);
   text.print(R"(, "up": )").array(camera.up);
+  if (camera.shift != glm::dvec2(0)) {
+    text.print(R"(, "shift": [)").number(camera.shift.x).print(", ");
+    text.number(camera.shift.y).print("]");
+  }
   if (camera.height)
     text.print(R"(, "orthographicHeight": )").number(*camera.height).print("}}");
   else
@@ -51,7 +55,8 @@ void write_shape(const Sphere& sphere, TextStream& text) {
   if (sphere.cone) {
     text.print(R"(, "cone": {{"direction": )").array(sphere.cone->direction);
     text.print(R"(, "inner": )").number(sphere.cone->inner);
-    text.print(R"(, "outer": )").number(sphere.cone->outer).print("}}");
+    text.print(R"(, "outer": )").number(sphere.cone->outer);
+    text.print("{}}}", sphere.cone->smooth ? R"(, "smooth": true)" : "");
   }
   text.print("}}");
 }

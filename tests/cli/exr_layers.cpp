@@ -101,6 +101,9 @@ TEST_F(Layers, ALightThatLightsNothingIsNamed) {
 /// World positions times the header's matrices are pixels and depths.
 TEST_F(Layers, MatricesLeadFromTheWorldToThePicture) {
   scene_with({"key"});
+  json scene = json::parse(read("scene.json"));
+  scene.at("camera")["shift"] = {0.13, -0.07};
+  write("scene.json", scene.dump());
   const ExrFile image = render();
   const glm::dmat4 to_camera(image.matrices.at("worldToCamera")), to_picture(image.matrices.at("worldToNDC"));
   std::size_t seen = 0;

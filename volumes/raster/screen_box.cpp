@@ -82,8 +82,8 @@ ScreenBox smallest_box(const SeenCorners& points) {
 
 BoxFinder::BoxFinder(const visibility::PinholeCamera& camera)
     : eye_(camera.eye),
-      across_(camera.right / (camera.tan_half_fov * camera.width / camera.height)),
-      upward_(camera.up / camera.tan_half_fov),
+      across_(camera.screen_across()),
+      upward_(camera.screen_upward()),
       forward_(camera.forward),
       half_(0.5 * camera.width, 0.5 * camera.height) {
   require_perspective(camera);

@@ -185,8 +185,7 @@ FootprintFinder::FootprintFinder(const visibility::PinholeCamera& camera, const 
 
 void FootprintFinder::add_projection(const Wedge& wedge, Points& points) const {
   const glm::dvec2 half(0.5 * camera_.width, 0.5 * camera_.height);
-  const glm::dvec3 across = camera_.right / (camera_.tan_half_fov * camera_.width / camera_.height);
-  const glm::dvec3 upward = camera_.up / camera_.tan_half_fov, &forward = camera_.forward;
+  const glm::dvec3 across = camera_.screen_across(), upward = camera_.screen_upward(), &forward = camera_.forward;
   std::vector<Loop> faces = faces_of(receivers_->bounds());
   clip(faces, {forward.x, forward.y, forward.z, -glm::dot(forward, camera_.eye) - receivers_->nearest()},
        receivers_->reach());

@@ -80,6 +80,9 @@ TEST_F(SoftVolumeTwin, TheCameraMayBeInWedges) {
     scene.cameras[0] = tests::camera(eye, {0, 0, 0}, 100);
     expect_twin(fmt::format("from ({}, {}, {})", eye.x, eye.y, eye.z), scene);
   }
+  scene.cameras[0] = tests::camera({1.5, 2.5, 3}, {0, 1, -1}, 50);
+  scene.cameras[0].shift = {-0.2, -0.6};
+  expect_twin("through a shifted lens", scene);
 }
 
 /// Edges through the light's centre as seen from two lines of pixels, corners from one pixel: a sign that rounding

@@ -10,6 +10,10 @@
 #include "volumes/soft/hard_volume.hpp"
 #include "volumes/raster/volume_count.hpp"
 
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <cmath>
 #include <filesystem>
 
 namespace penumbra::volumes {
@@ -240,6 +244,24 @@ scenes::Scene stack(int layers, const glm::dvec3& eye) {
   scene.lights.push_back(tests::ceiling_light(4, 0.5));
   scene.cameras.push_back(tests::camera(eye, {0, 0, 0.25}, 70));
   return scene;
+}
+
+/// What is drawn is looked for where a shifted lens shows it.
+TEST_F(HardVolume, AShiftedLens) {
+  for (const glm::dvec2& shift : {glm::dvec2(0.7, -0.4), glm::dvec2(-1.5, 0.2)}) {
+    scenes::Scene scene = stack(3, {2, 1.5, 2});
+    const glm::dvec3 forward = glm::normalize(scene.cameras[0].target - scene.cameras[0].eye),
+                     right = glm::normalize(glm::cross(forward, scene.cameras[0].up));
+    const double height = 2 * std::tan(glm::radians(35.0));
+    scene.cameras[0].shift = shift;
+    // Turned the other way, so that the middle stays in sight.
+    scene.cameras[0].target =
+        scene.cameras[0].eye + forward - height * shift.x * right - height * shift.y * glm::cross(right, forward);
+    const Tally tally = compare(Picture(scene, device(), 48, 36));
+    EXPECT_EQ(tally.wrong, 0U) << tally.first_wrong;
+    EXPECT_EQ(tally.largest, 3);
+    EXPECT_GT(tally.shadowed, 50U);
+  }
 }
 
 TEST_F(HardVolume, ACountOf256DoesNotWrap) {

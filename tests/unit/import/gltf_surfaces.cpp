@@ -211,6 +211,26 @@ TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("\"Lamp\""), HasSubstr("extras/body")));
 }
 
+/// What glTF has no word for: extras of cameras and spot lamps.
+TEST_F(GltfSurfaces, ExtrasShiftLensesAndSmoothCones) {
+  Gltf gltf;
+  gltf.at("/cameras/0")["extras"] = {{"shift", {0.25, -1}}};
+  EXPECT_EQ(read(gltf).cameras.at(0).shift, glm::dvec2(0.25, -1));
+  gltf.at("/cameras/0/extras/shift") = {0.25};
+  EXPECT_THAT(refusal(gltf), HasSubstr("/cameras/0/extras/shift: expected two numbers"));
+  gltf.at("/cameras/0/extras/shift") = {0.25, 1e9};
+  EXPECT_THAT(test::input_error([&] { read_scene(write("scene.glb", gltf.glb())); }), HasSubstr("the shift is"));
+  gltf.at("/cameras/0").erase("extras");
+  gltf.document["extensions"] = {
+      {"KHR_lights_punctual",
+       {{"lights",
+         {{{"type", "spot"}, {"spot", nlohmann::json::object()}, {"extras", {{"radius", 1}, {"smooth", 1}}}}}}}}};
+  gltf.at("/nodes/2")["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+  EXPECT_TRUE(std::get<Sphere>(read(gltf).lights.at(1).shape).cone->smooth);
+  gltf.at("/extensions/KHR_lights_punctual/lights/0/extras/smooth") = 0.5;
+  EXPECT_THAT(refusal(gltf), HasSubstr("extras/smooth: 0.5; expected 0 or 1"));
+}
+
 TEST_F(GltfSurfaces, CamerasHaveTheirShape) {
   Gltf gltf;
   EXPECT_EQ(read(gltf).cameras[0].aspect, 1.7777);

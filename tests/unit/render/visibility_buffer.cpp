@@ -68,6 +68,10 @@ TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnCrossingSoups) {
     scene.cameras.push_back(tests::camera(point(4), point(0.1), 40));
     scene.cameras.push_back(tests::camera(point(400), point(0.1), 0.5));
     scene.cameras.push_back(tests::camera(point(1), point(1), 175));
+    for (const double shift : {0.4, 3.0}) {
+      scene.cameras.push_back(tests::camera(point(2), point(0.1), 50));
+      scene.cameras.back().shift = {shift * real(random), shift * real(random)};
+    }
     check(scene, 48, 37, "seed " + std::to_string(seed));
   }
 }

@@ -54,7 +54,7 @@ void expect_same_shape(const scenes::AreaLight& a, const scenes::AreaLight& b) {
     ASSERT_EQ(s.cone.has_value(), t.cone.has_value());
     if (s.cone) {
       EXPECT_TRUE(same_bits(s.cone->direction, t.cone->direction) && same_bits(s.cone->inner, t.cone->inner) &&
-                  same_bits(s.cone->outer, t.cone->outer));
+                  same_bits(s.cone->outer, t.cone->outer) && s.cone->smooth == t.cone->smooth);
     }
   }
 }
@@ -95,11 +95,12 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_TRUE(same_bits(a.cameras[i].eye, b.cameras[i].eye) && same_bits(a.cameras[i].target, b.cameras[i].target));
     EXPECT_TRUE(same_bits(a.cameras[i].up, b.cameras[i].up));
     EXPECT_TRUE(same_bits(a.cameras[i].vertical_fov, b.cameras[i].vertical_fov));
+    EXPECT_EQ(a.cameras[i].shift, b.cameras[i].shift);
   }
 }
 
 constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [640, 360],
-  "cameras": [{"name": "main", "eye": [0.1, 2, 6.3], "target": [0, 1, 0], "verticalFov": 37.7}, {"eye": [1, 2, 3], "target": [0, 0, 0], "up": [1, 0, 0.2]}],
+  "cameras": [{"name": "main", "eye": [0.1, 2, 6.3], "target": [0, 1, 0], "verticalFov": 37.7}, {"eye": [1, 2, 3], "target": [0, 0, 0], "up": [1, 0, 0.2], "shift": [0.3, -0.1]}],
   "meshes": [
     {"name": "a \"quoted\" näme", "shape": {"type": "blob", "subdivisions": 2}, "transform": {"rotate": [13, 29, 71], "scale": [1.1, 0.9, -0.7], "translate": [1e-9, 0.3, -1e5]}, "color": [0.1, 0.2, 0.3]},
     {"shape": {"type": "hair", "strands": 20}, "castsShadow": false},
@@ -112,7 +113,7 @@ constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [
     {"name": "oval", "ellipse": {"center": [0, 5, 0.1], "halfU": [0.6, 0, 0], "halfV": [0, 0.1, 0.3]}},
     {"name": "sun", "sun": {"direction": [-0.35, -0.87, -0.35], "angle": 0.53}, "irradiance": [3, 2.9, 2.5]},
     {"name": "point", "sun": {"direction": [0.1, -0.87, -0.35], "angle": 0}, "irradiance": [0.1, 0.2, 0.3]},
-    {"name": "spot", "sphere": {"center": [0, 4, -2], "radius": 0.1, "cone": {"direction": [0.1, -1, 0.2], "inner": 10, "outer": 25}}},
+    {"name": "spot", "sphere": {"center": [0, 4, -2], "radius": 0.1, "cone": {"direction": [0.1, -1, 0.2], "inner": 10, "outer": 25, "smooth": true}}},
     {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}, "casters": {"include": ["lamp", "a \"quoted\" näme"]}}] })";
 
 TEST(JsonWriter, RoundTripIsBitExact) {
@@ -293,12 +294,15 @@ TEST(GlbWriter, LampsReadBack) {
         EXPECT_LT(glm::distance(read.cone->direction, sphere->cone->direction), 1e-15);
         EXPECT_NEAR(read.cone->inner, sphere->cone->inner, 1e-12);
         EXPECT_NEAR(read.cone->outer, sphere->cone->outer, 1e-12);
+        EXPECT_EQ(read.cone->smooth, sphere->cone->smooth);
+        EXPECT_TRUE(read.cone->smooth);
       }
     }
     ++lamps;
     EXPECT_LT(glm::distance(same->radiance, light.radiance), 1e-12 * glm::length(light.radiance)) << light.name;
   }
   EXPECT_EQ(lamps, 4);
+  EXPECT_EQ(again.cameras.at(1).shift, scene.cameras.at(1).shift);
 }
 
 TEST(Writer, KeepsCamerasShapesAndSaysWhatIsLost) {

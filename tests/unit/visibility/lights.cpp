@@ -194,6 +194,19 @@ TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
   }
 }
 
+/// With cosines 0.8 and 0.6 of the cone's ends and 0.65 of p's direction, a quarter of the way in from the rim.
+TEST(Lights, ConesFallAsTheirLampsSay) {
+  const double inner = glm::degrees(std::acos(0.8)), outer = glm::degrees(std::acos(0.6));
+  const glm::vec3 p(static_cast<float>(std::sqrt(1 - 0.65 * 0.65)), -0.65F, 0);
+  scenes::Sphere spot{{0, 0, 0}, 0.1, scenes::Cone{{0, -1, 0}, inner, outer}};
+  EXPECT_NEAR(spot_share(light_of(spot, {4}), p), 0.25 * 0.25, 1e-6);
+  spot.cone->smooth = true;
+  const Light light = light_of(spot, {4});
+  EXPECT_NEAR(spot_share(light, p), 0.65 * 0.25 * 0.25 * (3 - 2 * 0.25), 1e-6);
+  EXPECT_NEAR(spot_share(light, {0, -3, 0}), 1, 1e-12);
+  EXPECT_EQ(spot_share(light, {1, -0.7F, 0}), 0);
+}
+
 /// The share of samples within a part of the disk is the part's share of its area.
 TEST(Lights, SphereSamplesKeepAreasOfTheDisk) {
   const Light light = light_of(scenes::Sphere{{0, 0, 0}, 1}, {4096, 0, 0, SamplePattern::sobol, 4});

@@ -24,6 +24,25 @@ TEST(Camera, RaysGoThroughPixelCentres) {
   EXPECT_NEAR(glm::length(last - glm::dvec3(1.5, -0.5, -1)), 0, 1e-15);
 }
 
+/// The picture's middle moves by shares of its height; what is parallel to the picture keeps its shape and depth.
+TEST(Camera, AShiftedLensMovesThePictureAndTurnsNothing) {
+  scenes::Camera shifted = tests::camera({0, 0, 7}, {0, 0, 0}, 90);
+  shifted.shift = {0.25, -0.5};
+  const PinholeCamera camera = make_camera(shifted, glm::dvec3(0), 4, 2);
+  EXPECT_EQ(camera.forward, glm::dvec3(0, 0, -1));
+  EXPECT_NEAR(glm::length(camera.direction(0, 0) - glm::dvec3(-1.5 + 0.5, 0.5 - 1, -1)), 0, 1e-15);
+  EXPECT_NEAR(glm::length(camera.direction(3, 1) - glm::dvec3(1.5 + 0.5, -0.5 - 1, -1)), 0, 1e-15);
+  for (const std::uint32_t x : {0U, 3U}) {
+    const glm::dvec3 ray = camera.direction(x, 1);
+    EXPECT_NEAR(glm::dot(camera.screen_across(), ray), (2 * (x + 0.5) / 4 - 1), 1e-15) << "and back";
+    EXPECT_NEAR(glm::dot(camera.screen_upward(), ray), -0.5, 1e-15);
+  }
+  shifted.height = 3;
+  const PinholeCamera flat = make_camera(shifted, glm::dvec3(0), 4, 2);
+  EXPECT_NEAR(glm::length(flat.ray(0, 0).start - glm::dvec3(1.5 * (-1.5 + 0.5), 1.5 * (0.5 - 1), 7)), 0, 1e-15);
+  EXPECT_EQ(flat.ray(0, 0).direction, glm::dvec3(0, 0, -1));
+}
+
 TEST(Camera, RefusesWhatHasNoView) {
   EXPECT_THROW(make_camera(tests::camera({1, 2, 3}, {1, 2, 3}), glm::dvec3(0), 4, 4), InputError);
   EXPECT_THROW(make_camera(tests::camera({0, 0, 0}, {0, 5, 0}), glm::dvec3(0), 4, 4), InputError);
