@@ -22,8 +22,9 @@ class FarmFaults : public FaultTest {
  protected:
   FarmFaults() { (void)small_scene(); }
 
-  [[nodiscard]] std::vector<std::string> sequence(const std::string& command, std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {command,    path("scene.json"), "--size",     "192x128",
+  [[nodiscard]] std::vector<std::string> sequence(const std::string& command, std::vector<std::string> more,
+                                                  const std::string& size = "192x128") const {
+    std::vector<std::string> arguments = {command,    path("scene.json"), "--size",     size,
                                           "--method", "raytrace",         "--frames",   "1-8",
                                           "-o",       path("s.#.exr"),    "--exposure", "0"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -128,6 +129,17 @@ TEST_F(FarmFaults, NoWorkerOutlivesAKill) {
   EXPECT_LT(before.size(), 8u);
   EXPECT_EQ(run_under({.arguments = sequence("submit", {"--jobs", "2"})}).code, 0);
   expect_whole(before);
+}
+
+/// Nor is it that they end by themselves: a frame takes half a minute here.
+TEST_F(FarmFaults, NoWorkerFinishesItsFrameAfterAKill) {
+  Running program({.arguments = sequence("submit", {"--jobs", "2", "--light-samples", "4096"}, "768x768")});
+  while (processes().size() < 3 && !program.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // past its start
+  program.send(SIGKILL);
+  EXPECT_EQ(program.wait().code, 137);
+  expect_nobody();
+  EXPECT_TRUE(pictures().empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/pair_truth.hpp"
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -220,6 +221,51 @@ TEST(AlphaFilters, VerticesAndFactorsMultiply) {
   for (std::size_t i = 0; i < panes.scene.soup.positions.size(); ++i)
     panes.scene.looks.colors.emplace_back(1, 1, 1, 0.5f);
   EXPECT_FLOAT_EQ(panes.share(), 0.75f);
+}
+
+/// Casters are looked for in the pyramid from p to the light samples that it sees. Of thousands of specks, on its sides
+/// too, none is forgotten.
+TEST(AlphaFilters, FindEverySpeck) {
+  for (const bool under_a_sun : {false, true}) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
+    scenes::Scene scene;
+    tests::add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+    scene.lights.push_back(tests::ceiling_light(4, 1));
+    if (under_a_sun) scene.lights[0].shape = scenes::Sun{{0, -1, 0}, 30};
+    std::vector<tests::Corners> specks;
+    for (int i = 0; i < 4000; ++i) {
+      const glm::dvec3 at = glm::dvec3(0, 2, 0) + glm::dvec3(2, 1.9, 2) * point(1);
+      specks.push_back({at + point(0.1), at + point(0.1), at + point(0.1)});
+    }
+    tests::add_object(scene, "specks", specks).alpha = {Alpha::Mode::mask, 1, 0.5};
+    const SceneFloats floats = make_scene_floats(scene);
+    const Light light = make_light(scene, 0, floats.origin, {64, 8, 8, SamplePattern::grid, 0});
+    ViewSamples samples;
+    for (int i = 0; i < 64; ++i) {
+      const auto [a, b, c] = floats.corners(0);
+      const bool up = glm::cross(b - a, c - a).y > 0;
+      samples.triangle.push_back(0);
+      samples.p.push_back(0.125f * static_cast<float>(i % 8) * (b - a) + 0.0625f * static_cast<float>(i / 8) * (c - b) +
+                          a);
+      samples.facing.push_back(up ? std::int8_t{1} : std::int8_t{-1});
+    }
+    samples.width = samples.height = 8;
+    std::vector<std::uint32_t> masks(2 * samples.size(), 0xffffffffu);
+    AlphaFilter(floats).filter(samples, light, 0, {masks, {}, {}});
+    int stopped = 0;
+    for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
+      for (std::uint32_t j = 0; j < 64; ++j) {
+        const bool visible = (masks[2 * pixel + j / 32] >> j % 32 & 1u) != 0;
+        ASSERT_EQ(visible, decide_pair(floats, samples, pixel, light, j).outcome == PairOutcome::visible)
+            << (under_a_sun ? "sun, " : "rectangle, ") << pixel << " " << j;
+        stopped += visible ? 0 : 1;
+      }
+    }
+    EXPECT_GT(stopped, 1000);
+    EXPECT_LT(stopped, 3000);
+  }
 }
 
 /// One value at all corners is that value anywhere, to the last digit, though vertices elsewhere have others.
