@@ -6,7 +6,10 @@ root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 build=$root/build
 source "$root/cmake/bootstrap.sh"
 
-install_packages all
+case " $* " in
+  *" full "* | *" -R blender"*) install_packages full ;;
+  *) install_packages all ;;
+esac
 build ON all
 if (($# == 0)); then set -- -L quick; fi
 # GPU tests on the processor already use all cores: more than two at once only make each slower.

@@ -5,9 +5,11 @@ say() { printf 'penumbra: %s\n' "$*" >&2; }
 die() { say "$1"; exit 4; }
 
 # Installs what packages.txt lists and this machine does not have. Its first paragraph is what the program needs to be
-# built and run; `install_packages all` installs the second, too: what tests and developers need.
+# built and run; `install_packages all` installs the second, too: what tests and developers need. `install_packages full`
+# also the third: what long tests alone need, and is large.
 install_packages() {
-  local missing=() package
+  local missing=() package paragraphs=1
+  case ${1-} in all) paragraphs=2 ;; full) paragraphs=3 ;; esac
   # Ask for all packages at once: dpkg-query answers in milliseconds, apt would take seconds. Of the three letters of a
   # status the second says what is (`i`: installed), the first what is wanted (`h`: held as it is), the third what is broken.
   local installed
@@ -15,7 +17,7 @@ install_packages() {
     die "cannot ask dpkg what is installed; this script is for Debian 12 and its kin"
   while read -r package _; do
     if [[ -z $package ]]; then
-      if [[ ${1-} == all ]]; then continue; else break; fi
+      if ((--paragraphs > 0)); then continue; else break; fi
     fi
     grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
   done <"$root/packages.txt"

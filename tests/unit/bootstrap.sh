@@ -9,7 +9,7 @@ WORK=$(cd -- "$work" && pwd)
 export WORK
 export PATH=$WORK/bin:$PATH
 
-printf 'there\nheld\nremoved\nhalf\nbroken\nunknown\nthere-too\n\nof-tests\nof-tests-there\n' >"$work/root/packages.txt"
+printf 'there\nheld\nremoved\nhalf\nbroken\nunknown\nthere-too\n\nof-tests\nof-tests-there\n\nof-long-tests\n' >"$work/root/packages.txt"
 # As dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' prints: what is wanted, what is, what is broken.
 cat >"$work/dpkg" <<'END'
 ii  there
@@ -49,6 +49,7 @@ expect() {
 }
 expect install_packages 'removed half broken unknown'
 expect 'install_packages all' 'removed half broken unknown of-tests'
+expect 'install_packages full' 'removed half broken unknown of-tests of-long-tests'
 printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' 'ii  there-too' >"$work/dpkg"
 expect install_packages ''
 [[ ! -s $work/said ]] || { echo "not quiet where nothing is missing" >&2; failed=1; }

@@ -1,0 +1,144 @@
+"""Writes the scene that the program reads: binary glTF 2.0, with extras for what glTF has no word for (docs/blender.md).
+
+Knows nothing of Blender. Matrices are sequences of four rows, as Blender's are; lengths and axes are Blender's, and one
+node above all others turns Z up into Y up, exactly.
+"""
+
+import json
+import struct
+
+FLOAT, UNSIGNED, UNSIGNED_BYTE = 5126, 5125, 5121
+_COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+_SIZES = {FLOAT: 4, UNSIGNED: 4, UNSIGNED_BYTE: 1}
+_Z_UP_TO_Y_UP = [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1]
+
+
+def by_columns(matrix):
+    """A matrix of rows, as glTF writes one."""
+    return [float(matrix[row][column]) for column in range(4) for row in range(4)]
+
+
+class Glb:
+    """A file that grows by what is added; `encoded` is the whole of it."""
+
+    def __init__(self):
+        self._binary = bytearray()
+        self._extensions = set()
+        self._document = {
+            "asset": {"version": "2.0", "generator": "Penumbra for Blender"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"name": "Z up", "matrix": _Z_UP_TO_Y_UP, "children": []}],
+        }
+
+    def _add(self, kind, entry):
+        entries = self._document.setdefault(kind, [])
+        entries.append(entry)
+        return len(entries) - 1
+
+    def _view(self, data):
+        self._binary += b"\0" * (-len(self._binary) % 4)
+        view = {"buffer": 0, "byteOffset": len(self._binary), "byteLength": len(data)}
+        self._binary += data
+        return self._add("bufferViews", view)
+
+    def accessor(self, data, shape, component=FLOAT, bounds=None):
+        """`data`: bytes, little-endian; `shape`: "SCALAR" to "VEC4"; `bounds`: (least, greatest), of positions."""
+        entry = {
+            "bufferView": self._view(data),
+            "componentType": component,
+            "count": len(data) // (_COMPONENTS[shape] * _SIZES[component]),
+            "type": shape,
+        }
+        if bounds is not None:
+            entry["min"], entry["max"] = ([float(x) for x in bound] for bound in bounds)
+        return self._add("accessors", entry)
+
+    def image(self, name, data, mime):
+        return self._add("images", {"name": name, "bufferView": self._view(data), "mimeType": mime})
+
+    def texture(self, image, wrap=10497, nearest=False):
+        """`wrap`: glTF's number."""
+        filtering = 9728 if nearest else 9729
+        sampler = self._add("samplers", {"wrapS": wrap, "wrapT": wrap, "magFilter": filtering})
+        return self._add("textures", {"source": image, "sampler": sampler})
+
+    def material(self, name, color, radiance=(0, 0, 0), alpha=1.0, cutoff=None, texture=None, texture_alpha=False):
+        """Emits to both sides, as Blender's materials do. `cutoff`: holes below it; None: alpha dims. `texture_alpha`:
+        the texture's counts."""
+        surface = {"baseColorFactor": [*color, alpha], "metallicFactor": 0, "roughnessFactor": 1}
+        if texture is not None:
+            surface["baseColorTexture"] = {"index": texture}
+        entry = {"name": name, "pbrMetallicRoughness": surface, "doubleSided": True}
+        if cutoff is not None:
+            entry["alphaMode"], entry["alphaCutoff"] = "MASK", cutoff
+        elif alpha < 1 or texture_alpha:
+            entry["alphaMode"] = "BLEND"
+        strength = max(radiance)
+        if strength > 0:
+            entry["emissiveFactor"] = [x / strength for x in radiance]
+            entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+            self._extensions.add("KHR_materials_emissive_strength")
+        return self._add("materials", entry)
+
+    def mesh(self, name, primitives):
+        """`primitives`: dictionaries of attributes, indices and material."""
+        return self._add("meshes", {"name": name, "primitives": primitives})
+
+    def node(self, name, matrix, extras=None, **what):
+        """`what`: mesh, camera."""
+        entry = {"name": name, "matrix": by_columns(matrix), **what}
+        if extras:
+            entry["extras"] = extras
+        number = self._add("nodes", entry)
+        self._document["nodes"][0]["children"].append(number)
+        return number
+
+    def camera(self, name, matrix, aspect, shift, half_angle=None, height=None):
+        """`half_angle` (its tangent) of a perspective camera, `height` of an orthographic one; both of the picture's
+        height, `shift` in heights of the picture."""
+        if height is None:
+            from math import atan
+            lens = {"type": "perspective",
+                    "perspective": {"yfov": 2 * atan(half_angle), "aspectRatio": aspect, "znear": 0.01}}
+        else:
+            lens = {"type": "orthographic",
+                    "orthographic": {"xmag": aspect * height / 2, "ymag": height / 2, "znear": 0, "zfar": 1000}}
+        if any(shift):
+            lens["extras"] = {"shift": list(shift)}
+        self.node(name, matrix, camera=self._add("cameras", {"name": name, **lens}))
+
+    def lamp(self, name, matrix, kind, intensity, color, sizes, casts_shadow=True, cone=None):
+        """A sun ("directional"), a sphere ("point") or one with a cone ("spot"; inner and outer half angle in
+        radians). `sizes`: angle (degrees) or radius."""
+        lamp = {"name": name, "type": kind, "intensity": intensity, "color": list(color), "extras": dict(sizes)}
+        if cone is not None:
+            lamp["spot"] = {"innerConeAngle": cone[0], "outerConeAngle": cone[1]}
+            lamp["extras"]["smooth"] = 1
+        lamps = self._document.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
+        lamps.append(lamp)
+        self._extensions.add("KHR_lights_punctual")
+        self.node(name, matrix, _shadow(casts_shadow), extensions={"KHR_lights_punctual": {"light": len(lamps) - 1}})
+
+    def area_lamp(self, name, matrix, shape, size, radiance, casts_shadow=True):
+        """`shape`: "rectangle" or "ellipse"; shines along −Z of the matrix."""
+        extras = {"areaLamp": {"shape": shape, "size": list(size), "radiance": list(radiance)}}
+        self.node(name, matrix, {**extras, **_shadow(casts_shadow)})
+
+    def encoded(self):
+        document = dict(self._document)
+        if self._extensions:
+            document["extensionsUsed"] = sorted(self._extensions)
+        binary = bytes(self._binary) + b"\0" * (-len(self._binary) % 4)
+        if binary:
+            document["buffers"] = [{"byteLength": len(binary)}]
+        text = json.dumps(document, separators=(",", ":")).encode()
+        text += b" " * (-len(text) % 4)
+        chunks = struct.pack("<II", len(text), 0x4E4F534A) + text
+        if binary:
+            chunks += struct.pack("<II", len(binary), 0x004E4942) + binary
+        return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
+
+
+def _shadow(casts_shadow):
+    return {} if casts_shadow else {"castsShadow": False}

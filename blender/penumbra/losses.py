@@ -1,0 +1,25 @@
+"""What a scene has and a picture of it will not."""
+
+
+class Losses:
+    """`refused`: it would change a shadow, or take one away. `mentioned`: it changes how a surface looks, or is left out
+    by design. Both: what, to the names that it is about."""
+
+    def __init__(self):
+        self.refused, self.mentioned = {}, {}
+
+    def refuse(self, what, name):
+        self.refused.setdefault(what, {})[name] = None
+
+    def mention(self, what, name):
+        self.mentioned.setdefault(what, {})[name] = None
+
+
+def sentences(losses):
+    """One a loss, with up to four names."""
+    texts = []
+    for what, names in losses.items():
+        names = [f"'{name}'" for name in names]
+        more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+        texts.append(f"{', '.join(names[:4])}{more} {what}")
+    return texts

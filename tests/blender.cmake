@@ -1,0 +1,13 @@
+# The Blender add-on: without Blender (quick), and beside Cycles in Blender (full). numpy is Debian's, hence its Python.
+find_program(PENUMBRA_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
+set(addon ${PROJECT_BINARY_DIR}/penumbra-blender.zip)
+add_test(NAME blender.addon
+         COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/addon.py ${PROJECT_SOURCE_DIR}/blender ${addon}
+                 $<TARGET_FILE:penumbra>)
+set_tests_properties(blender.addon PROPERTIES LABELS quick)
+foreach(script engine cycles)
+  add_test(NAME blender.${script}
+           COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh ${script}.py ${addon} $<TARGET_FILE:penumbra>
+                   ${PROJECT_BINARY_DIR}/blender_${script})
+  set_tests_properties(blender.${script} PROPERTIES LABELS full TIMEOUT 7200)
+endforeach()

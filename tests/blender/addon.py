@@ -1,0 +1,312 @@
+#!/usr/bin/python3
+"""The Blender add-on without Blender: what is in the zip, that all of it compiles, and its parts that know nothing of
+Blender: nodes to surfaces, lamps and lenses, the exchange file, and the pictures that come back.
+
+    addon.py SOURCE ADDON.zip PENUMBRA
+"""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+import zipfile
+
+SOURCE, ZIP, PENUMBRA = sys.argv[1:4]
+sys.path.insert(0, ZIP)  # what users get is what is tested
+
+import numpy  # noqa: E402
+
+from penumbra import exr, glb, lamps, losses, materials, passes, program  # noqa: E402
+
+IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+
+def at(x, y, z, scale=(1, 1, 1)):
+    return [[scale[0], 0, 0, x], [0, scale[1], 0, y], [0, 0, scale[2], z], [0, 0, 0, 1]]
+
+
+def box(**values):
+    return types.SimpleNamespace(**values)
+
+
+class Socket:
+    def __init__(self, value=None):
+        self.default_value, self.links = value, []
+
+    @property
+    def is_linked(self):
+        return bool(self.links)
+
+    def link(self, node, name="Color"):
+        self.links = [box(from_node=node, from_socket=box(name=name))]
+
+
+class Inputs(dict):
+    """By name and by number, as Blender's."""
+
+    def __getitem__(self, key):
+        return list(self.values())[key] if isinstance(key, int) else super().__getitem__(key)
+
+    def __iter__(self):
+        return iter(self.values())
+
+    def __contains__(self, key):
+        return key in self.keys()
+
+
+def node(kind, **inputs):
+    sockets = Inputs({key.replace("_", " "): Socket(value) for key, value in inputs.items()})
+    return box(type=kind, name=kind, inputs=sockets, outputs=[])
+
+
+def principled(**values):
+    defaults = dict(Base_Color=(0.8, 0.8, 0.8, 1), Emission=(0, 0, 0, 1), Emission_Strength=1.0, Alpha=1.0,
+                    Transmission=0.0, Metallic=0.0, Subsurface=0.0, Normal=None)
+    return node("BSDF_PRINCIPLED", **{**defaults, **values})
+
+
+def surface_of(shader):
+    output = node("OUTPUT_MATERIAL", Surface=None, Volume=None, Displacement=None)
+    if shader is not None:
+        output.inputs["Surface"].link(shader)
+    return box(use_nodes=True, node_tree=box(get_output_node=lambda _: output))
+
+
+def look(shader):
+    lost = losses.Losses()
+    return materials.Reader(lost, "M").look(surface_of(shader)), lost
+
+
+class Package(unittest.TestCase):
+    def test_the_zip_holds_the_sources_and_they_compile(self):
+        with zipfile.ZipFile(ZIP) as archive:
+            names = sorted(archive.namelist())
+            folder = os.path.join(SOURCE, "penumbra")
+            self.assertEqual(names, sorted(f"penumbra/{name}" for name in os.listdir(folder) if name.endswith(".py")))
+            for name in names:
+                with open(os.path.join(SOURCE, name), "rb") as file:
+                    text = file.read()
+                self.assertEqual(archive.read(name), text, name)
+                compile(text, name, "exec")
+
+
+class Materials(unittest.TestCase):
+    def test_surfaces(self):
+        found, lost = look(principled(Base_Color=(0.5, 0.25, 1, 1), Emission=(1, 0.5, 0, 1), Emission_Strength=6.0, Alpha=0.5))
+        self.assertEqual((found.color, found.radiance, found.alpha), ((0.5, 0.25, 1), (6, 3, 0), 0.5))
+        self.assertFalse(lost.refused or lost.mentioned)
+        self.assertEqual(look(node("EMISSION", Color=(1, 0.5, 0, 1), Strength=4.0))[0].radiance, (4, 2, 0))
+        self.assertEqual(look(None)[0].color, (0, 0, 0))
+        plain = materials.Reader(lost, "M").look(box(use_nodes=False, node_tree=None, diffuse_color=(0.1, 0.2, 0.3, 1)))
+        self.assertEqual(plain.color, (0.1, 0.2, 0.3))
+
+    def test_mixed_with_nothing(self):
+        mix = node("MIX_SHADER", Fac=0.25, First=None, Second=None)
+        mix.inputs["First"].link(node("BSDF_TRANSPARENT", Color=(1, 1, 1, 1)))
+        mix.inputs["Second"].link(node("BSDF_DIFFUSE", Color=(0.4, 0.8, 0.2, 1), Roughness=0.0))
+        found, _ = look(mix)
+        self.assertAlmostEqual(found.alpha, 0.25)
+        for value, wanted in zip(found.color, (0.4, 0.8, 0.2)):
+            self.assertAlmostEqual(value, wanted)
+
+    def test_an_image_that_cuts(self):
+        picture = node("TEX_IMAGE", Vector=None)
+        picture.image, picture.interpolation, picture.extension, picture.projection = "image", "Closest", "EXTEND", "FLAT"
+        shader = principled()
+        shader.inputs["Base Color"].link(picture)
+        shader.inputs["Alpha"].link(picture, "Alpha")
+        found, lost = look(shader)
+        self.assertEqual((found.image, found.image_alpha, found.nearest, found.wrap), ("image", True, True, "EXTEND"))
+        self.assertFalse(lost.refused)
+
+    def test_what_changes_shadows_is_refused(self):
+        self.assertIn("'M' lets light through (transmission)", losses.sentences(look(principled(Transmission=0.5))[1].refused))
+        for kind in ("BSDF_GLASS", "BSDF_TRANSLUCENT", "SOMETHING"):
+            self.assertTrue(look(node(kind, Color=(1, 1, 1, 1)))[1].refused, kind)
+        dim = node("BSDF_TRANSPARENT", Color=(1, 0.5, 0.5, 1))
+        self.assertTrue(look(dim)[1].refused)
+        shader = principled()
+        shader.inputs["Alpha"].link(node("NOISE"), "Fac")
+        self.assertTrue(look(shader)[1].refused)
+        shader = principled()
+        shader.inputs["Emission"].link(node("NOISE"))
+        self.assertTrue(look(shader)[1].refused)
+        self.assertTrue(look(principled(Metallic=1.0))[1].mentioned)
+
+
+class Lenses(unittest.TestCase):
+    def lens(self, width, height, **values):
+        defaults = dict(type="PERSP", sensor_fit="AUTO", sensor_width=36, sensor_height=24, lens=18, shift_x=0, shift_y=0,
+                        ortho_scale=6)
+        return lamps.lens_of(box(**{**defaults, **values}), width, height)
+
+    def test_angles_are_of_the_side_that_fits(self):
+        self.assertAlmostEqual(self.lens(200, 100)["half_angle"], 0.5)
+        self.assertAlmostEqual(self.lens(100, 200)["half_angle"], 1)
+        self.assertAlmostEqual(self.lens(100, 200, sensor_fit="HORIZONTAL")["half_angle"], 2)
+        self.assertAlmostEqual(self.lens(200, 100, sensor_fit="VERTICAL")["half_angle"], 24 / 36)
+        self.assertAlmostEqual(self.lens(200, 100, type="ORTHO")["height"], 3)
+
+    def test_shifts_are_in_heights(self):
+        self.assertEqual(self.lens(200, 100, shift_x=0.25, shift_y=-0.5)["shift"], (0.5, -1))
+        self.assertEqual(self.lens(100, 200, shift_x=0.25)["shift"], (0.25, 0))
+
+    def test_cones(self):
+        inner, outer = lamps.cone_of(box(spot_size=math.pi / 3, spot_blend=0.5))
+        self.assertAlmostEqual(outer, math.pi / 6)
+        self.assertAlmostEqual(math.cos(inner), (1 + math.cos(math.pi / 6)) / 2)
+        inner, outer = lamps.cone_of(box(spot_size=1, spot_blend=0))
+        self.assertAlmostEqual(math.cos(inner) - math.cos(outer), 0.001)
+
+
+class Pictures(unittest.TestCase):
+    """A scene written by the add-on's code, rendered, and read by it."""
+
+    @classmethod
+    def setUpClass(cls):
+        file = glb.Glb()
+        corners = numpy.array([(-4, -4, 0), (4, -4, 0), (4, 4, 0), (-4, 4, 0)], "<f4")
+        at_board = numpy.array([(1, -4, 1), (4, -4, 1), (4, 4, 1), (1, 4, 1)], "<f4")
+        for name, positions in (("Floor", corners), ("Board", at_board)):
+            attributes = {"POSITION": file.accessor(positions.tobytes(), "VEC3", bounds=(positions.min(0), positions.max(0)))}
+            indices = file.accessor(numpy.array([0, 1, 2, 0, 2, 3], "<u4").tobytes(), "SCALAR", glb.UNSIGNED)
+            material = file.material(name, (0.5, 0.25, 1))
+            file.node(name, IDENTITY, mesh=file.mesh(name, [{"attributes": attributes, "indices": indices, "material": material}]))
+        lost = losses.Losses()
+        lamp = dict(energy=100.0, color=(1, 0.5, 0.25), use_nodes=False, node_tree=None, use_shadow=True)
+        area = dict(type="AREA", shape="SQUARE", size=0.02, size_y=9, spread=math.pi)
+        lamps.write_lamp(box(**lamp, **area), "Key", at(0, 0, 2), file, lost)
+        lamps.write_lamp(box(**lamp, **{**area, "shape": "ELLIPSE", "size_y": 0.04}), "Oval", at(0, 0, 2, (1, 0.5, 1)), file, lost)
+        point = dict(shadow_soft_size=0.01, cycles=box(is_portal=False, cast_shadow=False))
+        lamps.write_lamp(box(**lamp, **point, type="POINT"), "Point", at(0, 0, 2), file, lost)
+        spot = dict(shadow_soft_size=0.01, spot_size=math.pi / 2, spot_blend=0.5, type="SPOT")
+        lamps.write_lamp(box(**lamp, **spot), "Spot", at(0, 0, 2), file, lost)
+        lamps.write_lamp(box(**{**lamp, "energy": 2.0}, type="SUN", angle=0.0), "Sun", at(0, 0, 2), file, lost)
+        lamps.write_lamp(box(**{**lamp, "energy": 0.0}, type="SUN", angle=0.0), "Off", at(0, 0, 2), file, lost)
+        # Straight down on to the floor, x from −2 to 2 and y from −1 to 1 but for the shift: half a unit right, a tenth up.
+        file.camera("Shot", at(0, 0, 0.5), 2, (0.25, 0.05), height=2)
+        assert not lost.refused and not lost.mentioned
+        cls.folder = tempfile.TemporaryDirectory()
+        scene, picture = (os.path.join(cls.folder.name, name) for name in ("scene.glb", "picture.exr"))
+        with open(scene, "wb") as out:
+            out.write(file.encoded())
+        settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, shading_normals=False, lenient=False,
+                       device="")
+        command = program.arguments(PENUMBRA, scene, picture, (40, 20), settings)
+        code, cls.printed = program.run(command, lambda: False)
+        assert code == 0, cls.printed
+        with open(picture, "rb") as file:
+            cls.picture = exr.read(file.read())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def light(self, name):
+        """Of a light alone what pixel (x, y) on the floor reflects, by position."""
+        channels = self.picture.channels
+        return channels["P.X"], -channels["P.Z"], channels[f"{name}.R"]
+
+    def expect(self, name, formula):
+        x, y, red = self.light(name)
+        for i in ((0, 0), (10, 10), (19, 20), (7, 13)):
+            wanted = 0.5 / math.pi * formula(float(x[i]), float(y[i]))
+            self.assertAlmostEqual(red[i] / wanted, 1, delta=2e-4, msg=f"{name} at {x[i]}, {y[i]}")
+
+    def test_the_program_says_nothing_else(self):
+        warnings, error = program.messages(self.printed)
+        self.assertEqual((warnings, error), ([], None))
+
+    def test_a_shifted_lens(self):
+        x, y, _ = self.light("Key")
+        self.assertAlmostEqual(float(x[10, 20]), 0.5 + 0.05, places=5)
+        self.assertAlmostEqual(float(y[10, 20]), 0.1 - 0.05, places=5)
+
+    def test_lamps_are_as_bright_as_in_cycles(self):
+        """Far enough to be points: intensity times cosine over distance squared; areas with another cosine."""
+        def area(x, y):
+            d2 = x * x + y * y + 4
+            return 25 * 4 / d2 / d2
+        self.expect("Key", area)
+        self.expect("Oval", area)
+        self.expect("Point", lambda x, y: 100 / (4 * math.pi) * 2 / (x * x + y * y + 4) ** 1.5)
+        self.expect("Sun", lambda x, y: 2.0)
+
+        def spot(x, y):
+            d2 = x * x + y * y + 4
+            cosine, outer = 2 / math.sqrt(d2), math.sqrt(0.5)
+            t = min(max((cosine - outer) / ((1 - outer) / 2), 0), 1)
+            return 100 / (4 * math.pi) * 2 / d2 ** 1.5 * cosine * t * t * (3 - 2 * t)
+        self.expect("Spot", spot)
+
+    def test_a_lamp_without_shadow_has_none(self):
+        """Under the board, which the camera is below."""
+        x, _, _ = self.light("Key")
+        under = x > 2.05  # as seen from (0, 0, 2) the board begins over x = 2
+        self.assertTrue(under.any())
+        self.assertEqual(self.picture.channels["Key.V"][under].max(), 0)
+        self.assertEqual(self.picture.channels["Point.V"].min(), 1)
+        self.assertEqual(self.picture.channels["Sun.V"][x > 1.05].max(), 0)
+
+    def test_passes(self):
+        found = passes.channels(self.picture)
+        lights = ["Key", "Oval", "Point", "Spot", "Sun"]
+        self.assertEqual(passes.layers(self.picture), lights)
+        self.assertAlmostEqual(float(found["Position.X"][19, 0]), -1.5 + 0.05, places=5)
+        self.assertAlmostEqual(float(found["Position.Y"][19, 0]), -0.9 + 0.05, places=5)
+        self.assertEqual([float(found[f"Normal.{axis}"][0, 0]) for axis in "XYZ"], [0, 0, 1])
+        total = sum(found[f"Light {light}.R"] for light in lights)
+        numpy.testing.assert_allclose(total, found["Combined.R"], rtol=1e-5, atol=1e-7)
+        names = {f"{name}.{letter}" for name, letters, _ in passes.own_passes(lights) for letter in letters}
+        self.assertLessEqual(names, found.keys())
+
+    def test_passes_are_written_as_they_are(self):
+        again = exr.read(exr.encoded(passes.channels(self.picture)))
+        for name, values in passes.channels(self.picture).items():
+            numpy.testing.assert_array_equal(again.channels[name], values.astype("<f4"), name)
+
+
+class Programs(unittest.TestCase):
+    def settings(self, **values):
+        defaults = dict(method="", exactness=program.EXACT, light_samples=64, pixel_samples="1", shading_normals=False,
+                        lenient=False, device="")
+        return box(**{**defaults, **values})
+
+    def test_arguments(self):
+        plain = program.arguments("p", "s.glb", "o.exr", (3, 2), self.settings())
+        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--size", "3x2"])
+        much = program.arguments("p", "s", "o", (3, 2), self.settings(
+            method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
+        self.assertEqual(much[7:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
+                                    "shading", "--lenient", "--device", "cpu"])
+
+    def test_messages(self):
+        text = "penumbra: warning: a: b\npenumbra: something\npenumbra: error: c\n"
+        self.assertEqual(program.messages(text), (["a: b"], "c"))
+
+    def test_an_error_comes_back(self):
+        code, printed = program.run([PENUMBRA, "render", "none.glb", "-o", "none.exr"], lambda: False)
+        self.assertEqual(code, 3)
+        self.assertIn("none.glb", program.messages(printed)[1])
+
+    def test_a_program_is_found_or_named(self):
+        self.assertEqual(program.find(PENUMBRA), PENUMBRA)
+        with self.assertRaises(FileNotFoundError):
+            program.find("/nowhere/penumbra")
+
+
+class Exr(unittest.TestCase):
+    def test_names_of_layers(self):
+        self.assertEqual(passes.layer_of("Plane.001/a"), "Plane_001_a")
+        self.assertEqual(len(passes.own_passes(["\u00e9" * 60])[1][0].encode()), 62)
+
+    def test_refuses_what_it_cannot_read(self):
+        with self.assertRaises(ValueError):
+            exr.read(b"P6 this is none")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,359 @@
+"""Small scenes, made by script: what an artist sets up in Blender, one thing a scene. Run inside Blender.
+
+Each function builds its scene from nothing; `SCENES` has them by name.
+"""
+
+from math import pi, radians
+
+import bpy
+from mathutils import Matrix, Vector
+
+SCENES = {}
+
+
+def scene(build):
+    SCENES[build.__name__] = build
+    return build
+
+
+def add(name, data, location=(0, 0, 0), rotation=(0, 0, 0), scale=(1, 1, 1)):
+    thing = bpy.data.objects.new(name, data)
+    thing.location, thing.rotation_euler, thing.scale = location, [radians(x) for x in rotation], scale
+    bpy.context.scene.collection.objects.link(thing)
+    return thing
+
+
+def diffuse(color=(0.8, 0.8, 0.8), name="Diffuse"):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    output, surface = tree.nodes.new("ShaderNodeOutputMaterial"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+    surface.inputs["Color"].default_value = (*color, 1)
+    tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def emission(color, strength):
+    material = bpy.data.materials.new("Emission")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    output, surface = tree.nodes.new("ShaderNodeOutputMaterial"), tree.nodes.new("ShaderNodeEmission")
+    surface.inputs["Color"].default_value = (*color, 1)
+    surface.inputs["Strength"].default_value = strength
+    tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def mesh(name, corners, faces, material=None):
+    data = bpy.data.meshes.new(name)
+    data.from_pydata(corners, [], faces)
+    data.materials.append(material or diffuse())
+    return data
+
+
+def quad(name, material=None, half=1.0):
+    return mesh(name, [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [(0, 1, 2, 3)], material)
+
+
+def cube(name, material=None, half=0.5):
+    corners = [(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return mesh(name, corners, faces, material)
+
+
+def lamp(kind, location, rotation=(0, 0, 0), scale=(1, 1, 1), name="Key", **values):
+    data = bpy.data.lights.new(name, kind)
+    for key, value in values.items():
+        setattr(data, key, value)
+    return add(name, data, location, rotation, scale)
+
+
+def camera(location=(0, -7, 5), target=(0, 0, 0.3), **values):
+    data = bpy.data.cameras.new("Shot")
+    data.lens = 40
+    for key, value in values.items():
+        setattr(data, key, value)
+    thing = add("Shot", data, location)
+    thing.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    bpy.context.scene.camera = thing
+    return thing
+
+
+def stage(**lens):
+    """A floor, a turned cube above it, and a camera."""
+    add("Floor", quad("Floor", half=4))
+    block = add("Block", cube("Block", diffuse((0.7, 0.5, 0.3))), (0.2, 0, 1), (20, 30, 40))
+    camera(**lens)
+    return block
+
+
+@scene
+def area_square():
+    stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def area_rectangle():
+    stage()
+    lamp("AREA", (1, -1, 4), (10, 20, 30), (1, 1.5, 1), energy=300, shape="RECTANGLE", size=1.5, size_y=0.3, color=(1, 0.5, 0.2))
+
+
+@scene
+def area_disk():
+    stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="DISK", size=1.2)
+
+
+@scene
+def area_ellipse():
+    stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 30), (-1, 1.2, 1), energy=300, shape="ELLIPSE", size=1.5, size_y=0.5)
+
+
+@scene
+def sun():
+    stage()
+    lamp("SUN", (0, 0, 9), (35, 20, 0), energy=3, angle=radians(8))
+
+
+@scene
+def point():
+    stage()
+    lamp("POINT", (1, -1, 4), energy=500, shadow_soft_size=0.1)
+
+
+@scene
+def spot():
+    """With a wide edge: Cycles asks the cone from each point of the lamp, which blurs it by the radius."""
+    stage()
+    lamp("SPOT", (1, -1, 5), (12, 10, 0), energy=2000, shadow_soft_size=0.08, spot_size=radians(80), spot_blend=0.9)
+
+
+@scene
+def emissive_plane():
+    stage()
+    add("Panel", quad("Panel", emission((1, 0.9, 0.7), 12), 0.5), (0.8, 0, 3), (200, 10, 0))
+
+
+@scene
+def emissive_tube():
+    """Closed, of 12 flat sides."""
+    stage()
+    bpy.ops.mesh.primitive_cylinder_add(vertices=12, radius=0.1, depth=2, location=(0, -0.5, 2.5), rotation=(0, pi / 2, 0.4))
+    bpy.context.object.name = "Tube"
+    bpy.context.object.data.materials.append(emission((0.6, 0.8, 1), 15))
+
+
+@scene
+def emissive_sphere():
+    stage()
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4, radius=0.3, location=(0.8, -0.6, 3))
+    bpy.context.object.name = "Bulb"
+    bpy.context.object.data.materials.append(emission((1, 1, 1), 20))
+
+
+@scene
+def camera_shift():
+    """On a portrait, whose longer side shifts are counted in."""
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 72, 112
+    stage(shift_x=0.13, shift_y=-0.071)
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def orthographic_shift():
+    stage(type="ORTHO", ortho_scale=6, shift_x=-0.09, shift_y=0.05)
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def sensor_fit():
+    """The lens by the sensor's height, half the pixels, and a camera that is scaled."""
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = 240, 160, 50
+    stage(sensor_fit="VERTICAL", sensor_height=20, lens=30)
+    bpy.context.scene.camera.scale = (2, 2, 2)
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def hidden():
+    """Hidden in renders: an object, a lamp, a collection; in the viewport alone: the block's neighbour."""
+    stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+    add("Hidden", cube("Hidden"), (-1.5, 0, 1)).hide_render = True
+    lamp("AREA", (-2, -1, 4), name="Off", energy=500, size=1).hide_render = True
+    collection = bpy.data.collections.new("Away")
+    bpy.context.scene.collection.children.link(collection)
+    collection.hide_render = True
+    collection.objects.link(bpy.data.objects.new("Inside", cube("Inside")))
+    add("Neighbour", cube("Neighbour"), (1.6, 0.3, 0.6)).hide_viewport = True
+    data = bpy.data.cameras.new("Other")  # not the active one
+    add("Other", data, (0, 0, 9))
+
+
+@scene
+def shadowless_lamp():
+    stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+    lamp("POINT", (-2, -1, 3), name="Fill", energy=100, shadow_soft_size=0.1).data.cycles.cast_shadow = False
+
+
+@scene
+def shadowless_object():
+    stage().visible_shadow = False
+    add("Other", cube("Other"), (-1.4, 0, 0.8), (10, 20, 30))
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def instances():
+    """A collection's instances, one of them mirrored, and an array."""
+    add("Floor", quad("Floor", half=4))
+    camera()
+    collection = bpy.data.collections.new("Stone")
+    collection.objects.link(bpy.data.objects.new("Stone", cube("Stone", half=0.25)))
+    for i, scale in enumerate(((1, 1, 1), (-1, 1.4, 0.7), (0.6, 0.6, 2))):
+        empty = add(f"Instance {i}", None, (i - 1.5, 0.5, 0.6), (10 * i, 20, 30), scale)
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    row = add("Row", cube("Row", half=0.15), (-1, -1, 0.4))
+    array = row.modifiers.new("Array", "ARRAY")
+    array.count, array.relative_offset_displace = 4, (2, 0, 0.3)
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def translucent():
+    """A pane that lets 70 % of the light through, mixed from two shaders."""
+    stage()
+    material = diffuse((0.5, 0.6, 0.9), "Pane")
+    tree = material.node_tree
+    clear, mix = tree.nodes.new("ShaderNodeBsdfTransparent"), tree.nodes.new("ShaderNodeMixShader")
+    mix.inputs[0].default_value = 0.3
+    surface, output = tree.nodes["Diffuse BSDF"], tree.nodes["Material Output"]
+    tree.links.new(clear.outputs[0], mix.inputs[1])
+    tree.links.new(surface.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    material.blend_method = "BLEND"
+    add("Pane", quad("Pane", material, 0.7), (-1.2, 0, 1.2), (20, 10, 0))
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def cut_out():
+    """An image's alpha cuts a chequered pane, whose colours it gives, too. Nearest texels, as holes have them."""
+    stage()
+    image = bpy.data.images.new("Chequers", 4, 4, alpha=True)
+    image.pixels = [x for row in range(4) for column in range(4)
+                    for x in ((0.9, 0.4, 0.1, 1.0) if (row + column) % 2 else (0.1, 0.4, 0.9, 0.0))]
+    image.pack()
+    material = diffuse(name="Cut")
+    tree = material.node_tree
+    picture, clear, mix = (tree.nodes.new(kind) for kind in
+                           ("ShaderNodeTexImage", "ShaderNodeBsdfTransparent", "ShaderNodeMixShader"))
+    picture.image, picture.interpolation = image, "Closest"
+    surface, output = tree.nodes["Diffuse BSDF"], tree.nodes["Material Output"]
+    tree.links.new(picture.outputs["Color"], surface.inputs["Color"])
+    tree.links.new(picture.outputs["Alpha"], mix.inputs[0])
+    tree.links.new(clear.outputs[0], mix.inputs[1])
+    tree.links.new(surface.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    material.blend_method = "CLIP"
+    data = quad("Cut", material, 0.7)
+    places = data.uv_layers.new(name="UVMap").data
+    for loop, place in zip(places, ((0, 0), (1, 0), (1, 1), (0, 1))):
+        loop.uv = place
+    add("Cut", data, (-1.2, 0, 1.2), (20, 10, 0))
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=0.5)
+
+
+@scene
+def curves_and_text():
+    add("Floor", quad("Floor", half=4))
+    camera()
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body, text.extrude, text.size = "V", 0.1, 1.5
+    text.materials.append(diffuse((0.3, 0.7, 0.4)))
+    add("Text", text, (-1.5, 0, 0.4), (70, 0, 20))
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.6, location=(0.9, 0, 1), rotation=(0.5, 0.4, 0))
+    bpy.context.object.data.bevel_depth = 0.12
+    bpy.context.object.data.materials.append(diffuse((0.8, 0.3, 0.3)))
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def vertex_colors():
+    add("Floor", quad("Floor", half=4))
+    camera()
+    material = diffuse(name="Painted")
+    tree = material.node_tree
+    paint = tree.nodes.new("ShaderNodeVertexColor")
+    paint.layer_name = "Paint"
+    tree.links.new(paint.outputs["Color"], tree.nodes["Diffuse BSDF"].inputs["Color"])
+    data = cube("Painted", material)
+    layer = data.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+    for i, vertex in enumerate(layer.data):
+        vertex.color = (0.1 + 0.8 * (i & 1), 0.1 + 0.4 * (i & 2), 0.1 + 0.2 * (i & 4), 1)
+    add("Painted", data, (0.2, 0, 1), (20, 30, 40))
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+
+
+@scene
+def many_lamps():
+    """Five of different kinds and colours."""
+    stage()
+    lamp("AREA", (1, -1, 4), (15, 15, 0), name="Area", energy=100, shape="SQUARE", size=1.2, color=(1, 0.5, 0.3))
+    lamp("AREA", (-2, 1, 3), (-20, -30, 0), name="Disk", energy=60, shape="DISK", size=0.8, color=(0.3, 1, 0.4))
+    lamp("SUN", (0, 0, 9), (-35, 20, 0), name="Sun", energy=0.5, angle=radians(4))
+    lamp("POINT", (-1, -2, 3), name="Point", energy=60, shadow_soft_size=0.05, color=(0.3, 0.4, 1))
+    add("Panel", quad("Panel", emission((0.7, 0.9, 1), 4), 0.4), (0, 1.2, 2.6), (200, 0, 0))
+
+
+@scene
+def animated():
+    """Frame 7 of keyed objects, a bone and a shape key."""
+    stage()
+    bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, 10
+    key = lamp("AREA", (0, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
+    block = bpy.data.objects["Block"]
+    for thing, frame, x in ((key, 1, -1), (key, 10, 2), (block, 1, 1), (block, 10, -1)):
+        thing.location.x = x
+        thing.keyframe_insert("location", frame=frame)
+    block.shape_key_add(name="Basis")
+    tall = block.shape_key_add(name="Tall")
+    for point in tall.data:
+        point.co.z *= 1.5
+    for frame, value in ((1, 0), (10, 1)):
+        tall.value = value
+        tall.keyframe_insert("value", frame=frame)
+    bpy.context.scene.frame_set(7)
+
+
+@scene
+def monkey():
+    """A mesh of some thousand triangles, flat shaded."""
+    add("Floor", quad("Floor", half=4))
+    camera()
+    bpy.ops.mesh.primitive_monkey_add(size=1.6, location=(0, 0, 1), rotation=(-0.5, 0, 0.3))
+    bpy.context.object.modifiers.new("Subdivision", "SUBSURF").render_levels = 1
+    bpy.context.object.data.materials.append(diffuse((0.8, 0.6, 0.4)))
+    lamp("AREA", (1, -1.5, 4), (20, 15, 0), energy=300, shape="RECTANGLE", size=1.2, size_y=0.6)
+
+
+@scene
+def particles():
+    """Objects that a particle system scatters; the emitter itself is not shown."""
+    add("Floor", quad("Floor", half=4))
+    camera()
+    crumb = add("Crumb", cube("Crumb", half=0.5), (0, 0, -5))
+    sower = add("Sower", quad("Sower", half=1.5), (0, 0, 0.5))
+    sower.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = sower.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type = "HAIR", 20, "OBJECT"
+    settings.use_advanced_hair = True
+    settings.instance_object, settings.particle_size, settings.size_random = crumb, 0.1, 0.5
+    sower.show_instancer_for_render = False
+    lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
