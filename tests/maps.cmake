@@ -11,6 +11,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/layers.cpp
   analytic/maps/left_out.cpp
   analytic/maps/light_tree.cpp
+  analytic/maps/list_bounds.cpp
   analytic/maps/lists.cpp
   analytic/maps/method.cpp
   analytic/maps/moments.cpp
@@ -39,5 +40,5 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/sphere_form.cpp
   analytic/maps/backprojection/subsampled.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
-penumbra_shaders(maps_test analytic/maps/box_means.comp analytic/maps/box_windows.comp)
+penumbra_shaders(maps_test analytic/maps/backprojection/lens.comp analytic/maps/box_means.comp analytic/maps/box_windows.comp)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")

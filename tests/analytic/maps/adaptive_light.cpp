@@ -199,6 +199,62 @@ TEST_F(AdaptiveLight, ATextureWeighsTheMaps) {
   EXPECT_LT(worst, 0.5 / 8 + 0.5 * 8.0 / 126 * (5.0 / 3) + 0.02);
 }
 
+// Each point weighs what light its cells have, a quarter of each cell's (of a line a half): a texture's texels and
+// cells are cut into 12 x 20 (1 x 40) pieces that both hold whole. Hard shadows are accumulate's bits from the same
+// points.
+TEST_F(AdaptiveLight, TexturesWeighPointsByTheLightOfTheirCells) {
+  for (const bool line : {false, true}) {
+    scenes::Scene scene = sphere_scene(0.5);
+    if (line) scene.lights.front() = rectangle_light({0, 5, 0}, {0.1, 0, 0}, {0, 0, 0.8});  // the longer way is v
+    scenes::Texture texture;
+    texture.width = 3;
+    texture.height = 5;
+    for (int k = 0; k < 15; ++k) texture.texels.emplace_back(static_cast<float>(1 + k * k % 11));
+    scene.lights.front().texture = texture;
+    Stage stage(scene, 32, 32, light_samples(4));
+    const visibility::LightTexture found = *stage.light.texture;
+    const Run textured = adaptive(stage, {{"levels", line ? "3" : "2"},
+                                          {"form", line ? "line" : "area"},
+                                          {"weights", "area"},
+                                          {"epsilon", "0"},
+                                          {"pcf", "off"},
+                                          {"size", "64"}});
+    const int across = line ? 1 : 5, down = line ? 9 : 5, columns = line ? 3 : 12, rows = line ? 40 : 20;
+    std::vector<double> weights(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 0.0);
+    double whole = 0;
+    for (int y = 0; y < rows; ++y) {
+      for (int x = 0; x < columns; ++x) {
+        const double light = found.luminance[static_cast<std::size_t>((4 - y * 5 / rows) * 3 + x * 3 / columns)];
+        whole += light;
+        const int row = y * (down - 1) / rows, column = line ? 0 : x * 4 / columns;
+        for (int k = 0; k < (line ? 2 : 4); ++k) {
+          weights[static_cast<std::size_t>((row + (line ? k : k / 2)) * across + (line ? 0 : column + k % 2))] +=
+              light / (line ? 2 : 4);
+        }
+      }
+    }
+    std::vector<glm::vec3> points;
+    const maps::LightSquare square(stage.light);
+    for (int y = 0; y < down; ++y) {
+      for (int x = 0; x < across; ++x) {
+        points.push_back(square.at({line ? 0.5 : x / 4.0, y / (down - 1.0)}));
+      }
+    }
+    stage.light = with_points(stage.light, points);
+    stage.light.weights.clear();
+    stage.light.texture.reset();
+    const Masks bits = run(maps::make_accumulate, stage, {{"size", "64"}});
+    std::size_t between = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      double v = 0;
+      for (std::uint32_t j = 0; j < points.size(); ++j) v += bits.visible(i, j) ? weights[j] / whole : 0.0;
+      EXPECT_NEAR(textured.picture.visibility[i], v, 1e-5) << i;
+      between += v > 0 && v < 1 ? 1 : 0;
+    }
+    EXPECT_GT(between, 30U);
+  }
+}
+
 TEST_F(AdaptiveLight, DegenerateScenesHaveADefinedV) {
   scenes::Scene nothing = parallel_square(), crossing = parallel_square(), inside;
   nothing.objects[1].casts_shadow = nothing.objects[0].casts_shadow = false;

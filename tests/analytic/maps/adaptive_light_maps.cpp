@@ -161,5 +161,52 @@ TEST_F(AdaptiveLight, ByDefaultPicturesOfAnySizeAreRefinedAlike) {
   }
 }
 
+// Reeves, Salesin and Cook 1987: between the four texels around a receiver hard shadows are bilinear. Of a light
+// without size all maps are one, and under a half-plane V is a ramp between the two columns that its edge parts.
+TEST_F(AdaptiveLight, TheFilterIsARampBetweenTwoTexels) {
+  constexpr std::uint32_t kSize = 64;
+  for (const bool along_z : {false, true}) {
+    scenes::Scene scene = bare_floor(1e-6, 2);
+    const glm::dvec3 away = along_z ? glm::dvec3(0, 0, 3) : glm::dvec3(3, 0, 0),
+                     along = along_z ? glm::dvec3(3, 0, 0) : glm::dvec3(0, 0, 3);
+    add_quad(scene, glm::dvec3(0, 2, 0) + away, away, along).receives_shadow = false;  // from 0 on
+    const auto places = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
+      visibility::ViewSamples samples;
+      samples.width = 300;
+      samples.height = 1;
+      for (int i = 0; i < 300; ++i) {
+        const double at = 0.3 * (2 * i - 299) / 300;
+        samples.triangle.push_back(0);
+        samples.p.emplace_back(glm::dvec3(along_z ? 0.013 : at, 0, along_z ? at : 0.013) - floats.origin);
+        samples.n.emplace_back(0, 1, 0);
+        samples.depth.push_back(1);
+        samples.facing.push_back(1);
+      }
+      return samples;
+    };
+    const Stage stage(scene, 300, 1, light_samples(1), places);
+    const Run found = adaptive(stage, {{"size", fmt::format("{}", kSize)}, {"levels", "0"}});
+    EXPECT_EQ(found.maps, 4U);
+    const maps::LightBasis basis = maps::light_basis(stage.light);
+    const glm::vec3 centre(basis.center);
+    const auto fitted = maps::fit_views(stage.floats, stage.light, basis, std::span(&centre, 1), {.size = kSize});
+    const auto& side = fitted.views.front().side[0];
+    const int axis = std::abs(glm::dot(basis.u, away)) > 1 ? 0 : 1;
+    const double sign = glm::dot(axis == 0 ? basis.u : basis.v, away) > 0 ? 1 : -1;
+    const double lower = side.lower[axis], texel = (static_cast<double>(side.upper[axis]) - lower) / kSize;
+    // The edge is at 0; a column whose centre is beyond it is dark.
+    const auto lit = [&](double column) { return sign * (lower + (column + 0.5) * texel) < 0 ? 1.0 : 0.0; };
+    std::size_t between = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const glm::dvec3 d = basis.local(glm::dvec3(stage.samples.p[i]));
+      const double at = (d[axis] / d.z - lower) / texel - 0.5, first = std::floor(at), part = at - first;
+      const double expected = lit(first) + part * (lit(first + 1) - lit(first));
+      EXPECT_NEAR(found.picture.visibility[i], expected, 1e-3) << i;
+      between += expected > 0.05 && expected < 0.95 ? 1 : 0;
+    }
+    EXPECT_GT(between, 20U);
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::tests

@@ -142,6 +142,7 @@ TEST_F(Filters, TheHorizonLeavesItsShareOfThePattern) {
     for (const double x : {-0.6, 0.2, 0.5}) {
       add_quad(scene, {x, 1.2, 0}, {0.3, 1.1, 0}, {0.2, 0, 0.5}).casts_shadow = false;
     }
+    add_object(scene, "sphere", sphere({1.3, 1, 0.6}, 0.6, 12)).casts_shadow = false;  // planes of all kinds
   };
   scenes::Scene scene = above_a_floor(ceiling_light(3, 0.8), boards);
   scene.cameras.front() = camera({3, 2.5, 2}, {0, 1.2, 0}, 60);

@@ -189,7 +189,7 @@ class Bias : public MapsTest {
     };
     const Stage stage(scene, kSide, kSide, light_samples(1), grid);
     visibility::MethodOptions options{{"size", fmt::format("{}", kSize)}, {"bias", fmt::format("{}", kBias)}};
-    std::vector<Factory> factories{maps::make_shadow_map, maps::make_accumulate};
+    std::vector<Factory> factories{maps::make_shadow_map, maps::make_accumulate, maps::make_deep_penumbra};
     if (own_depth) {
       options["receiverPlane"] = "off";
       factories = {maps::make_shadow_map};

@@ -56,6 +56,16 @@ scenes::Scene boards_in_a_room() {
   return scene;
 }
 
+/// A tilted floor that casts, too: all that most of its kernels hold is itself.
+scenes::Scene board_over_a_slope() {
+  scenes::Scene scene;
+  add_quad(scene, {0, 0, 0}, {2, 1.2, 0}, {0, 0, -2});
+  add_quad(scene, {-0.4, 2, 0.1}, {0.6, 0.2, 0}, {0, 0.1, 0.6}).receives_shadow = false;
+  scene.lights.push_back(ceiling_light(5, 0.8));
+  scene.cameras.push_back(camera({-1, 5, 0.5}, {0, 0, 0}, 50));
+  return scene;
+}
+
 class MapsBackproject : public MapsTest {
  protected:
   /// The largest and the mean difference between backproject and its twin over receivers.
@@ -126,7 +136,7 @@ TEST_F(MapsBackproject, BothSidesOfATwoSidedLight) {
 // A search finds narrower kernels, never others; and where the whole kernel hides, all of the light is hidden.
 TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
   for (const auto& [scene, fill] : {std::pair(boards_over_floor(), "none"), std::pair(boards_in_a_room(), "edges"),
-                                    std::pair(parallel_square(), "none")}) {
+                                    std::pair(parallel_square(), "none"), std::pair(board_over_a_slope(), "edges")}) {
     const Stage stage(scene, 24, 24, light_samples(1));
     const Masks plain = run(maps::make_backproject, stage, options_of({{"fill", fill}}, 48));
     for (const char* search : {"hsm", "mssm", "ysm"}) {

@@ -175,12 +175,15 @@ TEST_F(MapsLightTable, TheHorizonCutsLightsOfAnyShape) {
     scene.lights.front().shape = shape;
     const Stage stage(scene, 24, 24, light_samples(1));
     const Masks exact = tests::run(*reference::make_exact({}), stage);
-    const Masks found = run(maps::make_backproject, stage, {{"size", "16"}});
+    const Masks found = run(maps::make_backproject, stage, {{"size", "16"}}),
+                outlines = run(maps::make_contour, stage, {{"size", "16"}});
     std::size_t cut = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       // Closed forms in float: a light of size 1 at coordinates of some units. An ellipse is a polygon of 256 sides.
       const double polygon = stage.light.kind == visibility::LightKind::ellipse ? 1.27 / (256 * 256) : 0;
       EXPECT_NEAR(found.visibility[i], exact.visibility[i], 2e-5 + polygon) << i;
+      EXPECT_NEAR(outlines.visibility[i], exact.visibility[i], 1e-4 + polygon)
+          << i;  // a horizon is an outline's edge there
       cut += exact.visibility[i] > 0 && exact.visibility[i] < 1 ? 1 : 0;
     }
     EXPECT_GT(cut, 20U);

@@ -307,6 +307,24 @@ TEST_F(SoftShadowMap, OnOccludersBackprojectMayAnswer) {
   EXPECT_EQ(tiled.picture.visibility, both.picture.visibility);
 }
 
+// A plate of half-size 1 a little above the floor, at depth 5 − g of 5: of its 64 texels each is 2 / 64 (5 − g) wide,
+// and the bias forgives so many times 5 of that.
+TEST_F(SoftShadowMap, TheBiasForgivesSoManyTexels) {
+  constexpr double kTexels = 3;
+  for (const double share : {0.985, 1.015}) {
+    const double gap = (5 - std::sqrt(25 - 4 * share * kTexels * 5 * 2 / 64)) / 2;
+    scenes::Scene scene = floor_and_light(0.5);
+    scene.objects[0].casts_shadow = false;
+    add_quad(scene, {0, gap, 0}, {1, 0, 0}, {0, 0, 1});
+    const Stage stage = on_floor(scene, {{0, 0}, {0.3, 0.2}});
+    for (const char* form : {"gather", "scatter"}) {
+      const MethodOptions options{
+          {"size", "66"}, {"receiverSize", "128"}, {"filter", "nearest"}, {"bias", "3"}, {"form", form}};
+      for (const float v : soft(stage, options).picture.visibility) EXPECT_EQ(v, share < 1 ? 1.0F : 0.0F) << form;
+    }
+  }
+}
+
 TEST_F(SoftShadowMap, WhereOccludersHaveNoShadowsItSaysSo) {
   const auto warning = [](const Stage& stage, MethodOptions options) {
     options["size"] = options["receiverSize"] = "16";

@@ -1,6 +1,8 @@
 // backproject with form=sphere: bounding spheres of texels before a sphere or the disk of the light's area that faces
 // the receiver, against every texel in double, against closed forms and against rays.
 
+#include "render/compute_pass.hpp"
+#include "tests/analytic/maps/backprojection/lens.comp.spv.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
@@ -86,6 +88,43 @@ class SphereForm : public MapsTest {
     return scene;
   }
 };
+
+// The two segments behind the common chord of two disks: r² (a − sin a cos a), cos a the chord's distance over r.
+TEST_F(SphereForm, TwoDisksShareTheirSegments) {
+  std::vector<glm::vec3> disks;
+  for (const float r : {0.02F, 0.3F, 1.0F}) {
+    for (const float s : {0.01F, 0.4F, 1.0F, 30.0F}) {
+      for (const float share : {-0.5F, 0.01F, 0.1F, 0.5F, 0.9F, 0.99F, 1.2F}) {  // from one inside the other to apart
+        disks.emplace_back(r, s, std::abs(r - s) + 2 * share * std::min(r, s));
+        if (disks.back().z < 0) disks.pop_back();
+      }
+    }
+  }
+  const render::Buffer asked = render::make_buffer<glm::vec3>(device(), "disks", disks),
+                       areas(device(), "areas", disks.size() * sizeof(float));
+  const render::ComputePass pass(device(), {.name = "lens", .spirv = shaders::kLensComp});
+  render::Commands commands(device());
+  pass.record(commands, std::span<const std::byte>(), std::vector<render::BufferReference>{asked, areas},
+              (disks.size() + 63) / 64);
+  commands.submit();
+  std::vector<float> found(disks.size());
+  areas.read<float>(found);
+  for (std::size_t i = 0; i < disks.size(); ++i) {
+    const double r = disks[i].x, s = disks[i].y, d = disks[i].z, small = std::min(r, s);
+    double expected = d >= r + s ? 0 : kPi * small * small;
+    if (d < r + s && d > std::abs(r - s)) {
+      const auto behind = [](double radius, double away) {
+        const double angle = std::acos(std::clamp(away / radius, -1.0, 1.0));
+        return radius * radius * (angle - std::sin(angle) * std::cos(angle));
+      };
+      const double chord = (d * d + r * r - s * s) / (2 * d);
+      expected = behind(r, chord) + behind(s, d - chord);
+    }
+    // Floats: centres are off by 2^-24 of the larger radius, over a chord of up to twice the smaller.
+    EXPECT_NEAR(found[i], expected, 1e-4 * kPi * small * small + 4e-7 * std::max(r, s) * small)
+        << r << " " << s << " " << d;
+  }
+}
 
 // Caps on the sphere in double; in the shader disks of a stereographic picture, whose areas are directions' to 1 /
 // cos^4 of half the light's angle, and whose borders are floats. 2 % of a sphere's radius are 4 % of what it hides.
