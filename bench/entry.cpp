@@ -110,7 +110,7 @@ std::vector<Contestant> Field::answer(std::uint32_t samples, const ReferenceVisi
   };
   std::vector<Rival*> running;
   for (Rival& rival : rivals_) {
-    rival.left_out = rival.adaptive && samples <= 64;  // its first step would already be all of them
+    rival.left_out = rival.adaptive && samples <= AdaptiveRays::kFew;  // its first step would already be all of them
     attempt_on(rival, [&] {
       rival.runner->ask(rival.jittered ? jittered : question);
       rival.runner->run(false);

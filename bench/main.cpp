@@ -8,6 +8,7 @@
 #include "bench/lines.hpp"
 #include "bench/options.hpp"
 #include "bench/picture.hpp"
+#include "bench/whole_frame.hpp"
 
 #include <fmt/format.h>
 
@@ -59,6 +60,17 @@ void run_frames(const bench::Options& options, Output& output) {
   devices.check_validation();
 }
 
+void run_whole_frames(const bench::Options& options, Output& output) {
+  app::DeviceSource devices(options.device);
+  fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
+             options.commit.empty() ? "unknown" : options.commit, options.runs);
+  output.write(bench::frame_table_head(), "");
+  bench::measure_whole_frames(options, devices, [&](const bench::FrameEntry& entry) {
+    output.write(bench::frame_table_rows(entry), bench::frame_json_lines(entry, options));
+  });
+  devices.check_validation();
+}
+
 void run_methods(const bench::Options& options, Output& output) {
   app::OutputFiles outputs;
   outputs.add("--picture", options.picture);
@@ -89,6 +101,8 @@ int run(const std::vector<std::string>& arguments) {
     run_cpu(options, output);
   } else if (options.frames) {
     run_frames(options, output);
+  } else if (options.whole_frames) {
+    run_whole_frames(options, output);
   } else {
     run_methods(options, output);
   }

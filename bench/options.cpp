@@ -2,6 +2,7 @@
 
 #include "app/parse.hpp"
 #include "base/error.hpp"
+#include "bench/adaptive_rays.hpp"
 
 #include <fmt/ranges.h>
 
@@ -16,9 +17,9 @@ namespace penumbra::bench {
 const char* const kHelp =
     R"(penumbra-bench: shadow methods, ray casters and the oracle side by side, on the same view samples
 
-  --scene NAME|FILE|knot:T
-                       a shipped scene by name, a scene file, or a generated knot of T triangles; may be given again
-                       (default: all shipped scenes but terrain-1m, and bunny with light half sizes 0.3 and 2)
+  --scene NAME|FILE|knot:T|sphere:T
+                       a shipped scene by name, a scene file, or a generated knot or sphere of T triangles; may be given
+                       again (default: all shipped scenes but terrain-1m, and bunny with light half sizes 0.3 and 2)
   --all                terrain-1m too
   --light-half H       half size of each scene's first rectangle light instead of the scene's; may be given again
   --light KIND         turns each scene's first light, a rectangle, into a disk, an ellipse (one axis twice the other), a
@@ -38,6 +39,9 @@ const char* const kHelp =
   --sample-pixels N    of exact: how many pixels in penumbra (default 2000), or all
   --runs N             timed runs after one that is discarded (default 5)
   --budget SECONDS     a contestant whose timed runs have used as much gets no further run
+  --frame              instead of shadows alone: whole pictures from scenes in memory, by each method and by a plain
+                       program on Embree (default: of bunny and sphere:1000000, by edge-scatter and
+                       edge-scatter:rows=exact)
   --cpu                instead of methods: edge graphs, edge records, hierarchies and penumbra wedges on the processor
   --wedges-per-frame   instead of methods: silhouettes and wedges of a light that moves, built anew on the device and,
                        in turns with it, on the processor
@@ -161,19 +165,28 @@ void require_once(const std::vector<std::string>& names) {
 
 void set_defaults(Reading& reading) {
   Options& options = reading.options;
-  if (options.methods.empty()) add_methods(options.methods, "edge-scatter,view-sample");
+  const char* const usual = options.whole_frames ? "edge-scatter,edge-scatter:rows=exact" : "edge-scatter,view-sample";
+  if (options.methods.empty()) add_methods(options.methods, usual);
+  if (options.whole_frames && reading.subjects.scenes.empty()) reading.subjects.scenes = {"bunny", "sphere:1000000"};
   if (reading.peers.empty()) reading.peers = {"plain-rays:pattern=jittered", "nontrivial-rays", "adaptive-rays"};
   if (reading.peers != std::vector<std::string>{"none"}) {
     for (const std::string& text : reading.peers) options.peers.push_back(parse_peer(text));
   }
   options.samples_in_name = !options.light_samples.empty();
   if (options.light_samples.empty()) options.light_samples = {256};
-  if (options.cpu && options.frames) throw UsageError("--cpu and --wedges-per-frame are two runs: give one of them");
+  if (int{options.cpu} + int{options.frames} + int{options.whole_frames} > 1)
+    throw UsageError("--cpu, --frame and --wedges-per-frame are runs of their own: give one of them");
+  const auto few =
+      std::ranges::find_if(options.light_samples, [](std::uint32_t count) { return count <= AdaptiveRays::kFew; });
+  if (options.whole_frames && few != options.light_samples.end()) {
+    throw UsageError("--light-samples {}: with --frame more than {}, which the program on Embree takes at first", *few,
+                     AdaptiveRays::kFew);
+  }
   const bool methods = !options.cpu && !options.frames;
   if (options.triangles.empty() && options.frames) options.triangles = {10'000, 100'000, 1'000'000};
   if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
   if (methods) options.subjects = make_subjects(reading.subjects);
-  if (!options.picture.empty() && (!methods || options.reference == Reference::none))
+  if (!options.picture.empty() && (!methods || options.whole_frames || options.reference == Reference::none))
     throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
   std::vector<std::string> rivals = {"plain-rays", "raytrace"}, subjects, samples;  // those two always run
   for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
@@ -210,6 +223,8 @@ Options parse_options(const std::vector<std::string>& arguments) {
       reading.subjects.all = true;
     } else if (option == "--cpu") {
       reading.options.cpu = true;
+    } else if (option == "--frame") {
+      reading.options.whole_frames = true;
     } else if (option == "--wedges-per-frame") {
       reading.options.frames = true;
     } else if (const auto take = options_with_value().find(option); take == options_with_value().end()) {

@@ -12,8 +12,6 @@ namespace {
 
 using visibility::ViewSamples;
 
-constexpr std::uint32_t kFewSamples = 64;  // what the adaptive peer traces everywhere
-
 }  // namespace
 
 FastestRays::FastestRays(const Ground& ground) {
@@ -41,8 +39,8 @@ RayRunner::RayRunner(Peer peer, const Ground& ground, FastestRays& rays)
     : peer_(std::move(peer)),
       rays_(rays),
       chosen_(ground.samples),
-      few_(light_of(ground, kFewSamples,
-                    peer_.jittered ? visibility::SamplePattern::jittered : visibility::SamplePattern::rows)) {}
+      adaptive_(light_of(ground, AdaptiveRays::kFew,
+                         peer_.jittered ? visibility::SamplePattern::jittered : visibility::SamplePattern::rows)) {}
 
 void RayRunner::prepare(const Question& question) {
   chosen_.triangle = question.ground.samples.triangle;
@@ -52,39 +50,16 @@ void RayRunner::prepare(const Question& question) {
       if (chosen[i] == 0) chosen_.triangle[i] = ViewSamples::kBackground;
     }
   }
-  if (peer_.work == RayWork::adaptive) all_samples_.resize(chosen_.size());
   asked_ = static_cast<std::uint64_t>(std::ranges::count_if(
       chosen_.triangle, [](std::int32_t triangle) { return triangle != ViewSamples::kBackground; }));
 }
 
-Runner::Seconds RayRunner::run_adaptive(const Question& question, std::vector<float>& visibility) {
-  Seconds seconds;
-  app::Stopwatch watch;
-  rays_.rays().prepare_light(few_);
-  seconds.light = watch.seconds();
-  watch.restart();
-  rays_.rays().evaluate(question.ground.samples, visibility);
-  asked_ = 0;
-  for (std::size_t i = 0; i < visibility.size(); ++i) {
-    const bool undecided = visibility[i] > 0 && visibility[i] < 1;
-    chosen_.triangle[i] = undecided ? question.ground.samples.triangle[i] : ViewSamples::kBackground;
-    asked_ += undecided ? 1 : 0;
-  }
-  seconds.evaluate = watch.seconds();
-  watch.restart();
-  rays_.rays().prepare_light(question.light);
-  seconds.light += watch.seconds();
-  watch.restart();
-  rays_.rays().evaluate(chosen_, all_samples_);
-  for (std::size_t i = 0; i < visibility.size(); ++i) {
-    if (chosen_.triangle[i] != ViewSamples::kBackground) visibility[i] = all_samples_[i];
-  }
-  seconds.evaluate += watch.seconds();
-  return seconds;
-}
-
 Runner::Seconds RayRunner::run_once(const Question& question, std::vector<float>& visibility, bool /*timed*/) {
-  if (peer_.work == RayWork::adaptive) return run_adaptive(question, visibility);
+  if (peer_.work == RayWork::adaptive) {
+    const AdaptiveRays::Seconds spent = adaptive_.run(rays_.rays(), chosen_, question.light, visibility);
+    asked_ = adaptive_.asked();
+    return {spent.light, spent.evaluate};
+  }
   Seconds seconds;
   app::Stopwatch watch;
   rays_.rays().prepare_light(question.light);

@@ -2,6 +2,7 @@
 
 #include "app/device_source.hpp"
 #include "app/options.hpp"
+#include "bench/adaptive_rays.hpp"
 #include "bench/entry.hpp"
 #include "bench/question.hpp"
 #include "reference/plain_rays.hpp"
@@ -95,14 +96,12 @@ class RayRunner final : public Runner {
  private:
   Seconds run_once(const Question& question, std::vector<float>& visibility, bool timed) override;
   void prepare(const Question& question) override;
-  Seconds run_adaptive(const Question& question, std::vector<float>& visibility);
 
   Peer peer_;
   FastestRays& rays_;
   visibility::ViewSamples chosen_;  ///< the view samples to ask about; the others are set to background
-  visibility::Light few_;           ///< adaptive: the light samples of its first step
-  std::vector<float> all_samples_;  ///< adaptive: V from all light samples
-  std::uint64_t asked_ = 0;         ///< view samples that got all light samples
+  AdaptiveRays adaptive_;
+  std::uint64_t asked_ = 0;  ///< view samples that got all light samples
 };
 
 }  // namespace penumbra::bench

@@ -22,7 +22,7 @@ namespace penumbra::bench {
 namespace {
 
 constexpr const char* kLarge = "terrain-1m";
-constexpr std::string_view kKnot = "knot:";
+constexpr std::string_view kKnot = "knot:", kSphere = "sphere:";
 
 double parse_half(const std::string& text) {
   char* end = nullptr;
@@ -36,7 +36,8 @@ std::filesystem::path find_scene(const std::string& name) {
   if (std::filesystem::is_regular_file(name)) return name;
   const std::filesystem::path shipped = std::filesystem::path(PENUMBRA_SCENES) / (name + ".json");
   if (std::filesystem::is_regular_file(shipped)) return shipped;
-  throw UsageError("--scene {}: neither a file, nor a scene of {}, nor knot:TRIANGLES", name, PENUMBRA_SCENES);
+  throw UsageError("--scene {}: neither a file, nor a scene of {}, nor knot:TRIANGLES or sphere:TRIANGLES", name,
+                   PENUMBRA_SCENES);
 }
 
 std::vector<std::string> shipped_scenes(bool all) {
@@ -53,12 +54,19 @@ std::vector<std::string> shipped_scenes(bool all) {
 
 Subject find_subject(const std::string& scene) {
   Subject subject;
+  const auto triangles_after = [&](std::string_view shape) {
+    const auto triangles = app::parse_integer<std::uint64_t>(std::string_view(scene).substr(shape.size()));
+    if (!triangles) throw UsageError("--scene {}: expected a number of triangles, such as {}5000", scene, shape);
+    return *triangles;
+  };
   if (scene.starts_with(kKnot)) {
-    const auto triangles = app::parse_integer<std::uint64_t>(std::string_view(scene).substr(kKnot.size()));
-    if (!triangles) throw UsageError("--scene {}: expected a number of triangles, such as knot:5000", scene);
-    static_cast<void>(knot_of(*triangles));  // throws now if there is no such knot
-    subject.knot = *triangles;
-    subject.name = fmt::format("knot-{}", *triangles);
+    subject.knot = triangles_after(kKnot);
+    static_cast<void>(knot_of(subject.knot));  // throws now if there is no such knot
+    subject.name = fmt::format("knot-{}", subject.knot);
+  } else if (scene.starts_with(kSphere)) {
+    subject.sphere = triangles_after(kSphere);
+    static_cast<void>(sphere_of(subject.sphere));
+    subject.name = fmt::format("sphere-{}", subject.sphere);
   } else {
     subject.scene = find_scene(scene);
     subject.name = subject.scene.stem().string();
@@ -187,39 +195,39 @@ std::vector<Subject> make_subjects(const SubjectRequest& request) {
 }
 
 scenes::Scene read_subject(const Subject& subject) {
-  scenes::Scene scene = subject.scene.empty() ? knot_scene(subject.knot) : scenes::read_scene(subject.scene);
+  scenes::Scene scene = subject.knot != 0     ? knot_scene(subject.knot)
+                        : subject.sphere != 0 ? sphere_scene(subject.sphere)
+                                              : scenes::read_scene(subject.scene);
   if (subject.light_half) resize_first_light(scene, *subject.light_half);
   if (subject.light_kind) reshape_first_light(scene, *subject.light_kind);
   return scene;
 }
 
-mesh::KnotShape knot_of(std::uint64_t triangles) {
-  // Of the ways to divide the triangles into sides and segments, the one whose number of segments is nearest to four
-  // times that of its sides.
+namespace {
+
+/// Of the ways to divide half of the triangles in two factors, the one whose second is nearest to `ratio` times the
+/// first; neither below three. Nothing if there is none.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> divided(std::uint64_t triangles, double ratio) {
   constexpr std::uint64_t kFewest = 3;
-  const double wanted = std::sqrt(static_cast<double>(triangles) / 8);
+  const double wanted = std::sqrt(static_cast<double>(triangles) / 2 / ratio);
   std::uint64_t best = 0;
-  const auto off = [&](std::uint64_t sides) { return std::abs(std::log(static_cast<double>(sides) / wanted)); };
+  const auto off = [&](std::uint64_t first) { return std::abs(std::log(static_cast<double>(first) / wanted)); };
   const std::uint64_t half = triangles % 2 == 0 && triangles <= mesh::kMaxShapeTriangles ? triangles / 2 : 0;
   for (std::uint64_t small = 1; small * small <= half; ++small) {
     if (half % small != 0) continue;
-    for (const std::uint64_t sides : {small, half / small}) {
-      if (sides >= kFewest && half / sides >= kFewest && (best == 0 || off(sides) < off(best))) best = sides;
+    for (const std::uint64_t first : {small, half / small}) {
+      if (first >= kFewest && half / first >= kFewest && (best == 0 || off(first) < off(best))) best = first;
     }
   }
-  if (best == 0) throw UsageError("there is no knot of {} triangles: it has 2 · segments · sides", triangles);
-  mesh::KnotShape knot;
-  knot.center = {0, 1, 0};
-  knot.radius = 0.8;
-  knot.sides = static_cast<std::uint32_t>(best);
-  knot.segments = static_cast<std::uint32_t>(half / best);
-  return knot;
+  if (best == 0) return std::nullopt;
+  return std::pair(static_cast<std::uint32_t>(best), static_cast<std::uint32_t>(half / best));
 }
 
-scenes::Scene knot_scene(std::uint64_t triangles) {
+/// On a floor, or above it, under a square light, seen by a camera like that of the default scene.
+scenes::Scene scene_around(const std::string& name, const mesh::TriangleSoup& shape, std::uint64_t triangles) {
   scenes::Scene scene;
-  scene.name = fmt::format("knot-{}", triangles);
-  append(scene, "knot", mesh::make_knot(knot_of(triangles)));
+  scene.name = fmt::format("{}-{}", name, triangles);
+  append(scene, name, shape);
   append(scene, "floor", mesh::make_quad({0, 0, 0}, {6, 0, 0}, {0, 0, -6}));
   scenes::AreaLight light;
   light.name = "key";
@@ -230,6 +238,37 @@ scenes::Scene knot_scene(std::uint64_t triangles) {
   camera.target = {0, 0.8, 0};
   scene.cameras.push_back(camera);
   return scene;
+}
+
+}  // namespace
+
+mesh::KnotShape knot_of(std::uint64_t triangles) {
+  const auto sides = divided(triangles, 4);
+  if (!sides) throw UsageError("there is no knot of {} triangles: it has 2 · segments · sides", triangles);
+  mesh::KnotShape knot;
+  knot.center = {0, 1, 0};
+  knot.radius = 0.8;
+  knot.sides = sides->first;
+  knot.segments = sides->second;
+  return knot;
+}
+
+scenes::Scene knot_scene(std::uint64_t triangles) {
+  return scene_around("knot", mesh::make_knot(knot_of(triangles)), triangles);
+}
+
+mesh::SphereShape sphere_of(std::uint64_t triangles) {
+  const auto rings = divided(triangles, 2);
+  if (!rings) throw UsageError("there is no sphere of {} triangles: it has 2 · segments · (rings − 1)", triangles);
+  mesh::SphereShape sphere;
+  sphere.center = {0, 1, 0};
+  sphere.rings = rings->first + 1;
+  sphere.segments = rings->second;
+  return sphere;
+}
+
+scenes::Scene sphere_scene(std::uint64_t triangles) {
+  return scene_around("sphere", mesh::make_sphere(sphere_of(triangles)), triangles);
 }
 
 }  // namespace penumbra::bench

@@ -14,11 +14,11 @@ namespace penumbra::bench {
 
 /// What is looked at: a scene or a generated shape, perhaps with its first light made larger or smaller.
 struct Subject {
-  std::string name;                  ///< stable: the scene's file name without extension, or "knot-N", then "/half=H",
-                                     ///< "/light=KIND", "/pattern=P" and "/size=S" where they were asked for
-  std::filesystem::path scene;       ///< empty: a knot
-  std::uint64_t knot = 0;            ///< its triangles
-  std::optional<double> light_half;  ///< half size of the first light instead of the scene's
+  std::string name;  ///< stable: the scene's file name without extension, "knot-N" or "sphere-N", then "/half=H",
+                     ///< "/light=KIND", "/pattern=P" and "/size=S" where they were asked for
+  std::filesystem::path scene;         ///< empty: a knot or a sphere
+  std::uint64_t knot = 0, sphere = 0;  ///< its triangles; 0: the other one
+  std::optional<double> light_half;    ///< half size of the first light instead of the scene's
   /// What the first light, a rectangle, is turned into: as large, around the same centre.
   std::optional<visibility::LightKind> light_kind;
   visibility::SamplePattern pattern = visibility::SamplePattern::rows;
@@ -43,6 +43,13 @@ scenes::Scene read_subject(const Subject& subject);
 /// A torus knot, closed and shadowing itself, of exactly so many triangles. Throws UsageError where there is none: a
 /// knot has 2 · segments · sides.
 mesh::KnotShape knot_of(std::uint64_t triangles);
+
+/// Latitudes and longitudes, about twice as many of these: exactly so many triangles. Throws UsageError where there is
+/// none: a sphere has 2 · segments · (rings − 1).
+mesh::SphereShape sphere_of(std::uint64_t triangles);
+
+/// That sphere likewise.
+scenes::Scene sphere_scene(std::uint64_t triangles);
 
 /// That knot above a floor under a square light, seen by a camera like that of the default scene.
 scenes::Scene knot_scene(std::uint64_t triangles);

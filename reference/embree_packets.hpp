@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to this room: Embree's shadow rays one, four, eight or sixteen at a time behind one name.
+// Internal to this room: Embree's rays one, four, eight or sixteen at a time behind one name.
 
 #include <embree3/rtcore.h>
 
@@ -14,24 +14,34 @@ struct Packet;
 template <>
 struct Packet<1> {
   using Rays = RTCRay;
+  using Hits = RTCRayHit;
   static void occluded(const int* /*valid*/, RTCScene scene, RTCIntersectContext* context, Rays* rays) {
     rtcOccluded1(scene, context, rays);
+  }
+  static void intersect(const int* /*valid*/, RTCScene scene, RTCIntersectContext* context, Hits* rays) {
+    rtcIntersect1(scene, context, rays);
   }
 };
 template <>
 struct Packet<4> {
   using Rays = RTCRay4;
+  using Hits = RTCRayHit4;
   static constexpr auto occluded = rtcOccluded4;
+  static constexpr auto intersect = rtcIntersect4;
 };
 template <>
 struct Packet<8> {
   using Rays = RTCRay8;
+  using Hits = RTCRayHit8;
   static constexpr auto occluded = rtcOccluded8;
+  static constexpr auto intersect = rtcIntersect8;
 };
 template <>
 struct Packet<16> {
   using Rays = RTCRay16;
+  using Hits = RTCRayHit16;
   static constexpr auto occluded = rtcOccluded16;
+  static constexpr auto intersect = rtcIntersect16;
 };
 
 /// The lanes of a packet's field, which is an array, or of a single ray's, which is not.

@@ -30,6 +30,8 @@ class EmbreeRange {
 
   [[nodiscard]] glm::vec3 scaled(const glm::vec3& x) const { return glm::vec3(glm::dvec3(x) * scale_); }
 
+  [[nodiscard]] double scale() const { return scale_; }
+
   /// A direction, as long as the mesh is large: rays along it are never too short.
   [[nodiscard]] static glm::vec3 direction(const glm::vec3& d);
 

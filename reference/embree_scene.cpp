@@ -47,7 +47,8 @@ struct EmbreeScene::Parts {
   }
 };
 
-EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter)
+EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter,
+                         Build build)
     : parts_(std::make_unique<Parts>(scene, std::move(chosen))) {
   Parts& parts = *parts_;
   parts.device = rtcNewDevice(nullptr);
@@ -60,7 +61,8 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
   parts.check(parts.device);
   const int flags = RTC_SCENE_FLAG_ROBUST | (filter == Filter::by_context ? RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION : 0);
   rtcSetSceneFlags(parts.scene, static_cast<RTCSceneFlags>(flags));
-  rtcSetSceneBuildQuality(parts.scene, RTC_BUILD_QUALITY_HIGH);
+  const RTCBuildQuality quality = build == Build::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+  rtcSetSceneBuildQuality(parts.scene, quality);
 
   if (!parts.triangles.empty()) {
     RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -76,7 +78,7 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
       for (const std::uint32_t triangle : parts.triangles) {
         for (const std::uint32_t vertex : scene.triangles[triangle]) *indices++ = vertex;
       }
-      rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+      rtcSetGeometryBuildQuality(geometry, quality);
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(parts.scene, geometry);
     }

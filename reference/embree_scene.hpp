@@ -11,14 +11,16 @@ struct RTCSceneTy;
 
 namespace penumbra::reference {
 
-/// The triangles `chosen` (indices into SceneFloats::triangles) in an Embree scene of one geometry, robust mode, best
-/// build quality. Primitive i is triangle chosen[i]. Lengths are range().scaled: rays must be, too. Embree's errors,
-/// out of memory among them, are thrown as ResourceError, what it has no range for as InputError.
+/// The triangles `chosen` (indices into SceneFloats::triangles) in an Embree scene of one geometry, robust mode.
+/// Primitive i is triangle chosen[i]. Lengths are range().scaled: rays must be, too. Embree's errors, out of memory
+/// among them, are thrown as ResourceError, what it has no range for as InputError.
 class EmbreeScene {
  public:
   enum class Filter { none, by_context };  ///< may a ray's context carry a filter function?
+  enum class Build { medium, high };       ///< quality: soon built, or soon traversed
 
-  EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter);
+  EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::uint32_t> chosen, Filter filter,
+              Build build = Build::high);
   ~EmbreeScene();
   EmbreeScene(EmbreeScene&& other) noexcept;
   EmbreeScene& operator=(EmbreeScene&& other) noexcept;

@@ -52,7 +52,8 @@ void PlainRays::build(std::int32_t without_light) {
     if (scene_->casts_shadow[i] != 0 && !own_body) casting.push_back(i);
   }
   embree_.reset();
-  embree_.emplace(*scene_, std::move(casting), EmbreeScene::Filter::none);
+  embree_.emplace(*scene_, std::move(casting), EmbreeScene::Filter::none,
+                  options_.one_frame ? EmbreeScene::Build::medium : EmbreeScene::Build::high);
   built_without_ = without_light;
 }
 
@@ -91,6 +92,82 @@ void PlainRays::PointArrays::assign(std::span<const glm::vec3> points, std::span
     y[i] = point.y;
     z[i] = point.z;
   }
+}
+
+template <typename Body>
+void PlainRays::with_width(const Body& body) const {
+  switch (options_.width != 0 ? options_.width : embree_->native_width()) {
+    case 1:
+      return body.template operator()<1>();
+    case 4:
+      return body.template operator()<4>();
+    case 16:
+      return body.template operator()<16>();
+    default:
+      return body.template operator()<8>();
+  }
+}
+
+template <int kWidth>
+void PlainRays::look_at_pixels(const visibility::PinholeCamera& camera, visibility::ViewSamples& samples) const {
+  const EmbreeRange& range = embree_->range();
+  const glm::vec3 eye = range.scaled(glm::vec3(camera.eye));
+  const auto unscaled = static_cast<float>(1 / range.scale());
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, camera.height, 8), [&](const auto& rows) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    typename Packet<kWidth>::Hits rays;
+    alignas(64) int valid[kWidth];
+    for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+      for (std::uint32_t x = 0; x < camera.width; x += kWidth) {
+        for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+          const glm::vec3 d(camera.direction(x + lane, y));
+          valid[lane] = x + lane < camera.width ? -1 : 0;
+          lanes(rays.ray.org_x)[lane] = eye.x;
+          lanes(rays.ray.org_y)[lane] = eye.y;
+          lanes(rays.ray.org_z)[lane] = eye.z;
+          lanes(rays.ray.dir_x)[lane] = d.x;
+          lanes(rays.ray.dir_y)[lane] = d.y;
+          lanes(rays.ray.dir_z)[lane] = d.z;
+          lanes(rays.ray.tnear)[lane] = 0;
+          lanes(rays.ray.tfar)[lane] = std::numeric_limits<float>::infinity();
+          lanes(rays.ray.mask)[lane] = 0xffffffffu;
+          lanes(rays.ray.time)[lane] = 0;
+          lanes(rays.ray.id)[lane] = 0;
+          lanes(rays.ray.flags)[lane] = 0;
+          lanes(rays.hit.geomID)[lane] = RTC_INVALID_GEOMETRY_ID;
+          lanes(rays.hit.instID[0])[lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        const FlushDenormals flush;
+        Packet<kWidth>::intersect(valid, embree_->handle(), &context, &rays);
+        for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+          if (valid[lane] == 0 || lanes(rays.hit.geomID)[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+          const std::size_t pixel = std::size_t{y} * camera.width + x + lane;
+          const glm::vec3 d(lanes(rays.ray.dir_x)[lane], lanes(rays.ray.dir_y)[lane], lanes(rays.ray.dir_z)[lane]);
+          const glm::vec3 n = glm::normalize(
+              glm::vec3(lanes(rays.hit.Ng_x)[lane], lanes(rays.hit.Ng_y)[lane], lanes(rays.hit.Ng_z)[lane]));
+          samples.triangle[pixel] = static_cast<std::int32_t>(embree_->triangles()[lanes(rays.hit.primID)[lane]]);
+          samples.p[pixel] = (eye + lanes(rays.ray.tfar)[lane] * d) * unscaled;
+          samples.n[pixel] = glm::dot(n, d) > 0 ? -n : n;
+        }
+      }
+    }
+  });
+  embree_->check();
+}
+
+visibility::ViewSamples PlainRays::look(const visibility::PinholeCamera& camera) const {
+  PENUMBRA_ASSERT(embree_ && !camera.half_height, "prepare_mesh comes first; a perspective camera");
+  visibility::ViewSamples samples;
+  samples.width = camera.width;
+  samples.height = camera.height;
+  const std::size_t pixels = std::size_t{camera.width} * camera.height;
+  samples.triangle.assign(pixels, visibility::ViewSamples::kBackground);
+  samples.p.assign(pixels, glm::vec3(0));
+  samples.n.assign(pixels, glm::vec3(0));
+  with_width([&]<int kWidth>() { look_at_pixels<kWidth>(camera, samples); });
+  return samples;
 }
 
 template <int kWidth>
@@ -176,16 +253,7 @@ void PlainRays::evaluate_pixels(const visibility::ViewSamples& samples, std::spa
 void PlainRays::evaluate(const visibility::ViewSamples& samples, std::span<float> visibility) const {
   PENUMBRA_ASSERT(light_ != nullptr && visibility.size() == samples.size(), "{} pixels for {}", visibility.size(),
                   samples.size());
-  switch (options_.width != 0 ? options_.width : embree_->native_width()) {
-    case 1:
-      return evaluate_pixels<1>(samples, visibility);
-    case 4:
-      return evaluate_pixels<4>(samples, visibility);
-    case 16:
-      return evaluate_pixels<16>(samples, visibility);
-    default:
-      return evaluate_pixels<8>(samples, visibility);
-  }
+  with_width([&]<int kWidth>() { evaluate_pixels<kWidth>(samples, visibility); });
 }
 
 }  // namespace penumbra::reference

@@ -24,6 +24,7 @@ class PlainRays {
     int width = 0;           ///< rays traced together: 1, 4, 8 or 16; 0: as many as this processor does at once
     bool coherent = true;    ///< Embree's hint for packets
     bool neighbours = true;  ///< packets of neighbours on the light rather than in the order of the light samples
+    bool one_frame = false;  ///< a hierarchy of medium quality, as for a mesh that is looked at once
   };
   explicit PlainRays(const Options& options);
 
@@ -31,6 +32,9 @@ class PlainRays {
   void prepare_mesh(const visibility::SceneFloats& scene);
   /// Once a light; rebuilds without the light's own body if it has one.
   void prepare_light(const visibility::Light& light);
+  /// What the rays of a perspective camera's pixels meet first, in packets of neighbours of a row: triangle, p and n in
+  /// float, as a renderer has them. The rest of ViewSamples stays empty. Only what casts shadow is there.
+  [[nodiscard]] visibility::ViewSamples look(const visibility::PinholeCamera& camera) const;
   /// V of each pixel; background, emitters and what receives no shadow have 1. Both must outlive the call.
   void evaluate(const visibility::ViewSamples& samples, std::span<float> visibility) const;
 
@@ -42,6 +46,11 @@ class PlainRays {
     void assign(std::span<const glm::vec3> points, std::span<const std::uint32_t> order, const Scaled& scaled);
   };
 
+  /// body<kWidth>() with as many rays to a packet as were asked for.
+  template <typename Body>
+  void with_width(const Body& body) const;
+  template <int kWidth>
+  void look_at_pixels(const visibility::PinholeCamera& camera, visibility::ViewSamples& samples) const;
   template <int kWidth>
   [[nodiscard]] int trace_pixel(const glm::vec3& p, const glm::vec3& n, const PointArrays& points,
                                 RTCIntersectContext& context) const;

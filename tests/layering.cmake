@@ -59,7 +59,7 @@ endforeach()
 list(APPEND may_app/commands app/pictures)
 list(APPEND may_app/compare app/pictures)
 list(APPEND may_app/farm app/pictures)
-set(may_bench ${may_app} app volumes/raster volumes/edges mesh/shapes)
+set(may_bench ${may_app} app app/pictures volumes/raster volumes/edges mesh/shapes)
 set(rooms base mesh mesh/diagnosis mesh/repair mesh/shapes scenes scenes/formats import import/gltf import/gltf/emitters visibility
     visibility/tree visibility/lights
     visibility/masks visibility/alpha areas render/opengl render engines/device engines/vectors engines/pairs engines

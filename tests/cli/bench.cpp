@@ -155,6 +155,28 @@ TEST_F(Bench, PartsOnTheProcessor) {
   EXPECT_EQ(all[7].at("counters").at("wedge"), 500);
 }
 
+TEST_F(Bench, WholeFrames) {
+  ASSERT_EQ(run_tiny({"--frame", "--light-samples", "100"}).code, 0);
+  const std::vector<json> all = lines("lines");
+  const std::string frame = "frame/scene/size=16/n=100/";
+  EXPECT_THAT(names_of(all), ElementsAre(frame + "embree", frame + "edge-scatter", frame + "edge-scatter:rows=exact"));
+  for (const json& line : all) {
+    const json& seconds = line.at("seconds");
+    double sum = 0;
+    for (const char* phase : {"floats", "mesh", "view", "light", "evaluate"})
+      sum += seconds.contains(phase) ? seconds.at(phase).at("median").get<double>() : 0;
+    EXPECT_DOUBLE_EQ(line.at("frame").at("median"), sum) << line;  // of one run
+    EXPECT_EQ(seconds.contains("write"), line.at("method") != "embree") << line;
+    EXPECT_DOUBLE_EQ(line.at("timesFasterThanEmbree"),
+                     all[0].at("frame").at("median").get<double>() / line.at("frame").at("median").get<double>());
+  }
+  ASSERT_EQ(run({"--frame", "--scene", "sphere:600", "--size", "16", "--light-samples", "65", "--runs", "1", "--json",
+                 path("sphere")})
+                .code,
+            0);
+  EXPECT_EQ(lines("sphere")[0].at("triangles"), 602);  // and the floor's 2
+}
+
 TEST_F(Bench, AMovingLight) {
   const Outcome outcome = run({"--wedges-per-frame", "--triangles", "600", "--runs", "1", "--json", path("lines")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -179,6 +201,9 @@ TEST_F(Bench, WrongUseIsTold) {
       {"--scene", scene, "--method", "view-sample", "--method", "view-sample"},
       {"--scene", scene, "--light-half", "1", "--light-half", "1"},
       {"--scene", "knot:7"},
+      {"--scene", "sphere:7"},
+      {"--scene", scene, "--frame", "--light-samples", "64"},  // the program on Embree takes as many at first
+      {"--scene", scene, "--frame", "--cpu"},
       {"--scene", scene, "--method", "nothing"},
       {"--runs"},
       {"--faster"}};

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "reference/plain_rays.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/view_samples.hpp"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace penumbra::bench {
+
+/// What a renderer does that knows that most of a picture is lit or dark: a few light samples everywhere, then all of
+/// them where those did not agree.
+class AdaptiveRays {
+ public:
+  static constexpr std::uint32_t kFew = 64;  ///< light samples of the first step
+
+  /// `few`: the light with those.
+  explicit AdaptiveRays(visibility::Light few) : few_(std::move(few)) {}
+
+  struct Seconds {
+    double light = 0, evaluate = 0;
+  };
+  /// V of each pixel. `samples` are as they were when it returns.
+  Seconds run(reference::PlainRays& rays, visibility::ViewSamples& samples, const visibility::Light& light,
+              std::span<float> visibility);
+  /// View samples that got all light samples in the last run.
+  [[nodiscard]] std::uint64_t asked() const { return asked_; }
+
+ private:
+  visibility::Light few_;
+  std::vector<std::int32_t> undecided_;  // the samples' triangles; of all others background
+  std::vector<float> all_samples_;
+  std::uint64_t asked_ = 0;
+};
+
+}  // namespace penumbra::bench

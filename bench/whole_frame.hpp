@@ -1,0 +1,48 @@
+#pragma once
+
+#include "app/device_source.hpp"
+#include "bench/options.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace penumbra::bench {
+
+/// One contestant's whole frames: seconds of each phase, run by run.
+struct FrameTimes {
+  std::string name;
+  /// `floats` (double to float, planes), `mesh`, `view`, `light`, `evaluate`, `beauty`, `write`; rays have no `floats`
+  /// and nothing after `evaluate`.
+  std::map<std::string, std::vector<double>> phases;
+
+  /// Run by run, all of these that there are.
+  [[nodiscard]] std::vector<double> sum_of(const std::vector<std::string>& names) const;
+  /// From a scene in memory to V of each pixel.
+  [[nodiscard]] std::vector<double> frame() const;
+  /// The same of a frame whose mesh is that of the frame before: light or camera moves.
+  [[nodiscard]] std::vector<double> next() const;
+};
+
+struct FrameEntry {
+  std::string subject, name;  ///< stable: "frame/sphere-1000000/size=512/n=256"
+  std::uint64_t triangles = 0, samples = 0;
+  std::uint32_t size = 0;
+  double load_before = 0;
+  std::vector<FrameTimes> contestants;  ///< the first: plain rays, which the others are compared with
+};
+
+/// Whole pictures, each from a scene in memory, as `penumbra render` makes them, beside a plain program on Embree:
+/// hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where they disagree. They
+/// take turns; the first run of each is discarded.
+void measure_whole_frames(const Options& options, app::DeviceSource& devices,
+                          const std::function<void(const FrameEntry&)>& sink);
+
+std::string frame_table_head();
+std::string frame_table_rows(const FrameEntry& entry);
+/// One a contestant.
+std::string frame_json_lines(const FrameEntry& entry, const Options& options);
+
+}  // namespace penumbra::bench
