@@ -248,7 +248,7 @@ scenes::Scene stack(int layers, const glm::dvec3& eye) {
 
 /// What is drawn is looked for where a shifted lens shows it.
 TEST_F(HardVolume, AShiftedLens) {
-  for (const glm::dvec2& shift : {glm::dvec2(0.7, -0.4), glm::dvec2(-1.5, 0.2)}) {
+  for (const glm::dvec2& shift : {glm::dvec2(0.35, -0.2), glm::dvec2(-0.5, 0.15)}) {
     scenes::Scene scene = stack(3, {2, 1.5, 2});
     const glm::dvec3 forward = glm::normalize(scene.cameras[0].target - scene.cameras[0].eye),
                      right = glm::normalize(glm::cross(forward, scene.cameras[0].up));
