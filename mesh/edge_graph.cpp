@@ -86,7 +86,7 @@ struct HalfEdge {
   std::uint32_t other;   // the later vertex
   std::uint32_t number;  // 3 · triangle + corner
 
-  auto operator<=>(const HalfEdge&) const = default;  // NOLINT(modernize-use-nullptr): its 0 is no pointer
+  auto operator<=>(const HalfEdge&) const = default;
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ struct Incidence {
 struct Edge {
   std::uint32_t a = 0, b = 0;
 
-  friend auto operator<=>(const Edge&, const Edge&) = default;  // NOLINT(modernize-use-nullptr): its 0 is no pointer
+  friend auto operator<=>(const Edge&, const Edge&) = default;
 };
 
 /// Each geometric edge once, with all its triangles: none, one, two, five, all legal. Linear in the soup.

@@ -15,7 +15,8 @@ inline auto grid_samples(std::uint32_t n, const glm::dvec3& middle, const glm::d
     visibility::ViewSamples samples;
     samples.width = samples.height = n;
     for (std::uint32_t i = 0; i < n * n; ++i) {
-      const double s = (2.0 * (i % n) + 1) / n - 1, t = (2.0 * (i / n) + 1) / n - 1;
+      const std::uint32_t column = i % n, row = i / n;
+      const double s = (2.0 * column + 1) / n - 1, t = (2.0 * row + 1) / n - 1;
       samples.triangle.push_back(0);
       samples.p.emplace_back(middle + s * u + t * v - floats.origin);
       samples.n.emplace_back(up);

@@ -180,7 +180,7 @@ struct UnderPanes {
     pane.alpha = {Alpha::Mode::blend, alpha, 0.5};
   }
   /// V at the point below the light's middle, if nothing that stops all light is there.
-  float share(const glm::vec3& p = glm::vec3(0)) {
+  [[nodiscard]] float share(const glm::vec3& p = glm::vec3(0)) const {
     const SceneFloats floats = make_scene_floats(scene);
     const Light light = make_light(scene, 0, floats.origin, {256, 0, 0, SamplePattern::rows, 0});
     ViewSamples samples;
@@ -243,13 +243,15 @@ TEST(AlphaFilters, FindEverySpeck) {
     const SceneFloats floats = make_scene_floats(scene);
     const Light light = make_light(scene, 0, floats.origin, {64, 8, 8, SamplePattern::grid, 0});
     ViewSamples samples;
-    for (int i = 0; i < 64; ++i) {
-      const auto [a, b, c] = floats.corners(0);
-      const bool up = glm::cross(b - a, c - a).y > 0;
-      samples.triangle.push_back(0);
-      samples.p.push_back(0.125f * static_cast<float>(i % 8) * (b - a) + 0.0625f * static_cast<float>(i / 8) * (c - b) +
-                          a);
-      samples.facing.push_back(up ? std::int8_t{1} : std::int8_t{-1});
+    const auto [a, b, c] = floats.corners(0);
+    const bool up = glm::cross(b - a, c - a).y > 0;
+    for (int row = 0; row < 8; ++row) {
+      for (int column = 0; column < 8; ++column) {
+        const float s = 0.125f * static_cast<float>(column), t = s * 0.125f * static_cast<float>(row);
+        samples.triangle.push_back(0);
+        samples.p.push_back(a + s * (b - a) + t * (c - b));
+        samples.facing.push_back(up ? std::int8_t{1} : std::int8_t{-1});
+      }
     }
     samples.width = samples.height = 8;
     std::vector<std::uint32_t> masks(2 * samples.size(), 0xffffffffu);
