@@ -270,6 +270,33 @@ TEST(AlphaFilters, FindEverySpeck) {
   }
 }
 
+/// p is rounded, so that its own surface may be between it and the light: it hides nothing all the same, nor does what
+/// lies in its plane.
+TEST(AlphaFilters, ASurfaceDoesNotHideItself) {
+  scenes::Scene scene;
+  for (const double x : {-1.0, 1.0}) {
+    tests::add_quad(scene, glm::dvec3(x, 0.375 * x, 0), {1, 0.375, 0}, {0.1, 0.0375, -1}).alpha = {Alpha::Mode::mask, 1,
+                                                                                                   0.5};
+  }
+  scene.lights.push_back(tests::ceiling_light(4, 1));
+  const SceneFloats floats = make_scene_floats(scene);
+  const Light light = make_light(scene, 0, floats.origin, {16, 4, 4, SamplePattern::grid, 0});
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> real(0, 0.5F);
+  ViewSamples samples;
+  for (std::int32_t i = 0; i < 400; ++i) {
+    const auto [a, b, c] = floats.corners(static_cast<std::uint32_t>(i % 4));
+    samples.triangle.push_back(i % 4);
+    samples.p.push_back(a + real(random) * (b - a) + real(random) * (c - a));
+    samples.facing.push_back(glm::cross(b - a, c - a).y > 0 ? std::int8_t{1} : std::int8_t{-1});
+  }
+  samples.width = 400;
+  samples.height = 1;
+  std::vector<std::uint32_t> masks(samples.size(), 0xffffU);
+  AlphaFilter(floats).filter(samples, light, 0, {masks, {}, {}});
+  EXPECT_EQ(masks, std::vector<std::uint32_t>(samples.size(), 0xffffU));
+}
+
 /// One value at all corners is that value anywhere, to the last digit, though vertices elsewhere have others.
 TEST(AlphaFilters, WhatCornersShareHasNoNoise) {
   for (const float vertex : {1.0F, 0.75F}) {
