@@ -13,7 +13,7 @@ namespace penumbra::tests {
 inline scenes::Scene bare_floor(double light_half, double floor_half = 2) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {floor_half, 0, 0}, {0, 0, -floor_half}).casts_shadow = false;
-  scene.soup.positions.push_back({0, 4.5, 0});  // above all casters: one origin whatever they are
+  scene.soup.positions.emplace_back(0, 4.5, 0);  // above all casters: one origin whatever they are
   scene.lights.push_back(ceiling_light(5, light_half));
   scene.cameras.push_back(camera({0, 4, 4}, {0, 0, 0}));
   return scene;

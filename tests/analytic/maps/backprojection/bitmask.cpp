@@ -301,7 +301,7 @@ TEST_F(MapsBitmask, ALevelHasTheNearestOfEachBlockAndTheBoxAroundIt) {
                  std::max(box[3], y - y0)};
         }
       }
-      EXPECT_EQ(std::bit_cast<float>(words[2 * i]), nearest);
+      EXPECT_EQ(std::bit_cast<float>(words[std::size_t{2} * i]), nearest);
       EXPECT_EQ(words[2 * i + 1], box[0] | box[1] << 8 | box[2] << 16 | box[3] << 24);
     }
   }

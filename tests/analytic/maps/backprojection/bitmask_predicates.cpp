@@ -79,9 +79,9 @@ TEST_F(MapsPredicates, TheNotesPatternHasThirtyThreeLevelsUnderAnAlignedEdge) {
       for (std::size_t j = 0; j < 256; ++j) {
         // One of each of a tile's 4 x 4 columns and rows.
         constexpr std::array<std::array<int, 2>, 4> kTurned{{{1, 0}, {3, 1}, {0, 2}, {2, 3}}};
-        const std::size_t tile = j / 4;
-        const glm::dvec2 cell(static_cast<double>(4 * (tile % 8)) + kTurned.at(j % 4)[0],
-                              static_cast<double>(4 * (tile / 8)) + kTurned.at(j % 4)[1]);
+        const std::size_t tile = j / 4, column = 4 * (tile % 8), row = 4 * (tile / 8);
+        const glm::dvec2 cell(static_cast<double>(column) + kTurned.at(j % 4)[0],
+                              static_cast<double>(row) + kTurned.at(j % 4)[1]);
         light.coordinates[j] = (cell + 0.5) / 16.0 - 1.0;
         const visibility::LightFrame frame = visibility::light_frame(light);
         light.points[j] = frame.center + light.coordinates[j].x * frame.u + light.coordinates[j].y * frame.v;

@@ -265,8 +265,9 @@ TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) 
     const glm::dvec3 p = stage.samples.p[i], n = stage.samples.n[i];
     double above = 0;
     for (int k = 0; k < 10000; ++k) {
+      const int column = k % 100, row = k / 100;
       const glm::dvec3 l =
-          glm::dvec3(stage.light.center) + glm::dvec3((k % 100 + 0.5) / 100 - 0.5, 0, (k / 100 + 0.5) / 100 - 0.5);
+          glm::dvec3(stage.light.center) + glm::dvec3((column + 0.5) / 100 - 0.5, 0, (row + 0.5) / 100 - 0.5);
       above += glm::dot(n, l - p) > 0 ? 1e-4 : 0;
     }
     EXPECT_NEAR(static_cast<double>(found.picture.visibility[i]), above, 0.008);

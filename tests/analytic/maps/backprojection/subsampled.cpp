@@ -185,7 +185,7 @@ TEST_F(MapsSubsampled, PixelsAreChosenByThePenumbrasWidthOnThePicture) {
 // step.
 TEST(MapsFillIn, KeepsConstantsAndObjectsApart) {
   constexpr std::uint32_t kWidth = 37, kHeight = 29;
-  std::vector<KnownPixel> pixels(kWidth * kHeight);
+  std::vector<KnownPixel> pixels(std::size_t{kWidth} * kHeight);
   for (std::uint32_t i = 0; i < pixels.size(); ++i) {
     const std::uint32_t x = i % kWidth, y = i / kWidth;
     pixels[i].object = x + y < 30 ? 0 : 7;
@@ -206,7 +206,7 @@ TEST(MapsFillIn, BetweenFourPixelsIsBilinear) {
   constexpr std::uint32_t kWidth = 65;
   std::mt19937 random(3);
   for (const std::uint32_t step : {2U, 4U, 8U}) {
-    std::vector<KnownPixel> pixels(kWidth * kWidth), ramp(pixels.size());
+    std::vector<KnownPixel> pixels(std::size_t{kWidth} * kWidth), ramp(pixels.size());
     for (std::uint32_t i = 0; i < pixels.size(); ++i) {
       const std::uint32_t x = i % kWidth, y = i / kWidth;
       pixels[i].object = ramp[i].object = 2;
