@@ -9,9 +9,9 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
-#include <compare>
 #include <tuple>
 #include <utility>
 
@@ -81,13 +81,15 @@ TriangleKind kind_of(std::span<const glm::dvec3> positions, const Triangle& corn
   return collinear(positions[a], positions[b], positions[c]) ? TriangleKind::collinear : TriangleKind::proper;
 }
 
-/// A side of a triangle among those that leave one vertex for a later one.
-struct HalfEdge {
-  std::uint32_t other;   // the later vertex
-  std::uint32_t number;  // 3 · triangle + corner
-
-  auto operator<=>(const HalfEdge&) const = default;
-};
+/// A side of a triangle among those that leave one vertex for a later one: that vertex, then 3 · triangle + corner. In
+/// this order.
+using HalfEdge = std::uint64_t;
+std::uint32_t later_vertex(HalfEdge side) {
+  return static_cast<std::uint32_t>(side >> 32U);
+}
+std::uint32_t number_of(HalfEdge side) {
+  return static_cast<std::uint32_t>(side);
+}
 
 }  // namespace
 
@@ -103,25 +105,36 @@ EdgeGraph build_edge_graph(const MeshView& mesh, double weld) {
   for_each_index(triangle_count,
                  [&](std::size_t t) { graph.kind[t] = kind_of(mesh.positions, graph.corners(mesh.triangles[t])); });
 
-  // Sides by their first vertex; a bucket more for those of triangles that repeat a vertex, which are no edges.
-  const auto ends = [&](std::size_t side) {
-    const Triangle corners = graph.corners(mesh.triangles[side / 3]);
-    return std::minmax({corners[side % 3], corners[(side % 3 + 1) % 3]});
-  };
+  // Sides by their first vertex, but for those of triangles that repeat a vertex, which are no edges: `sides` of each
+  // vertex from `first_side` on.
   const std::size_t vertices = mesh.positions.size();
-  Buckets sides = into_buckets(3 * triangle_count, vertices + 1, [&](std::size_t side) {
-    return graph.kind[side / 3] == TriangleKind::repeated ? vertices : std::size_t{ends(side).first};
+  std::vector<std::uint32_t> first_side(vertices + 1, 0);
+  const auto counter = [&](std::size_t vertex) { return std::atomic_ref(first_side[vertex]); };
+  const auto for_each_side = [&](const auto& visit) {
+    for_each_index(triangle_count, [&](std::size_t t) {
+      if (graph.kind[t] == TriangleKind::repeated) return;
+      const Triangle corners = graph.corners(mesh.triangles[t]);
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto [a, b] = std::minmax(corners[i], corners[(i + 1) % 3]);
+        visit(a, HalfEdge{b} << 32U | (3 * static_cast<std::uint32_t>(t) + i));
+      }
+    });
+  };
+  for_each_side([&](std::uint32_t a, HalfEdge) { counter(a).fetch_add(1, std::memory_order_relaxed); });
+  std::uint32_t all_sides = 0;
+  for (std::uint32_t& first : first_side) first = all_sides += first;  // where they end
+  std::vector<HalfEdge> half_edges(all_sides);
+  for_each_side([&](std::uint32_t a, HalfEdge side) {
+    half_edges[counter(a).fetch_sub(1, std::memory_order_relaxed) - 1] = side;
   });
-  // Within a bucket by the second vertex, then by number; `begun` counts the edges that begin at each vertex.
-  std::vector<HalfEdge> half_edges(sides.first[vertices]);
+  // Sorted, whatever the number of threads; `begun` counts the edges that begin at each vertex.
   std::vector<std::uint32_t> begun(vertices + 1, 0);
   for_each_index(vertices, [&](std::size_t vertex) {
-    const std::span<HalfEdge> here = std::span(half_edges).subspan(sides.first[vertex], sides[vertex].size());
-    std::ranges::transform(sides[vertex], here.begin(), [&](std::uint32_t side) {
-      return HalfEdge{ends(side).second, side};
-    });
+    const std::span here =
+        std::span(half_edges).subspan(first_side[vertex], first_side[vertex + 1] - first_side[vertex]);
     std::ranges::sort(here);
-    for (std::size_t i = 0; i < here.size(); ++i) begun[vertex] += i == 0 || here[i].other != here[i - 1].other ? 1 : 0;
+    for (std::size_t i = 0; i < here.size(); ++i)
+      begun[vertex] += i == 0 || later_vertex(here[i]) != later_vertex(here[i - 1]) ? 1 : 0;
   });
   std::uint32_t edges = 0;
   for (std::uint32_t& number : begun) edges += std::exchange(number, edges);
@@ -132,9 +145,9 @@ EdgeGraph build_edge_graph(const MeshView& mesh, double weld) {
   graph.triangle_edges.assign(triangle_count, {EdgeGraph::kNoEdge, EdgeGraph::kNoEdge, EdgeGraph::kNoEdge});
   for_each_index(vertices, [&](std::size_t vertex) {
     std::uint32_t next = begun[vertex];
-    for (std::uint32_t i = sides.first[vertex]; i < sides.first[vertex + 1]; ++i) {
-      const auto& [other, number] = half_edges[i];
-      if (i == sides.first[vertex] || other != half_edges[i - 1].other) {
+    for (std::uint32_t i = first_side[vertex]; i < first_side[vertex + 1]; ++i) {
+      const std::uint32_t other = later_vertex(half_edges[i]), number = number_of(half_edges[i]);
+      if (i == first_side[vertex] || other != later_vertex(half_edges[i - 1])) {
         graph.edges[next] = {static_cast<std::uint32_t>(vertex), other};
         graph.first[next++] = i;
       }

@@ -68,11 +68,21 @@ Side side_of_direction(const glm::vec3& a, const glm::vec3& b, const glm::vec3& 
 }
 
 bool collinear(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  // Quickly where the answer is no.
+  const glm::dvec3 u = b - a, v = c - a;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    // Each difference and product is off by a factor of 1 ± 2⁻⁵³, their difference by as much of itself; products that
+    // underflow, by less than the smallest normal number. What overflows is not larger than itself.
+    const double left = u[i] * v[j], right = u[j] * v[i];
+    const double error = 0x1p-50 * (std::abs(left) + std::abs(right)) + std::numeric_limits<double>::min();
+    if (std::abs(left - right) > error) return false;
+  }
   return CGAL::collinear(point(a), point(b), point(c));
 }
 
 bool collinear(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
-  return CGAL::collinear(point(a), point(b), point(c));
+  return collinear(glm::dvec3(a), glm::dvec3(b), glm::dvec3(c));
 }
 
 int compare_lines(const glm::dvec3& v, const glm::dvec3& p, const glm::dvec3& q) {

@@ -181,18 +181,6 @@ bool coplanar_quickly(const std::array<glm::vec3, 3>& carrier, const std::array<
   return true;
 }
 
-/// Fast where the answer is no; the products of float differences cannot over- or underflow in double.
-bool has_zero_area(const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a = corners[0], u = glm::dvec3(corners[1]) - a, v = glm::dvec3(corners[2]) - a;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    // Each difference and product is off by a factor of 1 ± 2⁻⁵³, their difference by as much of itself.
-    const double left = u[i] * v[j], right = u[j] * v[i];
-    if (std::abs(left - right) > 0x1p-50 * (std::abs(left) + std::abs(right))) return false;
-  }
-  return collinear(corners[0], corners[1], corners[2]);
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
@@ -202,7 +190,8 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
     find_keys(scene, static_cast<std::uint32_t>(range.begin()), std::span(keys).subspan(range.begin(), range.size()));
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      if (has_zero_area(scene.corners(static_cast<std::uint32_t>(i)))) keys[i] = kFlat;
+      const auto [a, b, c] = scene.corners(static_cast<std::uint32_t>(i));
+      if (collinear(a, b, c)) keys[i] = kFlat;
     }
   });
 

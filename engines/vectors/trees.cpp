@@ -14,7 +14,8 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
   for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
 }
 
-/// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine).
+}  // namespace
+
 std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stride) {
   std::vector<WideNode> nodes(texels.size() / stride / kWide);
   mesh::for_each_index(nodes.size(), [&](std::size_t n) {
@@ -31,32 +32,6 @@ std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stri
     }
   });
   return nodes;
-}
-
-}  // namespace
-
-WideEdgeTree wide_edge_tree(std::span<const Texel> nodes, const std::array<std::vector<Texel>, 6>& slots) {
-  WideEdgeTree tree;
-  if (nodes.empty()) return tree;
-  tree.roots = {0};
-  tree.nodes = wide_nodes(nodes, 3);
-  tree.leaves.resize(slots[0].size() / kWide);
-  mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
-    WideEdges& leaf = tree.leaves[number];
-    for (std::size_t lane = 0; lane < kWide; ++lane) {
-      const std::size_t slot = number * kWide + lane;
-      store(leaf.a, lane, slots[0][slot].value);
-      store(leaf.b, lane, slots[1][slot].value);
-      for (std::size_t side = 0; side < 2; ++side) {
-        leaf.plane[side][lane] = slots[side][slot].number;
-        store(leaf.n[side], lane, slots[2 + 2 * side][slot].value);
-        store(leaf.anchor[side], lane, slots[3 + 2 * side][slot].value);
-      }
-      leaf.cut[lane] = slots[5][slot].number == 0 ? 0 : slots[5][slot].number - 1;
-      if (slots[2][slot].number != 0) leaf.used |= 1U << lane;
-    }
-  });
-  return tree;
 }
 
 void append(WideEdgeTree& tree, const WideEdgeTree& more) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/parallel.hpp"
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -54,14 +55,28 @@ struct WideTriangleTree {
   std::vector<WideTriangles> leaves;
 };
 
-/// `nodes`: three texels a child; `slots`: an edge's six (volumes/edges/edge_set.hpp, EdgeTexels). Without nodes:
-/// empty.
-WideEdgeTree wide_edge_tree(std::span<const visibility::Texel> nodes,
-                            const std::array<std::vector<visibility::Texel>, 6>& slots);
+/// `nodes`: three texels a child (volumes/edges/edge_set.hpp, EdgeTree); fill(number, leaf) puts edges into each leaf,
+/// side by side from the first on; the rest of it is 0. Without nodes: empty.
+template <typename Fill>
+WideEdgeTree wide_edge_tree(std::span<const visibility::Texel> nodes, std::size_t leaves, const Fill& fill);
 /// One more root.
 void append(WideEdgeTree& tree, const WideEdgeTree& more);
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale);
+
+/// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine).
+std::vector<WideNode> wide_nodes(std::span<const visibility::Texel> texels, std::size_t stride);
+
+template <typename Fill>
+WideEdgeTree wide_edge_tree(std::span<const visibility::Texel> nodes, std::size_t leaves, const Fill& fill) {
+  WideEdgeTree tree;
+  if (nodes.empty()) return tree;
+  tree.roots = {0};
+  tree.nodes = wide_nodes(nodes, 3);
+  tree.leaves.resize(leaves);
+  mesh::for_each_index(leaves, [&](std::size_t number) { fill(number, tree.leaves[number]); });
+  return tree;
+}
 
 template <typename Tree>
 std::uint64_t bytes_of(const Tree& tree) {

@@ -2,9 +2,11 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 
 #include <embree3/rtcore.h>
 #include <glm/common.hpp>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <limits>
@@ -14,50 +16,75 @@
 namespace penumbra::visibility {
 namespace {
 
-/// A node while Embree builds: inner nodes hold children, leaves hold triangles. Lives in the builder's own memory.
+/// A node or a leaf while Embree builds, in the builder's own memory: what is below it, itself included.
 struct Built {
+  std::uint32_t nodes = 0, leaves = 0, depth = 0;
+  [[nodiscard]] bool is_leaf() const { return nodes == 0; }
+};
+struct BuiltNode : Built {
   std::array<Built*, TriangleTree::kWidth> children{};
   std::array<RTCBounds, TriangleTree::kWidth> bounds{};
-  std::array<std::uint32_t, TriangleTree::kWidth> triangles{};
   std::uint32_t count = 0;
-  bool leaf = false;
+};
+struct BuiltLeaf : Built {
+  TriangleTree::Leaf triangles{};
 };
 
-Built* allocate(RTCThreadLocalAllocator allocator) {
-  return new (rtcThreadLocalAlloc(allocator, sizeof(Built), alignof(Built))) Built{};
+template <typename Made>
+Made* allocate(RTCThreadLocalAllocator allocator) {
+  return new (rtcThreadLocalAlloc(allocator, sizeof(Made), alignof(Made))) Made{};
 }
 
 void* create_node(RTCThreadLocalAllocator allocator, unsigned int count, void*) {
-  Built* node = allocate(allocator);
+  BuiltNode* node = allocate<BuiltNode>(allocator);
   node->count = count;
-  return node;
+  return static_cast<Built*>(node);
 }
 
-void set_children(void* node, void** children, unsigned int count, void*) {
-  for (unsigned int i = 0; i < count; ++i) static_cast<Built*>(node)->children[i] = static_cast<Built*>(children[i]);
+/// Children are complete by now.
+void set_children(void* made, void** children, unsigned int count, void*) {
+  auto* node = static_cast<BuiltNode*>(static_cast<Built*>(made));
+  node->nodes = 1;
+  for (unsigned int i = 0; i < count; ++i) {
+    const auto* child = node->children[i] = static_cast<Built*>(children[i]);
+    node->nodes += child->nodes;
+    node->leaves += child->leaves;
+    node->depth = std::max(node->depth, child->depth);
+  }
+  ++node->depth;
 }
 
-void set_bounds(void* node, const RTCBounds** bounds, unsigned int count, void*) {
-  for (unsigned int i = 0; i < count; ++i) static_cast<Built*>(node)->bounds[i] = *bounds[i];
+void set_bounds(void* made, const RTCBounds** bounds, unsigned int count, void*) {
+  auto* node = static_cast<BuiltNode*>(static_cast<Built*>(made));
+  for (unsigned int i = 0; i < count; ++i) node->bounds[i] = *bounds[i];
 }
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count, void*) {
   PENUMBRA_ASSERT(count <= TriangleTree::kWidth, "a leaf of {} triangles", count);
-  Built* leaf = allocate(allocator);
-  leaf->leaf = true;
-  leaf->count = static_cast<std::uint32_t>(count);
+  BuiltLeaf* leaf = allocate<BuiltLeaf>(allocator);
+  leaf->leaves = 1;
+  leaf->triangles.fill(TriangleTree::kNoTriangle);
   for (std::size_t i = 0; i < count; ++i) leaf->triangles[i] = primitives[i].primID;
-  return leaf;
+  std::sort(leaf->triangles.begin(), leaf->triangles.end());  // kNoTriangle is the largest
+  return static_cast<Built*>(leaf);
+}
+
+RTCBuildPrimitive primitive_of(const Bounds& box, std::uint32_t number) {
+  const auto& [lower, upper] = box;
+  return {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, number};
 }
 
 std::vector<RTCBuildPrimitive> primitives_of(const SceneFloats& scene) {
-  std::vector<RTCBuildPrimitive> primitives;
+  std::vector<std::uint32_t> casters;
+  casters.reserve(scene.triangles.size());
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-    if (scene.casts_shadow[i] == 0) continue;
-    const auto [a, b, c] = scene.corners(i);
-    const glm::vec3 lower = glm::min(a, glm::min(b, c)), upper = glm::max(a, glm::max(b, c));
-    primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, i});
+    if (scene.casts_shadow[i] != 0) casters.push_back(i);
   }
+  std::vector<RTCBuildPrimitive> primitives(casters.size());
+  mesh::for_each_index(casters.size(), [&](std::size_t i) {
+    const auto [a, b, c] = scene.corners(casters[i]);
+    primitives[i] = primitive_of({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}, casters[i]);
+  });
   return primitives;
 }
 
@@ -68,32 +95,38 @@ glm::vec3 upper_of(const RTCBounds& b) {
   return {b.upper_x, b.upper_y, b.upper_z};
 }
 
+/// Puts nodes and leaves into their places: depth first, so that the leaves below a node follow one another.
 class Flattener {
  public:
   explicit Flattener(TriangleTree& tree) : tree_(&tree) {}
 
-  std::uint32_t node(const Built& built, std::uint32_t depth) {
-    tree_->depth = std::max(tree_->depth, depth);
-    const auto index = static_cast<std::uint32_t>(tree_->nodes.size());
-    tree_->nodes.emplace_back();
-    for (std::uint32_t i = 0; i < built.count; ++i) {
-      const Built& child = *built.children[i];
-      const std::uint32_t reference = child.leaf ? leaf(child) : node(child, depth + 1);
-      tree_->nodes[index][i] = {lower_of(built.bounds[i]), upper_of(built.bounds[i]), reference};
-    }
-    return index;
+  void node(const BuiltNode& built, std::uint32_t number, std::uint32_t first_leaf) {
+    constexpr std::uint32_t kTask = 1024;  // nodes worth one
+    if (built.nodes <= kTask) return children(built, number, first_leaf, [](const auto& below) { below(); });
+    tbb::task_group tasks;
+    children(built, number, first_leaf, [&](const auto& below) { tasks.run(below); });
+    tasks.wait();
   }
 
-  std::uint32_t leaf(const Built& built) {
-    TriangleTree::Leaf slots;
-    slots.fill(TriangleTree::kNoTriangle);
-    std::copy_n(built.triangles.begin(), built.count, slots.begin());
-    std::sort(slots.begin(), slots.end());  // kNoTriangle is the largest
-    tree_->leaves.push_back(slots);
-    return static_cast<std::uint32_t>(tree_->leaves.size() - 1) | TriangleTree::kLeafBit;
-  }
+  void leaf(const BuiltLeaf& built, std::uint32_t number) { tree_->leaves[number] = built.triangles; }
 
  private:
+  template <typename Run>
+  void children(const BuiltNode& built, std::uint32_t number, std::uint32_t first_leaf, const Run& run) {
+    std::uint32_t next_node = number + 1, next_leaf = first_leaf;
+    for (std::uint32_t i = 0; i < built.count; ++i) {
+      const Built& child = *built.children[i];
+      const std::uint32_t reference = child.is_leaf() ? next_leaf | TriangleTree::kLeafBit : next_node;
+      tree_->nodes[number][i] = {lower_of(built.bounds[i]), upper_of(built.bounds[i]), reference};
+      if (child.is_leaf())
+        leaf(static_cast<const BuiltLeaf&>(child), next_leaf);
+      else
+        run([this, &child, next_node, next_leaf] { node(static_cast<const BuiltNode&>(child), next_node, next_leaf); });
+      next_node += child.nodes;
+      next_leaf += child.leaves;
+    }
+  }
+
   TriangleTree* tree_;
 };
 
@@ -102,7 +135,8 @@ TriangleTree make_tree(std::vector<RTCBuildPrimitive> primitives) {
   if (primitives.empty()) return tree;
   const std::size_t count = primitives.size();
   Bounds bounds_of_all{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
-  for (const RTCBuildPrimitive& p : primitives) {  // before the builder reorders and splits them
+  for (const RTCBuildPrimitive& p : std::span(primitives).first(std::min<std::size_t>(count, TriangleTree::kWidth))) {
+    // of one leaf; before the builder reorders and splits them
     bounds_of_all.lower = glm::min(bounds_of_all.lower, {p.lower_x, p.lower_y, p.lower_z});
     bounds_of_all.upper = glm::max(bounds_of_all.upper, {p.upper_x, p.upper_y, p.upper_z});
   }
@@ -131,13 +165,15 @@ TriangleTree make_tree(std::vector<RTCBuildPrimitive> primitives) {
   const auto* root = static_cast<const Built*>(rtcBuildBVH(&arguments));
   if (root != nullptr) {
     Flattener flattener(tree);
-    if (root->leaf) {
-      tree.nodes.emplace_back();
-      tree.depth = 1;
+    tree.leaves.resize(root->leaves);
+    tree.nodes.resize(std::max(root->nodes, 1U));
+    tree.depth = std::max(root->depth, 1U);
+    if (root->is_leaf()) {
       const auto [lower, upper] = bounds_of_all;
-      tree.nodes[0][0] = {lower, upper, flattener.leaf(*root)};
+      tree.nodes[0][0] = {lower, upper, TriangleTree::kLeafBit};
+      flattener.leaf(static_cast<const BuiltLeaf&>(*root), 0);
     } else {
-      flattener.node(*root, 1);
+      flattener.node(static_cast<const BuiltNode&>(*root), 0, 0);
     }
   }
   rtcReleaseBVH(bvh);
@@ -153,12 +189,9 @@ TriangleTree make_triangle_tree(const SceneFloats& scene) {
 }
 
 TriangleTree make_tree_over(std::span<const Bounds> boxes) {
-  std::vector<RTCBuildPrimitive> primitives;
-  primitives.reserve(boxes.size());
-  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-    const auto& [lower, upper] = boxes[i];
-    primitives.push_back({lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, i});
-  }
+  std::vector<RTCBuildPrimitive> primitives(boxes.size());
+  mesh::for_each_index(boxes.size(),
+                       [&](std::size_t i) { primitives[i] = primitive_of(boxes[i], static_cast<std::uint32_t>(i)); });
   return make_tree(std::move(primitives));
 }
 

@@ -41,9 +41,9 @@ void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene, const Triangl
   scale_ = scale;
   walk_.reset();
   sides_.prepare_mesh(scene);
-  const std::vector<EdgeRecord> records = sides_.records(std::nullopt);
+  const EdgeRecords records = sides_.records();
   edge_count_ = records.size();
-  whole_.emplace(*device_, edge_texels(records, scale_));
+  whole_.emplace(*device_, edge_texels(records, tree, scale_));
   without_body_.reset();
   back_.reset();
   front_ = &*whole_;
@@ -67,7 +67,7 @@ void EdgeLists::prepare_edges() {
   front_->restore();
   if (edges.has_body && !(without_body_ && without_body_->light == light_->index)) {
     without_body_.emplace(
-        WithoutBody{light_->index, EdgeUpload(*device_, edge_texels(sides_.records(std::nullopt), scale_))});
+        WithoutBody{light_->index, EdgeUpload(*device_, edge_texels(sides_.records(), *tree_, scale_))});
     before = nullptr;
   }
   front_ = edges.has_body ? &without_body_->edges : &*whole_;

@@ -2,6 +2,7 @@
 
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
+#include "visibility/tree/tree_along.hpp"
 #include "volumes/edges/plane_normal.hpp"
 
 #include <glm/common.hpp>
@@ -13,6 +14,8 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -27,16 +30,20 @@ glm::dvec3 normal_of(const std::array<glm::vec3, 3>& corners) {
 
 /// Of exactly coplanar triangles the largest: for each plane number.
 std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
-  std::vector<double> size(scene.triangles.size(), -1);
-  std::vector<std::uint32_t> largest(scene.triangles.size());
-  for (const std::uint32_t triangle : triangles) {
-    const glm::dvec3 n = normal_of(scene.corners(triangle));
-    const std::uint32_t plane = scene.plane[triangle];
-    if (const double squared = glm::dot(n, n); squared > size[plane]) {
-      size[plane] = squared;
-      largest[plane] = triangle;
-    }
+  std::vector<double> size(triangles.size());
+  mesh::for_each_index(size.size(), [&](std::size_t i) {
+    const glm::dvec3 n = normal_of(scene.corners(triangles[i]));
+    size[i] = glm::dot(n, n);
+  });
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> largest(scene.triangles.size(), kNone);  // an index into `triangles`, until the end
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    std::uint32_t& of_plane = largest[scene.plane[triangles[i]]];
+    if (of_plane == kNone || size[i] > size[of_plane]) of_plane = i;
   }
+  mesh::for_each_index(largest.size(), [&](std::size_t plane) {
+    largest[plane] = largest[plane] == kNone ? 0 : triangles[largest[plane]];
+  });
   return largest;
 }
 
@@ -53,35 +60,15 @@ bool turned_alike(const SceneFloats& scene, std::uint32_t x, std::uint32_t y) {
   return true;
 }
 
-/// The triangle's side for the edge a→b: in front where (a, b, apex) runs counter-clockwise.
-EdgeSide side_of(const SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle, const glm::vec3& a,
-                 const glm::vec3& b) {
-  const std::array<glm::vec3, 3> corners = scene.corners(triangle);
-  const auto place = [&](const glm::vec3& x) {
-    return static_cast<int>(std::find(corners.begin(), corners.end(), x) - corners.begin());
-  };
-  EdgeSide side = plane_of(scene, casters, triangle);
-  if ((place(a) + 1) % 3 != place(b)) side.n = -side.n;
-  return side;
-}
-
-/// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
-bool is_flat(const EdgeRecord& record) {
-  const auto& [s, t] = record.sides;
-  return s.plane != SceneFloats::kNoPlane && s.plane == t.plane && glm::dot(s.n, t.n) < 0;
-}
-
 }  // namespace
 
 EdgeCasters edge_casters(const SceneFloats& scene, std::int32_t light_index) {
   EdgeCasters casters;
+  casters.triangle.reserve(scene.triangles.size());
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
     if (scene.casts_shadow[i] == 0 || (light_index >= 0 && scene.emits[i] == light_index)) continue;
     casters.triangle.push_back(i);
-    casters.triangles.push_back(scene.triangles[i]);
   }
-  casters.positions = mesh::widened(scene.positions);
-  casters.graph = mesh::build_edge_graph({casters.positions, casters.triangles});
   casters.largest_in_plane = largest_in_planes(scene, casters.triangle);
   return casters;
 }
@@ -93,42 +80,79 @@ EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uin
   return {turned_alike(scene, triangle, chosen) ? n : -n, corners[0], plane};
 }
 
-namespace {
-
-/// Those of one edge: a record for each two of its triangles.
-void add_records(const SceneFloats& scene, const EdgeCasters& casters, std::uint32_t e,
-                 std::vector<EdgeRecord>& records) {
-  const mesh::Edge& edge = casters.graph.edges[e];
-  const glm::vec3 a(casters.positions[edge.a]), b(casters.positions[edge.b]);
-  const auto around = casters.graph.around(e);
-  for (std::size_t i = 0; i < around.size(); i += 2) {
-    EdgeRecord record{a, b, {}};
-    for (std::size_t j = i; j < std::min(i + 2, around.size()); ++j) {
-      record.sides[j - i] = side_of(scene, casters, casters.triangle[around[j].triangle], a, b);
-    }
-    if (!is_flat(record)) records.push_back(record);
+EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters) : scene_(&scene), casters_(&casters) {
+  const std::size_t count = casters.triangle.size();
+  std::vector<mesh::Triangle> chosen;
+  if (count < scene.triangles.size()) {
+    chosen.resize(count);
+    mesh::for_each_index(count, [&](std::size_t i) { chosen[i] = scene.triangles[casters.triangle[i]]; });
   }
+  graph_ = mesh::build_edge_graph(
+      {mesh::widened(scene.positions), count < scene.triangles.size() ? chosen : scene.triangles});
+  graph_.vertex = {};  // of no more use here
+  graph_.kind = {};
+  graph_.triangle_edges = {};
+  planes_.resize(count);
+  mesh::for_each_index(count, [&](std::size_t i) { planes_[i] = plane_of(scene, casters, casters.triangle[i]); });
+  find_pairs();
 }
 
-}  // namespace
+/// In front where (a, b, apex) runs counter-clockwise, for the edge a→b.
+EdgeSide EdgeRecords::side(std::uint32_t incidence) const {
+  const mesh::Incidence& at = graph_.incidences[incidence];
+  EdgeSide side = planes_[at.triangle];
+  if (at.reversed) side.n = -side.n;  // the graph's triangles are sorted like those that n is of
+  return side;
+}
 
-std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters) {
+/// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
+bool EdgeRecords::is_flat(const Pair& pair) const {
+  if (pair.first + 1 == graph_.first[pair.edge + 1]) return false;
+  const EdgeSide s = side(pair.first), t = side(pair.first + 1);
+  return s.plane != SceneFloats::kNoPlane && s.plane == t.plane && glm::dot(s.n, t.n) < 0;
+}
+
+void EdgeRecords::find_pairs() {
   constexpr std::size_t kChunk = 4096;
-  const std::size_t edges = casters.graph.edges.size();
-  std::vector<std::vector<EdgeRecord>> chunks((edges + kChunk - 1) / kChunk);
+  const std::size_t edges = graph_.edges.size();
+  std::vector<std::vector<Pair>> chunks((edges + kChunk - 1) / kChunk);
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
     chunks[i].reserve(kChunk);
-    for (std::size_t e = i * kChunk; e < std::min((i + 1) * kChunk, edges); ++e)
-      add_records(scene, casters, static_cast<std::uint32_t>(e), chunks[i]);
+    for (std::size_t e = i * kChunk; e < std::min((i + 1) * kChunk, edges); ++e) {
+      for (std::uint32_t first = graph_.first[e]; first < graph_.first[e + 1]; first += 2) {
+        const Pair pair{static_cast<std::uint32_t>(e), first};
+        if (!is_flat(pair)) chunks[i].push_back(pair);
+      }
+    }
   });
   std::vector<std::size_t> first(chunks.size());
   std::transform_exclusive_scan(chunks.begin(), chunks.end(), first.begin(), std::size_t{0}, std::plus{},
                                 [](const auto& chunk) { return chunk.size(); });
-  std::vector<EdgeRecord> records(chunks.empty() ? 0 : first.back() + chunks.back().size());
+  pairs_.resize(chunks.empty() ? 0 : first.back() + chunks.back().size());
   tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
-    std::ranges::copy(chunks[i], records.begin() + static_cast<std::ptrdiff_t>(first[i]));
+    std::ranges::copy(chunks[i], pairs_.begin() + static_cast<std::ptrdiff_t>(first[i]));
   });
-  return records;
+}
+
+EdgeRecord EdgeRecords::operator[](std::size_t record) const {
+  const auto [edge, first] = pairs_[record];
+  const auto [a, b] = graph_.edges[edge];
+  EdgeRecord result{scene_->positions[a], scene_->positions[b], {side(first), EdgeSide{}}};
+  if (first + 1 < graph_.first[edge + 1]) result.sides[1] = side(first + 1);
+  return result;
+}
+
+visibility::Bounds EdgeRecords::box(std::size_t record) const {
+  const auto [a, b] = graph_.edges[pairs_[record].edge];
+  const glm::vec3 &from = scene_->positions[a], &to = scene_->positions[b];
+  return {glm::min(from, to), glm::max(from, to)};
+}
+
+std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters& casters) {
+  const EdgeRecords records(scene, casters);
+  std::vector<EdgeRecord> all(records.size());
+  mesh::for_each_index(all.size(), [&](std::size_t i) { all[i] = records[i]; });
+  return all;
 }
 
 namespace {
@@ -143,102 +167,147 @@ struct Cone {
 constexpr Cone kAllDirections{{0, 0, 0}, 0};
 constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space leave nothing out
 
-Cone joined(const Cone& x, Cone y) {
-  if (x.is_all() || y.is_all()) return kAllDirections;
-  if (glm::dot(x.axis, y.axis) < 0) y.axis = -y.axis;
-  const double between = std::acos(std::clamp(glm::dot(x.axis, y.axis), -1.0, 1.0));
-  const double rx = std::acos(std::clamp(x.cosine, -1.0, 1.0)), ry = std::acos(std::clamp(y.cosine, -1.0, 1.0));
-  if (between + ry <= rx) return x;
-  if (between + rx <= ry) return y;
-  const double radius = 0.5 * (between + rx + ry);
-  if (radius >= kWidest) return kAllDirections;
-  // From x's axis towards y's by radius − rx.
-  const double turn = between > 0 ? (radius - rx) / between : 0;
-  const glm::dvec3 axis = glm::normalize(x.axis * (1 - turn) + y.axis * turn);
-  // The chord is not the arc: take the radius that holds both.
-  const double to_x = std::acos(std::clamp(glm::dot(axis, x.axis), -1.0, 1.0)) + rx;
-  const double to_y = std::acos(std::clamp(glm::dot(axis, y.axis), -1.0, 1.0)) + ry;
-  const double reach = std::max(to_x, to_y);
-  return reach >= kWidest ? kAllDirections : Cone{axis, std::cos(reach)};
-}
+/// Two normals such that k_e = 0 where p is in front of both or behind both: of a record, or an axis twice.
+struct Normals {
+  glm::dvec3 x, y;
+};
 
-/// The record's two normals, the second turned so that k_e = 0 where p is on the same side of both.
-Cone cone_of(const EdgeRecord& record) {
+/// The middle of directions, each turned to the side of the sum of those before; 0: there is none.
+class Middle {
+ public:
+  /// Turns them if need be.
+  void add(Normals& one) {
+    const glm::dvec3 both = one.x + one.y;
+    if (glm::dot(sum_, both) < 0) {
+      one = {-one.x, -one.y};
+      sum_ -= both;
+    } else {
+      sum_ += both;
+    }
+  }
+  [[nodiscard]] glm::dvec3 axis() const {
+    const double length = glm::length(sum_);
+    return length > 0 ? sum_ / length : glm::dvec3(0);
+  }
+
+ private:
+  glm::dvec3 sum_{0};
+};
+
+const double kLeastCosine = std::cos(kWidest);
+
+/// The second normal turned so that k_e = 0 where p is on the same side of both; nothing if there are not two.
+std::optional<Normals> normals_of(const EdgeRecord& record) {
   const glm::dvec3 n1(record.sides[0].n), n2(-record.sides[1].n);
-  if (n1 == glm::dvec3(0) || n2 == glm::dvec3(0)) return kAllDirections;
-  const glm::dvec3 x = glm::normalize(n1), y = glm::normalize(n2);
-  const glm::dvec3 sum = x + y;
-  if (glm::dot(x, y) < -0.999) return kAllDirections;  // half of 177 degrees and more
-  const glm::dvec3 axis = glm::normalize(sum);
-  return {axis, std::min(glm::dot(axis, x), glm::dot(axis, y))};
+  if (n1 == glm::dvec3(0) || n2 == glm::dvec3(0)) return std::nullopt;
+  return Normals{glm::normalize(n1), glm::normalize(n2)};
 }
 
 using visibility::TriangleTree;
 
+/// Of a leaf's records.
+template <typename Records>
+Cone cone_of(const TriangleTree::Leaf& leaf, const Records& records) {
+  std::array<Normals, TriangleTree::kWidth> normals;
+  std::size_t count = 0;
+  Middle middle;
+  for (const std::uint32_t record : leaf) {
+    if (record == TriangleTree::kNoTriangle) break;
+    const std::optional<Normals> own = normals_of(records[record]);
+    if (!own) return kAllDirections;
+    normals[count] = *own;
+    middle.add(normals[count++]);
+  }
+  Cone cone{middle.axis(), 1};
+  for (const Normals& own : std::span(normals).first(count))
+    cone.cosine = std::min({cone.cosine, glm::dot(cone.axis, own.x), glm::dot(cone.axis, own.y)});
+  return cone.cosine <= kLeastCosine ? kAllDirections : cone;
+}
+
+/// Holds all of these.
+Cone joined(std::span<const Cone> cones) {
+  std::array<Normals, TriangleTree::kWidth> axes;
+  Middle middle;
+  for (std::size_t i = 0; i < cones.size(); ++i) {
+    if (cones[i].is_all()) return kAllDirections;
+    axes[i] = {cones[i].axis, cones[i].axis};
+    middle.add(axes[i]);
+  }
+  Cone all{middle.axis(), 1};
+  for (std::size_t i = 0; i < cones.size(); ++i) {
+    const double between = glm::dot(all.axis, axes[i].x), own = cones[i].cosine;
+    if (between <= 0) return kAllDirections;
+    // Both angles are below 90 degrees: the cosine of their sum.
+    const auto sine = [](double cosine) { return std::sqrt(std::max(1 - cosine * cosine, 0.0)); };
+    all.cosine = std::min(all.cosine, between * own - sine(between) * sine(own));
+  }
+  return all.cosine <= kLeastCosine ? kAllDirections : all;
+}
+
+template <typename Records>
 class Cones {
  public:
-  Cones(const TriangleTree& tree, std::span<const EdgeRecord> records) : tree_(tree), records_(records) {
+  Cones(const TriangleTree& tree, const Records& records) : tree_(tree) {
     of_child_.resize(tree.nodes.size() * TriangleTree::kWidth);
     of_leaf_.resize(tree.leaves.size());
-    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) { of_leaf_[i] = of_leaf(tree.leaves[i]); });
-    if (!tree.nodes.empty()) of_node(0);
+    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) { of_leaf_[i] = cone_of(tree.leaves[i], records); });
+    if (!tree.nodes.empty()) static_cast<void>(of_node(0, 0));
   }
   [[nodiscard]] const Cone& of_child(std::size_t node, std::size_t child) const {
     return of_child_[node * TriangleTree::kWidth + child];
   }
 
  private:
-  Cone of_node(std::uint32_t node) {
-    std::optional<Cone> all;
-    for (std::size_t i = 0; i < TriangleTree::kWidth; ++i) {
+  static constexpr std::uint32_t kTaskLevels = 3;  // 512 tasks
+
+  Cone of_node(std::uint32_t node, std::uint32_t level) {
+    const std::span<Cone> own = std::span(of_child_).subspan(node * TriangleTree::kWidth, TriangleTree::kWidth);
+    const auto of_child = [&](std::size_t i) {
       const std::uint32_t reference = tree_.nodes[node][i].reference;
-      if (reference == TriangleTree::kNoChild) continue;
+      if (reference == TriangleTree::kNoChild) return;
       const bool leaf = (reference & TriangleTree::kLeafBit) != 0;
-      const Cone cone = leaf ? of_leaf_[reference & ~TriangleTree::kLeafBit] : of_node(reference);
-      of_child_[node * TriangleTree::kWidth + i] = cone;
-      all = all ? joined(*all, cone) : cone;
+      own[i] = leaf ? of_leaf_[reference & ~TriangleTree::kLeafBit] : of_node(reference, level + 1);
+    };
+    if (level < kTaskLevels) {
+      tbb::parallel_for(std::size_t{0}, std::size_t{TriangleTree::kWidth}, of_child);
+    } else {
+      for (std::size_t i = 0; i < TriangleTree::kWidth; ++i) of_child(i);
     }
-    return all.value_or(kAllDirections);
-  }
-  [[nodiscard]] Cone of_leaf(const TriangleTree::Leaf& leaf) const {
-    std::optional<Cone> all;
-    for (const std::uint32_t record : leaf) {
-      if (record == TriangleTree::kNoTriangle) continue;
-      const Cone cone = cone_of(records_[record]);
-      all = all ? joined(*all, cone) : cone;
-    }
-    return all.value_or(kAllDirections);
+    const auto count = std::ranges::count_if(
+        tree_.nodes[node], [](const auto& child) { return child.reference != TriangleTree::kNoChild; });
+    return joined(own.first(static_cast<std::size_t>(count)));
   }
 
   const TriangleTree& tree_;
-  std::span<const EdgeRecord> records_;
   std::vector<Cone> of_child_, of_leaf_;
 };
 
-}  // namespace
-
-EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
-  std::vector<visibility::Bounds> boxes(records.size());
-  mesh::for_each_index(boxes.size(), [&](std::size_t i) {
-    boxes[i] = {glm::min(records[i].a, records[i].b), glm::max(records[i].a, records[i].b)};
-  });
-  const TriangleTree tree = visibility::make_tree_over(boxes);
-  const Cones cones(tree, records);
+template <typename Records>
+EdgeTree tree_of(TriangleTree tree, const Records& records, float scale) {
+  const Cones<Records> cones(tree, records);
   const std::vector<visibility::Texel> boxed = visibility::node_texels(tree, scale);
-
-  EdgeTexels texels;
-  texels.depth = tree.depth;
-  texels.records = static_cast<std::uint32_t>(records.size());
-  texels.nodes.resize(boxed.size() / 2 * 3);
+  EdgeTree result;
+  result.nodes.resize(boxed.size() / 2 * 3);
   mesh::for_each_index(boxed.size() / 2, [&](std::size_t child) {
     const Cone& cone = cones.of_child(child / TriangleTree::kWidth, child % TriangleTree::kWidth);
     // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
-    // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a tenth of this in 20 levels.
+    // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a quarter of this in 20 levels.
     const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
-    texels.nodes[3 * child] = boxed[2 * child];
-    texels.nodes[3 * child + 1] = boxed[2 * child + 1];
-    texels.nodes[3 * child + 2] = {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)};
+    result.nodes[3 * child] = boxed[2 * child];
+    result.nodes[3 * child + 1] = boxed[2 * child + 1];
+    result.nodes[3 * child + 2] = {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)};
   });
+  result.tree = std::move(tree);
+  return result;
+}
+
+template <typename Records>
+EdgeTexels texels_of(EdgeTree&& all, const Records& records, float scale) {
+  const TriangleTree& tree = all.tree;
+  EdgeTexels texels;
+  texels.depth = tree.depth;
+  texels.records = static_cast<std::uint32_t>(records.size());
+  texels.nodes = std::move(all.nodes);
   for (auto& list : texels.slots) list.resize(tree.leaves.size() * TriangleTree::kWidth);
   mesh::for_each_index(tree.leaves.size() * TriangleTree::kWidth, [&](std::size_t i) {
     const std::uint32_t number = tree.leaves[i / TriangleTree::kWidth][i % TriangleTree::kWidth];
@@ -257,6 +326,34 @@ EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
     if (list.empty()) list.emplace_back();
   }
   return texels;
+}
+
+}  // namespace
+
+EdgeTree edge_tree(const EdgeRecords& records, const TriangleTree& triangles, float scale) {
+  std::vector<visibility::Bounds> boxes(records.size());
+  std::vector<std::uint32_t> near(records.size());
+  mesh::for_each_index(boxes.size(), [&](std::size_t i) {
+    boxes[i] = records.box(i);
+    near[i] = records.triangle(i);
+  });
+  return tree_of(visibility::make_tree_along(triangles, boxes, near), records, scale);
+}
+
+EdgeTree edge_tree(std::span<const EdgeRecord> records, float scale) {
+  std::vector<visibility::Bounds> boxes(records.size());
+  mesh::for_each_index(boxes.size(), [&](std::size_t i) {
+    boxes[i] = {glm::min(records[i].a, records[i].b), glm::max(records[i].a, records[i].b)};
+  });
+  return tree_of(visibility::make_tree_over(boxes), records, scale);
+}
+
+EdgeTexels edge_texels(const EdgeRecords& records, const TriangleTree& triangles, float scale) {
+  return texels_of(edge_tree(records, triangles, scale), records, scale);
+}
+
+EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
+  return texels_of(edge_tree(records, scale), records, scale);
 }
 
 }  // namespace penumbra::volumes

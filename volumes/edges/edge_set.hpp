@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,13 +33,10 @@ struct EdgeRecord {
   std::uint32_t cut = 0;  ///< CutEnds: the number of its ends as they are before rounding; 0: a and b are not rounded
 };
 
-/// The triangles that may shade a light, and their edges.
+/// The triangles that may shade a light.
 struct EdgeCasters {
-  std::vector<glm::dvec3> positions;
-  std::vector<std::uint32_t> triangle;    ///< into the scene's
-  std::vector<mesh::Triangle> triangles;  ///< their corners
-  mesh::EdgeGraph graph;
-  std::vector<std::uint32_t> largest_in_plane;  ///< for each SceneFloats::plane: of the scene's triangles, the largest
+  std::vector<std::uint32_t> triangle;          ///< into the scene's
+  std::vector<std::uint32_t> largest_in_plane;  ///< for each SceneFloats::plane: of these triangles, the largest
 };
 /// `light_index`: what is this light's own body is left out; −1: nothing is.
 EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t light_index);
@@ -48,8 +46,50 @@ EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t ligh
 /// one side of all of them, however the device rounds.
 EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle);
 
-/// All records with k_e not 0 everywhere.
+/// All records with k_e not 0 everywhere. Each is computed when it is asked for, from edges and planes that are there
+/// once; a list of them takes half a gigabyte for ten million edges.
+class EdgeRecords {
+ public:
+  /// All must outlive it.
+  EdgeRecords(const visibility::SceneFloats& scene, const EdgeCasters& casters);
+
+  [[nodiscard]] std::size_t size() const { return pairs_.size(); }
+  [[nodiscard]] EdgeRecord operator[](std::size_t record) const;
+  [[nodiscard]] visibility::Bounds box(std::size_t record) const;
+  /// One of its triangles: the scene's number.
+  [[nodiscard]] std::uint32_t triangle(std::size_t record) const {
+    return casters_->triangle[graph_.incidences[pairs_[record].first].triangle];
+  }
+
+ private:
+  /// Two of an edge's triangles, or its last: incidences from the first of them on.
+  struct Pair {
+    std::uint32_t edge, first;
+  };
+  [[nodiscard]] EdgeSide side(std::uint32_t incidence) const;
+  [[nodiscard]] bool is_flat(const Pair& pair) const;
+  void find_pairs();
+
+  const visibility::SceneFloats* scene_;
+  const EdgeCasters* casters_;
+  mesh::EdgeGraph graph_;
+  std::vector<EdgeSide> planes_;  ///< of each caster (plane_of)
+  std::vector<Pair> pairs_;
+};
+
+/// All of them at once.
 std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const EdgeCasters& casters);
+
+/// A hierarchy over records: the boxes' tree, whose leaves hold numbers of records, and its nodes as texels (see
+/// EdgeTexels).
+struct EdgeTree {
+  visibility::TriangleTree tree;
+  std::vector<visibility::Texel> nodes;
+};
+/// Of all records of a scene, along the tree over its triangles.
+EdgeTree edge_tree(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale);
+/// Of any records.
+EdgeTree edge_tree(std::span<const EdgeRecord> records, float scale);
 
 /// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
 /// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
@@ -63,6 +103,7 @@ struct EdgeTexels {
   std::uint32_t depth = 0;
   std::uint32_t records = 0;
 };
+EdgeTexels edge_texels(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale);
 EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale);
 
 }  // namespace penumbra::volumes

@@ -33,10 +33,8 @@ class EdgeSides {
 
   /// Of all that casts shadow of the light last prepared; of everything before there is one.
   [[nodiscard]] const EdgeCasters& casters() const { return casters_; }
-  /// Cut at `side`, if there.
-  [[nodiscard]] std::vector<EdgeRecord> records(const std::optional<LightSide>& side) const {
-    return side ? cut_records(*scene_, casters_, *side) : edge_records(*scene_, casters_);
-  }
+  /// Of these.
+  [[nodiscard]] EdgeRecords records() const { return {*scene_, casters_}; }
 
  private:
   std::string method_;

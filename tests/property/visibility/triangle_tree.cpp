@@ -2,8 +2,10 @@
 // is smaller than what is below it.
 
 #include "tests/agreement/lattice.hpp"
+#include "visibility/tree/tree_along.hpp"
 #include "visibility/tree/triangle_tree.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <glm/common.hpp>
@@ -96,6 +98,36 @@ TEST(TriangleTree, HoldsDoublesAsOftenAsTheyAre) {
     SCOPED_TRACE(count);
     check(visibility::make_scene_floats(
         with(std::vector<tests::Corners>(count, {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}))));
+  }
+}
+
+TEST(TriangleTree, AlongAnotherHoldsEveryBoxOnce) {
+  for (const std::uint32_t count : {1U, 8U, 9U, 64U, 65U, 1000U, 30000U}) {
+    tests::LatticeSoup soup(count, count < 100 ? 3 : 100);
+    const SceneFloats floats = make_scene_floats(with(soup.triangles(count)));
+    std::vector<std::uint32_t> casters;
+    std::vector<Bounds> boxes;
+    SceneFloats only = floats;  // whose triangles have the boxes' numbers
+    only.triangles.clear();
+    for (std::uint32_t i = 0; i < floats.triangles.size(); ++i) {
+      if (floats.casts_shadow[i] == 0) continue;
+      const auto [a, b, c] = floats.corners(i);
+      casters.push_back(i);
+      boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
+      only.triangles.push_back(floats.triangles[i]);
+    }
+    // Each near its own triangle, or many near one.
+    for (const std::size_t homes : {casters.size(), std::size_t{3}}) {
+      SCOPED_TRACE(fmt::format("{} triangles, near {}", count, homes));
+      std::vector<std::uint32_t> near;
+      for (std::size_t i = 0; i < boxes.size(); ++i) near.push_back(casters[i % std::min(homes, casters.size())]);
+      const TriangleTree tree = make_tree_along(make_triangle_tree(floats), boxes, near);
+      const Walk walk(only, tree);
+      for (const int seen : walk.triangle_seen) EXPECT_EQ(seen, 1);
+      for (const int seen : walk.node_seen) EXPECT_EQ(seen, 1);
+      for (const int seen : walk.leaf_seen) EXPECT_EQ(seen, 1);
+      EXPECT_EQ(walk.deepest, tree.depth);
+    }
   }
 }
 

@@ -118,7 +118,7 @@ void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
     const TriangleTree triangles = visibility::make_triangle_tree(floats);
     EdgeSides sides("test");
     sides.prepare_mesh(floats);
-    const std::vector<EdgeRecord> all = sides.records(std::nullopt);
+    const std::vector<EdgeRecord> all = edge_records(floats, sides.casters());
     auto edges = make(all, scale);
     const std::vector<Numbers> whole = reachable(edges);
     ASSERT_EQ(whole.size(), all.size());
@@ -128,7 +128,7 @@ void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
       for (const auto& side : {asked.front, asked.back}) {
         if (!side) continue;
         edges.cut({floats, triangles, sides.casters(), -1, *side});
-        const std::vector<EdgeRecord> expected = sides.records(side);
+        const std::vector<EdgeRecord> expected = cut_records(floats, sides.casters(), *side);
         EXPECT_EQ(reachable(edges), reachable(wide_edges(expected, scale))) << "seed " << seed;
         const std::size_t in_plane = edges_in_plane(floats, sides.casters(), sides.casters().triangle, *side).size();
         cut += all.size() - std::min(all.size(), expected.size() - in_plane);

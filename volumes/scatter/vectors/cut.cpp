@@ -60,9 +60,39 @@ class CutEdges::Dropping {
   float scale_;
 };
 
+namespace {
+
+void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
+  for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
+}
+
+template <typename Records>
+vectors::WideEdgeTree wide_tree(const EdgeTree& all, const Records& records, float scale) {
+  return vectors::wide_edge_tree(all.nodes, all.tree.leaves.size(), [&](std::size_t number, WideEdges& leaf) {
+    const visibility::TriangleTree::Leaf& slots = all.tree.leaves[number];
+    for (std::size_t lane = 0; lane < slots.size() && slots[lane] != visibility::TriangleTree::kNoTriangle; ++lane) {
+      const EdgeRecord record = records[slots[lane]];
+      store(leaf.a, lane, record.a * scale);
+      store(leaf.b, lane, record.b * scale);
+      for (std::size_t side = 0; side < 2; ++side) {
+        leaf.plane[side][lane] = record.sides[side].plane;
+        store(leaf.n[side], lane, record.sides[side].n);
+        store(leaf.anchor[side], lane, record.sides[side].anchor * scale);
+      }
+      leaf.cut[lane] = record.cut;
+      leaf.used |= 1U << lane;
+    }
+  });
+}
+
+}  // namespace
+
+vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale) {
+  return wide_tree(edge_tree(records, triangles, scale), records, scale);
+}
+
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale) {
-  const EdgeTexels texels = edge_texels(records, scale);
-  return texels.depth == 0 ? vectors::WideEdgeTree{} : vectors::wide_edge_tree(texels.nodes, texels.slots);
+  return wide_tree(edge_tree(records, scale), records, scale);
 }
 
 void CutEdges::restore() {

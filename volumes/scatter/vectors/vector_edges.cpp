@@ -16,7 +16,7 @@ constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples
 void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
   MaskMethod::prepare_mesh(scene);
   sides_.prepare_mesh(scene);
-  whole_ = CutEdges(wide_edges(sides_.records(std::nullopt), scale()));
+  whole_ = CutEdges(wide_edges(sides_.records(), tree(), scale()));
   without_body_.reset();
   front_ = &whole_;
 }
@@ -30,7 +30,7 @@ bool VectorEdges::prepare_casters() {
   LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
   front_->restore();
   if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
-    without_body_ = {light().index, CutEdges(wide_edges(sides_.records(std::nullopt), scale()))};
+    without_body_ = {light().index, CutEdges(wide_edges(sides_.records(), tree(), scale()))};
   }
   front_ = edges.has_body ? &without_body_->edges : &whole_;
   back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
