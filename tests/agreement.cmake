@@ -4,6 +4,7 @@ set(soup_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_case.cpp ${CMAKE_CURRENT_
 penumbra_test(agreement FULL CorpusSweep.*
   SOURCES
   agreement/aimed_pairs.cpp
+  agreement/tiny_lights.cpp
   agreement/broken_meshes_raytrace.cpp
   agreement/mesh/face_counters_binary.cpp
   agreement/mesh/face_counters_text.cpp

@@ -29,6 +29,29 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// The least of a triangle's heights: what a corner that rounding moved turns its plane by is in proportion to its
+/// inverse.
+double least_height(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+  return longest > 0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0;
+}
+
+/// How high a triangle of a polygon's stored corners must be for its plane to be the polygon's: so that half a unit in
+/// their last places, √3 / 2 · 2⁻²³ of the largest coordinate, turns it by less than a degree; of a polygon that is
+/// smaller than that, an eighth of the highest there is, about.
+double enough_height(const std::vector<glm::vec3>& corners) {
+  const glm::dvec3 first(corners.front());
+  glm::dvec3 farthest = first;
+  double largest = 0, highest = 0;
+  for (const glm::dvec3 corner : corners) {
+    if (!(glm::length(corner) < 1e30)) return 0;
+    largest = std::max({largest, std::abs(corner.x), std::abs(corner.y), std::abs(corner.z)});
+    if (glm::length(corner - first) > glm::length(farthest - first)) farthest = corner;
+  }
+  for (const glm::dvec3 corner : corners) highest = std::max(highest, least_height(first, farthest, corner));
+  return std::min(0x1p-17 * largest, highest / 8);
+}
+
 /// Unit square to unit disk, areas in proportion: Shirley, Chiu, "A low distortion map between disk and square" (1997).
 glm::dvec2 concentric_disk(const glm::dvec2& unit) {
   const double a = 2 * unit.x - 1, b = 2 * unit.y - 1;
@@ -179,14 +202,16 @@ void Builder::operator()(const scenes::Polygon& shape) const {
   if (!(light.area > 0)) refuse_zero_area(" (its corners lie on a line)");
   for (const glm::dvec3& corner : corners) light.outline.push_back(stored(corner));
 
-  // The plane of condition (2): the first three corners that are not on a line, as stored. If rounding has turned them
-  // (nearly collinear), they are swapped so that the light still emits to the side it was meant to.
+  // The plane of condition (2): the first three corners that are not on a line, nor so nearly that rounding would
+  // choose the plane. If rounding has turned them, they are swapped so that the light still emits to the side it was
+  // meant to.
+  const double enough = enough_height(light.outline);
   bool found = false;
   for (std::size_t i = 0; i < count && !found; ++i) {
     for (std::size_t j = i + 1; j < count && !found; ++j) {
       for (std::size_t k = j + 1; k < count && !found; ++k) {
         const glm::vec3 &a = light.outline[i], &b = light.outline[j], &c = light.outline[k];
-        if (!finite(a) || !finite(b) || !finite(c) || collinear(a, b, c)) continue;
+        if (!finite(a) || !finite(b) || !finite(c) || collinear(a, b, c) || least_height(a, b, c) < enough) continue;
         const glm::dvec3 stored_normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
         const bool turned = glm::dot(stored_normal, normal) < 0;
         light.center = a;

@@ -46,7 +46,8 @@ struct Light {
 
   /// The stored frame: three points that span the light's plane and say where it emits: (u − c) × (v − c) points to
   /// the emitting side. rectangle, ellipse: centre, centre + halfU, centre + halfV; disk: centre and two points of its
-  /// rim; polygon: its first three non-collinear vertices. (sphere: centre and radius only. sun: see `sun`.)
+  /// rim; polygon: its first three vertices that span its plane beyond rounding. (sphere: centre and radius only. sun:
+  /// see `sun`.)
   glm::vec3 center{0}, center_u{0}, center_v{0};
   std::vector<glm::vec3> outline;  ///< stored corners that bound a planar light: rectangle 4, polygon all, disk a
                                    ///< circumscribed square's 4, ellipse a circumscribed parallelogram's 4;

@@ -30,6 +30,7 @@ vec3 row_s, row_t, row_w;                                 // d ↦ (S, T, W): th
 float r;                                                  // R = max(|u|, |v|) · max(|c − p|, |u|, |v|)
 float light_pad;                                          // what the deviation of the light samples adds to a box
 float edge_error, det_error;                              // errors of edges and of det, to be scaled by lengths
+const float kLeastError = 1e-33;                          // more than underflow makes of an edge's values, and its reciprocal is finite
 const float kUnderflow = 1e-36;                           // what underflow makes of a sum of products, and some
 
 vec3 to_light(vec3 d) { return vec3(dot(row_s, d), dot(row_t, d), dot(row_w, d)); }
@@ -69,7 +70,7 @@ Seen see(vec3 a, vec3 e1, vec3 e2, vec2 sizes) {
 }
 
 // Of ab, bc, ca (bound F).
-vec3 error_of_edges(Seen seen, vec2 sizes) { return edge_error * seen.far * vec3(sizes.x, sizes.x + sizes.y, sizes.y); }
+vec3 error_of_edges(Seen seen, vec2 sizes) { return edge_error * seen.far * vec3(sizes.x, sizes.x + sizes.y, sizes.y) + kLeastError; }
 // Is p certainly off the triangle's plane? (bound det)
 bool has_side(float det, Seen seen, vec2 sizes) { return abs(det) > max(det_error * seen.from_a * sizes.x * sizes.y, kUnderflow); }
 
@@ -154,7 +155,7 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
     // The light point must be on the other side of the triangle's plane than p: a fourth half-plane.
     const vec3 n = cross(e1, e2), from = push.center - a;
     fourth = orientation * vec3(dot(n, push.u), dot(n, push.v), dot(n, from));
-    fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * sizes.x * sizes.y;
+    fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * sizes.x * sizes.y + kLeastError;
     if (!one_way) {                                       // p is within rounding of the triangle's plane: never certain
       fourth = vec3(0.0);
       fourth_error = 1.0;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <utility>
 
 namespace penumbra::visibility {
@@ -137,6 +138,30 @@ TEST(Lights, EllipseSamplesAreADisksInTheEllipsesFrame) {
   const glm::dvec3 front = glm::cross(shape.half_u, shape.half_v);
   EXPECT_TRUE(in_front_of_light(light, glm::vec3(shape.center + front)));
   EXPECT_FALSE(in_front_of_light(light, glm::vec3(shape.center - front)));
+}
+
+/// A corner in the middle of a side is off it by what rounding moved it: a plane through that side's three corners has
+/// any direction.
+TEST(Lights, RoundingChoosesNoPolygonsPlane) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> real(-1, 1);
+  const auto vector = [&] { return glm::dvec3(real(random), real(random), real(random)); };
+  for (int i = 0; i < 500; ++i) {
+    const glm::dvec3 n = glm::normalize(vector()), u = glm::normalize(glm::cross(n, vector())), v = glm::cross(n, u);
+    const double size = std::pow(10.0, -1.5 + 1.5 * real(random));
+    const glm::dvec3 c = vector(), a = c - size * u - size * v, b = c + size * u - size * v;
+    const Light light =
+        light_of(scenes::Polygon{{a, 0.5 * a + 0.5 * b, b, c + size * u + size * v, c - size * u + size * v}});
+    const glm::dvec3 stored(light.center),
+        normal = glm::cross(glm::dvec3(light.center_u) - stored, glm::dvec3(light.center_v) - stored);
+    // Its corners are off by √3 2⁻²⁵, and its triangles are over half of `size` high.
+    EXPECT_GT(glm::dot(glm::normalize(normal), n), std::cos(std::min(0.3, 8 * 0x1p-25 * std::sqrt(3) / size))) << i;
+    // The first three that are well apart: a judge who asks for three that are not exactly on a line finds the same.
+    const Light plain = light_of(scenes::Polygon{{a, b, c + size * u + size * v, c - size * u + size * v}});
+    EXPECT_EQ(plain.center, plain.outline[0]);
+    EXPECT_EQ(plain.center_u, plain.outline[1]);
+    EXPECT_EQ(plain.center_v, plain.outline[2]);
+  }
 }
 
 TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
