@@ -22,13 +22,6 @@
 namespace penumbra::app {
 namespace {
 
-constexpr const char* kExposure = "penumbra.exposure";
-
-bool is_there(const std::filesystem::path& file) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(file, error);
-}
-
 /// All lights together, in their order.
 std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std::size_t pixels) {
   std::vector<glm::vec3> sum(pixels, glm::vec3(0));
@@ -72,40 +65,10 @@ std::vector<std::pair<const char*, std::filesystem::path>> FrameFiles::all() con
 }
 
 bool FrameFiles::all_there() const {
-  return std::ranges::all_of(all(), [](const auto& file) { return is_there(file.second); });
-}
-
-Exposure parse_exposure(const std::string& text) {
-  if (text.empty() || text == "auto") return {};
-  if (text == "first") return {Exposure::Kind::first, std::nanf("")};
-  if (std::filesystem::path(text).extension() == ".exr") {
-    const auto written = written_exposure(text);
-    if (written) return {Exposure::Kind::fixed, *written};
-    throw InputError(
-        "--exposure {}: {}", text,
-        is_there(text) ? "its header does not say how it was exposed (penumbra.exposure)" : "there is no such picture");
-  }
-  const auto stops = parse_number(text);
-  if (!stops || !(std::abs(*stops) <= 100)) {
-    throw UsageError(
-        "--exposure {}: expected auto, first, stops from -100 to 100 (0: as it is), or a picture's name "
-        "(.exr)",
-        text);
-  }
-  return {Exposure::Kind::fixed, static_cast<float>(*stops)};
-}
-
-std::optional<float> written_exposure(const std::filesystem::path& picture) {
-  if (!is_there(picture)) return std::nullopt;
-  ExrFile file;
-  try {
-    file = read_exr(picture, {.channels = {"none of them: the header is enough"}});
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-  const auto text = file.attributes.find(kExposure);
-  const auto stops = text == file.attributes.end() ? std::nullopt : parse_number(text->second);
-  return stops ? std::optional(static_cast<float>(*stops)) : std::nullopt;
+  return std::ranges::all_of(all(), [](const auto& file) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(file.second, error);
+  });
 }
 
 FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices,
@@ -358,7 +321,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     if (std::ranges::find(own, light) != own.end()) continue;
     notes_.push_back(fmt::format(
         "light \"{}\" is not there at the frame's own time: R G B have its light, and it has no layer", light));
-    if (std::ranges::find(said_, notes_.back()) == said_.end()) spdlog::warn("{}", said_.emplace_back(notes_.back()));
+    say_once({notes_.back()});
   }
 }
 
@@ -380,7 +343,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops))
     stops = std::log2(auto_exposure(session(), sum, lamps_));
   if (exposure.kind == Exposure::Kind::first) exposure.stops = stops;
-  std::map<std::string, std::string> attributes = {{kExposure, fmt::format("{}", stops)}};
+  std::map<std::string, std::string> attributes = {{kExposureAttribute, fmt::format("{}", stops)}};
   if (frame_.number) attributes["penumbra.frame"] = fmt::format("{}", *frame_.number);
 
   progress_.clear();
@@ -395,9 +358,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
     png->settle();
   }
   compare::Stats stats = make_stats(session(), lights, run_);
-  for (const std::string& warning : stats.warnings) {
-    if (std::ranges::find(said_, warning) == said_.end()) spdlog::warn("{}", said_.emplace_back(warning));
-  }
+  say_once(stats.warnings);
   stats.warnings.insert(stats.warnings.end(), notes_.begin(), notes_.end());
   compare::Seconds& seconds = stats.seconds;
   seconds.load = load_seconds_;

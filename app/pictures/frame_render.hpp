@@ -2,6 +2,7 @@
 
 #include "app/light_methods.hpp"
 #include "app/output.hpp"
+#include "app/pictures/exposure.hpp"
 #include "app/pictures/picture_mean.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -27,21 +28,6 @@ struct FrameFiles {
   [[nodiscard]] std::vector<std::pair<const char*, std::filesystem::path>> all() const;
   [[nodiscard]] bool all_there() const;
 };
-
-/// How bright the PNG is: stops by which linear values are multiplied, or found from the picture.
-struct Exposure {
-  enum class Kind { automatic, first, fixed };
-  Kind kind = Kind::automatic;
-  float stops = 0;  ///< fixed; first: once it is known
-};
-
-/// "auto", "first", a number of stops, or FILE.exr: those that this picture's header says. Throws UsageError;
-/// InputError for a picture that does not say.
-Exposure parse_exposure(const std::string& text);
-
-/// The stops that an earlier run wrote into a picture's header; nothing if there is no such picture, or it does
-/// not say.
-std::optional<float> written_exposure(const std::filesystem::path& picture);
 
 /// What one picture shows, besides what is the same for all.
 struct Frame {
