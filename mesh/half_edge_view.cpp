@@ -202,10 +202,6 @@ std::vector<SurfaceLoop> HalfEdgeView::loops_around(const std::vector<bool>& ins
   return loops;
 }
 
-std::vector<SurfaceLoop> HalfEdgeView::boundary_loops() const {
-  return loops_around(std::vector<bool>(surface_->mesh.n_faces(), true));
-}
-
 std::vector<SurfaceLoop> HalfEdgeView::silhouette_loops(std::span<const Side> facings, Side side) const {
   PENUMBRA_ASSERT(side != Side::on, "loops are around the front or the back");
   std::vector<bool> inside(surface_->mesh.n_faces());

@@ -73,9 +73,6 @@ class HalfEdgeView {
   /// once for each inside face. Where several sectors of the set meet in a vertex, a loop follows its own sector.
   [[nodiscard]] std::vector<SurfaceLoop> loops_around(const std::vector<bool>& inside) const;
 
-  /// The loops around all faces: the rims of holes and sheets.
-  [[nodiscard]] std::vector<SurfaceLoop> boundary_loops() const;
-
   /// The loops around the faces that a point p sees from the given side, `facings` being mesh::facings(…, p) of the
   /// whole soup. Tie rule: a face seen edge-on belongs to neither side, so in the loops around the front it counts as
   /// back. Over the held faces, k_e(p) is exactly the number of front loops that run through the edge from a to b less

@@ -47,7 +47,7 @@ glm::vec3 EmbreeRange::direction(const glm::vec3& d) {
   return glm::vec3(glm::dvec3(d) * std::ldexp(1.0, exponent));
 }
 
-void EmbreeRange::require_light(const visibility::Light& light, const visibility::PointBounds& bounds) const {
+void EmbreeRange::require_light(const visibility::Light& light, const visibility::Bounds& bounds) const {
   const double farthest = std::max(largest_component(bounds.lower), largest_component(bounds.upper));
   if (farthest * scale_ <= kFarthest) return;
   throw InputError(

@@ -26,7 +26,7 @@ class EmbreeRange {
   EmbreeRange(const visibility::SceneFloats& scene, std::span<const std::uint32_t> casting);
 
   /// Throws InputError if the light's points are too far away for the size of the scene.
-  void require_light(const visibility::Light& light, const visibility::PointBounds& bounds) const;
+  void require_light(const visibility::Light& light, const visibility::Bounds& bounds) const;
 
   [[nodiscard]] glm::vec3 scaled(const glm::vec3& x) const { return glm::vec3(glm::dvec3(x) * scale_); }
 

@@ -112,7 +112,7 @@ class RayTraced final : public visibility::Method {
   std::vector<glm::vec3> scaled_points_;  // of a light that is no sphere
   std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> full_mask_;
-  visibility::PointBounds bounds_;
+  visibility::Bounds bounds_;
   std::vector<std::uint32_t> masks_;  // of the tile last evaluated
   Counts counts_;
 };

@@ -97,12 +97,6 @@ void Commands::fill(const Buffer& buffer, std::uint32_t value, std::uint64_t off
   full_barrier(state_->commands);
 }
 
-void Commands::copy(const Buffer& from, const Buffer& to, std::uint64_t bytes) {
-  state_->begin_if_needed();
-  state_->commands.copyBuffer(*from.state().buffer, *to.state().buffer, vk::BufferCopy(0, 0, bytes));
-  full_barrier(state_->commands);
-}
-
 void Commands::host_pass(const std::string& name, const std::function<void()>& work) {
   std::vector<visibility::PassTime> times = submit();
   const auto start = std::chrono::steady_clock::now();

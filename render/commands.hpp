@@ -23,7 +23,6 @@ class Commands {
 
   void fill(const Buffer& buffer, std::uint32_t value);  ///< every word of the buffer
   void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes);
-  void copy(const Buffer& from, const Buffer& to, std::uint64_t bytes);
 
   /// A pass of the host's own, which happens now: what was recorded before has run and is seen by it, and it is done
   /// before whatever is recorded after it. submit() returns its time, too.

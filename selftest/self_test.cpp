@@ -100,7 +100,11 @@ class SelfTest {
     checks.push_back(repeated("penumbra wedges", [&](Check& all) { wedges(all); }));
     checks.push_back(masks("view-sample", vsm::make_view_sample, {{"engine", "vulkan"}}));
     checks.push_back(masks("edge-scatter", volumes::make_edge_scatter, {{"engine", "vulkan"}}));
-    checks.push_back(masks("depth-complexity", volumes::make_depth_complexity, {}));
+    checks.push_back(masks("depth-complexity", volumes::make_depth_complexity, {{"engine", "vulkan"}}));
+    checks.push_back(each_stage("counters of depth-complexity", [&](const Stage& stage) {
+      CounterTally tally;
+      return check_counters(*volumes::make_depth_counters(device_), stage, 1, tally);
+    }));
     return checks;
   }
 

@@ -91,7 +91,7 @@ double spot_share(const Light& light, const glm::vec3& p) {
   return share * share * (light.spot->smooth ? cosine * (3 - 2 * share) : 1.0);
 }
 
-PointBounds point_bounds(const Light& light) {
+Bounds point_bounds(const Light& light) {
   if (light.kind == LightKind::sphere) {
     // The disks are inside the ball; their points are rounded to float32, as the bounds are.
     const float farthest = std::max({std::abs(light.center.x), std::abs(light.center.y), std::abs(light.center.z)});
@@ -100,7 +100,7 @@ PointBounds point_bounds(const Light& light) {
         0x1p-22f * farthest;
     return {light.center - reach, light.center + reach};
   }
-  PointBounds bounds{light.points.front(), light.points.front()};
+  Bounds bounds{light.points.front(), light.points.front()};
   for (const glm::vec3& point : light.points) {
     bounds.lower = glm::min(bounds.lower, point);
     bounds.upper = glm::max(bounds.upper, point);

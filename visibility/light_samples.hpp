@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scenes/scene.hpp"
+#include "visibility/bounds.hpp"
 #include "visibility/light_texture.hpp"
 
 #include <glm/vec2.hpp>
@@ -108,10 +109,7 @@ glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
 double spot_share(const Light& light, const glm::vec3& p);
 
 /// Bounds all light points of all view samples.
-struct PointBounds {
-  glm::vec3 lower{0}, upper{0};
-};
-PointBounds point_bounds(const Light& light);
+Bounds point_bounds(const Light& light);
 
 /// The unit-square samples of a pattern, in [0, 1)², in the order of every method (row-major for rows and grid: x along
 /// the row). rows: L = round(√N) rows of B = ceil(N / L) points, cell-centred, each row shifted along itself by its own

@@ -145,7 +145,7 @@ std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Devi
 }
 
 std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Light& light) {
-  const visibility::PointBounds around = light.sun ? visibility::PointBounds() : visibility::point_bounds(light);
+  const visibility::Bounds around = light.sun ? visibility::Bounds() : visibility::point_bounds(light);
   std::uint32_t apart = 0;
   for (std::size_t i = 0; i < closed.parts.size(); ++i) {
     const Bounds& box = closed.parts[i].box;

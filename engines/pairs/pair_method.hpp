@@ -92,7 +92,7 @@ class PairMethod : public visibility::Method {
   const visibility::Light* light_ = nullptr;
   visibility::Light sorted_;          // the light, if its samples are in another order
   std::vector<std::uint32_t> order_;  // light_order
-  visibility::PointBounds bounds_;
+  visibility::Bounds bounds_;
   BlockedSamples blocked_;
   const visibility::ViewSamples* samples_ = nullptr;
   std::size_t words_ = 0, first_pixel_ = 0;

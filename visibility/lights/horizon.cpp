@@ -16,7 +16,7 @@ namespace penumbra::visibility {
 // aᵢ|. Twice that is taken, at the largest |lᵢ − aᵢ|. Products of three differences of floats neither overflow nor
 // underflow in double.
 HorizonTest::HorizonTest(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing,
-                         const PointBounds& bounds)
+                         const Bounds& bounds)
     : light_(&light), carrier_(carrier), a_(light.sun ? glm::vec3(0) : carrier[0]), facing_(facing) {
   const auto& [lower, upper] = bounds;
   const glm::dvec3 first(carrier[0]), u = glm::dvec3(carrier[1]) - first, v = glm::dvec3(carrier[2]) - first;

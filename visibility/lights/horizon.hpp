@@ -15,8 +15,7 @@ namespace penumbra::visibility {
 /// point_bounds, say. Must not outlive the light.
 class HorizonTest {
  public:
-  HorizonTest(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing,
-              const PointBounds& bounds);
+  HorizonTest(const Light& light, const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Bounds& bounds);
 
   [[nodiscard]] bool all_above() const { return lowest_ > error_; }
   [[nodiscard]] bool none_above() const { return highest_ < -error_; }

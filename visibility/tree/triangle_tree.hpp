@@ -1,5 +1,6 @@
 #pragma once
 
+#include "visibility/bounds.hpp"
 #include "visibility/scene_floats.hpp"
 
 #include <glm/vec3.hpp>
@@ -56,9 +57,6 @@ struct TriangleTree {
 
 TriangleTree make_triangle_tree(const SceneFloats& scene);
 
-struct Bounds {
-  glm::vec3 lower{0}, upper{0};
-};
 /// A tree of the same form over any boxes (those of edges, for example): leaves hold their numbers.
 TriangleTree make_tree_over(std::span<const Bounds> boxes);
 

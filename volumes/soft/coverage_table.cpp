@@ -4,7 +4,6 @@
 
 #include "base/parallel.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -37,20 +36,6 @@ Point disk_point(int index) {
   return {radius * glm::dvec2(std::cos(2 * half_angle), std::sin(2 * half_angle)), half_angle};
 }
 
-int square_index(const glm::dvec2& q) {
-  const auto step = [](double x) {
-    return std::clamp(static_cast<int>(std::round((x + 1) * 0.5 * (kSide - 1))), 0, kSide - 1);
-  };
-  return step(q.y) * kSide + step(q.x);
-}
-
-int disk_index(const glm::dvec2& q) {
-  const double turn = std::atan2(q.y, q.x) / (2 * std::numbers::pi);
-  const int spoke = static_cast<int>(std::floor((turn < 0 ? turn + 1 : turn) * kSpokes)) % kSpokes;
-  const double circle = std::floor(0.5 * std::sqrt(q.x * q.x + q.y * q.y) * (2 * kCircles - 1));
-  return std::clamp(static_cast<int>(circle), 0, kCircles - 1) * kSpokes + spoke;
-}
-
 }  // namespace
 
 std::vector<double> coverage_table(const LightOutline& outline, const TextureWeights* texture) {
@@ -68,10 +53,6 @@ std::vector<double> coverage_table(const LightOutline& outline, const TextureWei
     table[i] = (to.fan - from.fan - triangle) / outline.area;
   });
   return table;
-}
-
-glm::dvec2 table_point(const LightOutline& outline, const glm::dvec2& q) {
-  return outline.corners.empty() ? disk_point(disk_index(q)).at : square_point(square_index(q)).at;
 }
 
 }  // namespace penumbra::volumes

@@ -21,7 +21,4 @@ std::vector<double> coverage_table(const LightOutline& outline, const TextureWei
 /// √2/31 = 0.0456, and √((1/31)² + (2 sin(π/128))²) = 0.0588.
 inline constexpr double kRectangleTableReach = 0.0457, kDiskTableReach = 0.0589;
 
-/// The point that the table has in place of q.
-glm::dvec2 table_point(const LightOutline& outline, const glm::dvec2& q);
-
 }  // namespace penumbra::volumes

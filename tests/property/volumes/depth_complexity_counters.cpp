@@ -5,6 +5,8 @@
 #include "tests/agreement/differences.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
+#include "selftest/mask_checks.hpp"
+#include "tests/unit/passed.hpp"
 #include "volumes/counters/depth_complexity.hpp"
 
 #include <atomic>
@@ -14,60 +16,15 @@
 namespace penumbra::volumes {
 namespace {
 
-using visibility::Light;
-using visibility::SceneFloats;
 using visibility::ViewSamples;
-
-int layers(const SceneFloats& floats, const ViewSamples& samples, std::size_t pixel, const Light& light,
-           std::uint32_t j) {
-  const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
-  int met = 0;
-  for (std::uint32_t i = 0; i < floats.triangles.size(); ++i) {
-    if (!visibility::may_occlude(floats, light, carrier, i)) continue;
-    met +=
-        visibility::segment_meets_triangle(samples.p[pixel], light.points[j], floats.corners(i), light).meets ? 1 : 0;
-  }
-  return met;
-}
-
-struct CounterTotals {
-  std::size_t pairs = 0, open = 0, several = 0, met = 0;
-};
 
 class Counters : public tests::DeviceTest {
  protected:
-  /// Every counter of every `step`-th pixel that sees the light's front.
+  /// Counters of every `step`-th pixel.
   void expect_layers(const std::string& name, const scenes::Scene& scene, std::uint32_t size, std::size_t step) {
+    SCOPED_TRACE(name);
     const tests::Stage stage(scene, size, size, {64, 0, 0, visibility::SamplePattern::sobol, 7});
-    const std::uint32_t n = stage.light.sample_count();
-    tests::run(*method_, stage.floats, stage.light, stage.samples);
-    std::vector<std::int32_t> counters(stage.samples.size() * n);
-    method_->read_counters(counters);
-    std::atomic<std::size_t> pairs = 0, open = 0, several = 0, met = 0, wrong = 0;
-    tbb::parallel_for(std::size_t{0}, stage.samples.size() / step, [&](std::size_t i) {
-      const std::size_t pixel = i * step;
-      if (stage.samples.triangle[pixel] == ViewSamples::kBackground) return;
-      for (std::uint32_t j = 0; j < n; ++j) {
-        const std::int32_t counter = counters[pixel * n + j];
-        ++pairs;
-        if (counter == DepthCounters::kNoCounter) {
-          ++open;
-          continue;
-        }
-        const int exact = layers(stage.floats, stage.samples, pixel, stage.light, j);
-        met += exact > 0 ? 1U : 0U;
-        several += exact > 1 ? 1U : 0U;
-        if (exact != counter && wrong++ == 0) {
-          ADD_FAILURE() << name << ": counter " << counter << ", but " << exact
-                        << " layers: " << tests::describe_pair(stage.floats, stage.samples, pixel, stage.light, j);
-        }
-      }
-    });
-    EXPECT_EQ(wrong, 0U) << name;
-    total_.pairs += pairs;
-    total_.open += open;
-    total_.several += several;
-    total_.met += met;
+    tests::expect_passed(selftest::check_counters(*method_, stage, step, total_));
   }
 
   void expect_seen_enough() {
@@ -79,7 +36,7 @@ class Counters : public tests::DeviceTest {
   }
 
   std::unique_ptr<DepthCounters> method_ = make_depth_counters(device());
-  CounterTotals total_;
+  selftest::CounterTally total_;
 };
 
 scenes::Scene broken_scene(const std::vector<std::string>& defects, std::uint32_t size) {
