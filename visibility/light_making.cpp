@@ -36,9 +36,10 @@ double least_height(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& 
   return longest > 0 ? glm::length(glm::cross(b - a, c - a)) / longest : 0;
 }
 
-/// How high a triangle of a polygon's stored corners must be for its plane to be the polygon's: so that half a unit in
-/// their last places, √3 / 2 · 2⁻²³ of the largest coordinate, turns it by less than a degree; of a polygon that is
-/// smaller than that, an eighth of the highest there is, about.
+/// How high a triangle of a polygon's stored corners must be for its plane to be the polygon's: so that rounding
+/// of one corner, by √3 · 2⁻²⁴ of the largest coordinate at most, turns it by √3 / 128 (.8 degrees) at most, and of all
+/// three by twice that: gradients of barycentric coordinates are no longer than 1 / height and add up to 0. Of a
+/// polygon that is smaller than that, an eighth of the highest there is, about.
 double enough_height(const std::vector<glm::vec3>& corners) {
   const glm::dvec3 first(corners.front());
   glm::dvec3 farthest = first;

@@ -106,7 +106,8 @@ struct Placing {
   float per_lift = 0;
   float through_p = 0;  ///< and one of which (far_x + far) times this is left does
 };
-/// An edge's end that is at height w over p and no more than this below the light's plane may have been cut there.
+/// An edge's end less than this below the light's plane may have been made by cutting the edge there; for a group of
+/// view samples, whose heights are rounded once more, less than twice this. (bound cut)
 inline float near_cut(const LightGrid& grid) {
   return 256 * kRound * grid.reach;
 }
