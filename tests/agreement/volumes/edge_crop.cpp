@@ -2,13 +2,11 @@
 // its list. It removes nothing that matters, and how much it removes is counted.
 
 #include "tests/agreement/differences.hpp"
+#include "tests/unit/shipped_scene.hpp"
 
-#include "scenes/formats/reader.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "volumes/counters/depth_complexity.hpp"
 #include "volumes/edges/edge_lists.hpp"
-
-#include <filesystem>
 
 namespace penumbra::volumes {
 namespace {
@@ -16,7 +14,7 @@ namespace {
 /// What a scene's first camera sees under its first light.
 struct CropStage {
   CropStage(const render::Device& device, const std::string& name, std::uint32_t size)
-      : scene(scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (name + ".json"))),
+      : scene(tests::shipped_scene(name)),
         floats(visibility::make_scene_floats(scene)),
         light(visibility::make_light(scene, 0, floats.origin, {64, 0, 0, visibility::SamplePattern::rows, 0})),
         samples(render::VisibilityBuffer(device, floats)

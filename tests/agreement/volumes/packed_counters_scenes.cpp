@@ -2,11 +2,9 @@
 // the ray caster it is too bright, never too dark.
 
 #include "tests/agreement/volumes/packed_counters.hpp"
+#include "tests/unit/shipped_scene.hpp"
 
 #include "render/visibility_buffer.hpp"
-#include "scenes/formats/reader.hpp"
-
-#include <filesystem>
 
 namespace penumbra::volumes {
 namespace {
@@ -14,8 +12,7 @@ namespace {
 class PackedScenesBase : public tests::DeviceTest, public testing::WithParamInterface<const char*> {
  protected:
   void check(std::uint32_t size, std::size_t by_edges) {
-    const scenes::Scene scene =
-        scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (std::string(GetParam()) + ".json"));
+    const scenes::Scene scene = tests::shipped_scene(GetParam());
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     const visibility::Light light =
         visibility::make_light(scene, 0, floats.origin, {16, 0, 0, visibility::SamplePattern::rows, 0});

@@ -5,14 +5,12 @@
 #include "mesh/shapes/shapes.hpp"
 #include "areas/exact_area.hpp"
 #include "render/visibility_buffer.hpp"
-#include "scenes/formats/reader.hpp"
 #include "tests/agreement/support.hpp"
+#include "tests/unit/shipped_scene.hpp"
 #include "volumes/wedges/soft_visibility.hpp"
 #include "volumes/wedges/wedge_casters.hpp"
 
 #include <glm/common.hpp>
-
-#include <filesystem>
 
 namespace penumbra::tests {
 
@@ -86,10 +84,6 @@ Errors errors_of(const std::vector<Found>& found, const std::vector<double>& tru
     }
   }
   return errors;
-}
-
-inline scenes::Scene shipped_scene(const std::string& name) {
-  return scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (name + ".json"));
 }
 
 inline std::vector<Corners> triangles_of(const mesh::TriangleSoup& soup) {

@@ -4,9 +4,9 @@
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
+#include "tests/unit/shipped_scene.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "scenes/formats/reader.hpp"
 #include "volumes/soft/hard_volume.hpp"
 #include "volumes/raster/volume_count.hpp"
 
@@ -155,10 +155,6 @@ class HardVolume : public tests::DeviceTest {
     EXPECT_LE(static_cast<double>(tally.doubtful), most_on_host * static_cast<double>(tally.boundary)) << name;
   }
 
-  static scenes::Scene shipped(const std::string& name) {
-    return scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (name + ".json"));
-  }
-
  private:
   // Kept from picture to picture: making the passes costs more than a small picture.
   static inline std::unique_ptr<VolumeCount> beyond_, before_;
@@ -167,7 +163,7 @@ class HardVolume : public tests::DeviceTest {
 TEST_F(HardVolume, CountsAreExactOnShippedScenes) {
   for (const char* name :
        {"broken", "bunny", "contact", "fusion", "large-penumbra", "parallel-square", "room", "self-shadow", "thin"}) {
-    expect_exact(name, Picture(shipped(name), device(), 56, 40));
+    expect_exact(name, Picture(tests::shipped_scene(name), device(), 56, 40));
   }
 }
 
@@ -175,7 +171,7 @@ TEST_F(HardVolume, CountsAreExactOnShippedScenesFull) {
   for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_SCENES)) {
     const std::string name = entry.path().stem().string();
     if (entry.path().extension() != ".json" || name.ends_with(".schema")) continue;
-    expect_exact(name, Picture(shipped(name), device(), 160, 120));
+    expect_exact(name, Picture(tests::shipped_scene(name), device(), 160, 120));
   }
 }
 
@@ -211,7 +207,7 @@ TEST_F(HardVolume, CountsAreExactWhereEverythingCoincides) {
 
 /// The occluder's shadow on the floor is the square, scaled by two from the light's centre: a closed form.
 TEST_F(HardVolume, ASquareThrowsASquare) {
-  const Picture picture(shipped("parallel-square"), device(), 200, 150);
+  const Picture picture(tests::shipped_scene("parallel-square"), device(), 200, 150);
   const auto method = make_hard_volume(device(), {});
   method->prepare_mesh(picture.floats);
   method->prepare_light(picture.light);
@@ -338,7 +334,7 @@ TEST_F(HardVolume, CloseUpsWhereRoundingMovesPoints) {
 
 TEST_F(HardVolume, ZPassIsExactWhereTheCameraIsLit) {
   for (const char* name : {"fusion", "contact", "thin"}) {
-    const Picture picture(shipped(name), device(), 56, 40);
+    const Picture picture(tests::shipped_scene(name), device(), 56, 40);
     const Counted beyond = run(picture), before = run(picture, CountVariant::z_pass);
     EXPECT_EQ(beyond.counts, before.counts) << name;
   }

@@ -5,13 +5,11 @@
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "mesh/shapes/shapes.hpp"
-#include "scenes/formats/reader.hpp"
 #include "selftest/edge_checks.hpp"
 #include "tests/unit/passed.hpp"
+#include "tests/unit/shipped_scene.hpp"
 #include "volumes/edges/facing.shared.h"
 #include "volumes/raster/wedge_builder.hpp"
-
-#include <filesystem>
 
 namespace penumbra::volumes {
 namespace {
@@ -171,9 +169,7 @@ TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
 TEST_F(WedgeBuilderTest, ShippedScenesAreValid) {
   Tally tally;
   for (const char* name : {"broken", "contact", "fusion", "parallel-square"}) {
-    expect_sound(name,
-                 Stage(scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (std::string(name) + ".json"))),
-                 How::valid_and_like_host, tally);
+    expect_sound(name, Stage(tests::shipped_scene(name)), How::valid_and_like_host, tally);
   }
   print("shipped scenes", tally);
   EXPECT_EQ(tally.on_host, 0U);

@@ -5,12 +5,10 @@
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/point_lights.hpp"
 #include "tests/property/lattice_truth.hpp"
+#include "tests/unit/shipped_scene.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "scenes/formats/reader.hpp"
 #include "vsm/alias_free.hpp"
-
-#include <filesystem>
 
 namespace penumbra::vsm {
 namespace {
@@ -119,10 +117,6 @@ TEST(AliasFreeFull, SixtyThousandLatticeSoups) {
     expect_soups(first, 5000);
 }
 
-scenes::Scene shipped(const std::string& name) {
-  return scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (name + ".json"));
-}
-
 Tally compare_scene(const scenes::Scene& scene, std::uint32_t width, std::uint32_t height) {
   const tests::Stage stage(scene, width, height);
   return compare(stage.floats, stage.light, stage.samples);
@@ -130,7 +124,7 @@ Tally compare_scene(const scenes::Scene& scene, std::uint32_t width, std::uint32
 
 TEST(AliasFree, ShippedScenes) {
   for (const char* name : {"broken", "contact", "parallel-square", "thin"}) {
-    const Tally tally = compare_scene(shipped(name), 32, 24);
+    const Tally tally = compare_scene(tests::shipped_scene(name), 32, 24);
     EXPECT_EQ(tally.wrong, 0U) << name << ": " << tally.first_wrong;
     EXPECT_GT(tally.lit, 0U) << name;
     EXPECT_GT(tally.dark, 0U) << name;
@@ -182,7 +176,7 @@ TEST(AliasFree, AllAroundTheLight) {
 
 /// The occluder's shadow on the floor is the square, scaled by two from the light's centre: a closed form.
 TEST(AliasFree, ASquareThrowsASquare) {
-  const tests::Stage stage(shipped("parallel-square"), 120, 90);
+  const tests::Stage stage(tests::shipped_scene("parallel-square"), 120, 90);
   const auto method = make_alias_free({});
   const tests::Masks found = tests::run(*method, stage.floats, stage.light, stage.samples);
   std::size_t dark = 0;

@@ -6,14 +6,12 @@
 #include "tests/agreement/point_lights.hpp"
 #include "tests/property/lattice_truth.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
+#include "tests/unit/shipped_scene.hpp"
 
 #include "mesh/shapes/broken_meshes.hpp"
-#include "scenes/formats/reader.hpp"
 #include "vsm/hierarchical_penumbra.hpp"
 #include "vsm/view_sample_lists.hpp"
 #include "vsm/view_sample_planar.hpp"
-
-#include <filesystem>
 
 namespace penumbra {
 namespace {
@@ -97,9 +95,6 @@ class PairMethods : public testing::TestWithParam<PairMethodUnderTest> {
     EXPECT_GT(counts.blocked, counts.pairs / 20);
   }
 
-  static scenes::Scene shipped(const std::string& name) {
-    return scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (name + ".json"));
-  }
   /// Against the ray caster; where they differ, the method must be right.
   static tests::Differences look_at(const tests::Stage& stage) {
     const tests::Masks mapped = tests::run(*GetParam().make({}), stage.floats, stage.light, stage.samples),
@@ -125,7 +120,7 @@ TEST_P(PairMethodsFull, ThousandsOfHostileLamps) {
 TEST_P(PairMethods, ShippedScenes) {
   for (const char* name : {"contact", "thin", "textured-light"}) {
     for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
-      const tests::Stage stage(shipped(name), 24, 18, {100, 0, 0, pattern, 1});
+      const tests::Stage stage(tests::shipped_scene(name), 24, 18, {100, 0, 0, pattern, 1});
       const tests::Differences found = look_at(stage);
       EXPECT_EQ(found.judged, found.mapped_right) << name << ": " << found.first_wrong;
       EXPECT_GT(found.pairs, 0U) << name;
