@@ -111,6 +111,61 @@ TEST_P(DepthSearch, ALightSeenEdgeOn) {
   EXPECT_GT(counts.visible, 1000u);
   EXPECT_GT(counts.blocked, 1000u);
 }
+/// Along a fold between a floor and a wall, which is no silhouette as the light sees it, view samples on another
+/// triangle of the floor's plane: within a few roundings of the fold and off that plane, so that some see the fold
+/// above the plane, with light below it, which no triangle hides, and above it, which the wall hides.
+TEST_P(DepthSearch, AFoldInTheCarriersPlaneByAHair) {
+  tests::MethodsByLayout methods([&] { return make_depth_complexity(device(), {{"search", GetParam()}}); });
+  PairCounts counts;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto whole = [&](double most) {
+      return glm::dvec3(glm::round(most * glm::dvec3(real(random), real(random), real(random))));
+    };
+    glm::dvec3 u(0), v(0);
+    while (glm::length(glm::cross(u, v)) < 5) u = whole(3), v = whole(3);
+    const glm::dvec3 base = whole(24), along = glm::normalize(v), up = glm::normalize(glm::cross(u, v)),
+                     behind = glm::cross(along, up);  // the side of u, where the view samples are
+    const auto at = [&](double i, double j) { return (base + i * u + j * v) / 64.0; };  // exact, so all are coplanar
+    std::vector<tests::Corners> floor_and_wall;
+    for (int j = -8; j < 8; ++j) {
+      const glm::dvec3 a = at(0, j), b = at(0, j + 1), high = 0.3 * up;
+      floor_and_wall.insert(floor_and_wall.end(), {{a, b, b + high}, {a, b + high, a + high}});
+      for (int i = -4; i < 0; ++i)
+        floor_and_wall.insert(floor_and_wall.end(),
+                              {{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, {at(i, j), at(i + 1, j + 1), at(i, j + 1)}});
+    }
+    scenes::Scene scene;
+    tests::add_object(scene, "carrier", {{at(8, -9), at(8, 9), at(-3, 0)}});
+    tests::add_object(scene, "floor and wall", floor_and_wall);
+    tests::add_object(scene, "anchor", {{glm::dvec3(-2), glm::dvec3(2), glm::dvec3(2, -2, 2)}}).casts_shadow = false;
+    const double height = 0.7 + 0.2 * real(random);  // of the light, as an angle
+    const glm::dvec3 away = std::sin(height) * up - std::cos(height) * behind;
+    scene.lights.push_back(tests::rectangle_light(at(0, 0) + away, 0.2 * along, 0.3 * glm::cross(along, away)));
+    scene.lights[0].two_sided = true;
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light =
+        visibility::make_light(scene, 0, floats.origin, {100, 0, 0, visibility::SamplePattern::rows, 0});
+    const auto [a, b, c] = floats.corners(0);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+    ViewSamples samples;
+    samples.width = samples.height = 8;
+    for (int i = 0; i < 64; ++i) {
+      samples.triangle.push_back(0);
+      samples.p.emplace_back(at(0, real(random)) + 0x1p-26 * (1 + real(random)) * behind - floats.origin);
+      samples.facing.push_back(static_cast<std::int8_t>(glm::dot(normal, up) > 0 ? 1 : -1));
+      samples.n.emplace_back(up);
+      samples.depth.push_back(1);
+    }
+    visibility::Method& method = methods.of(light);
+    EXPECT_TRUE(tests::equals_truth(floats, light, samples, tests::run(method, floats, light, samples), &counts))
+        << "seed " << seed;
+  }
+  fmt::print("{} visible, {} blocked\n", counts.visible, counts.blocked);
+  EXPECT_GT(counts.visible, counts.pairs / 20);
+  EXPECT_GT(counts.blocked, counts.pairs / 20);
+}
 INSTANTIATE_TEST_SUITE_P(Structure, DepthSearch, testing::Values("kd-tree", "hemicube"), [](const auto& it) {
   return std::string(it.param).starts_with("kd") ? "kd_tree" : "hemicube";
 });
