@@ -109,6 +109,28 @@ TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   }
 }
 
+// Where a window holds more that is farther than the receiver than what is nearer, exponentials are compared texel by
+// texel: of windows wider than 16 texels some, and of those that reach beside the map what is in it.
+TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
+  const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.9, 0, 0}, {0, 0, 0.6}}), 24, 24, light_samples(1),
+                    grid_samples(24, {0, 0.6, 0}, {1.9, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
+  for (const double exponent : {3.0, 6.0}) {
+    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const VssmSettings settings{.moments = "esm", .exponent = exponent};
+    const Masks found = run(maps::make_vssm, stage, options_of(settings));
+    const VssmTwin twin(maps, stage, settings);
+    std::size_t off = 0, soft = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const double v = twin(i).v;
+      soft += v > 0.02 && v < 0.98 ? 1 : 0;
+      off += std::abs(v - static_cast<double>(found.visibility[i])) > 2e-4 ? 1 : 0;
+    }
+    fmt::print("exponent {}: {} in penumbra, {} off\n", exponent, soft, off);
+    EXPECT_GT(soft, 50U);
+    EXPECT_LE(off, stage.samples.size() / 100) << exponent;
+  }
+}
+
 /// A floor under half-planes parallel to it and to the light.
 struct Board {
   double height, x0, x1;
