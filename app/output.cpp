@@ -69,7 +69,10 @@ void BeautyAccumulator::add(const TileResult& result) {
   // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
   std::vector<glm::vec3>& pixels = parts_[whole_of_[result.light]];
   pixels.resize(session_.pixel_count(), glm::vec3(0));
-  const visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
+  visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (std::isnan(result.visibility[i])) rows.triangle[i] = visibility::ViewSamples::kBackground;
+  }
   compare::LightVisibility seen;
   seen.form_factors = result.form_factors;
   seen.masks = result.masks;
@@ -89,7 +92,7 @@ void BeautyAccumulator::add(const TileResult& result) {
                                                .normals = rows_from(looks_.normals)},
                                               {&seen, 1});
   for (std::size_t i = 0; i < band.size(); ++i) {
-    if (!std::isnan(result.visibility[i])) pixels[first_pixel + i] += band[i];  // what was not evaluated stays black
+    if (!std::isnan(result.visibility[i])) pixels[first_pixel + i] += band[i];  // what was not evaluated stays as it is
   }
 }
 

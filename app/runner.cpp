@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <string_view>
 #include <utility>
@@ -67,6 +69,7 @@ class Host {
     OneRun times{std::vector<LightTimes>(plan_.lights.size())};
     for (const std::size_t light : in_order_of_meshes()) {
       Stopwatch watch;
+      const visibility::ViewSamples* samples = nullptr;
       {
         const MayExitAtOnce at_once;
         if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
@@ -86,14 +89,15 @@ class Host {
         method_.prepare_light(plan_.lights[light]);
         times.lights[light].light = watch.seconds();
         watch.restart();
-        method_.prepare_view(session_.samples);
+        samples = &samples_for(light);
+        method_.prepare_view(*samples);
         times.view += watch.seconds();
       }
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
       rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
-        times.lights[light].evaluate += evaluate(tile) + filter(light, tile);
+        times.lights[light].evaluate += evaluate(tile) + filter(light, *samples, tile);
         watch.restart();
         if (last) read(light, tile, result);
         times.read += watch.seconds();
@@ -113,6 +117,18 @@ class Host {
   }
 
  private:
+  [[nodiscard]] bool filtered_alone(std::size_t light) const {
+    return plan_.filtered_alone && !plan_.lights[light].filtered_by.empty();
+  }
+  /// Background is where nothing is asked.
+  [[nodiscard]] const visibility::ViewSamples& samples_for(std::size_t light) {
+    if (!filtered_alone(light)) return session_.samples;
+    const std::vector<std::uint8_t>& filtered = session_.filtered[light];
+    if (part_.size() == 0) part_ = session_.samples;
+    for (std::size_t i = 0; i < filtered.size(); ++i)
+      part_.triangle[i] = filtered[i] != 0 ? session_.samples.triangle[i] : visibility::ViewSamples::kBackground;
+    return part_;
+  }
   /// Lights for which the same meshes cast one after the other, so that each is prepared once a run. The same order in
   /// every run: beauty is a sum over lights.
   [[nodiscard]] std::vector<std::size_t> in_order_of_meshes() const {
@@ -142,7 +158,7 @@ class Host {
   }
 
   /// What lets light through. Gives the seconds that it took, reading masks left out.
-  double filter(std::size_t light_index, const Tile& tile) {
+  double filter(std::size_t light_index, const visibility::ViewSamples& samples, const Tile& tile) {
     const Light& light = plan_.lights[light_index];
     transmittances_.clear();
     dimmed_.clear();
@@ -156,8 +172,8 @@ class Host {
       transmittances_.resize(count * light.sample_count());
       dimmed_.resize(count);
     }
-    const visibility::AlphaCounts counts = filter_->filter(
-        session_.samples, light, std::size_t{tile.first_row} * session_.width, {masks_, transmittances_, dimmed_});
+    const visibility::AlphaCounts counts = filter_->filter(samples, light, std::size_t{tile.first_row} * session_.width,
+                                                           {masks_, transmittances_, dimmed_});
     alpha_counts_.mask_pairs += counts.mask_pairs;
     alpha_counts_.blend_pairs += counts.blend_pairs;
     return watch.seconds();
@@ -188,6 +204,7 @@ class Host {
       if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
       if (classes[i] == PixelClass::unlit) values[i] = 0.0f;
     }
+    leave_out(light_index, first, values);
     if (method_.description().output == Output::mask) read_masks(light, classes);
     form_factors_.clear();
     if (method_.description().output == Output::radiance) {
@@ -195,6 +212,15 @@ class Host {
       method_.read_form_factors(form_factors_);
     }
     if (sink_) sink_({light_index, tile, values, masks_, transmittances_, dimmed_, form_factors_});
+  }
+
+  void leave_out(std::size_t light, std::size_t first, std::span<float> values) const {
+    const bool filtered_alone = this->filtered_alone(light);
+    if (session_.filtered[light].empty() || (!filtered_alone && !plan_.lights[light].filtered_by.empty())) return;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if ((session_.filtered[light][first + i] != 0) != filtered_alone)
+        values[i] = std::numeric_limits<float>::quiet_NaN();
+    }
   }
 
   void read_masks(const Light& light, std::span<const PixelClass> classes) {
@@ -222,6 +248,7 @@ class Host {
   const visibility::SceneFloats* mesh_;                // that the method has
   const visibility::SceneFloats* filtered_ = nullptr;  // that filter_ has
   std::optional<visibility::AlphaFilter> filter_;
+  visibility::ViewSamples part_;          // of the light at hand, where nobody else is asked
   visibility::AlphaCounts alpha_counts_;  // of the light at hand
   std::vector<float> transmittances_;     // of the tile last evaluated, as filter() left it
   std::vector<std::uint8_t> dimmed_;
@@ -244,8 +271,15 @@ void add_run(MethodRun& to, MethodRun&& other) {
   to.times.total += other.times.total;
   for (std::size_t light = 0; light < to.visibility.size(); ++light) {
     if (other.visibility[light].empty()) continue;
-    to.visibility[light] = std::move(other.visibility[light]);
-    to.times.lights[light] = other.times.lights[light];
+    to.times.lights[light].light += other.times.lights[light].light;
+    to.times.lights[light].evaluate += other.times.lights[light].evaluate;
+    if (to.visibility[light].empty()) {
+      to.visibility[light] = std::move(other.visibility[light]);
+      continue;
+    }
+    for (std::size_t i = 0; i < to.visibility[light].size(); ++i) {
+      if (std::isnan(to.visibility[light][i])) to.visibility[light][i] = other.visibility[light][i];
+    }
   }
   to.passes.insert(to.passes.end(), other.passes.begin(), other.passes.end());
   for (const auto& [name, count] : other.counters) to.counters[name] += count;

@@ -32,9 +32,13 @@ struct TileResult {
 using TileSink = std::function<void(const TileResult&)>;
 
 struct RunPlan {
-  std::span<const visibility::Light> lights;  ///< as in Session::lights, perhaps with other light samples
-  std::uint32_t runs = 1;                     ///< timed runs
-  bool discard_first = false;                 ///< one more before them, which warms up and does not count
+  /// As in Session::lights, perhaps with other light samples; or without filtered_by: then V is NaN where what lets
+  /// light through may be on the way (Session::filtered). Those view samples are evaluated all the same, so that no
+  /// digit of their neighbours' depends on them.
+  std::span<const visibility::Light> lights;
+  bool filtered_alone = false;  ///< of a light with filtered_by, those view samples alone; else NaN
+  std::uint32_t runs = 1;       ///< timed runs
+  bool discard_first = false;   ///< one more before them, which warms up and does not count
   std::optional<std::vector<std::uint32_t>> pixels =
       {};                              ///< all that will be looked at (ascending); nothing: every pixel
   std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them
@@ -67,7 +71,7 @@ struct MethodRun {
   const visibility::SceneFloats* prepared = nullptr;  ///< what the method holds now (RunPlan::prepared)
 };
 
-/// Adds what another method made of other lights of the same plan.
+/// Adds what another method made of other lights of the same plan, or of another part of the same ones.
 void add_run(MethodRun& to, MethodRun&& other);
 
 /// Runs a method on a session: mesh once, then light and tiles, and reads the last run's result. In one place for every

@@ -142,7 +142,10 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
                                       request_, light == wanted.front() ? &session_.warnings : nullptr),
         std::back_inserter(session_.lights));
   }
+  filters_.clear();
+  for (const visibility::Light& light : session_.lights) filters_.push_back(light.filtered_by);
   if (changed || casters != casters_of(session_.lights)) {
+    reaches_.clear();
     link_casters(session_);
     if (!changed) ++session_.mesh_version;
   }
@@ -170,23 +173,37 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   if (view_seconds.size() > 1) view_seconds.erase(view_seconds.begin());
   session_.view_seconds = median(std::move(view_seconds));
 
-  progress.begin("receivers", session_.lights.size());
+  progress.begin("receivers", 1);
   const Stopwatch receivers;
-  session_.classes.clear();
-  for (const visibility::Light& light : session_.lights) {
-    const MayExitAtOnce at_once;
-    session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
-    progress.advance();
-  }
-  session_.receiver_seconds = receivers.seconds();
+  classify();
+  progress.advance();
+  session_.receiver_seconds =
+      receivers.seconds() - std::reduce(session_.filtered_seconds.begin(), session_.filtered_seconds.end());
 }
 
 visibility::ViewSamples SessionMaker::look_at(visibility::ViewSamples samples) {
   std::swap(session_.samples, samples);
-  session_.classes.clear();
-  for (const visibility::Light& light : session_.lights)
-    session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
+  classify();
   return samples;
+}
+
+void SessionMaker::classify() {
+  session_.classes.clear();
+  session_.filtered.assign(session_.lights.size(), {});
+  session_.filtered_seconds.assign(session_.lights.size(), 0);
+  for (std::size_t i = 0; i < session_.lights.size(); ++i) {
+    const MayExitAtOnce at_once;
+    visibility::Light& light = session_.lights[i];
+    session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
+    light.filtered_by = filters_[i];
+    if (light.filtered_by.empty()) continue;
+    const Stopwatch watch;
+    const visibility::SceneFloats& floats = session_.floats_for(i);
+    session_.filtered[i] =
+        reaches_.try_emplace(&floats, floats).first->second.reached(session_.samples, light, session_.classes[i]);
+    if (session_.filtered[i].empty()) light.filtered_by.clear();
+    session_.filtered_seconds[i] = watch.seconds();
+  }
 }
 
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time) {

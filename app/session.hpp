@@ -5,11 +5,13 @@
 #include "app/process/progress.hpp"
 #include "engines/view_sampler.hpp"
 #include "scenes/scene.hpp"
+#include "visibility/alpha/alpha_reach.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,12 +31,16 @@ struct Session {
   std::vector<visibility::Light> lights;  ///< those asked for, in that order, or all of the scene's; pieces of one
                                           ///< (app/whole_lights.hpp) one after the other
   std::vector<std::vector<visibility::PixelClass>> classes;  ///< for each light, each pixel
-  bool shading_normals = false;                              ///< of beauty: vertices' normals, where there are any
-  std::uint64_t mesh_version = 0;                            ///< another number, another scene to prepare methods for
-  double load_seconds = 0;      ///< reading the scene, its floats, and handing them to the visibility buffer
-  double device_seconds = 0;    ///< starting the device
-  double receiver_seconds = 0;  ///< classes
-  double view_seconds = 0;      ///< finding the view samples: the median of the runs asked for
+  /// For each light, each pixel, 1: what lets light through may be on the way (AlphaReach). Empty: nowhere; then the
+  /// light's filtered_by is empty, too.
+  std::vector<std::vector<std::uint8_t>> filtered;
+  std::vector<double> filtered_seconds;  ///< finding them, of each light
+  bool shading_normals = false;          ///< of beauty: vertices' normals, where there are any
+  std::uint64_t mesh_version = 0;        ///< another number, another scene to prepare methods for
+  double load_seconds = 0;               ///< reading the scene, its floats, and handing them to the visibility buffer
+  double device_seconds = 0;             ///< starting the device
+  double receiver_seconds = 0;           ///< classes
+  double view_seconds = 0;               ///< finding the view samples: the median of the runs asked for
   std::vector<std::string> warnings;
 
   std::vector<std::optional<std::size_t>> linked_of;  ///< for each light, its own among these; nothing: `floats`
@@ -65,11 +71,16 @@ class SessionMaker {
   Session take() { return std::move(session_); }
 
  private:
+  /// What the session's lights are to its view samples.
+  void classify();
+
   const RunOptions& options_;
   DeviceSource& devices_;
   visibility::SampleRequest request_;
   std::optional<std::pair<std::uint32_t, std::uint32_t>> size_;
   Session session_;
+  std::vector<std::string> filters_;  // Light::filtered_by as made, whatever is looked at
+  std::map<const visibility::SceneFloats*, visibility::AlphaReach> reaches_;  // of session_.floats and of those linked
   std::optional<engines::ViewSampler> sampler_;
 };
 

@@ -5,6 +5,7 @@ penumbra_test(visibility
   property/visibility/signed_crossings.cpp
   property/visibility/signed_crossings_sum.cpp
   property/visibility/alpha.cpp
+  property/visibility/alpha_reach.cpp
   property/visibility/alpha_views.cpp
   property/visibility/invariance.cpp
   property/visibility/pair_kinds.cpp

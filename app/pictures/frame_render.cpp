@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace penumbra::app {
@@ -31,6 +32,10 @@ std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std
   return sum;
 }
 
+double sum_of(std::span<const double> seconds) {
+  return std::reduce(seconds.begin(), seconds.end());
+}
+
 /// Is any pixel on a side that the light shines to?
 bool lights_anything(std::span<const visibility::PixelClass> classes) {
   using visibility::PixelClass;
@@ -38,6 +43,17 @@ bool lights_anything(std::span<const visibility::PixelClass> classes) {
     return one == PixelClass::judged || one == PixelClass::horizon || one == PixelClass::unshadowed ||
            one == PixelClass::other_body;
   });
+}
+
+/// Is any pixel lit by what is in sight of all of it (Session::filtered)?
+bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<const std::uint8_t> filtered) {
+  using visibility::PixelClass;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const bool asked =
+        classes[i] == PixelClass::judged || classes[i] == PixelClass::horizon || classes[i] == PixelClass::other_body;
+    if (asked && filtered[i] == 0) return true;
+  }
+  return false;
 }
 
 /// What other moments of the same lights cost is added to what this one did.
@@ -118,20 +134,48 @@ void FrameRenderer::say_idle_lights() {
   say_once(warnings);
 }
 
-/// Says, and notes, where light samples are looked at though nobody asked for them.
-void FrameRenderer::choose_methods(const std::vector<visibility::Light>& lights) {
-  chosen_ = choose_light_methods(lights, wish_);
+/// Areas know nothing of what lets light through: they are right wherever none of it is on the way.
+void FrameRenderer::choose_methods(const Session& session) {
+  const std::vector<visibility::Light>& lights = session.lights;
+  lights_ = lights;
+  for (visibility::Light& light : lights_) light.filtered_by.clear();
+  chosen_ = choose_light_methods(lights_, wish_);
+  counting_.assign(lights.size(), std::nullopt);
+  if (std::ranges::all_of(lights, [](const auto& light) { return light.filtered_by.empty(); })) return;
+  std::vector<LightMethod> counting = choose_light_methods(lights, wish_);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (lights[i].filtered_by.empty()) continue;
+    if (chosen_[i].description.gives_area()) counting_[i] = counting[i];
+    if (counting_[i] && any_seen_openly(session.classes[i], session.filtered[i])) {
+      counting_[i]->note += " where that may be in between, exact areas elsewhere";
+    } else {
+      chosen_[i] = std::move(counting[i]);
+      lights_[i].filtered_by = lights[i].filtered_by;
+    }
+  }
+}
+
+void FrameRenderer::say_notes() {
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    const std::string& note = counting_[i] ? counting_[i]->note : chosen_[i].note;
+    if (note.empty()) continue;
+    if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);  // pieces say the same
+    if (std::ranges::find(said_, note) != said_.end()) continue;
+    spdlog::info("{}", note);
+    said_.push_back(note);
+  }
+}
+
+void FrameRenderer::label_lights() {
+  const std::vector<visibility::Light>& lights = session().lights;
+  if (std::ranges::any_of(lights, [&](const auto& light) { return !done_.contains(light.name); })) {
+    choose_methods(session());
+    for (std::size_t i = 0; i < lights.size(); ++i) done_.try_emplace(lights[i].name, chosen_[i]);
+  }
   labels_.clear();
-  notes_.clear();
-  for (std::size_t light = 0; light < chosen_.size(); ++light) {
-    const LightMethod& one = chosen_[light];
-    labels_.push_back(
-        {one.description, one.options, device_of(one.description.name, one.options, lights[light], devices_)});
-    if (one.note.empty() || std::ranges::find(notes_, one.note) != notes_.end()) continue;  // pieces say the same
-    notes_.push_back(one.note);
-    if (std::ranges::find(said_, one.note) != said_.end()) continue;
-    spdlog::info("{}", one.note);
-    said_.push_back(one.note);
+  for (const visibility::Light& light : lights) {
+    const auto& [description, options, note] = done_.at(light.name);
+    labels_.push_back({description, options, device_of(description.name, options, light, devices_)});
   }
 }
 
@@ -159,7 +203,8 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   say_warnings();
   lights_something_.clear();
   mark_lights();
-  choose_methods(lit().lights);
+  choose_methods(lit());
+  say_notes();
   load_seconds_ += watch.seconds();
   if (!bits.empty()) {
     check_bits(chosen_.front().description, lit().lights);
@@ -181,12 +226,13 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
 
 MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits) {
   MethodRun all;
-  for (const std::vector<std::size_t>& lights : same_methods(chosen_)) {
+  const auto run_with = [&](const LightMethod& method, RunPlan plan) {
     const Stopwatch make;
-    Kept& kept = method_for(chosen_[lights.front()]);
+    Kept& kept = method_for(method);
     make_seconds_ += make.seconds();
+    plan.prepared = kept.prepared;
     MethodRun run = run_method(
-        *kept.method, lit(), {.lights = lit().lights, .only = lights, .prepared = kept.prepared},
+        *kept.method, lit(), plan,
         [&](const TileResult& tile) {
           beauty.add(tile);
           if (bits == nullptr || tile.light != 0) return;
@@ -200,6 +246,31 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     const RunTimes& times = run.times;
     beauty_seconds_ += times.total - times.mesh - times.light - times.evaluate - times.view;
     add_run(all, std::move(run));
+  };
+  for (const std::vector<std::size_t>& lights : same_methods(chosen_))
+    run_with(chosen_[lights.front()], {.lights = lights_, .only = lights});
+  std::vector<std::size_t> in_part;
+  std::vector<LightMethod> with;
+  for (std::size_t i = 0; i < counting_.size(); ++i) {
+    if (!counting_[i]) {
+      done_.try_emplace(lights_[i].name, chosen_[i]);
+      continue;
+    }
+    done_.insert_or_assign(lights_[i].name, *counting_[i]);
+    all.counters["viewSamplesCounted"] +=
+        static_cast<std::uint64_t>(std::ranges::count(lit().filtered[i], std::uint8_t{1}));
+    if (!lights_[i].filtered_by.empty()) continue;  // no areas
+    in_part.push_back(i);
+    with.push_back(*counting_[i]);
+  }
+  for (std::vector<std::size_t> lights : same_methods(with)) {
+    const LightMethod& method = with[lights.front()];
+    for (std::size_t& light : lights) light = in_part[light];
+    run_with(method, {.lights = lit().lights, .filtered_alone = true, .only = lights});
+  }
+  for (std::size_t i = 0; i < lit().lights.size(); ++i) {  // whom to ask is part of the answer
+    all.times.evaluate += lit().filtered_seconds[i];
+    all.times.lights[i].evaluate += lit().filtered_seconds[i];
   }
   view_seconds_ += all.times.view;
   return of_whole_lights(std::move(all), lit());
@@ -235,7 +306,9 @@ void FrameRenderer::add_panes() {
     visibility::PaneLayer layer = panes.layer(number);
     visibility::ViewSamples before = lit_maker().look_at(std::move(layer.samples));
     if (behind.size() == 0) behind = std::move(before);
-    view_seconds_ += watch.seconds();
+    choose_methods(lit());
+    say_notes();
+    view_seconds_ += watch.seconds() - sum_of(lit().filtered_seconds);
     watch.restart();
     mark_lights();
     mark_lamps();
@@ -249,7 +322,9 @@ void FrameRenderer::add_panes() {
     }
     beauty_seconds_ += watch.seconds();
   }
+  const Stopwatch back;
   lit_maker().look_at(std::move(behind));
+  view_seconds_ += back.seconds();
   for (std::size_t i = 0; i < pixels; ++i) {
     add(i, through[i], beauty_);
     alpha_[i] = static_cast<float>(1 - through[i] * (1 - double{alpha_[i]}));
@@ -266,6 +341,8 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   bits_.reset();
   mean_.reset();
   lamps_.clear();
+  done_.clear();
+  notes_.clear();
   run_ = {};
   if (frame.moments.empty() && frame.pixel_side == 1) {
     show(maker_, std::move(scene));
@@ -273,6 +350,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   } else {
     render_mean(std::move(scene));
   }
+  label_lights();
   devices_.check_validation();  // before anything appears: a picture that cannot be trusted is none
 }
 
@@ -280,6 +358,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
   const std::uint32_t side = frame_.pixel_side;
   if (side > 1) {
     show(maker_, scene);
+    view_seconds_ += sum_of(session().filtered_seconds);
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
     if (!fine_ || fine_options_.size != size) {
       kept_.clear();  // what they hold is of the session that goes
@@ -311,9 +390,11 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     load_seconds_ += read.seconds();
     add(std::move(then));
   }
-  if (side == 1) show(maker_, std::move(scene));
+  if (side == 1) {
+    show(maker_, std::move(scene));
+    view_seconds_ += sum_of(session().filtered_seconds);
+  }
   // What is written of lights is about those of the frame's own time.
-  choose_methods(session().lights);
   run_.times.lights.clear();
   const std::vector<std::string> own = whole_names(session().lights);
   for (const std::string& light : own) run_.times.lights.push_back(times[light]);

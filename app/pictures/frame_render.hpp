@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,7 +64,12 @@ class FrameRenderer {
     std::uint64_t mesh_version = 0;
   };
 
-  void choose_methods(const std::vector<visibility::Light>& lights);
+  /// For the view samples that a session looks at.
+  void choose_methods(const Session& session);
+  /// Why light samples are looked at that nobody asked for: once in a picture's stats, and once to who reads along.
+  void say_notes();
+  /// What the picture's lights were done with.
+  void label_lights();
   void run_methods(const std::filesystem::path& bits);
   /// What the chosen methods make of the view samples that are looked at; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);
@@ -97,6 +103,10 @@ class FrameRenderer {
   // Of the picture computed last:
   Frame frame_;
   std::vector<LightMethod> chosen_;
+  // Of lights whose areas are known where nothing that lets light through may be on the way: what counts elsewhere.
+  std::vector<std::optional<LightMethod>> counting_;
+  std::vector<visibility::Light> lights_;    // as those chosen know them: of areas, without filtered_by
+  std::map<std::string, LightMethod> done_;  // by name: what counted where anything did, else what gave areas
   std::vector<MethodLabel> labels_;
   std::vector<std::string> notes_;
   MethodRun run_;

@@ -87,6 +87,90 @@ TEST_F(AlphaSurfaces, PanesDimLightAndShadow) {
   EXPECT_EQ(stats.at("counters").at("maskPairs"), 0);
 }
 
+/// Exact wherever the pane is certainly not on the way: there a picture is the one without it, bit by bit. Elsewhere it
+/// is the one of light samples.
+TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
+  const json away = {0, 1, 2}, there = {0, 1, 2, 3};
+  gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {1.5, 2, 0}}, {"scale", {1, 1, 2}}};
+  const std::vector<std::string> four = {"--pixel-samples", "4"};
+  for (const bool holes : {true, false}) {
+    holes ? half_a_card() : translucent(0.3);
+    for (const auto& more :
+         holes ? std::vector<std::vector<std::string>>{{}} : std::vector<std::vector<std::string>>{{}, four}) {
+      const auto with = [&](std::vector<std::string> options) {
+        options.insert(options.end(), more.begin(), more.end());
+        return options;
+      };
+      gltf.at("/scenes/0/nodes") = away;
+      ASSERT_EQ(render(with({}), "open.exr").code, 0);
+      gltf.at("/scenes/0/nodes") = there;
+      ASSERT_EQ(render(with({"--light-samples", "256"}), "counted.exr").code, 0);
+      const Outcome outcome = render(with({"--stats", path("stats.json")}));
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_THAT(outcome.err,
+                  AllOf(HasSubstr("\"Card\""), HasSubstr("256 light samples"), HasSubstr("exact areas elsewhere")));
+      const ExrFile seen = picture(), open = picture("open.exr"), counted = picture("counted.exr");
+      std::size_t pixels_counted = 0;
+      for (std::size_t i = 0; i < seen.floats.at("V").size(); ++i) {
+        // At the pane's height the ways from x to the light's x in [-1, 1] are in 0.6 x + [-0.4, 0.4]; the pane begins
+        // at 0.5. Four view samples are a pixel's quarters.
+        const float border = (0.5f - 0.4f) / 0.6f, pixel = seen.floats.at("P.X")[1] - seen.floats.at("P.X")[0];
+        const float beside = (seen.floats.at("P.X")[i] - border) / pixel;
+        if (std::abs(beside) < 0.5f && !more.empty()) continue;
+        pixels_counted += beside > 0 ? 1 : 0;
+        for (const char* channel : {"V", "R", "G", "B"}) {
+          const ExrFile& expected = beside < 0 ? open : counted;
+          EXPECT_EQ(seen.floats.at(channel)[i], expected.floats.at(channel)[i]) << channel << " " << i;
+        }
+      }
+      EXPECT_GT(pixels_counted, 100);
+      EXPECT_LT(pixels_counted, 33 * 21 - 100);
+      const json stats = json::parse(read("stats.json"));
+      EXPECT_EQ(stats.at("lights").at(0).at("quantity"), "count");
+      EXPECT_EQ(stats.at("lights").at(0).at("lightSamples"), 256);
+      EXPECT_THAT(stats.at("warnings").dump(), HasSubstr("exact areas elsewhere"));
+      if (more.empty()) {
+        EXPECT_EQ(stats.at("counters").at("viewSamplesCounted"), pixels_counted);
+      }
+    }
+  }
+}
+
+/// Behind the light, below the floor and far beside, or where it casts nothing: nothing is counted.
+TEST_F(AlphaSurfaces, APaneThatDimsNothingLeavesAreas) {
+  translucent(0.3);
+  // What is seen and hides nothing keeps the scene's origin where it is.
+  gltf.at("/nodes").push_back({{"name", "Far"}, {"mesh", 2}, {"translation", {0, 7, 0}}});
+  gltf.at("/nodes").push_back({{"name", "Deep"}, {"mesh", 2}, {"translation", {0, -3, 0}}});
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 4, 5};
+  ASSERT_EQ(render({}, "open.exr").code, 0);
+  const ExrFile open = picture("open.exr");
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 4, 5, 3};
+  for (const std::vector<double>& place : {std::vector<double>{0, 6, 0}, {0, -1, 0}, {3, 4.5, 0}, {0, 2, 0}}) {
+    gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", place}, {"scale", {0.5, 1, 0.5}}};
+    if (place[1] == 2) gltf.at("/nodes/3")["extras"] = {{"castsShadow", false}};
+    for (const std::vector<std::string>& method : {std::vector<std::string>{}, {"--method", "exact"}}) {
+      if (!method.empty() && place[1] != 6) continue;
+      std::vector<std::string> options = {"--stats", path("stats.json")};
+      options.insert(options.end(), method.begin(), method.end());
+      const Outcome outcome = render(options);
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_THAT(outcome.err, Not(HasSubstr("\"Card\"")));
+      const json stats = json::parse(read("stats.json"));
+      EXPECT_EQ(stats.at("lights").at(0).at("quantity"), "area");
+      EXPECT_EQ(stats.at("warnings").size(), 0) << stats.at("warnings");
+      EXPECT_FALSE(stats.at("counters").contains("viewSamplesCounted"));
+      if (method.empty()) {
+        for (const char* channel : {"V", "R", "G", "B", "Z", "N.Y"})
+          EXPECT_EQ(picture().floats.at(channel), open.floats.at(channel)) << channel << ", pane at " << place[1];
+      }
+    }
+  }
+  const Outcome outcome = run({"compare", path("scene.glb"), "-o", path("dir"), "--size", "8x6", "--methods",
+                               "edge-scatter:rows=exact", "--reference", "exact", "--runs", "1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
 /// Seen from above a pane is composited over what it dims: α its own light + (1 − α) the floor's; all else is of the
 /// floor.
 TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
@@ -111,6 +195,11 @@ TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
     EXPECT_NEAR(both.floats.at("R")[i], expected, 1e-5f * expected);
   }
   EXPECT_EQ(picture("default.exr").floats.at("R"), both.floats.at("R")) << "the same masks, by another method";
+  gltf.at("/nodes/3/translation") = {0, 2, 0};
+  ASSERT_EQ(render({"--stats", path("stats.json")}, "areas.exr").code, 0);
+  for (std::size_t i = 0; i < both.floats.at("R").size(); ++i)
+    EXPECT_NEAR(picture("areas.exr").floats.at("R")[i], both.floats.at("R")[i], 1e-5f) << "the pane by its area";
+  EXPECT_EQ(json::parse(read("stats.json")).at("counters").at("viewSamplesCounted"), 33 * 21) << "of the floor";
 }
 
 /// Of a light that nothing but a pane is before something in the picture is lit.

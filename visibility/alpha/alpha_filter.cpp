@@ -4,6 +4,7 @@
 #include "visibility/alpha/alpha_filter.hpp"
 
 #include "base/assert.hpp"
+#include "visibility/alpha/alpha_reach.hpp"
 #include "visibility/alpha_shares.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
@@ -258,18 +259,9 @@ class PixelFilter {
   std::size_t open_ = 0;  // of them, not stopped
 };
 
-TriangleTree tree_of_casters(const SceneFloats& scene) {
-  std::vector<Bounds> boxes;
-  for (const std::uint32_t triangle : scene.alphas.casters) {
-    const auto [a, b, c] = scene.corners(triangle);
-    boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
-  }
-  return make_tree_over(boxes);
-}
-
 }  // namespace
 
-AlphaFilter::AlphaFilter(const SceneFloats& scene) : scene_(scene), tree_(tree_of_casters(scene)) {}
+AlphaFilter::AlphaFilter(const SceneFloats& scene) : scene_(scene), tree_(make_tree_over_alphas(scene)) {}
 
 bool AlphaFilter::dims(const Light& light) const {
   return std::ranges::any_of(scene_.alphas.casters, [&](std::uint32_t triangle) {

@@ -1,0 +1,279 @@
+// A triangle is met on no way from p to the light if a plane parts it from the hull of both. Tried are, as for any two
+// convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces: those through p and two neighbouring
+// corners of the light, the light's own, the carrier's (what is below it is on no way to a light point above it), those
+// through p and an edge of the triangle, and the triangle's own. Each with room for rounding on the side of meeting:
+//
+// - A point of the light, however it is computed from what is stored, is within kRoom · size of the hull of the corners
+//   used here, size the largest coordinate of p and light (of a sun's directions: 1 + tangent). Stored corners are
+//   rounded to float32 once, frames are differences of such: at most four roundings of 2⁻²⁴ · size in a coordinate, a
+//   distance of √3 · 2⁻²² · size.
+// - Products of differences of floats, in double, are rounded by less than kRounding of the product of their lengths:
+//   a difference by 2⁻⁵³ of itself, a cross product of two and its product with a third by fewer than 16 · 2⁻⁵³.
+
+#include "visibility/alpha/alpha_reach.hpp"
+
+#include "base/assert.hpp"
+#include "visibility/pair_truth.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+namespace penumbra::visibility {
+namespace {
+
+constexpr double kRoom = 0x1p-20, kRounding = 0x1p-46;
+
+double size1(const glm::dvec3& x) {
+  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
+}
+
+bool sees_it(PixelClass pixel) {
+  return pixel == PixelClass::judged || pixel == PixelClass::horizon || pixel == PixelClass::other_body;
+}
+
+/// A half-space in which all ways lie: normal · (x − p) ≤ most + slope · |x − p|.
+struct Wall {
+  glm::dvec3 normal{0};
+  double most = 0, slope = 0;
+};
+
+/// All ways from one p to a light.
+class Ways {
+ public:
+  explicit Ways(const Light& light) : light_(light), ends_(!light.sun) {
+    if (light.sun) {
+      const glm::dvec3 u = light.sun->tangent * glm::dvec3(light.sun->axis_u),
+                       v = light.sun->tangent * glm::dvec3(light.sun->axis_v), middle(light.center);
+      corners_ = {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
+      room_ = kRoom * (1 + light.sun->tangent);
+    } else if (light.kind == LightKind::sphere) {
+      corners_.resize(4);
+    } else {
+      corners_.assign(light.outline.begin(), light.outline.end());
+      normal_ = glm::cross(glm::dvec3(light.center_u) - glm::dvec3(light.center),
+                           glm::dvec3(light.center_v) - glm::dvec3(light.center));
+    }
+  }
+
+  void start_at(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel) {
+    p_ = samples.p[pixel];
+    if (light_.kind == LightKind::sphere) {
+      const auto [c, u, v] = light_frame_from(light_, samples.p[pixel]);
+      corners_ = {c - u - v, c + u - v, c + u + v, c - u + v};
+      normal_ = glm::cross(u, v);
+    }
+    ways_.clear();
+    for (const glm::dvec3& corner : corners_) ways_.push_back(ends_ ? corner - p_ : corner);
+    if (ends_) {
+      double size = size1(p_);
+      for (const glm::dvec3& corner : corners_) size = std::max(size, size1(corner));
+      room_ = kRoom * size;
+    }
+    walls_.clear();
+    glm::dvec3 middle(0);
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      const glm::dvec3 normal = glm::cross(ways_[i], ways_[i + 1 < ways_.size() ? i + 1 : 0]);
+      add_wall(glm::dot(normal, ways_[(i + 2) % ways_.size()]) > 0 ? -normal : normal);
+      middle += ways_[i];
+    }
+    add_wall(-middle);
+    if (ends_) {
+      add_wall(normal_);
+      add_wall(-normal_);
+    }
+    // Heights over the carrier's plane are between p's, which is not rounded to be 0, and that of a light point above.
+    const auto [a, b, c] = scene.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
+    const glm::dvec3 first = glm::dvec3(b) - glm::dvec3(a), second = glm::dvec3(c) - glm::dvec3(a);
+    const glm::dvec3 down = -static_cast<double>(samples.facing[pixel]) * glm::cross(first, second),
+                     to_plane = glm::dvec3(a) - p_;
+    const double rounding = kRounding * size1(first) * size1(second);
+    walls_.push_back({down, std::max(glm::dot(down, to_plane), 0.0) + rounding * size1(to_plane), rounding});
+  }
+
+  /// May something of the box be met?
+  [[nodiscard]] bool touch(const glm::vec3& lower, const glm::vec3& upper) const {
+    const glm::dvec3 from = glm::dvec3(lower) - p_, to = glm::dvec3(upper) - p_;
+    const double reach = size1(glm::max(glm::abs(from), glm::abs(to)));
+    return std::ranges::none_of(walls_, [&](const Wall& wall) {
+      const glm::dvec3 least = glm::min(wall.normal * from, wall.normal * to);
+      return least.x + least.y + least.z > wall.most + wall.slope * reach;
+    });
+  }
+
+  /// May something of the triangle be met?
+  [[nodiscard]] bool touch(const std::array<glm::vec3, 3>& corners) const {
+    const std::array to{glm::dvec3(corners[0]) - p_, glm::dvec3(corners[1]) - p_, glm::dvec3(corners[2]) - p_};
+    const double reach = std::max({size1(to[0]), size1(to[1]), size1(to[2])});
+    for (const auto& [normal, most, slope] : walls_) {
+      const double least = std::min({glm::dot(normal, to[0]), glm::dot(normal, to[1]), glm::dot(normal, to[2])});
+      if (least > most + slope * reach) return false;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (is_beside_edge(to[i], to[(i + 1) % 3], to[(i + 2) % 3])) return false;
+    }
+    return !is_beside_plane(to);
+  }
+
+ private:
+  /// Through p, or as far along the normal as the ways reach.
+  void add_wall(const glm::dvec3& normal) {
+    double most = 0;
+    for (const glm::dvec3& way : ways_) most = std::max(most, glm::dot(normal, way));
+    const double size = size1(normal), reach = most + size * room_;
+    // A direction is no shorter than 1 − 2⁻²⁰: x is at most |x − p| (1 + 2⁻¹⁹) of them away.
+    walls_.push_back(ends_ ? Wall{normal, reach, kRounding * size}
+                           : Wall{normal, 0, reach * (1 + 0x1p-18) + kRounding * size});
+  }
+
+  /// The plane through p and the edge a b: the third corner on one side of it, the light on the other?
+  [[nodiscard]] bool is_beside_edge(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& third) const {
+    glm::dvec3 normal = glm::cross(a, b);
+    const double size = size1(a) * size1(b), side = glm::dot(normal, third);
+    if (!(std::abs(side) > kRounding * size * size1(third))) return false;
+    if (side < 0) normal = -normal;
+    return std::ranges::all_of(
+        ways_, [&](const glm::dvec3& way) { return glm::dot(normal, way) < -size * (room_ + kRounding * size1(way)); });
+  }
+
+  /// p and the light on one side of the triangle's plane?
+  [[nodiscard]] bool is_beside_plane(const std::array<glm::dvec3, 3>& to) const {
+    const glm::dvec3 first = to[1] - to[0], second = to[2] - to[0];
+    glm::dvec3 normal = glm::cross(first, second);
+    const double size = size1(first) * size1(second), height = -glm::dot(normal, to[0]);
+    const double error = kRounding * size * size1(to[0]);
+    if (!(std::abs(height) > error)) return false;
+    if (height < 0) normal = -normal;
+    const double least = ends_ ? -(std::abs(height) - error) : 0;  // of a way's end, less p's; of directions
+    return std::ranges::all_of(ways_, [&](const glm::dvec3& way) {
+      return glm::dot(normal, way) > least + size * (room_ + kRounding * size1(way));
+    });
+  }
+
+  const Light& light_;
+  bool ends_;                        // ways are segments, not rays
+  std::vector<glm::dvec3> corners_;  // of a sun, directions
+  glm::dvec3 normal_{0};             // of the light's plane
+  double room_ = 0;
+  glm::dvec3 p_{0};
+  std::vector<glm::dvec3> ways_;
+  std::vector<Wall> walls_;
+};
+
+/// A box around all ways from a block of pixels. Culls blocks far from anything that lets light through.
+class BlockWays {
+ public:
+  explicit BlockWays(const Light& light) {
+    if (!light.sun) {
+      const Bounds points = point_bounds(light);
+      add(points.lower);
+      add(points.upper);
+      for (const glm::vec3& corner : light.outline) add(corner);
+      const float room = 4 * static_cast<float>(kRoom) * (float_size1(lower_) + float_size1(upper_));
+      lower_ -= room;
+      upper_ += room;
+      return;
+    }
+    const glm::vec3 aside = static_cast<float>(light.sun->tangent * (1 + kRoom)) *
+                            (glm::abs(light.sun->axis_u) + glm::abs(light.sun->axis_v));
+    const float room = 4 * static_cast<float>(kRoom * (1 + light.sun->tangent));
+    for (int axis = 0; axis < 3; ++axis) {  // a way that may go down does so for ever
+      if (light.center[axis] - aside[axis] < room) lower_[axis] = -kEndless;
+      if (light.center[axis] + aside[axis] > -room) upper_[axis] = kEndless;
+    }
+  }
+  void add(const glm::vec3& x) {
+    lower_ = glm::min(lower_, x);
+    upper_ = glm::max(upper_, x);
+  }
+  [[nodiscard]] bool touch(const glm::vec3& lower, const glm::vec3& upper) const {
+    return glm::all(glm::lessThanEqual(lower, upper_)) && glm::all(glm::greaterThanEqual(upper, lower_));
+  }
+
+ private:
+  static constexpr float kEndless = std::numeric_limits<float>::infinity();
+  static float float_size1(const glm::vec3& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); }
+  glm::vec3 lower_{kEndless}, upper_{-kEndless};
+};
+
+/// Is there a triangle for which `meets(triangle)` holds, in a box that `volume` touches?
+template <typename Volume, typename Meets>
+bool any_in(const TriangleTree& tree, const Volume& volume, Meets&& meets) {
+  bool found = false;
+  struct UntilFound {
+    const Volume& volume;
+    const bool& found;
+    bool touches(const glm::vec3& lower, const glm::vec3& upper) const { return !found && volume.touch(lower, upper); }
+  };
+  tree.for_each_in(UntilFound{volume, found}, [&](std::uint32_t i) { found = found || meets(i); });
+  return found;
+}
+
+}  // namespace
+
+TriangleTree make_tree_over_alphas(const SceneFloats& scene) {
+  std::vector<Bounds> boxes;
+  for (const std::uint32_t triangle : scene.alphas.casters) {
+    const auto [a, b, c] = scene.corners(triangle);
+    boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
+  }
+  return make_tree_over(boxes);
+}
+
+AlphaReach::AlphaReach(const SceneFloats& scene) : scene_(scene), tree_(make_tree_over_alphas(scene)) {}
+
+std::vector<std::uint8_t> AlphaReach::reached(const ViewSamples& samples, const Light& light,
+                                              std::span<const PixelClass> classes) const {
+  PENUMBRA_ASSERT(classes.size() == samples.size(), "{} classes of {} pixels", classes.size(), samples.size());
+  if (tree_.nodes.empty()) return {};
+  constexpr std::uint32_t kBlock = 16;
+  const std::uint32_t width = samples.width, height = samples.height;
+  std::vector<std::uint8_t> reached(samples.size());
+  std::atomic<bool> any = false;
+  const BlockWays to_light(light);
+  tbb::parallel_for(
+      tbb::blocked_range2d<std::uint32_t>(0, (height + kBlock - 1) / kBlock, 0, (width + kBlock - 1) / kBlock),
+      [&](const auto& blocks) {
+        Ways ways(light);
+        const auto do_block = [&](std::uint32_t top, std::uint32_t left) {
+          const std::uint32_t bottom = std::min(top + kBlock, height), right = std::min(left + kBlock, width);
+          const auto for_each_pixel = [&](auto&& visit) {
+            for (std::uint32_t y = top; y < bottom; ++y) {
+              for (std::size_t i = std::size_t{y} * width + left; i < std::size_t{y} * width + right; ++i) {
+                if (sees_it(classes[i])) visit(i);
+              }
+            }
+          };
+          BlockWays all = to_light;
+          for_each_pixel([&](std::size_t i) { all.add(samples.p[i]); });
+          if (!any_in(tree_, all, [](std::uint32_t) { return true; })) return;
+          for_each_pixel([&](std::size_t i) {
+            const auto carrier = static_cast<std::uint32_t>(samples.triangle[i]);
+            ways.start_at(scene_, samples, i);
+            if (!any_in(tree_, ways, [&](std::uint32_t caster) {
+                  const std::uint32_t triangle = scene_.alphas.casters[caster];
+                  return may_filter(scene_, light, carrier, triangle) && ways.touch(scene_.corners(triangle));
+                }))
+              return;
+            reached[i] = 1;
+            any = true;
+          });
+        };
+        for (std::uint32_t y = blocks.rows().begin(); y != blocks.rows().end(); ++y) {
+          for (std::uint32_t x = blocks.cols().begin(); x != blocks.cols().end(); ++x) do_block(y * kBlock, x * kBlock);
+        }
+      });
+  if (!any) reached.clear();
+  return reached;
+}
+
+}  // namespace penumbra::visibility
