@@ -93,7 +93,7 @@ template <typename Number, typename Measure>
 Number measure_uncovered(Measure measure, std::vector<SweepEdge<Number>>& edges, FormFactorSum* form_factor) {
   if (form_factor == nullptr) return AreaSweep<Number, Measure>(std::move(measure)).uncovered_area(edges);
   using Both = FormFactorMeasure<Number, Measure>;
-  const Number area = AreaSweep<Number, Both>(Both(std::move(measure), *form_factor)).uncovered_area(edges);
+  Number area = AreaSweep<Number, Both>(Both(std::move(measure), *form_factor)).uncovered_area(edges);
   form_factor->finish();
   return area;
 }

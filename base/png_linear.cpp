@@ -69,7 +69,7 @@ bool decode(Decoder& decoder) {
   }
   decoder.values.resize(decoder.width * kChannels * decoder.height);
   for (std::uint32_t y = 0; y < decoder.height; ++y) {
-    decoder.rows.push_back(reinterpret_cast<png_bytep>(&decoder.values[y * decoder.width * kChannels]));
+    decoder.rows.push_back(reinterpret_cast<png_bytep>(&decoder.values[std::size_t{y} * decoder.width * kChannels]));
   }
   png_read_image(decoder.png, decoder.rows.data());
   png_read_end(decoder.png, nullptr);

@@ -22,14 +22,14 @@ using scenes::Picture;
 using scenes::PictureUse;
 
 glm::dvec3 texel_at(const Picture& picture, const PictureUse& use, double x, double y) {
-  static const std::array<double, 256> kLinear = [] {
+  static const std::array<double, 256> linear = [] {
     std::array<double, 256> values{};
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear_of_srgb(static_cast<double>(i) / 255);
     return values;
   }();
   const auto& texel = picture.texels[scenes::texel_number(y, picture.height, use.wrap_t) * picture.width +
                                      scenes::texel_number(x, picture.width, use.wrap_s)];
-  return {kLinear[texel[0]], kLinear[texel[1]], kLinear[texel[2]]};
+  return {linear[texel[0]], linear[texel[1]], linear[texel[2]]};
 }
 
 glm::dvec3 picture_at(const Picture& picture, const PictureUse& use, const glm::dvec2& place) {

@@ -188,8 +188,8 @@ class Explainer {
   /// The value of "type" that a branch insists on; empty for branches of other kinds.
   [[nodiscard]] std::string discriminator(const json& unresolved) const {
     const json& branch = resolve(unresolved);
-    static const json::json_pointer kTypeConstant("/properties/type/const");
-    return branch.contains(kTypeConstant) ? branch[kTypeConstant].get<std::string>() : "";
+    static const json::json_pointer type_constant("/properties/type/const");
+    return branch.contains(type_constant) ? branch[type_constant].get<std::string>() : "";
   }
 
   Words find_in_choice(const json& schema, const json& instance, const Place& place) const {

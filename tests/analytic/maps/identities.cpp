@@ -209,7 +209,7 @@ Place shipped_place(const std::string& file, std::uint32_t side) {
 class MapsIdentities : public MapsTest {
  protected:
   static const std::vector<Place>& places() {
-    static const std::vector<Place> kPlaces = [] {
+    static const std::vector<Place> all = [] {
       std::vector<Place> made;
       made.push_back(shipped_place("self-shadow.json", 12));
       made.push_back(broken_place(all_defects(), 12));
@@ -217,7 +217,7 @@ class MapsIdentities : public MapsTest {
       made.push_back(lattice_place(5, 10));
       return made;
     }();
-    return kPlaces;
+    return all;
   }
   /// Everything that ships and is small enough, each defect in its own mesh, and many soups; one after the other.
   static void each_place(const std::function<void(const Place&)>& see) {

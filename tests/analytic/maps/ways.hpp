@@ -35,7 +35,7 @@ struct Way {
     return way;
   }
   [[nodiscard]] std::unique_ptr<visibility::Method> make(const render::Device& device) const {
-    static const std::map<std::string, Factory> kFactories{{"shadow-map", maps::make_shadow_map},
+    static const std::map<std::string, Factory> factories{{"shadow-map", maps::make_shadow_map},
                                                            {"pcf", maps::make_pcf},
                                                            {"pcss", maps::make_pcss},
                                                            {"vssm", maps::make_vssm},
@@ -51,7 +51,7 @@ struct Way {
                                                            {"adaptive-light", maps::make_adaptive_light},
                                                            {"deep-penumbra", maps::make_deep_penumbra},
                                                            {"layered-attenuation", maps::make_layered_attenuation}};
-    return kFactories.at(method)(device, options);
+    return factories.at(method)(device, options);
   }
 };
 

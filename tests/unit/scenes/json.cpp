@@ -257,7 +257,7 @@ TEST(JsonSchema, NoObjectTakesUnknownKeys) {
   EXPECT_GT(objects, 20);
 }
 
-TEST(JsonScene, ReadsTheContractsExample) {
+TEST(JsonScene, ReadsMeshesAndLightsOfEveryKind) {
   const TemporaryFolder folder;
   (void)folder.write("statue.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   const auto file = folder.write("scene.json", R"({ "format": "penumbra-scene/1",
