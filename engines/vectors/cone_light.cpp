@@ -109,10 +109,10 @@ LightGrid ConeLight::make_grid() const {
   std::vector<glm::vec2> places;
   const double share = light_.sun ? light_.sun->tangent / tangent_ : 1;
   for (const glm::dvec2& st : light_.coordinates)
-    places.push_back(glm::vec2(glm::dvec2(grid.first_cell) + share * glm::dvec2(grid.half_cells) * st));
+    places.emplace_back(glm::dvec2(grid.first_cell) + share * glm::dvec2(grid.half_cells) * st);
   grid.tiles = make_light_tiles(places);
   grid.reach = reach_;
-  grid.cones.emplace();
+  grid.cones = LightGrid::Cones{};  // clang 14 knows no emplace() for a type that ends with the class around it
   grid.cones->end = !light_.sun;
   grid.cones->deviation = static_cast<float>(deviation_ * 1.0001);
   return grid;

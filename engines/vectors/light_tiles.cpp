@@ -29,8 +29,8 @@ void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std
   tiles.rows.push_back(row);
   std::ranges::sort(samples, {}, [&](std::uint32_t j) { return std::pair(places[j].x, j); });
   for (std::uint32_t tile = 0; tile < row.count; ++tile) {
-    const auto its = samples.subspan(
-        tile * LightTiles::kWide, std::min<std::size_t>(LightTiles::kWide, samples.size() - tile * LightTiles::kWide));
+    const std::size_t begin = std::size_t{tile} * LightTiles::kWide;
+    const auto its = samples.subspan(begin, std::min<std::size_t>(LightTiles::kWide, samples.size() - begin));
     tiles.tile_low.push_back(places[its.front()].x);
     tiles.tile_high.push_back(places[its.back()].x);
     tiles.used.push_back(static_cast<std::uint16_t>((1U << its.size()) - 1));

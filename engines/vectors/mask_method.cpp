@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels, whose clusters have lists
 constexpr std::uint32_t kRegion = 16;                 // pixels, whose blocks begin their walks at the same roots
+constexpr std::size_t kRegionPixels = std::size_t{kRegion} * kRegion;
 constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
 
 /// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
@@ -27,7 +28,7 @@ struct Spot {
   std::uint32_t x = 0, y = 0;
 };
 constexpr auto kSpots = [] {
-  std::array<Spot, kRegion * kRegion> spots;
+  std::array<Spot, kRegionPixels> spots;
   for (std::uint32_t i = 0; i < spots.size(); ++i) {
     for (std::uint32_t bit = 0; 1U << 2 * bit < spots.size(); ++bit) {
       spots[i].x |= (i >> 2 * bit & 1) << bit;
@@ -160,12 +161,12 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   ExactOpenJudge judge(pairs, grid);
   const ViewInput view{*scene_, *samples_, device_light_, grid, normal_is_known_, scale_};
   std::vector<GridSample>& samples = buffers().samples;
-  std::array<std::size_t, kRegion * kRegion / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
-  samples.resize(kRegion * kRegion);
+  std::array<std::size_t, kRegionPixels / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
+  samples.resize(kRegionPixels);
   std::vector<LightCone>& cones = buffers().cones;
-  cones.resize(cone_ ? kRegion * kRegion : 0);
+  cones.resize(cone_ ? kRegionPixels : 0);
   std::size_t count = 0;
-  for (std::uint32_t i = 0; i < kRegion * kRegion; ++i) {
+  for (std::uint32_t i = 0; i < kRegionPixels; ++i) {
     const std::uint32_t x = left + kSpots[i].x, y = top + kSpots[i].y;
     if (x < samples_->width && y < tile_.row_count) {
       const std::size_t pixel = std::size_t{y} * samples_->width + x;
