@@ -36,21 +36,21 @@ struct Way {
   }
   [[nodiscard]] std::unique_ptr<visibility::Method> make(const render::Device& device) const {
     static const std::map<std::string, Factory> factories{{"shadow-map", maps::make_shadow_map},
-                                                           {"pcf", maps::make_pcf},
-                                                           {"pcss", maps::make_pcss},
-                                                           {"vssm", maps::make_vssm},
-                                                           {"convolution", maps::make_convolution},
-                                                           {"occlusion-textures", maps::make_occlusion_textures},
-                                                           {"backproject", maps::make_backproject},
-                                                           {"backproject-peel", maps::make_backproject_peel},
-                                                           {"bitmask", maps::make_bitmask},
-                                                           {"contour", maps::make_contour},
-                                                           {"packet", maps::make_packet},
-                                                           {"soft-shadow-map", maps::make_soft_shadow_map},
-                                                           {"accumulate", maps::make_accumulate},
-                                                           {"adaptive-light", maps::make_adaptive_light},
-                                                           {"deep-penumbra", maps::make_deep_penumbra},
-                                                           {"layered-attenuation", maps::make_layered_attenuation}};
+                                                          {"pcf", maps::make_pcf},
+                                                          {"pcss", maps::make_pcss},
+                                                          {"vssm", maps::make_vssm},
+                                                          {"convolution", maps::make_convolution},
+                                                          {"occlusion-textures", maps::make_occlusion_textures},
+                                                          {"backproject", maps::make_backproject},
+                                                          {"backproject-peel", maps::make_backproject_peel},
+                                                          {"bitmask", maps::make_bitmask},
+                                                          {"contour", maps::make_contour},
+                                                          {"packet", maps::make_packet},
+                                                          {"soft-shadow-map", maps::make_soft_shadow_map},
+                                                          {"accumulate", maps::make_accumulate},
+                                                          {"adaptive-light", maps::make_adaptive_light},
+                                                          {"deep-penumbra", maps::make_deep_penumbra},
+                                                          {"layered-attenuation", maps::make_layered_attenuation}};
     return factories.at(method)(device, options);
   }
 };
