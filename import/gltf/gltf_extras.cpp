@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace penumbra::scenes {
 namespace {
@@ -19,6 +20,13 @@ std::optional<bool> flag(const tinygltf::Value& extras, const char* key, const s
   return number == 1;
 }
 
+std::string text(const tinygltf::Value& extras, const char* key, const std::string& owner) {
+  if (!extras.IsObject() || !extras.Has(key)) return {};
+  const tinygltf::Value& value = extras.Get(key);
+  if (!value.IsString()) throw InputError("{}: extras/{}: expected a name", owner, key);
+  return value.Get<std::string>();
+}
+
 }  // namespace
 
 ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
@@ -26,7 +34,9 @@ ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
     const auto own = flag(node.extras, key, fmt::format("node \"{}\"", node.name));
     return own ? *own : flag(mesh.extras, key, fmt::format("mesh \"{}\"", mesh.name)).value_or(true);
   };
-  return {read("castsShadow"), read("receivesShadow"), read("body")};
+  std::string light = text(node.extras, "lightName", fmt::format("node \"{}\"", node.name));
+  if (light.empty()) light = text(mesh.extras, "lightName", fmt::format("mesh \"{}\"", mesh.name));
+  return {read("castsShadow"), read("receivesShadow"), read("body"), std::move(light)};
 }
 
 bool lamp_casts_shadows(const tinygltf::Node& node) {

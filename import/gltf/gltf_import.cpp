@@ -73,6 +73,11 @@ class GltfImport {
   /// See unhidden_places; must outlive it. Without a call, a light that is scaled to nothing is none.
   void keep_hidden_lights(const std::vector<std::optional<glm::dmat4>>& unhidden) { unhidden_ = unhidden; }
 
+  /// Are some of the file's vertices not in the scene? Once it has run.
+  [[nodiscard]] bool left_vertices_out() const { return left_out_; }
+  /// The middle of all vertices of its meshes, seen or not. Of Purpose::rest, once it has run.
+  [[nodiscard]] glm::dvec3 middle() const { return 0.5 * lower_ + 0.5 * upper_; }
+
   Scene run() {
     const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
     to_world_.resize(model_.nodes.size());
@@ -188,6 +193,8 @@ class GltfImport {
     switch (surfaces_.opacity_of(look)) {
       case Opacity::gone:
         losses_.mention("is wholly transparent, and left out", own_name);
+        left_out_ = true;
+        bound(positions, placed);
         return;
       case Opacity::solid:
         look.alpha = {};
@@ -202,6 +209,16 @@ class GltfImport {
     add_object({positions, skinned, look, placed, place}, std::move(mesh->triangles), own_name);
   }
 
+  void bound(std::span<const glm::dvec3> positions, const PlacedNode& placed) {
+    if (purpose_ != Purpose::rest) return;
+    for (const glm::dvec3& position : positions) {
+      const glm::dvec3 p(placed.to_world * glm::dvec4(position, 1));
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;  // of no triangle
+      lower_ = glm::min(lower_, p);
+      upper_ = glm::max(upper_, p);
+    }
+  }
+
   void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     Object object;
@@ -214,6 +231,8 @@ class GltfImport {
     object.alpha = vertices.look.alpha;
     object.emits = add_light(vertices.look, name, vertices.placed, before);
     if (object.emits && !flags_.body) return shorten(scene_, before);  // they only said where the light is
+    left_out_ |= scene_.soup.positions.size() - before.position < vertices.local.size();
+    bound(vertices.local, vertices.placed);
     scene_.objects.push_back(std::move(object));
   }
 
@@ -249,7 +268,7 @@ class GltfImport {
     if (emitter.hides_itself)
       losses_.mention("is an emitter with parts that stand in one another's light; a light's own mesh hides none of it",
                       name);
-    scene_.lights.push_back({.name = unique_name(light_names_, name),
+    scene_.lights.push_back({.name = unique_name(light_names_, flags_.light_name.empty() ? name : flags_.light_name),
                              .shape = std::move(emitter.shape),
                              .radiance = radiance,
                              .two_sided = emitter.two_sided});
@@ -301,6 +320,8 @@ class GltfImport {
   std::set<std::string> object_names_, camera_names_, light_names_;
   std::string refused_lights_;
   SkippedPrimitives skipped_;
+  bool left_out_ = false;
+  glm::dvec3 lower_{std::numeric_limits<double>::infinity()}, upper_{-std::numeric_limits<double>::infinity()};
   ObjectFlags flags_;                   // of the mesh at hand
   std::vector<std::size_t> shadeless_;  // lights that cast no shadows
   std::uint64_t emissive_ = 0;
@@ -320,13 +341,13 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
   const std::string name = input.name.filename().string();
   try {
     const std::optional<Motion> motion = motion_of(model);
+    const auto middle_at_rest = [&] {
+      GltfImport rest(model, name, Purpose::rest, options);
+      rest.run();
+      return rest.middle();
+    };
     std::optional<glm::dvec3> origin;
-    if (bends(model) || (motion && options.time)) {
-      const Scene rest = GltfImport(model, name, Purpose::rest, options).run();
-      glm::dvec3 lower = rest.soup.positions.front(), upper = lower;
-      for (const glm::dvec3& p : rest.soup.positions) lower = glm::min(lower, p), upper = glm::max(upper, p);
-      origin = 0.5 * lower + 0.5 * upper;
-    }
+    if (bends(model) || (motion && options.time)) origin = middle_at_rest();
     std::vector<std::string> warnings;
     const auto scales = rest_scales(model);
     if (options.time) pose_model(model, *options.time, warnings);
@@ -335,6 +356,7 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
     GltfImport import(model, name, purpose, options);
     import.keep_hidden_lights(unhidden);
     Scene scene = import.run();
+    if (!origin && import.left_vertices_out() && purpose != Purpose::mesh) origin = middle_at_rest();
     scene.origin = origin;
     scene.motion = motion;
     scene.warnings.insert(scene.warnings.begin(), warnings.begin(), warnings.end());

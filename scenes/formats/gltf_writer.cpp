@@ -156,6 +156,7 @@ void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   tinygltf::Value::Object extras;
   if (!object.casts_shadow) extras["castsShadow"] = tinygltf::Value(false);
   if (!object.receives_shadow) extras["receivesShadow"] = tinygltf::Value(false);
+  if (light != nullptr && light->name != object.name) extras["lightName"] = tinygltf::Value(light->name);
   glb.add_mesh(object.name, positions, indices, glb.add_material(object.name, object.color, light), std::move(extras));
 }
 
@@ -239,13 +240,16 @@ void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
 
 void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
   GlbBuilder glb;
-  std::vector<bool> has_body(scene.lights.size(), false);
+  std::vector<int> bodies(scene.lights.size());
   for (const ObjectRange& range : object_ranges(scene.soup)) {
     add_object(scene, range, glb);
-    if (const auto light = scene.objects[range.object].emits) has_body[*light] = true;
+    if (const auto light = scene.objects[range.object].emits) ++bodies[*light];
   }
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    if (has_body[i]) continue;
+    if (bodies[i] > 1)
+      notes.push_back(fmt::format("light \"{}\": each of the {} meshes that are its body is a light of its own in glTF",
+                                  scene.lights[i].name, bodies[i]));
+    if (bodies[i] > 0) continue;
     if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would come back as a surface that casts shadow
       notes.push_back(fmt::format("light \"{}\" is dark: glTF has no such lights; left out", scene.lights[i].name));
     else

@@ -122,6 +122,39 @@ TEST_F(GltfSurfaces, LetLightThrough) {
   EXPECT_THAT(read(metal).warnings, ::testing::ElementsAre(HasSubstr("'Body' has a metallic material")));
 }
 
+/// The origin is the middle of all vertices of meshes, whether they are seen, and whether a triangle has them.
+TEST_F(GltfSurfaces, VerticesThatNobodySeesMoveTheOrigin) {
+  Gltf gltf;
+  const auto box_of = [](const Scene& scene) {
+    glm::dvec3 lower = scene.soup.positions.front(), upper = lower;
+    for (const glm::dvec3& p : scene.soup.positions) lower = glm::min(lower, p), upper = glm::max(upper, p);
+    return 0.5 * lower + 0.5 * upper;
+  };
+  EXPECT_FALSE(read(gltf).origin) << "the middle of what is there";
+  const glm::dvec3 middle = box_of(read(gltf));
+  gltf.at("/nodes").push_back({{"name", "Pane"}, {"mesh", gltf.at("/meshes").size()}, {"translation", {0, 50, 0}}});
+  gltf.at("/meshes").push_back(gltf.at("/meshes/0"));
+  gltf.at("/meshes").back()["primitives"][0]["material"] = gltf.at("/materials").size();
+  gltf.at("/scenes/0/nodes").push_back(gltf.at("/nodes").size() - 1);
+  gltf.at("/materials").push_back({{"name", "Glass"}});
+  const glm::dvec3 with_pane = box_of(read(gltf));
+  EXPECT_NE(with_pane, middle);
+  gltf.at("/materials").back()["alphaMode"] = "BLEND";
+  gltf.at("/materials").back()["pbrMetallicRoughness"] = {{"baseColorFactor", {1, 1, 1, 0}}};
+  EXPECT_EQ(box_of(read(gltf)), middle) << "it is left out";
+  EXPECT_EQ(read(gltf).origin, std::optional(with_pane));
+  gltf.at("/nodes").back()["extras"] = {{"body", false}};
+  EXPECT_EQ(read(gltf).origin, std::optional(with_pane)) << "no light, and so a mesh";
+
+  Gltf stray;  // a fourth vertex
+  const glm::dvec3 open = box_of(read(stray));
+  stray.at("/meshes/0/primitives/0/attributes/POSITION") =
+      stray.add_floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 85, 0});
+  const Scene scene = read(stray);
+  EXPECT_EQ(box_of(scene), open);
+  EXPECT_EQ(scene.origin, std::optional(open + glm::dvec3(0, 40, 0)));
+}
+
 /// The picture's own alpha: solid texels are no holes; a file that cannot be read might have some.
 TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   Gltf gltf = textured();

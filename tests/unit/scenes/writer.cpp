@@ -253,6 +253,29 @@ TEST(GlbWriter, SaysWhatGltfCannotHold) {
   }
 }
 
+/// Names of lights are not those of their bodies.
+TEST(GlbWriter, LightsKeepTheirNames) {
+  const TemporaryFolder folder;
+  const std::string panel =
+      R"(, "quad": {"center": [0, 2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}, "emits": "key"})";
+  const auto scene = [&](const std::string& more) {
+    return read_text(
+        R"({"format": "penumbra-scene/1", "size": [8, 8], "camera": {"eye": [0, 1, 6], "target": [0, 1, 0], "up": [0, 1, 0],
+            "verticalFov": 45}, "meshes": [{"name": "panel")" +
+        panel + more +
+        R"(], "lights": [{"name": "key", "rectangle": {"center": [0, 2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}}]})");
+  };
+  EXPECT_TRUE(write_scene(scene(""), folder / "scene.glb").empty());
+  const Scene again = read_scene(folder / "scene.glb");
+  ASSERT_EQ(again.lights.size(), 1u);
+  EXPECT_EQ(again.lights[0].name, "key");
+  EXPECT_EQ(again.objects.at(0).name, "panel");
+  const auto notes = write_scene(scene(R"(, {"name": "other")" + panel), folder / "scene.glb");
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("light \"key\": each of the 2 meshes"), std::string::npos) << notes[0];
+  EXPECT_EQ(read_scene(folder / "scene.glb").lights.at(1).name, "key.2");
+}
+
 /// The outline of a light without a body is no geometry, and a light that is dark leaves none.
 TEST(GlbWriter, DarkLightsLeaveNoGeometry) {
   const TemporaryFolder folder;
