@@ -29,7 +29,8 @@ class RenderCommand : public Command {
  public:
   explicit RenderCommand(CLI::App& app) : Command(app, "render", "render one image, or a sequence, with one method") {
     add_picture_options(cli_, options_);
-    cli_.add_option("--frame", options_.frame, "frame of the scene's animation")
+    cli_.add_option("--frame", options_.frame,
+                    "one frame of the scene's animation; files are numbered where their names say so alone")
         ->type_name("F")
         ->excludes(cli_.get_option("--frames"));
   }
