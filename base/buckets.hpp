@@ -1,15 +1,70 @@
 #pragma once
 
-#include "base/parallel.hpp"
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
+/// Sorting in linear time on all cores: first into parts that a processor's cache holds, then each part by itself, so
+/// that memory is read and written in order. No result depends on the number of threads.
 namespace penumbra {
+
+/// Numbers of elements, each with a word, in parts of like words; each part ascending by number.
+struct Parts {
+  struct Item {
+    std::uint32_t word, number;
+  };
+  std::vector<std::uint32_t> first;  ///< one a part and one past the last's end
+  std::unique_ptr<Item[]> items;
+
+  [[nodiscard]] std::size_t size() const { return first.size() - 1; }
+  [[nodiscard]] std::span<const Item> operator[](std::size_t part) const {
+    return {items.get() + first[part], first[part + 1] - first[part]};
+  }
+  /// How many are good for so many elements: a power of two.
+  static std::size_t good_count(std::size_t elements) {
+    constexpr std::size_t kElements = 4096, kMost = 4096;  // of a part; streams that are written side by side
+    return std::min(std::bit_ceil(std::max<std::size_t>(elements / kElements, 1)), kMost);
+  }
+};
+
+/// Sorts 0 … count − 1 by word_of(i) >> shift, which is below `parts`. Asks for each word twice.
+template <typename WordOf>
+Parts into_parts(std::size_t count, std::size_t parts, unsigned shift, const WordOf& word_of) {
+  constexpr std::size_t kChunk = 1U << 14U;
+  Parts result;
+  result.first.assign(parts + 1, 0);
+  result.items = std::make_unique_for_overwrite<Parts::Item[]>(count);
+  const std::size_t chunks = (count + kChunk - 1) / kChunk;
+  std::vector<std::uint32_t> places(chunks * parts, 0);  // how many each chunk has for each part; then where they go
+  const auto for_each_of = [&](std::size_t chunk, const auto& visit) {
+    std::uint32_t* const place = places.data() + chunk * parts;
+    for (std::size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i) {
+      const std::uint32_t word = word_of(i);
+      visit(place[word >> shift], Parts::Item{word, static_cast<std::uint32_t>(i)});
+    }
+  };
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_of(chunk, [](std::uint32_t& place, const Parts::Item&) { ++place; });
+  });
+  std::uint32_t sum = 0;
+  for (std::size_t part = 0; part < parts; ++part) {
+    result.first[part] = sum;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) sum += std::exchange(places[chunk * parts + part], sum);
+  }
+  result.first[parts] = sum;
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_of(chunk, [&](std::uint32_t& place, const Parts::Item& item) { result.items[place++] = item; });
+  });
+  return result;
+}
 
 /// Numbers of elements, sorted into buckets; each bucket ascending.
 struct Buckets {
@@ -22,22 +77,53 @@ struct Buckets {
   }
 };
 
-/// Sorts 0 … count − 1 by bucket_of(i) < buckets in linear time, on all cores: what is small enough to be sorted within
-/// its bucket needs no other sorting. The result does not depend on the number of threads.
+/// Sorts 0 … count − 1 by bucket_of(i) < buckets, which is asked for twice.
 template <typename BucketOf>
 Buckets into_buckets(std::size_t count, std::size_t buckets, const BucketOf& bucket_of) {
   Buckets result;
   result.first.assign(buckets + 1, 0);
+  result.first[buckets] = static_cast<std::uint32_t>(count);
   result.items.resize(count);
-  const auto counter = [&](std::size_t bucket) { return std::atomic_ref(result.first[bucket]); };
-  mesh::for_each_index(count, [&](std::size_t i) { counter(bucket_of(i)).fetch_add(1, std::memory_order_relaxed); });
-  std::uint32_t sum = 0;
-  for (std::uint32_t& first : result.first) first = sum += first;  // where the bucket ends
-  mesh::for_each_index(count, [&](std::size_t i) {
-    result.items[counter(bucket_of(i)).fetch_sub(1, std::memory_order_relaxed) - 1] = static_cast<std::uint32_t>(i);
+  if (buckets == 0) return result;
+  unsigned shift = 0;
+  while ((buckets - 1) >> shift >= Parts::good_count(count)) ++shift;
+  const Parts parts = into_parts(count, ((buckets - 1) >> shift) + 1, shift, bucket_of);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const std::span<const Parts::Item> here = parts[part];
+    const std::size_t begin = part << shift, end = std::min((part + 1) << shift, buckets);
+    for (const Parts::Item& item : here) ++result.first[item.word];
+    std::uint32_t sum = parts.first[part];
+    for (std::size_t bucket = begin; bucket < end; ++bucket) result.first[bucket] = sum += result.first[bucket];
+    for (std::size_t i = here.size(); i-- > 0;) result.items[--result.first[here[i].word]] = here[i].number;
   });
-  mesh::for_each_index(buckets, [&](std::size_t bucket) { std::ranges::sort(result[bucket]); });
   return result;
+}
+
+/// For each of 0 … count − 1 the first that is the same: same(i, j), which hash_of(i) = hash_of(j) must follow from.
+/// Hashes are 64 bits of which the upper half is as good as random.
+template <typename HashOf, typename Same>
+std::vector<std::uint32_t> first_of_same(std::size_t count, const HashOf& hash_of, const Same& same) {
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  const std::size_t good = std::max<std::size_t>(Parts::good_count(count), 2);
+  const auto shift = static_cast<unsigned>(32 - std::countr_zero(good));
+  const Parts parts =
+      into_parts(count, good, shift, [&](std::size_t i) { return static_cast<std::uint32_t>(hash_of(i) >> 32U); });
+  std::vector<std::uint32_t> first(count);
+  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> tables;
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const std::span<const Parts::Item> here = parts[part];
+    std::vector<std::uint32_t>& table = tables.local();  // places in `here`, by the low bits of words
+    table.assign(std::bit_ceil(2 * here.size() + 1), kNone);
+    for (std::uint32_t i = 0; i < here.size(); ++i) {
+      const auto [word, number] = here[i];
+      std::size_t at = word & (table.size() - 1);
+      while (table[at] != kNone && !(here[table[at]].word == word && same(here[table[at]].number, number)))
+        at = (at + 1) & (table.size() - 1);
+      if (table[at] == kNone) table[at] = i;
+      first[number] = here[table[at]].number;
+    }
+  });
+  return first;
 }
 
 }  // namespace penumbra

@@ -10,6 +10,7 @@
 #include "visibility/plane_ids.hpp"
 
 #include "base/buckets.hpp"
+#include "base/parallel.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <tbb/blocked_range.h>
@@ -17,6 +18,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <span>
@@ -75,12 +77,23 @@ Dyadic dyadic(float value) {
   return {(bits >> 31) != 0 ? -static_cast<std::int64_t>(mantissa) : static_cast<std::int64_t>(mantissa), exponent};
 }
 
+/// How far each exponent turns: 2^e ≡ 2^(e mod 61), by which a number of 61 bits is turned around.
+constexpr std::array<std::uint8_t, 256> kTurn = [] {
+  std::array<std::uint8_t, 256> turn{};
+  for (int biased = 0; biased < 256; ++biased) {
+    const int exponent = std::max(biased, 1) - 150;  // of the mantissa's last bit
+    turn[static_cast<std::size_t>(biased)] = static_cast<std::uint8_t>((exponent % 61 + 61) % 61);
+  }
+  return turn;
+}();
+
 std::uint64_t residue(float value) {
-  const Dyadic d = dyadic(value);
-  if (d.mantissa == 0) return 0;
-  const int shift = ((d.exponent % 61) + 61) % 61;  // 2^e ≡ 2^(e mod 61)
-  const std::uint64_t magnitude = reduce(static_cast<UInt128>(std::abs(d.mantissa)) << shift);
-  return d.mantissa < 0 && magnitude != 0 ? kPrime - magnitude : magnitude;
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  const std::uint32_t biased = (bits >> 23) & 0xffu;
+  const std::uint64_t mantissa = (bits & 0x7fffffu) | (biased == 0 ? 0u : 0x800000u);
+  const unsigned turn = kTurn[biased];
+  const std::uint64_t magnitude = ((mantissa << turn) & kPrime) | (mantissa >> (61U - turn));
+  return (bits >> 31) != 0 && magnitude != 0 ? kPrime - magnitude : magnitude;
 }
 
 /// n and n·a modulo p. All zero: no ratio.
@@ -112,7 +125,7 @@ constexpr std::uint64_t kFlat = 0, kNoRatio = 1;  // no keys of planes
 
 /// Equal for exactly coplanar triangles; kNoRatio if the plane has none modulo p. `scale`: pivot⁻¹.
 std::uint64_t key_of(const Plane& plane, std::uint64_t scale) {
-  if (plane == Plane{}) return kNoRatio;
+  if ((plane[0] | plane[1] | plane[2] | plane[3]) == 0) return kNoRatio;
   std::uint64_t key = 0x9e3779b97f4a7c15ull;
   for (const std::uint64_t x : plane) key = (key ^ (key >> 29) ^ mul(x, scale)) * 0xbf58476d1ce4e5b9ull;
   return std::max(key, kNoRatio + 1);
@@ -197,17 +210,8 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
 
   // Each triangle against the first one of its key. Left are keys that collided (about one pair in 2⁶⁴) and planes
   // without a key (contrived): each against every plane that could be its own, in order of triangles.
-  const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(count, 1));
-  Buckets alike = into_buckets(count, buckets, [&](std::size_t i) { return keys[i] & (buckets - 1); });
-  std::vector<std::uint32_t> first(count);  // triangle of the same key
-  mesh::for_each_index(buckets, [&](std::size_t bucket) {
-    const std::span<std::uint32_t> here = alike[bucket];
-    std::ranges::stable_sort(here, {}, [&](std::uint32_t i) { return keys[i]; });
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      const bool again = i > 0 && keys[here[i]] == keys[here[i - 1]];
-      first[here[i]] = again ? first[here[i - 1]] : here[i];
-    }
-  });
+  const std::vector<std::uint32_t> first = first_of_same(
+      count, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, std::size_t j) { return keys[i] == keys[j]; });
   tbb::concurrent_vector<std::uint32_t> collided, keyless;
   mesh::for_each_index(count, [&](std::size_t i) {
     const auto triangle = static_cast<std::uint32_t>(i);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "base/parallel.hpp"
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -55,28 +54,14 @@ struct WideTriangleTree {
   std::vector<WideTriangles> leaves;
 };
 
-/// `nodes`: three texels a child (volumes/edges/edge_set.hpp, EdgeTree); fill(number, leaf) puts edges into each leaf,
-/// side by side from the first on; the rest of it is 0. Without nodes: empty.
-template <typename Fill>
-WideEdgeTree wide_edge_tree(std::span<const visibility::Texel> nodes, std::size_t leaves, const Fill& fill);
 /// One more root.
 void append(WideEdgeTree& tree, const WideEdgeTree& more);
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale);
 
-/// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine).
+/// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine), as of
+/// volumes/edges/edge_set.hpp, edge_nodes.
 std::vector<WideNode> wide_nodes(std::span<const visibility::Texel> texels, std::size_t stride);
-
-template <typename Fill>
-WideEdgeTree wide_edge_tree(std::span<const visibility::Texel> nodes, std::size_t leaves, const Fill& fill) {
-  WideEdgeTree tree;
-  if (nodes.empty()) return tree;
-  tree.roots = {0};
-  tree.nodes = wide_nodes(nodes, 3);
-  tree.leaves.resize(leaves);
-  mesh::for_each_index(leaves, [&](std::size_t number) { fill(number, tree.leaves[number]); });
-  return tree;
-}
 
 template <typename Tree>
 std::uint64_t bytes_of(const Tree& tree) {

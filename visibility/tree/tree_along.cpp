@@ -36,16 +36,16 @@ Bounds nothing() {
   return {glm::vec3(kFar), glm::vec3(-kFar)};
 }
 
-/// A box's number and twice its middle.
+/// A box, as its place among those that are divided, and twice its middle.
 struct Item {
   glm::vec3 middle;
-  std::uint32_t number;
+  std::uint32_t at;
 };
 
 /// Adds to a tree from its leaves upward.
 class Maker {
  public:
-  explicit Maker(std::span<const Bounds> boxes) : boxes_(boxes) {}
+  explicit Maker(const BoxesNear& boxes) : all_(&boxes) {}
 
   /// A node of the children that `fill` gives to a function.
   template <typename Fill>
@@ -63,14 +63,16 @@ class Maker {
     return {all.lower, all.upper, number};
   }
 
-  /// Of these items alone: parts of eight times eight times … items, so that all leaves but the last are full.
-  Child divide(std::span<Item> items, std::uint32_t depth) {
-    if (items.size() <= kWidth) return leaf(items);
-    std::size_t step = kWidth;
-    while (step * kWidth < items.size()) step *= kWidth;
-    return node(depth, [&](const auto& add) {
-      halve(items, step, [&](std::span<Item> part) { add(divide(part, depth + 1)); });
-    });
+  /// Of these boxes alone.
+  Child divide(std::span<const std::uint32_t> numbers, std::uint32_t depth) {
+    numbers_ = numbers;
+    boxes_.clear();
+    items_.clear();
+    for (const std::uint32_t number : numbers) {
+      const Bounds& box = boxes_.emplace_back(all_->box(number));
+      items_.push_back({box.lower + box.upper, static_cast<std::uint32_t>(items_.size())});
+    }
+    return divide(std::span(items_), depth);
   }
 
   /// What another maker made.
@@ -94,13 +96,23 @@ class Maker {
   TriangleTree tree;
 
  private:
+  /// Parts of eight times eight times … items, so that all leaves but the last are full.
+  Child divide(std::span<Item> items, std::uint32_t depth) {
+    if (items.size() <= kWidth) return leaf(items);
+    std::size_t step = kWidth;
+    while (step * kWidth < items.size()) step *= kWidth;
+    return node(depth, [&](const auto& add) {
+      halve(items, step, [&](std::span<Item> part) { add(divide(part, depth + 1)); });
+    });
+  }
+
   Child leaf(std::span<const Item> items) {
     TriangleTree::Leaf slots;
     slots.fill(TriangleTree::kNoTriangle);
     Bounds all = nothing();
     for (std::size_t i = 0; i < items.size(); ++i) {
-      slots[i] = items[i].number;
-      include(all, boxes_[items[i].number]);
+      slots[i] = numbers_[items[i].at];
+      include(all, boxes_[items[i].at]);
     }
     std::sort(slots.begin(), slots.end());  // kNoTriangle is the largest
     tree.leaves.push_back(slots);
@@ -118,31 +130,38 @@ class Maker {
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(first), items.end(),
                      [&](const Item& x, const Item& y) {
-                       return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.number < y.number;
+                       return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.at < y.at;
                      });
     halve(items.first(first), step, take);
     halve(items.subspan(first), step, take);
   }
 
-  std::span<const Bounds> boxes_;
+  const BoxesNear* all_;
+  std::span<const std::uint32_t> numbers_;  // of what is divided
+  std::vector<Bounds> boxes_;
+  std::vector<Item> items_;
 };
 
 class Along {
  public:
-  Along(const TriangleTree& guide, std::span<const Bounds> boxes, std::span<const std::uint32_t> near)
-      : guide_(guide), boxes_(boxes), end_(guide.nodes.size()) {
+  Along(const TriangleTree& guide, const BoxesNear& boxes) : guide_(guide), boxes_(boxes), end_(guide.nodes.size()) {
     static_cast<void>(find_end(0, 0));
     std::uint32_t most = 0;
-    for (const std::uint32_t triangle : near) most = std::max(most, triangle);
+    for (const TriangleTree::Leaf& leaf : guide.leaves) {
+      for (const std::uint32_t triangle : leaf)
+        most = triangle < TriangleTree::kNoTriangle ? std::max(most, triangle) : most;
+    }
     std::vector<std::uint32_t> leaf_of(std::size_t{most} + 1, TriangleTree::kNoTriangle);
     mesh::for_each_index(guide.leaves.size(), [&](std::size_t leaf) {
       for (const std::uint32_t triangle : guide.leaves[leaf]) {
         if (triangle <= most) leaf_of[triangle] = static_cast<std::uint32_t>(leaf);
       }
     });
-    by_leaf_ = into_buckets(near.size(), guide.leaves.size(), [&](std::size_t i) {
-      PENUMBRA_ASSERT(leaf_of[near[i]] != TriangleTree::kNoTriangle, "box {}: no leaf has triangle {}", i, near[i]);
-      return leaf_of[near[i]];
+    by_leaf_ = into_buckets(boxes.count, guide.leaves.size(), [&](std::size_t i) {
+      const std::uint32_t near = boxes.triangle(i);
+      PENUMBRA_ASSERT(near <= most && leaf_of[near] != TriangleTree::kNoTriangle, "box {}: no leaf has triangle {}", i,
+                      near);
+      return leaf_of[near];
     });
   }
 
@@ -224,13 +243,11 @@ class Along {
         for_each_child(part, [&](const Part& child) { add(below(child, depth + 1, maker, made)); });
       });
     }
-    std::vector<Item> items;
-    for (const std::uint32_t number : numbers) items.push_back({boxes_[number].lower + boxes_[number].upper, number});
-    return maker.divide(items, depth);
+    return maker.divide(numbers, depth);
   }
 
   const TriangleTree& guide_;
-  std::span<const Bounds> boxes_;
+  const BoxesNear& boxes_;
   std::vector<std::uint32_t> end_;  // of each of the guide's nodes
   Buckets by_leaf_;
   std::vector<Part> parts_;
@@ -238,10 +255,8 @@ class Along {
 
 }  // namespace
 
-TriangleTree make_tree_along(const TriangleTree& guide, std::span<const Bounds> boxes,
-                             std::span<const std::uint32_t> near) {
-  PENUMBRA_ASSERT(boxes.size() == near.size(), "{} boxes near {} triangles", boxes.size(), near.size());
-  return boxes.empty() ? TriangleTree{} : Along(guide, boxes, near).make();
+TriangleTree make_tree_along(const TriangleTree& guide, const BoxesNear& boxes) {
+  return boxes.count == 0 ? TriangleTree{} : Along(guide, boxes).make();
 }
 
 }  // namespace penumbra::visibility

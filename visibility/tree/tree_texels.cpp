@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace penumbra::visibility {
@@ -29,17 +30,20 @@ bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
 /// product with which costs a processor a hundred and more cycles.
 constexpr float kThinnest = 0x1p-40F;
 
+std::array<Texel, 2> child_texels(const TriangleTree::Child& child, float scale) {
+  const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
+  const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
+  glm::vec3 half = glm::max(upper - middle, middle - lower);
+  for (int axis = 0; axis < 3; ++axis)
+    half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
+  return {Texel{middle, child.reference}, Texel{half, 0}};
+}
+
 std::vector<Texel> node_texels(const TriangleTree& tree, float scale) {
   std::vector<Texel> texels(tree.nodes.size() * 2 * TriangleTree::kWidth);
   mesh::for_each_index(tree.nodes.size() * TriangleTree::kWidth, [&](std::size_t i) {
-    const TriangleTree::Child& child = tree.nodes[i / TriangleTree::kWidth][i % TriangleTree::kWidth];
-    const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
-    const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
-    glm::vec3 half = glm::max(upper - middle, middle - lower);
-    for (int axis = 0; axis < 3; ++axis)
-      half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
-    texels[2 * i] = {middle, child.reference};
-    texels[2 * i + 1] = {half, 0};
+    const auto two = child_texels(tree.nodes[i / TriangleTree::kWidth][i % TriangleTree::kWidth], scale);
+    std::ranges::copy(two, texels.begin() + static_cast<std::ptrdiff_t>(2 * i));
   });
   return texels;
 }

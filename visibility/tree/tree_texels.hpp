@@ -23,7 +23,9 @@ static_assert(sizeof(Texel) == 16);
 /// sixth powers of lengths that shaders multiply.
 float device_scale(const SceneFloats& scene);
 
-/// Two texels a child, eight children a node: (middle, reference), (half extent, 0). Boxes are rounded outward.
+/// Two texels of a child: (middle, reference), (half extent, 0). Boxes are rounded outward.
+std::array<Texel, 2> child_texels(const TriangleTree::Child& child, float scale);
+/// Those of all nodes, eight children each.
 std::vector<Texel> node_texels(const TriangleTree& tree, float scale);
 
 /// Is a triangle's normal, as computed in double, right to float32? Not that of a needle whose edges are parallel but

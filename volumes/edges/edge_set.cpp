@@ -2,6 +2,7 @@
 
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
+#include "mesh/sorted_sides.hpp"
 #include "visibility/tree/tree_along.hpp"
 #include "volumes/edges/plane_normal.hpp"
 
@@ -12,8 +13,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -82,69 +81,68 @@ EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uin
 
 EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters) : scene_(&scene), casters_(&casters) {
   const std::size_t count = casters.triangle.size();
+  planes_.resize(count);
+  mesh::for_each_index(count, [&](std::size_t i) { planes_[i] = plane_of(scene, casters, casters.triangle[i]); });
   std::vector<mesh::Triangle> chosen;
   if (count < scene.triangles.size()) {
     chosen.resize(count);
     mesh::for_each_index(count, [&](std::size_t i) { chosen[i] = scene.triangles[casters.triangle[i]]; });
   }
-  graph_ = mesh::build_edge_graph(
-      {mesh::widened(scene.positions), count < scene.triangles.size() ? chosen : scene.triangles});
-  graph_.vertex = {};  // of no more use here
-  graph_.kind = {};
-  graph_.triangle_edges = {};
-  planes_.resize(count);
-  mesh::for_each_index(count, [&](std::size_t i) { planes_[i] = plane_of(scene, casters, casters.triangle[i]); });
-  find_pairs();
+  find_pairs(count < scene.triangles.size() ? chosen : scene.triangles);
 }
 
 /// In front where (a, b, apex) runs counter-clockwise, for the edge a→b.
-EdgeSide EdgeRecords::side(std::uint32_t incidence) const {
-  const mesh::Incidence& at = graph_.incidences[incidence];
-  EdgeSide side = planes_[at.triangle];
-  if (at.reversed) side.n = -side.n;  // the graph's triangles are sorted like those that n is of
+EdgeSide EdgeRecords::side(std::uint32_t of) const {
+  if (of == kNoSide) return {};
+  EdgeSide side = planes_[of & ~kReversed];
+  if ((of & kReversed) != 0) side.n = -side.n;  // triangles are sorted like those that n is of
   return side;
 }
 
 /// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
 bool EdgeRecords::is_flat(const Pair& pair) const {
-  if (pair.first + 1 == graph_.first[pair.edge + 1]) return false;
-  const EdgeSide s = side(pair.first), t = side(pair.first + 1);
-  return s.plane != SceneFloats::kNoPlane && s.plane == t.plane && glm::dot(s.n, t.n) < 0;
+  if (pair.sides[1] == kNoSide) return false;
+  const EdgeSide &s = planes_[pair.sides[0] & ~kReversed], &t = planes_[pair.sides[1] & ~kReversed];
+  if (s.plane == SceneFloats::kNoPlane || s.plane != t.plane) return false;
+  return glm::dot(side(pair.sides[0]).n, side(pair.sides[1]).n) < 0;
 }
 
-void EdgeRecords::find_pairs() {
-  constexpr std::size_t kChunk = 4096;
-  const std::size_t edges = graph_.edges.size();
-  std::vector<std::vector<Pair>> chunks((edges + kChunk - 1) / kChunk);
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
-    chunks[i].reserve(kChunk);
-    for (std::size_t e = i * kChunk; e < std::min((i + 1) * kChunk, edges); ++e) {
-      for (std::uint32_t first = graph_.first[e]; first < graph_.first[e + 1]; first += 2) {
-        const Pair pair{static_cast<std::uint32_t>(e), first};
-        if (!is_flat(pair)) chunks[i].push_back(pair);
-      }
+void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles) {
+  const std::vector<std::uint32_t> vertex = mesh::merge_equal(std::span(scene_->positions));
+  const mesh::SortedSides sorted = mesh::sort_sides(vertex, triangles);
+  const auto for_each_pair = [&](std::size_t from, const auto& visit) {
+    const std::span<const mesh::SortedSide> here = sorted.from(from);
+    const auto coded = [&](const mesh::SortedSide& side) {
+      const std::uint32_t triangle = side.number / 3;
+      const bool reversed = vertex[triangles[triangle][side.number % 3]] != from;
+      return triangle | (reversed ? kReversed : 0U);
+    };
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      Pair pair{static_cast<std::uint32_t>(from), here[i].other, {coded(here[i]), kNoSide}};
+      if (i + 1 < here.size() && here[i + 1].other == pair.b) pair.sides[1] = coded(here[++i]);
+      if (!is_flat(pair)) visit(pair);
     }
-  });
-  std::vector<std::size_t> first(chunks.size());
-  std::transform_exclusive_scan(chunks.begin(), chunks.end(), first.begin(), std::size_t{0}, std::plus{},
-                                [](const auto& chunk) { return chunk.size(); });
-  pairs_.resize(chunks.empty() ? 0 : first.back() + chunks.back().size());
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
-    std::ranges::copy(chunks[i], pairs_.begin() + static_cast<std::ptrdiff_t>(first[i]));
+  };
+  std::vector<std::uint32_t> first(vertex.size() + 1, 0);
+  mesh::for_each_index(vertex.size(),
+                       [&](std::size_t from) { for_each_pair(from, [&](const Pair&) { ++first[from]; }); });
+  std::uint32_t pairs = 0;
+  for (std::uint32_t& number : first) pairs += std::exchange(number, pairs);
+  pairs_.resize(pairs);
+  mesh::for_each_index(vertex.size(), [&](std::size_t from) {
+    std::uint32_t next = first[from];
+    for_each_pair(from, [&](const Pair& pair) { pairs_[next++] = pair; });
   });
 }
 
 EdgeRecord EdgeRecords::operator[](std::size_t record) const {
-  const auto [edge, first] = pairs_[record];
-  const auto [a, b] = graph_.edges[edge];
-  EdgeRecord result{scene_->positions[a], scene_->positions[b], {side(first), EdgeSide{}}};
-  if (first + 1 < graph_.first[edge + 1]) result.sides[1] = side(first + 1);
-  return result;
+  const Pair& pair = pairs_[record];
+  return {scene_->positions[pair.a], scene_->positions[pair.b], {side(pair.sides[0]), side(pair.sides[1])}};
 }
 
 visibility::Bounds EdgeRecords::box(std::size_t record) const {
-  const auto [a, b] = graph_.edges[pairs_[record].edge];
-  const glm::vec3 &from = scene_->positions[a], &to = scene_->positions[b];
+  const Pair& pair = pairs_[record];
+  const glm::vec3 &from = scene_->positions[pair.a], &to = scene_->positions[pair.b];
   return {glm::min(from, to), glm::max(from, to)};
 }
 
@@ -197,29 +195,25 @@ class Middle {
 const double kLeastCosine = std::cos(kWidest);
 
 /// The second normal turned so that k_e = 0 where p is on the same side of both; nothing if there are not two.
-std::optional<Normals> normals_of(const EdgeRecord& record) {
-  const glm::dvec3 n1(record.sides[0].n), n2(-record.sides[1].n);
+std::optional<Normals> normals_of(const std::array<glm::vec3, 2>& sides) {
+  const glm::dvec3 n1(sides[0]), n2(-sides[1]);
   if (n1 == glm::dvec3(0) || n2 == glm::dvec3(0)) return std::nullopt;
   return Normals{glm::normalize(n1), glm::normalize(n2)};
 }
 
 using visibility::TriangleTree;
 
-/// Of a leaf's records.
-template <typename Records>
-Cone cone_of(const TriangleTree::Leaf& leaf, const Records& records) {
+Cone cone_of(const LeafNormals& records) {
   std::array<Normals, TriangleTree::kWidth> normals;
-  std::size_t count = 0;
   Middle middle;
-  for (const std::uint32_t record : leaf) {
-    if (record == TriangleTree::kNoTriangle) break;
-    const std::optional<Normals> own = normals_of(records[record]);
+  for (std::size_t i = 0; i < records.count; ++i) {
+    const std::optional<Normals> own = normals_of(records.n[i]);
     if (!own) return kAllDirections;
-    normals[count] = *own;
-    middle.add(normals[count++]);
+    normals[i] = *own;
+    middle.add(normals[i]);
   }
   Cone cone{middle.axis(), 1};
-  for (const Normals& own : std::span(normals).first(count))
+  for (const Normals& own : std::span(normals).first(records.count))
     cone.cosine = std::min({cone.cosine, glm::dot(cone.axis, own.x), glm::dot(cone.axis, own.y)});
   return cone.cosine <= kLeastCosine ? kAllDirections : cone;
 }
@@ -244,13 +238,12 @@ Cone joined(std::span<const Cone> cones) {
   return all.cosine <= kLeastCosine ? kAllDirections : all;
 }
 
-template <typename Records>
 class Cones {
  public:
-  Cones(const TriangleTree& tree, const Records& records) : tree_(tree) {
+  Cones(const TriangleTree& tree, const std::function<LeafNormals(std::size_t)>& normals_of) : tree_(tree) {
     of_child_.resize(tree.nodes.size() * TriangleTree::kWidth);
     of_leaf_.resize(tree.leaves.size());
-    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) { of_leaf_[i] = cone_of(tree.leaves[i], records); });
+    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) { of_leaf_[i] = cone_of(normals_of(i)); });
     if (!tree.nodes.empty()) static_cast<void>(of_node(0, 0));
   }
   [[nodiscard]] const Cone& of_child(std::size_t node, std::size_t child) const {
@@ -283,31 +276,10 @@ class Cones {
 };
 
 template <typename Records>
-EdgeTree tree_of(TriangleTree tree, const Records& records, float scale) {
-  const Cones<Records> cones(tree, records);
-  const std::vector<visibility::Texel> boxed = visibility::node_texels(tree, scale);
-  EdgeTree result;
-  result.nodes.resize(boxed.size() / 2 * 3);
-  mesh::for_each_index(boxed.size() / 2, [&](std::size_t child) {
-    const Cone& cone = cones.of_child(child / TriangleTree::kWidth, child % TriangleTree::kWidth);
-    // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
-    // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a quarter of this in 20 levels.
-    const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
-    result.nodes[3 * child] = boxed[2 * child];
-    result.nodes[3 * child + 1] = boxed[2 * child + 1];
-    result.nodes[3 * child + 2] = {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)};
-  });
-  result.tree = std::move(tree);
-  return result;
-}
-
-template <typename Records>
-EdgeTexels texels_of(EdgeTree&& all, const Records& records, float scale) {
-  const TriangleTree& tree = all.tree;
+EdgeTexels texels_of(const TriangleTree& tree, const Records& records, float scale) {
   EdgeTexels texels;
   texels.depth = tree.depth;
   texels.records = static_cast<std::uint32_t>(records.size());
-  texels.nodes = std::move(all.nodes);
   for (auto& list : texels.slots) list.resize(tree.leaves.size() * TriangleTree::kWidth);
   mesh::for_each_index(tree.leaves.size() * TriangleTree::kWidth, [&](std::size_t i) {
     const std::uint32_t number = tree.leaves[i / TriangleTree::kWidth][i % TriangleTree::kWidth];
@@ -321,6 +293,13 @@ EdgeTexels texels_of(EdgeTree&& all, const Records& records, float scale) {
     texels.slots[4][i] = {t.n, used ? 1U : 0U};
     texels.slots[5][i] = {t.anchor * scale, used ? 1 + record.cut : 0U};
   });
+  texels.nodes = edge_nodes(tree, scale, [&](std::size_t leaf) {
+    LeafNormals normals;
+    const auto n = [&](std::size_t list) { return texels.slots[list][leaf * TriangleTree::kWidth + normals.count]; };
+    for (; normals.count < TriangleTree::kWidth && n(2).number != 0; ++normals.count)
+      normals.n[normals.count] = {n(2).value, n(4).value};
+    return normals;
+  });
   if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty
   for (auto& list : texels.slots) {
     if (list.empty()) list.emplace_back();
@@ -330,30 +309,44 @@ EdgeTexels texels_of(EdgeTree&& all, const Records& records, float scale) {
 
 }  // namespace
 
-EdgeTree edge_tree(const EdgeRecords& records, const TriangleTree& triangles, float scale) {
-  std::vector<visibility::Bounds> boxes(records.size());
-  std::vector<std::uint32_t> near(records.size());
-  mesh::for_each_index(boxes.size(), [&](std::size_t i) {
-    boxes[i] = records.box(i);
-    near[i] = records.triangle(i);
-  });
-  return tree_of(visibility::make_tree_along(triangles, boxes, near), records, scale);
+TriangleTree edge_tree(const EdgeRecords& records, const TriangleTree& triangles) {
+  return visibility::make_tree_along(triangles, {.count = records.size(),
+                                                 .box = [&](std::size_t i) { return records.box(i); },
+                                                 .triangle = [&](std::size_t i) { return records.triangle(i); }});
 }
 
-EdgeTree edge_tree(std::span<const EdgeRecord> records, float scale) {
+TriangleTree edge_tree(std::span<const EdgeRecord> records) {
   std::vector<visibility::Bounds> boxes(records.size());
   mesh::for_each_index(boxes.size(), [&](std::size_t i) {
     boxes[i] = {glm::min(records[i].a, records[i].b), glm::max(records[i].a, records[i].b)};
   });
-  return tree_of(visibility::make_tree_over(boxes), records, scale);
+  return visibility::make_tree_over(boxes);
+}
+
+std::vector<visibility::Texel> edge_nodes(const TriangleTree& tree, float scale,
+                                          const std::function<LeafNormals(std::size_t)>& normals_of) {
+  const Cones cones(tree, normals_of);
+  std::vector<visibility::Texel> nodes(tree.nodes.size() * TriangleTree::kWidth * 3);
+  mesh::for_each_index(tree.nodes.size() * TriangleTree::kWidth, [&](std::size_t i) {
+    const std::size_t node = i / TriangleTree::kWidth, child = i % TriangleTree::kWidth;
+    const auto [middle, half] = visibility::child_texels(tree.nodes[node][child], scale);
+    const Cone& cone = cones.of_child(node, child);
+    // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
+    // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a quarter of this in 20 levels.
+    const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
+    nodes[3 * i] = middle;
+    nodes[3 * i + 1] = half;
+    nodes[3 * i + 2] = {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)};
+  });
+  return nodes;
 }
 
 EdgeTexels edge_texels(const EdgeRecords& records, const TriangleTree& triangles, float scale) {
-  return texels_of(edge_tree(records, triangles, scale), records, scale);
+  return texels_of(edge_tree(records, triangles), records, scale);
 }
 
 EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale) {
-  return texels_of(edge_tree(records, scale), records, scale);
+  return texels_of(edge_tree(records), records, scale);
 }
 
 }  // namespace penumbra::volumes

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/edge_graph.hpp"
+#include "mesh/triangle_soup.hpp"
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,8 +47,8 @@ EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t ligh
 /// one side of all of them, however the device rounds.
 EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle);
 
-/// All records with k_e not 0 everywhere. Each is computed when it is asked for, from edges and planes that are there
-/// once; a list of them takes half a gigabyte for ten million edges.
+/// All records with k_e not 0 everywhere. Each is computed when it is asked for, from what is there once of edges and
+/// planes; a list of them takes half a gigabyte for ten million edges.
 class EdgeRecords {
  public:
   /// All must outlive it.
@@ -58,38 +59,44 @@ class EdgeRecords {
   [[nodiscard]] visibility::Bounds box(std::size_t record) const;
   /// One of its triangles: the scene's number.
   [[nodiscard]] std::uint32_t triangle(std::size_t record) const {
-    return casters_->triangle[graph_.incidences[pairs_[record].first].triangle];
+    return casters_->triangle[pairs_[record].sides[0] & ~kReversed];
   }
 
  private:
-  /// Two of an edge's triangles, or its last: incidences from the first of them on.
+  static constexpr std::uint32_t kReversed = 0x80000000u;  // of casters' numbers: the winding runs from b to a
+  static constexpr std::uint32_t kNoSide = 0xffffffffu;
+
+  /// Two of an edge's triangles, or its last.
   struct Pair {
-    std::uint32_t edge, first;
+    std::uint32_t a, b;                  // positions
+    std::array<std::uint32_t, 2> sides;  // casters
   };
-  [[nodiscard]] EdgeSide side(std::uint32_t incidence) const;
+  [[nodiscard]] EdgeSide side(std::uint32_t of) const;
   [[nodiscard]] bool is_flat(const Pair& pair) const;
-  void find_pairs();
+  void find_pairs(std::span<const mesh::Triangle> triangles);
 
   const visibility::SceneFloats* scene_;
   const EdgeCasters* casters_;
-  mesh::EdgeGraph graph_;
-  std::vector<EdgeSide> planes_;  ///< of each caster (plane_of)
+  std::vector<EdgeSide> planes_;  // of each caster (plane_of)
   std::vector<Pair> pairs_;
 };
 
 /// All of them at once.
 std::vector<EdgeRecord> edge_records(const visibility::SceneFloats& scene, const EdgeCasters& casters);
 
-/// A hierarchy over records: the boxes' tree, whose leaves hold numbers of records, and its nodes as texels (see
-/// EdgeTexels).
-struct EdgeTree {
-  visibility::TriangleTree tree;
-  std::vector<visibility::Texel> nodes;
+/// A hierarchy over all records of a scene, along the tree over its triangles; its leaves hold numbers of records.
+visibility::TriangleTree edge_tree(const EdgeRecords& records, const visibility::TriangleTree& triangles);
+/// Over any records.
+visibility::TriangleTree edge_tree(std::span<const EdgeRecord> records);
+
+/// n of both sides of a leaf's records (EdgeRecord::sides).
+struct LeafNormals {
+  std::array<std::array<glm::vec3, 2>, visibility::TriangleTree::kWidth> n;
+  std::size_t count = 0;
 };
-/// Of all records of a scene, along the tree over its triangles.
-EdgeTree edge_tree(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale);
-/// Of any records.
-EdgeTree edge_tree(std::span<const EdgeRecord> records, float scale);
+/// A hierarchy's nodes as EdgeTexels has them. `normals_of(leaf)` is called on all cores.
+std::vector<visibility::Texel> edge_nodes(const visibility::TriangleTree& tree, float scale,
+                                          const std::function<LeafNormals(std::size_t)>& normals_of);
 
 /// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
 /// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),

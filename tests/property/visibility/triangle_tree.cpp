@@ -121,7 +121,10 @@ TEST(TriangleTree, AlongAnotherHoldsEveryBoxOnce) {
       SCOPED_TRACE(fmt::format("{} triangles, near {}", count, homes));
       std::vector<std::uint32_t> near;
       for (std::size_t i = 0; i < boxes.size(); ++i) near.push_back(casters[i % std::min(homes, casters.size())]);
-      const TriangleTree tree = make_tree_along(make_triangle_tree(floats), boxes, near);
+      const TriangleTree tree =
+          make_tree_along(make_triangle_tree(floats), {.count = boxes.size(),
+                                                       .box = [&](std::size_t i) { return boxes[i]; },
+                                                       .triangle = [&](std::size_t i) { return near[i]; }});
       const Walk walk(only, tree);
       for (const int seen : walk.triangle_seen) EXPECT_EQ(seen, 1);
       for (const int seen : walk.node_seen) EXPECT_EQ(seen, 1);

@@ -1,5 +1,7 @@
 #include "volumes/scatter/vectors/cut.hpp"
 
+#include "base/parallel.hpp"
+
 #include <algorithm>
 
 namespace penumbra::volumes {
@@ -67,9 +69,14 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
 }
 
 template <typename Records>
-vectors::WideEdgeTree wide_tree(const EdgeTree& all, const Records& records, float scale) {
-  return vectors::wide_edge_tree(all.nodes, all.tree.leaves.size(), [&](std::size_t number, WideEdges& leaf) {
-    const visibility::TriangleTree::Leaf& slots = all.tree.leaves[number];
+vectors::WideEdgeTree wide_tree(const visibility::TriangleTree& tree, const Records& records, float scale) {
+  vectors::WideEdgeTree wide;
+  if (tree.nodes.empty()) return wide;
+  wide.roots = {0};
+  wide.leaves.resize(tree.leaves.size());
+  mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
+    WideEdges& leaf = wide.leaves[number];
+    const visibility::TriangleTree::Leaf& slots = tree.leaves[number];
     for (std::size_t lane = 0; lane < slots.size() && slots[lane] != visibility::TriangleTree::kNoTriangle; ++lane) {
       const EdgeRecord record = records[slots[lane]];
       store(leaf.a, lane, record.a * scale);
@@ -83,16 +90,25 @@ vectors::WideEdgeTree wide_tree(const EdgeTree& all, const Records& records, flo
       leaf.used |= 1U << lane;
     }
   });
+  const auto normals_of = [&](std::size_t number) {
+    const WideEdges& leaf = wide.leaves[number];
+    LeafNormals normals;
+    for (; normals.count < vectors::kWide && (leaf.used >> normals.count & 1U) != 0; ++normals.count)
+      normals.n[normals.count] = {point(leaf.n[0], normals.count), point(leaf.n[1], normals.count)};
+    return normals;
+  };
+  wide.nodes = vectors::wide_nodes(edge_nodes(tree, scale, normals_of), 3);
+  return wide;
 }
 
 }  // namespace
 
 vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale) {
-  return wide_tree(edge_tree(records, triangles, scale), records, scale);
+  return wide_tree(edge_tree(records, triangles), records, scale);
 }
 
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale) {
-  return wide_tree(edge_tree(records, scale), records, scale);
+  return wide_tree(edge_tree(records), records, scale);
 }
 
 void CutEdges::restore() {
