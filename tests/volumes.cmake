@@ -33,6 +33,7 @@ penumbra_test(volumes
   agreement/volumes/wedge_ramp.cpp
   property/volumes/depth_complexity_counters.cpp
   property/volumes/depth_complexity_lattice.cpp
+  property/volumes/edge_cones.cpp
   property/volumes/hard_volume_exact.cpp
   property/volumes/packed_counters.cpp
   property/volumes/row_bounds.cpp
