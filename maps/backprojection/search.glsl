@@ -6,6 +6,9 @@
 #include "maps/products/depth_pyramid.glsl"
 
 const int kSearchRounds = 4;
+// What is nearer to the receiver's height than this share of it is seen as far away as can be: a quotient by it is right to
+// 2^-24 of its thousand.
+const float kLeastRise = 1e-3;
 
 // Is the receiver behind all that a kernel's texels hold? Bounds for blocks_light over the kernel: of the receiver's
 // plane, whose depth h / (m . c) is least where m . c is largest, at a corner, and of what the bias forgives there.
@@ -51,6 +54,33 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, flo
   return kernel;
 }
 
+// Where on the light's plane the receiver sees what texels first ... last of a sideways face hold at depths.x ... depths.y,
+// a texel more on every side: lower ... upper hold it. A part of a pyramid below the light and above the receiver is seen
+// within its corners; of one that reaches down to the receiver's height no more is known than on which side of the
+// receiver it is, and that its highest point is seen nearest.
+void seen_sideways(MapFace face, ivec2 first, ivec2 last, vec2 depths, out vec2 lower, out vec2 upper) {
+  const vec2 from = face.lower + vec2(first - 1) * face.texel, to = face.lower + vec2(last + 2) * face.texel;
+  vec2 low = vec2(1e30), high = vec2(-1e30);  // of the part, from the receiver
+  lower = low;
+  upper = high;
+  float least = 1e30, nearest_rise = 1.0;  // so many times farther away than the part itself
+  for (int k = 0; k < 8; ++k) {
+    const vec3 corner = vec3((k & 1) == 0 ? from.x : to.x, (k & 2) == 0 ? from.y : to.y, 1.0);
+    const vec3 q = from_face(face, corner) * ((k & 4) == 0 ? depths.x : depths.y);
+    const float rise = 1.0 - q.z / asked.e.z, scale = 1.0 / max(rise, kLeastRise);
+    const vec2 away = q.xy - asked.e.xy, seen = asked.e.xy + away * scale;
+    low = min(low, away);
+    high = max(high, away);
+    lower = min(lower, seen);
+    upper = max(upper, seen);
+    least = min(least, scale);
+    nearest_rise = min(nearest_rise, rise);
+  }
+  if (nearest_rise > kLeastRise) return;
+  lower = mix(asked.e.xy + low * least, vec2(-1e30), lessThan(low, vec2(0.0)));
+  upper = mix(asked.e.xy + high * least, vec2(1e30), greaterThan(high, vec2(0.0)));
+}
+
 // Texels first ... last of a face, all that a tile's answers depend on, in so many layers: is none of them near enough to the
 // light to shade the receiver, or are all of them, no nearer than their nearest, seen beside the light? `projected`: what
 // they hide is no wider than they are. Else what can hide light is at depths.x ... depths.y.
@@ -63,6 +93,13 @@ bool none_hides(MapFace face, ivec2 first, ivec2 last, uint layers, bool project
   const float end = thresholds(receiver, face, first, last, asked.view.far).y;
   depths = asked.view.far * range;
   if (depths.x >= end) return true;
-  depths.y = min(layers > 1 ? end : min(depths.y, end), asked.e.z);
-  return projected && all_beside_light(receiver, face, first, last, depths.x, light.lower, light.upper);
+  depths.y = layers > 1 ? end : min(depths.y, end);
+  if (face.axis == 2) {
+    depths.y = min(depths.y, asked.e.z);
+    return projected && all_beside_light(receiver, face, first, last, depths.x, light.lower, light.upper);
+  }
+  if (!projected) return false;
+  vec2 lower, upper;
+  seen_sideways(face, first, last, depths, lower, upper);
+  return any(greaterThan(lower, light.upper)) || any(lessThan(upper, light.lower));
 }

@@ -17,29 +17,34 @@
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 
+// A pipeline has the code of its own options alone: drivers for processors run both sides of a branch.
+layout(constant_id = 0) const uint kFill = kFillEdges;  // kFillNone ...
+layout(constant_id = 1) const uint kForm = kFormPatch;  // kFormPatch or kFormSphere
+layout(constant_id = 2) const bool kSearch = true;      // whether a pyramid says which texels a kernel holds
+
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
-  if (own.form == kFormSphere) return sphere_kernel(face, near, own.search != 0);
-  if (own.search != 0) return search_kernel(face, light.lower, light.upper, near, 1.0, 0, true);
+  if (kForm == kFormSphere) return sphere_kernel(face, near, kSearch);
+  if (kSearch) return search_kernel(face, light.lower, light.upper, near, 1.0, 0, true);
   return kernel_on(face, lookup.size, asked.e, light.lower, light.upper, near, 0);
 }
 
 // Patches reach to their left and lower neighbours' depths; spheres, beyond their texels.
 bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
   vec2 depths;
-  return none_hides(face, first - 1, last, own.layers, own.form == kFormPatch, depths);
+  return none_hides(face, first - 1, last, own.layers, kForm == kFormPatch, depths);
 }
 
-float share_above() { return own.ball != 0 ? sphere_above_horizon() : light_above_horizon(asked.e, asked.m); }
+float share_above() { return kForm == kFormSphere && own.ball != 0 ? sphere_above_horizon() : light_above_horizon(asked.e, asked.m); }
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_texel(face, layer, cell); }
 
 uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
   const Tap tap = texel_at(face, layer, cell);
   if (!hides(tap)) return 0;
-  if (own.form == kFormSphere) return sphere_hides(face, tap);
+  if (kForm == kFormSphere) return sphere_hides(face, tap);
   Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
-  fill_gaps(one, face, layer, cell, own.fill);
+  fill_gaps(one, face, layer, cell, kFill);
   return light_between(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 

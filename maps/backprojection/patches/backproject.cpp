@@ -77,14 +77,12 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   recipe.products.push_back(
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
   recipe.all_casters = parsed[kForm] == gpu::kFormSphere;
-  const gpu::BackprojectPush push{
-      parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u, parsed[kDeepestLayers], 0u, 0.0F};
-  recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
-  recipe.push = [push](const visibility::Light& light) {
-    gpu::BackprojectPush of_light = push;
-    of_light.ball = light.kind == visibility::LightKind::sphere ? 1 : 0;
-    of_light.radius = static_cast<float>(half_width(light));  // a sphere's area is that of the disk of its radius
-    return push_words(of_light);
+  recipe.constants = {parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u};
+  recipe.push_words = sizeof(gpu::BackprojectPush) / sizeof(std::uint32_t);
+  recipe.push = [layers = parsed[kDeepestLayers]](const visibility::Light& light) {
+    // A sphere's area is that of the disk of its radius.
+    return push_words(gpu::BackprojectPush{layers, light.kind == visibility::LightKind::sphere ? 1u : 0u,
+                                           static_cast<float>(half_width(light))});
   };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }

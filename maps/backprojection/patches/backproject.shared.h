@@ -10,9 +10,6 @@ const uint kFormPatch = 0, kFormSphere = 1;
 #endif
 
 struct BackprojectPush {
-  uint fill;     // kFillNone ...
-  uint form;     // kFormPatch or kFormSphere
-  uint search;   // whether a pyramid is asked
   uint layers;   // that are asked
   uint ball;     // 1: the light is a sphere
   float radius;  // its, or that of the disk of the light's area

@@ -21,8 +21,16 @@
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 8) readonly buffer Levels { uvec2 levels[]; };  // level_maps.comp's
 
-uint level = 0;        // that is looked at now
-uint level_start = 0;    // where it begins among those that there are
+// A pipeline has the code of its own options alone: drivers for processors run both sides of a branch.
+layout(constant_id = 0) const uint kOccluder = kOccluderQuad;  // kOccluderPatch ...
+layout(constant_id = 1) const uint kFill = kFillNone;          // kFillNone ...
+layout(constant_id = 2) const bool kSearch = true;             // whether a pyramid says which texels a kernel holds
+layout(constant_id = 3) const uint kLevels = kFinestLevel;     // kFinestLevel ...
+
+uint level_at_hand = 0;
+uint level_start = 0;  // where it begins among those that there are
+
+uint level() { return kLevels == kFinestLevel ? 0 : level_at_hand; }
 
 // Schwarz and Stamminger 2008: where a budget is exceeded coarser levels are looked at, by a number that grows with the
 // kernel without steps. Between two whole ones the coarser decides for so many of the light samples, shared out evenly.
@@ -32,28 +40,28 @@ bool coarser = false;       // the coarser of two is looked at now
 
 // Places in [0, 1) that any first n of the samples fill evenly: multiples of the golden ratio.
 bool is_mine(uint j) {
-  if (coarser_share >= 1.0) return true;
+  if (kLevels != kLevelsByBudget || coarser_share >= 1.0) return true;
   return (float(j * 2654435769u >> 8) / 16777216.0 < coarser_share) == coarser;
 }
 
 uint side_of_level(uint l) { return ((lookup.size - 1) >> l) + 1; }
-uint level_size() { return side_of_level(level); }
+uint level_size() { return side_of_level(level()); }
 
 void look_at_level(uint l) {
-  level = l;
+  level_at_hand = l;
   level_start = 0;
-  if (own.budget == 0) return;  // it is the only one
+  if (kLevels != kLevelsByBudget) return;  // it is the only one
   for (uint k = 1; k < l; ++k) level_start += lookup.layers * lookup.faces * side_of_level(k) * side_of_level(k);
 }
 
 // The face with texels of the level.
 MapFace at_level(MapFace face) {
-  face.texel *= float(1u << level);
+  face.texel *= float(1u << level());
   return face;
 }
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) {
-  if (level == 0) return ask_texel(face, layer, cell);
+  if (level() == 0) return ask_texel(face, layer, cell);
   const uint side = level_size();
   const uint texel = level_start + ((face.map + layer * lookup.faces) * side + cell.y) * side + cell.x;
   Tap tap;
@@ -70,12 +78,16 @@ Tap texel_at(MapFace face, uint layer, uvec2 cell) {
 
 // Quads and triangles lie between centres, of a texel and its right and upper neighbours; patches reach to the left and
 // lower ones.
-bool between_centres() { return own.occluder == kOccluderQuad || own.occluder == kOccluderTriangle; }
+bool between_centres() { return kOccluder == kOccluderQuad || kOccluder == kOccluderTriangle; }
 
-// A rectangle of the light that holds what texels first ... last of a face parallel to it can hide, none of them nearer to
-// the light than depths.x or farther than depths.y; a texel more on every side, as in all_beside_light.
+// A rectangle of the light that holds what texels first ... last of a face can hide, none of them nearer to the light than
+// depths.x or farther than depths.y; a texel more on every side, as in all_beside_light.
 bool may_hide_samples(MapFace face, ivec2 first, ivec2 last, vec2 depths) {
-  if (face.axis != 2) return true;
+  if (face.axis != 2) {
+    vec2 lower, upper;
+    seen_sideways(face, first, last, depths, lower, upper);
+    return holds_samples(lower, upper);
+  }
   const vec2 from = (face.lower + vec2(first - 1) * face.texel) * asked.e.z - asked.e.xy;
   const vec2 to = (face.lower + vec2(last + 2) * face.texel) * asked.e.z - asked.e.xy;
   const vec2 scales = depths / max(asked.e.z - depths, vec2(1e-8 * asked.e.z));
@@ -83,8 +95,8 @@ bool may_hide_samples(MapFace face, ivec2 first, ivec2 last, vec2 depths) {
 }
 
 bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
-  const ivec2 from = (between_centres() ? first : first - 1) << level;
-  const ivec2 to = ((between_centres() ? last + 2 : last + 1) << level) - 1;
+  const ivec2 from = (between_centres() ? first : first - 1) << level();
+  const ivec2 to = ((between_centres() ? last + 2 : last + 1) << level()) - 1;
   vec2 depths;
   return none_hides(face, from, to, own.layers, true, depths) || !may_hide_samples(face, from, to, depths);
 }
@@ -103,31 +115,31 @@ Kernel kernel_of(MapFace face) {
   look_at_level(own.level);
   coarser_share = 1.0;
   Kernel kernel = kNoKernel;
-  if (own.search != 0) {
+  if (kSearch) {
     kernel = search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true);
     if (is_empty(kernel)) return kernel;
   }
-  if (own.search == 0 || level > 0) kernel = kernel_at_level(face);
-  if (own.budget == 0 || is_empty(kernel)) return kernel;
+  if (!kSearch || level() > 0) kernel = kernel_at_level(face);
+  if (kLevels != kLevelsByBudget || is_empty(kernel)) return kernel;
   const ivec2 extent = kernel.last - kernel.first + 1;
-  wanted_level = float(level) + max(0.5 * log2(float(extent.x) * float(extent.y) / float(own.budget)), 0.0);
+  wanted_level = float(level()) + max(0.5 * log2(float(extent.x) * float(extent.y) / float(own.budget)), 0.0);
   wanted_level = min(wanted_level, float(kCoarsestLevel));
   coarser_share = own.blend != 0 ? fract(wanted_level) : 1.0;
   coarser = false;
   look_at_level(uint(own.blend != 0 ? floor(wanted_level) : ceil(wanted_level)));
-  return level == own.level ? kernel : kernel_at_level(face);
+  return level() == own.level ? kernel : kernel_at_level(face);
 }
 
 Kernel next_kernel(MapFace face, uint turn) {
-  if (turn > 1 || own.budget == 0 || own.blend == 0 || coarser_share == 0.0 || level >= kCoarsestLevel) return kNoKernel;
+  if (turn > 1 || kLevels != kLevelsByBudget || own.blend == 0 || coarser_share == 0.0 || level() >= kCoarsestLevel) return kNoKernel;
   coarser = true;
-  look_at_level(level + 1);
+  look_at_level(level() + 1);
   return kernel_at_level(face);
 }
 
 void hide_patch(MapFace face, uint layer, uvec2 cell, Tap tap) {
   Patch one = patch_of(face, asked.e, cell, uvec2(1), tap.depth);
-  fill_gaps(one, face, layer, cell, own.fill);
+  fill_gaps(one, face, layer, cell, kFill);
   hide_rectangle(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 
@@ -136,7 +148,7 @@ void hide_box(MapFace fine, uint layer, uvec2 cell, Tap tap) {
   const uint side = level_size();
   const uint box = levels[level_start + ((fine.map + layer * lookup.faces) * side + cell.y) * side + cell.x].y;
   const uvec2 first = uvec2(box & 255u, box >> 16 & 255u), last = uvec2(box >> 8 & 255u, box >> 24);
-  const Patch one = patch_of(fine, asked.e, (cell << level) + first, last - first + 1, tap.depth);
+  const Patch one = patch_of(fine, asked.e, (cell << level()) + first, last - first + 1, tap.depth);
   hide_rectangle(in_light_order(fine, one.from), in_light_order(fine, one.to));
 }
 
@@ -148,7 +160,7 @@ void hide_quad(MapFace face, uint layer, uvec2 cell) {
   vec3 seen[4];
   uint hiding = 0;
   int missing = 0;
-  const uint fewest = own.occluder == kOccluderTriangle ? 3 : 4;
+  const uint fewest = kOccluder == kOccluderTriangle ? 3 : 4;
   for (int k = 0; k < 4 && hiding + 4 >= uint(k) + fewest; ++k) {
     const Tap tap = texel_at(face, layer, at[k]);
     if (hides(tap)) {
@@ -161,7 +173,7 @@ void hide_quad(MapFace face, uint layer, uvec2 cell) {
   if (hiding == 4) {
     hide_triangle(seen[0], seen[1], seen[2]);
     hide_triangle(seen[0], seen[2], seen[3]);
-  } else if (hiding == 3 && own.occluder == kOccluderTriangle) {
+  } else if (hiding == 3 && kOccluder == kOccluderTriangle) {
     hide_triangle(seen[(missing + 1) & 3], seen[(missing + 2) & 3], seen[(missing + 3) & 3]);
   }
 }
@@ -176,7 +188,7 @@ void hide(MapFace fine, uvec2 cell) {
     const Tap tap = texel_at(face, layer, cell);
     if (tap.depth >= tap.far) break;  // behind nothing there is nothing
     if (!hides(tap)) continue;
-    if (own.occluder == kOccluderRect && level > 0) {
+    if (kOccluder == kOccluderRect && level() > 0) {
       hide_box(fine, layer, cell, tap);
     } else {
       hide_patch(face, layer, cell, tap);

@@ -75,13 +75,13 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
       .description = bitmask_description(), .look_up_name = "bitmask look-up", .look_up = shaders::kBitmaskComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const Search search = parsed[kBitmaskSearch];
-  const gpu::BitmaskPush push{parsed[kOccluder],
-                              parsed[kBitmaskFill],
-                              parsed[kJoinedLayers],
-                              parsed[kLevel],
-                              search == Search::none ? 0u : 1u,
-                              parsed[kBudget],
-                              parsed[kBlend] ? 1u : 0u};
+  const gpu::BitmaskPush push{parsed[kJoinedLayers], parsed[kLevel], parsed[kBudget], parsed[kBlend] ? 1u : 0u};
+  const std::uint32_t occluder = parsed[kOccluder];
+  const bool has_patches = occluder == gpu::kOccluderPatch || occluder == gpu::kOccluderRect;
+  recipe.constants = {occluder, has_patches ? parsed[kBitmaskFill] : gpu::kFillNone, search == Search::none ? 0u : 1u,
+                      push.budget > 0  ? gpu::kLevelsByBudget
+                      : push.level > 0 ? gpu::kOneLevel
+                                       : gpu::kFinestLevel};
   recipe.whole_light = true;
   recipe.group_a_receiver = true;
   recipe.layers.count = push.layers + (parsed[kDepth] == DepthUse::first ? 0 : 1);
