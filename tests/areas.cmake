@@ -6,6 +6,7 @@ if(PENUMBRA_WITH_CGAL_GPL)
   # CGAL's Boolean set operations (GPL) judge the union: another library, another way, in a test alone.
   find_package(CGAL REQUIRED)
   target_sources(areas_test PRIVATE agreement/exact_area_booleans.cpp)
+  set_source_files_properties(agreement/exact_area_booleans.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   if(PENUMBRA_SANITIZE)  # CGAL's arrangements cast faces down to what they are not
     set_source_files_properties(agreement/exact_area_booleans.cpp PROPERTIES COMPILE_OPTIONS -fno-sanitize=vptr)
   endif()

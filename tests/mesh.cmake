@@ -21,6 +21,7 @@ penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
   unit/mesh/readers_xml.cpp
   unit/mesh/repair.cpp
   unit/mesh/soup_ply.cpp
+  APART property/mesh/diagnosis_oracle.cpp
   # GMP's rationals are the judge of the exact predicates: another library, another formula.
   LIBRARIES penumbra_mesh CGAL::CGAL PkgConfig::MINIZIP nlohmann_json::nlohmann_json ${RAPIDCHECK} TBB::tbb gmpxx gmp)
 penumbra_cgal_corpus(mesh_test)
@@ -32,6 +33,7 @@ if(PENUMBRA_WITH_CGAL_GPL)
   # Polygon_mesh_processing is GPL: the test, never the program without repair, links it.
   target_compile_definitions(mesh_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
   target_sources(mesh_test PRIVATE agreement/mesh/diagnosis_cgal.cpp)
+  set_source_files_properties(agreement/mesh/diagnosis_cgal.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_test(NAME mesh_diagnosis_cgal.small COMMAND mesh_test --gtest_filter=CgalMeshes.Small)
   add_test(NAME mesh_diagnosis_cgal.all COMMAND mesh_test --gtest_filter=CgalMeshes.All)
   set_tests_properties(mesh_diagnosis_cgal.small PROPERTIES LABELS quick)

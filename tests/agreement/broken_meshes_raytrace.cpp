@@ -45,11 +45,11 @@ class BrokenMeshes : public Meshes {};
 class CgalMeshes : public Meshes {};
 
 const auto kMethods = testing::ValuesIn(tests::kMaskMethods);
-std::string name_of_case(const testing::TestParamInfo<tests::MaskMethod>& info) {
+std::string name_of_method(const testing::TestParamInfo<tests::MaskMethod>& info) {
   return info.param.name;
 }
-INSTANTIATE_TEST_SUITE_P(By, BrokenMeshes, kMethods, name_of_case);
-INSTANTIATE_TEST_SUITE_P(By, CgalMeshes, kMethods, name_of_case);
+INSTANTIATE_TEST_SUITE_P(By, BrokenMeshes, kMethods, name_of_method);
+INSTANTIATE_TEST_SUITE_P(By, CgalMeshes, kMethods, name_of_method);
 
 scenes::Scene broken_scene(const std::vector<std::string>& defects, std::uint32_t size, double half_extent) {
   return tests::with_a_floor(mesh::make_broken_mesh({defects, size, {0, 1, 0}, half_extent}).soup);

@@ -14,14 +14,14 @@
 namespace penumbra {
 namespace {
 
-tests::AimedScene tiny(std::uint32_t seed) {
-  tests::Aim aim(seed);
+tests::OneLightScene tiny(std::uint32_t seed) {
+  tests::Draws aim(seed);
   const double size = std::exp2(aim.real(-24, -19)), height = size * aim.power(-0.5, 0.5);
   const auto vector = [&] { return size * glm::dvec3(aim.real(-1, 1), aim.real(-1, 1), aim.real(-1, 1)); };
   const glm::dvec3 center = vector(), n = aim.direction(), u = aim.across(n), v = glm::cross(n, u);
   const double thin = aim.power(-1, 0);
-  tests::AimedScene scene(scenes::Rectangle{center, size * u, thin * size * v},
-                          {64, 0, 0, visibility::SamplePattern::rows, 3});
+  tests::OneLightScene scene(scenes::Rectangle{center, size * u, thin * size * v},
+                             {64, 0, 0, visibility::SamplePattern::rows, 3});
   const glm::dvec3 p = center + height * n + 0.5 * vector();
   std::vector<tests::Corners> occluder;
   for (int i = 0; i < 4; ++i) {
@@ -38,7 +38,7 @@ class TinyLights : public tests::DeviceTest, public testing::WithParamInterface<
   void are_right(std::span<const std::uint32_t> seeds) {
     const auto method = GetParam().make(device(), {});
     for (const std::uint32_t seed : seeds) {
-      const tests::AimedScene scene = tiny(seed);
+      const tests::OneLightScene scene = tiny(seed);
       EXPECT_TRUE(tests::equals_truth(scene.floats, scene.light, scene.samples,
                                       tests::run(*method, scene.floats, scene.light, scene.samples)))
           << "seed " << seed;

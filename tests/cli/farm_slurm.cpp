@@ -29,7 +29,6 @@ namespace penumbra::tests {
 namespace {
 
 using app::ChildProgram;
-using app::run_program;
 using testing::HasSubstr;
 
 /// A port that nobody listens on.
@@ -66,7 +65,7 @@ class FarmSlurmFull : public ProgramTest {
  protected:
   void SetUp() override {
     for (const char* program : {"munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue"}) {
-      if (run_program({"sh", "-c", std::string("PATH=$PATH:/usr/sbin command -v ") + program}).code != 0) {
+      if (app::run_program({"sh", "-c", std::string("PATH=$PATH:/usr/sbin command -v ") + program}).code != 0) {
         GTEST_SKIP() << program
                      << " is not installed, and nothing was tried: apt-get install munge slurmctld slurmd "
                         "slurm-client (packages.txt)";
@@ -99,7 +98,7 @@ class FarmSlurmFull : public ProgramTest {
     for (char& c : key) c = static_cast<char>(random());
     std::filesystem::permissions(write("munge.key", key), std::filesystem::perms::owner_read);
     for (const char* folder : {"state", "n1", "n2"}) std::filesystem::create_directories(path(folder));
-    const std::string host = run_program({"hostname", "-s"}).output, name = host.substr(0, host.find('\n'));
+    const std::string host = app::run_program({"hostname", "-s"}).output, name = host.substr(0, host.find('\n'));
     std::set<int> ports;
     while (ports.size() < 3) ports.insert(free_port());
     auto port = ports.begin();
@@ -147,7 +146,7 @@ SchedulerParameters=sched_interval=2,bf_interval=2
   }
 
   /// What a command of Slurm prints; nothing if it fails.
-  std::string slurm(std::vector<std::string> command) { return run_program(std::move(command)).output; }
+  std::string slurm(std::vector<std::string> command) { return app::run_program(std::move(command)).output; }
 
   static bool eventually(int seconds, const std::function<bool()>& holds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
@@ -301,7 +300,7 @@ TEST_F(FarmSlurmFull, WhatWasCancelledIsReportedAndNotSubmittedAgain) {
   const std::vector<std::string> words = {"srun", "--exclusive", PENUMBRA_PROGRAM, "submit", scene_,  "--frames",
                                           "0-3",  "-o",          path("t.exr"),    "--size", "24x16", "--chunk",
                                           "2"};
-  const app::ProgramEnding ending = run_program(words);
+  const app::ProgramEnding ending = app::run_program(words);
   EXPECT_EQ(ending.code, 0) << ending.errors;
   EXPECT_TRUE(eventually(120, [&] { return logs(path("t.farm")).find("all 4 frames are there") != std::string::npos; }))
       << logs(path("t.farm")) << slurm({"squeue"});

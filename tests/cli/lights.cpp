@@ -19,8 +19,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr const char* kRectangle = R"("rectangle": {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]})";
-constexpr const char* kSun = R"("sun": {"direction": [0.2, -1, 0.1], "angle": 20})";
+constexpr const char* kCeiling = R"("rectangle": {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]})";
+constexpr const char* kLowSun = R"("sun": {"direction": [0.2, -1, 0.1], "angle": 20})";
 
 class LightKinds : public ProgramTest {
  protected:
@@ -48,7 +48,7 @@ class LightKinds : public ProgramTest {
 
 TEST_F(LightKinds, EachIsRenderedWithoutAMethodNamed) {
   for (const char* shape :
-       {kRectangle, kSun, R"("disk": {"center": [0, 4, 0], "normal": [0, -1, 0], "radius": 0.6})",
+       {kCeiling, kLowSun, R"("disk": {"center": [0, 4, 0], "normal": [0, -1, 0], "radius": 0.6})",
         R"("ellipse": {"center": [0, 4, 0], "halfU": [0.9, 0, 0], "halfV": [0, 0, 0.4]})",
         R"("polygon": [[-0.5, 4, -0.5], [0.5, 4, -0.5], [0, 4, 0.6]])",
         R"("sphere": {"center": [0, 4, 0], "radius": 0.6})", R"("sun": {"direction": [0.2, -1, 0.1], "angle": 0})"}) {
@@ -67,7 +67,7 @@ TEST_F(LightKinds, EachIsRenderedWithoutAMethodNamed) {
 }
 
 TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
-  scene_with(fmt::format(R"({{"name": "key", {}}})", kSun));
+  scene_with(fmt::format(R"({{"name": "key", {}}})", kLowSun));
   for (const char* method : {"soft-volume", "pcss", "hard-volume"}) {
     const Outcome outcome = render({"--method", method});
     EXPECT_EQ(outcome.code, 3) << method;
@@ -83,11 +83,11 @@ TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
     EXPECT_EQ(outcome.code, 3) << method;
     EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("179.5 degrees"), HasSubstr("edge-scatter"))) << method;
   }
-  scene_with(fmt::format(R"({{"name": "key", {}}})", kSun));
+  scene_with(fmt::format(R"({{"name": "key", {}}})", kLowSun));
   const Outcome wedges = run({"wedges", path("scene.json"), "--light", "key"});
   EXPECT_EQ(wedges.code, 3);
   EXPECT_THAT(wedges.err, HasSubstr("is a sun"));
-  scene_with(fmt::format(R"({{"name": "key", {}, "radiance": [1e300, 1, 1]}})", kRectangle));
+  scene_with(fmt::format(R"({{"name": "key", {}, "radiance": [1e300, 1, 1]}})", kCeiling));
   const Outcome blinding = render({});
   EXPECT_EQ(blinding.code, 3);
   EXPECT_THAT(blinding.err, testing::AllOf(HasSubstr("1e+300"), HasSubstr("1e+36")));
@@ -122,7 +122,7 @@ TEST_F(LightKinds, ShippedLightsHaveExactAreas) {
 }
 
 TEST_F(LightKinds, BitsOfASunHoldDirections) {
-  scene_with(fmt::format(R"({{"name": "key", {}}})", kSun));
+  scene_with(fmt::format(R"({{"name": "key", {}}})", kLowSun));
   const Outcome outcome = render({"--method", "raytrace", "--bits", path("out.bits"), "--light-samples", "5x5"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const tests::BitsFile bits = tests::read_bits(path("out.bits"));
@@ -136,7 +136,7 @@ TEST_F(LightKinds, BitsOfASunHoldDirections) {
 
 /// What does not cast for a light is to it as if it cast for none, and the other lights know nothing of it.
 TEST_F(LightKinds, CastersAreEachLightsOwn) {
-  const std::string other = fmt::format(R"({{"name": "other", {}}})", kRectangle);
+  const std::string other = fmt::format(R"({{"name": "other", {}}})", kCeiling);
   const auto bits_of = [&](const char* method, const char* light) {
     const Outcome outcome =
         render({"--method", method, "--light", light, "--bits", path("out.bits"), "--light-samples", "6x6"});
@@ -145,13 +145,13 @@ TEST_F(LightKinds, CastersAreEachLightsOwn) {
   };
   for (const char* method :
        {"raytrace", "view-sample", "depth-complexity", "accumulate", "hierarchical-penumbra", "view-sample-planar"}) {
-    scene_with(fmt::format(R"({{"name": "key", {}}}, {})", kRectangle, other), R"(, "castsShadow": false)");
+    scene_with(fmt::format(R"({{"name": "key", {}}}, {})", kCeiling, other), R"(, "castsShadow": false)");
     const std::string none = bits_of(method, "key");
-    scene_with(fmt::format(R"({{"name": "key", {}}}, {})", kRectangle, other));
+    scene_with(fmt::format(R"({{"name": "key", {}}}, {})", kCeiling, other));
     const std::string all = bits_of(method, "key");
     EXPECT_NE(none, all);
     for (const char* casters : {R"({"exclude": ["board"]})", R"({"include": ["floor", "shelf"]})"}) {
-      scene_with(fmt::format(R"({{"name": "key", {}, "casters": {}}}, {})", kRectangle, casters, other));
+      scene_with(fmt::format(R"({{"name": "key", {}, "casters": {}}}, {})", kCeiling, casters, other));
       EXPECT_EQ(bits_of(method, "key"), none) << method << casters;
       EXPECT_EQ(bits_of(method, "other"), all) << method << casters;
     }
@@ -159,7 +159,7 @@ TEST_F(LightKinds, CastersAreEachLightsOwn) {
 }
 
 TEST_F(LightKinds, AMeshIsLitByItsLightsAlone) {
-  const std::string lights = fmt::format(R"({{"name": "key", {0}}}, {{"name": "other", {0}}})", kRectangle);
+  const std::string lights = fmt::format(R"({{"name": "key", {0}}}, {{"name": "other", {0}}})", kCeiling);
   for (const char* method : {"raytrace", "pcss"}) {
     scene_with(lights, "", R"(, "lights": ["other"])");
     ASSERT_EQ(render({"--method", method}).code, 0);

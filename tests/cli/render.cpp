@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kFill =
+constexpr const char* kSecond =
     R"({"name": "fill", "rectangle": {"center": [3, 3, 3], "halfU": [0.2, 0, 0], "halfV": [0, 0, 0.2]}})";
 constexpr const char* kBulb = R"({"name": "bulb", "sphere": {"center": [0, 4, 0], "radius": 0.3}})";
 
@@ -171,7 +171,7 @@ TEST_P(Render, RoundedCountsAreSaid) {
 }
 
 TEST_P(Render, ChosenLightComesFirst) {
-  write("scene.json", scene_text_with("/lights/1", kFill));
+  write("scene.json", scene_text_with("/lights/1", kSecond));
   ASSERT_EQ(render("key.exr").code, 0);
   ASSERT_EQ(render("fill.exr", {"--light", "fill", "--light", "key"}).code, 0);
   const ExrFile key = read_exr(path("key.exr")), fill = read_exr(path("fill.exr"));

@@ -21,7 +21,7 @@ using tests::soup_scene;
 constexpr Lamp kLamps[] = {Lamp::flat, Lamp::tilted, Lamp::polygon, Lamp::disk, Lamp::ellipse, Lamp::sphere};
 
 // docs/exact.md: a vertex off by an ulp moves the area by an ulp times the edges at it; a few hundred of them.
-constexpr double kRounding = 1e-12;
+constexpr double kAreaRounding = 1e-12;
 
 class ExactAreaSoups : public testing::TestWithParam<std::uint32_t> {};
 
@@ -41,7 +41,7 @@ TEST_P(ExactAreaSoups, OrderAndWindingChangeNoBitAndDuplicatesNoArea) {
     for (int i = 0; i < 12; ++i) {
       const glm::vec3 p = soup_receiver(random);
       EXPECT_EQ(one.visibility(p), other.visibility(p));
-      EXPECT_NEAR(one.visibility(p), more.visibility(p), kRounding);  // edges of which half cancelled come back
+      EXPECT_NEAR(one.visibility(p), more.visibility(p), kAreaRounding);  // edges of which half cancelled come back
     }
   }
 }
@@ -64,7 +64,7 @@ TEST_P(ExactAreaSoups, SplitFacesCoverTheSame) {
     const AreaStage one(soup_scene(soup, lamp)), other(soup_scene(split, lamp));
     for (int i = 0; i < 12; ++i) {
       const glm::vec3 p = soup_receiver(random);
-      EXPECT_NEAR(one.visibility(p), other.visibility(p), kRounding);
+      EXPECT_NEAR(one.visibility(p), other.visibility(p), kAreaRounding);
     }
   }
 }
@@ -77,7 +77,7 @@ TEST_P(ExactAreaSoups, RationalSweepsAgree) {
     const AreaStage stage(soup_scene(soup, lamp));
     for (int i = 0; i < 4; ++i) {
       const glm::vec3 p = soup_receiver(random);
-      EXPECT_NEAR(stage.visibility(p), stage.visibility(p, SweepArithmetic::rational), kRounding);
+      EXPECT_NEAR(stage.visibility(p), stage.visibility(p, SweepArithmetic::rational), kAreaRounding);
     }
   }
 }
@@ -135,9 +135,9 @@ TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
   EXPECT_EQ(alone({{{-1, 1, 0}, {0, 1, 0}, {1, 1, 0}}}), 1);
   // Upright at x = ¼, from far below to far above both planes: seen from x = 0 it is x = 1 at one quarter of the way;
   // from there up it covers x from ¼ to 1.
-  EXPECT_NEAR(alone({{{0.25, -60, 0}, {0.25, 60, -60}, {0.25, 60, 60}}}, {0, -1, 0}), 1 - 0.75 / 2, kRounding);
+  EXPECT_NEAR(alone({{{0.25, -60, 0}, {0.25, 60, -60}, {0.25, 60, 60}}}, {0, -1, 0}), 1 - 0.75 / 2, kAreaRounding);
   // Through the light's plane at x = 0, rising to the right: its part below, x < 0, is in the way.
-  EXPECT_NEAR(alone({{{-16, -13, -29}, {-16, -13, 29}, {16, 19, 0}}}, {0.5, -1, 0}), 0.5, kRounding);
+  EXPECT_NEAR(alone({{{-16, -13, -29}, {-16, -13, 29}, {16, 19, 0}}}, {0.5, -1, 0}), 0.5, kAreaRounding);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ glm::vec3 scaled(const glm::vec3& x, int exponent) {
 }
 
 /// Random triangles over a floor under a light of each kind.
-scenes::Scene soup_over_floor(std::uint32_t seed) {
+scenes::Scene soup_at_scale(std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> real(-1, 1);
   const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
@@ -56,7 +56,7 @@ scenes::Scene soup_over_floor(std::uint32_t seed) {
 
 /// On the grid, so that scaling it is exact.
 Stage snapped_stage(std::uint32_t seed) {
-  Stage stage(soup_over_floor(seed), 24, 24, {32, 0, 0, visibility::SamplePattern::rows, 0});
+  Stage stage(soup_at_scale(seed), 24, 24, {32, 0, 0, visibility::SamplePattern::rows, 0});
   for (glm::vec3& x : stage.floats.positions) x = snapped(x);
   for (glm::vec3& x : stage.samples.p) x = snapped(x);
   for (glm::vec3& x : stage.light.points) x = snapped(x);
@@ -123,7 +123,7 @@ TEST(ScaleLimits, ALightTooFarForTheSceneIsRefused) {
 }
 
 TEST(ScaleLimits, TrianglesTooSmallForTheSceneAreRefused) {
-  scenes::Scene scene = soup_over_floor(0);
+  scenes::Scene scene = soup_at_scale(0);
   for (const double size : {0x1p-60, 0x1p-80}) {
     scenes::Scene with_dust = scene;
     tests::add_object(with_dust, "anchor", {{glm::dvec3(-4), glm::dvec3(4, 4, -4), glm::dvec3(4)}});  // origin at 0

@@ -3,7 +3,8 @@
 
 Compilers see one file at a time, and linkers keep one of all constructors and destructors of a name: with two types of that
 name, which of them run depends on what the optimiser made of calls, and on the order of linking. Anonymous namespaces and
-types inside types are left out; so are specialisations of others' templates, and tests, which are programs of their own.
+types inside types are left out; so are specialisations of others' templates, and the tests' sources (not their headers), which
+belong to programs of their own.
 """
 import collections
 import pathlib
@@ -46,7 +47,7 @@ def main(source):
         file = path.relative_to(source)
         if path.suffix not in {".cpp", ".hpp", ".h"} or str(file) in ALTERNATIVES:
             continue
-        if file.parts[0] == "tests" or any(build in file.parents for build in builds):
+        if (file.parts[0] == "tests" and path.suffix == ".cpp") or any(build in file.parents for build in builds):
             continue
         for name in types_of(path.read_text(errors="replace")):
             places[name].add(str(file))

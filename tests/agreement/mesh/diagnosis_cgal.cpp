@@ -60,7 +60,7 @@ std::optional<Soup> read(const std::filesystem::path& file) {
   return soup;
 }
 
-Diagnosis diagnosis_of(const Soup& soup) {
+Diagnosis diagnosis_of_read(const Soup& soup) {
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;
   for (const Point& p : soup.points) positions.emplace_back(p.x(), p.y(), p.z());
@@ -218,7 +218,7 @@ void compare(const std::filesystem::path& file) {
   std::optional<Soup> read_soup = read(file);
   ASSERT_TRUE(read_soup);
   Soup& soup = *read_soup;
-  const Diagnosis ours = diagnosis_of(soup);
+  const Diagnosis ours = diagnosis_of_read(soup);
   const Difference difference = known_difference(file.filename().string());
 
   // Each angle is off by less than 2⁻⁵⁰; the nearest to closed of the open meshes, ChineseDragon-10kv.off, by 3.6e-8.

@@ -14,9 +14,9 @@
 
 namespace penumbra::tests {
 
-class Aim {
+class Draws {
  public:
-  explicit Aim(std::uint32_t seed) : random_(seed) {}
+  explicit Draws(std::uint32_t seed) : random_(seed) {}
   double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   double power(double low, double high) { return std::pow(10.0, real(low, high)); }
   glm::dvec3 direction() {
@@ -31,12 +31,12 @@ class Aim {
   std::mt19937_64 random_;
 };
 
-struct AimedScene {
+struct OneLightScene {
   visibility::SceneFloats floats;
   visibility::Light light;
   visibility::ViewSamples samples;
 
-  AimedScene(const scenes::LightShape& shape, const visibility::SampleRequest& request) : request_(request) {
+  OneLightScene(const scenes::LightShape& shape, const visibility::SampleRequest& request) : request_(request) {
     scenes::Object& anchor = add_object(scene_, "anchor", {{glm::dvec3(-1), glm::dvec3(1), glm::dvec3(1, -1, 1)}});
     anchor.casts_shadow = anchor.receives_shadow = false;
     scene_.lights.push_back(ceiling_light(1, 1));
@@ -48,7 +48,7 @@ struct AimedScene {
   void add_occluder(const std::vector<Corners>& triangles) { add_object(scene_, "occluder", triangles); }
 
   /// 64 view samples within `spread` of p, on a floor across `up` that reaches as far as `size`.
-  void look_from(Aim& aim, const glm::dvec3& p, const glm::dvec3& up, double size, double spread) {
+  void look_from(Draws& aim, const glm::dvec3& p, const glm::dvec3& up, double size, double spread) {
     const glm::dvec3 a = aim.across(up), b = glm::cross(up, a);
     add_object(scene_, "floor", {{p - size * a - size * b, p + size * a - size * b, p + size * b}}).casts_shadow =
         false;

@@ -9,8 +9,8 @@
 namespace penumbra::volumes {
 namespace {
 
-tests::AimedScene past_p(std::uint32_t seed, bool is_disk) {
-  tests::Aim aim(seed);
+tests::OneLightScene past_p(std::uint32_t seed, bool is_disk) {
+  tests::Draws aim(seed);
   const double size = aim.power(-5, -3), height = size * aim.power(-1, 0.5);
   const glm::dvec3 center(aim.real(-0.9, 0.9), aim.real(-0.9, 0.9), aim.real(-0.9, 0.9));
   const glm::dvec3 n = aim.direction(), u = aim.across(n), v = glm::cross(n, u);
@@ -23,7 +23,7 @@ tests::AimedScene past_p(std::uint32_t seed, bool is_disk) {
   const glm::dvec3 beside = length * aim.power(-2, 0) * aim.across(along);
   scenes::LightShape shape = scenes::Rectangle{center, size * u, size * v};
   if (is_disk) shape = scenes::Disk{center, n, size};
-  tests::AimedScene scene(shape, {64, 0, 0, visibility::SamplePattern::rows, 3});
+  tests::OneLightScene scene(shape, {64, 0, 0, visibility::SamplePattern::rows, 3});
   scene.add_occluder({{a, b, p + length * aim.real(-1, 1) * along + beside}});
   scene.look_from(aim, p, glm::normalize(n + 0.2 * aim.direction()), 4 * size, aim.power(-8.5, -6.5));
   return scene;
@@ -35,7 +35,7 @@ class CutEdges : public tests::DeviceTest, public testing::WithParamInterface<te
     const auto method = GetParam().make(device(), {});
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       const bool is_disk = GetParam().any_light && seed % 2 == 1;
-      const tests::AimedScene scene = past_p(seed, is_disk);
+      const tests::OneLightScene scene = past_p(seed, is_disk);
       EXPECT_TRUE(tests::equals_truth(scene.floats, scene.light, scene.samples,
                                       tests::run(*method, scene.floats, scene.light, scene.samples)))
           << "seed " << seed;

@@ -51,7 +51,7 @@ class DepthScenesBase : public tests::DeviceTest, public testing::WithParamInter
   }
 };
 
-std::vector<std::string> shipped_scenes() {
+std::vector<std::string> scene_files() {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_SCENES)) {
     const std::string name = entry.path().filename().string();
@@ -61,7 +61,7 @@ std::vector<std::string> shipped_scenes() {
   return names;
 }
 
-std::string name_of_case(const testing::TestParamInfo<std::string>& info) {
+std::string name_of_file(const testing::TestParamInfo<std::string>& info) {
   std::string name = std::filesystem::path(info.param).stem().string();
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
@@ -75,7 +75,7 @@ TEST_P(DepthScenes, EveryBitIsThatOfTheOthers) {
 INSTANTIATE_TEST_SUITE_P(Scenes, DepthScenes,
                          testing::Values("contact.json", "fusion.json", "parallel-square.json", "room.json",
                                          "thin.json"),
-                         name_of_case);
+                         name_of_file);
 
 class DepthScenesFull : public DepthScenesBase {};
 TEST_P(DepthScenesFull, EveryBitIsThatOfTheOthers) {
@@ -85,7 +85,7 @@ TEST_P(DepthScenesFull, EveryBitIsThatOfTheOthers) {
   check(96, {256, 0, 0, visibility::SamplePattern::grid, 0});
   check(96, {200, 0, 0, visibility::SamplePattern::jittered, 3});
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, DepthScenesFull, testing::ValuesIn(shipped_scenes()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Scenes, DepthScenesFull, testing::ValuesIn(scene_files()), name_of_file);
 
 }  // namespace
 }  // namespace penumbra

@@ -44,7 +44,7 @@ class PackedScenesBase : public tests::DeviceTest, public testing::WithParamInte
   }
 };
 
-std::string name_of_case(const testing::TestParamInfo<const char*>& info) {
+std::string name_of_scene(const testing::TestParamInfo<const char*>& info) {
   std::string name = info.param;
   std::ranges::replace(name, '-', '_');
   return name;
@@ -54,7 +54,7 @@ class PackedScenes : public PackedScenesBase {};
 TEST_P(PackedScenes, CountersEqualTheTwins) {
   check(24, 30);
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, PackedScenes, testing::Values("contact", "fusion"), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Scenes, PackedScenes, testing::Values("contact", "fusion"), name_of_scene);
 
 class PackedScenesFull : public PackedScenesBase {};
 TEST_P(PackedScenesFull, CountersEqualTheTwins) {
@@ -63,7 +63,7 @@ TEST_P(PackedScenesFull, CountersEqualTheTwins) {
 INSTANTIATE_TEST_SUITE_P(Scenes, PackedScenesFull,
                          testing::Values("broken", "bunny", "contact", "fusion", "large-penumbra", "parallel-square",
                                          "room", "self-shadow", "textured-light", "thin"),
-                         name_of_case);
+                         name_of_scene);
 
 }  // namespace
 }  // namespace penumbra::volumes

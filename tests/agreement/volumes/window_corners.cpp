@@ -13,8 +13,8 @@ namespace {
 
 /// A polygon light, and one triangle with an edge in front of its window's corner as p sees it. `inside`: the edge is
 /// one between two triangles that together hide all around.
-tests::AimedScene at_the_corner(std::uint32_t seed, bool inside) {
-  tests::Aim aim(seed);
+tests::OneLightScene at_the_corner(std::uint32_t seed, bool inside) {
+  tests::Draws aim(seed);
   const double size = aim.power(-4, -1.5), height = size * aim.power(-0.5, 1);
   const glm::dvec3 center(aim.real(-0.9, 0.9), aim.real(-0.9, 0.9), aim.real(-0.9, 0.9));
   const glm::dvec3 n = aim.direction(), u = aim.across(n), v = glm::cross(n, u);
@@ -24,7 +24,7 @@ tests::AimedScene at_the_corner(std::uint32_t seed, bool inside) {
     const double angle = (i + aim.real(0, 0.8)) * 2 * std::numbers::pi / corners;
     polygon.vertices.push_back(center + size * (std::cos(angle) * u + std::sin(angle) * v));
   }
-  tests::AimedScene scene(polygon, {256, 0, 0, visibility::SamplePattern::rows, 3});
+  tests::OneLightScene scene(polygon, {256, 0, 0, visibility::SamplePattern::rows, 3});
   const glm::dvec3 p = center + height * n + 0.5 * size * (aim.real(-1, 1) * u + aim.real(-1, 1) * v);
   const glm::dvec3 corner = axes_of(scene.light, window_of(scene.light)).corner + scene.floats.origin,
                    along = glm::normalize(corner - p);
@@ -47,7 +47,7 @@ TEST_F(WindowCorners, AreWhereAreasCountFrom) {
   const auto exact = reference::make_exact({});
   const auto areas = make_edge_scatter(device(), {{"engine", "native"}, {"rows", "exact"}});
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
-    const tests::AimedScene scene = at_the_corner(seed, false);
+    const tests::OneLightScene scene = at_the_corner(seed, false);
     const tests::Masks truth = tests::run(*exact, scene.floats, scene.light, scene.samples),
                        found = tests::run(*areas, scene.floats, scene.light, scene.samples);
     for (std::size_t i = 0; i < scene.samples.size(); ++i)
@@ -60,7 +60,7 @@ TEST_F(WindowCorners, AreWhereMasksCountFrom) {
   for (const tests::MaskMethod& one : {tests::kNativeEdgeScatter, tests::kNativeDepthComplexity}) {
     const auto method = one.make(device(), {});
     for (std::uint32_t seed = 0; seed < 100; ++seed) {
-      const tests::AimedScene scene = at_the_corner(seed, true);
+      const tests::OneLightScene scene = at_the_corner(seed, true);
       EXPECT_TRUE(tests::equals_truth(scene.floats, scene.light, scene.samples,
                                       tests::run(*method, scene.floats, scene.light, scene.samples)))
           << one.name << ", seed " << seed;

@@ -12,14 +12,14 @@
 namespace penumbra::tests {
 namespace {
 
-constexpr std::uint32_t kSize = 128;
+constexpr std::uint32_t kMapSize = 128;
 
 /// What the methods ask their map to hold beside the receivers.
 glm::dvec2 beside(const Stage& stage) {
   return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
 }
 
-visibility::MethodOptions options_of(const VssmSettings& settings, std::uint32_t size = kSize) {
+visibility::MethodOptions options_of(const VssmSettings& settings, std::uint32_t size = kMapSize) {
   return {{"size", fmt::format("{}", size)},
           {"moments", settings.moments},
           {"layers", fmt::format("{}", settings.moments == "lvsm" ? settings.count : 4)},
@@ -61,7 +61,7 @@ TEST_F(Vssm, IsItsTwin) {
                                         {.moments = "esm", .exponent = 30, .fallback = false}};
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     const Stage stage(scene_with(shapes[k]), 24, 24, light_samples(1));
-    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const CentreMaps maps(device(), stage, kMapSize, beside(stage));
     ASSERT_EQ(maps.fitted.faces, 1U);
     for (const VssmSettings& settings : all) {
       if (k == 3 && settings.moments != "vsm") continue;  // its windows are the whole map, and twins are slow
@@ -93,7 +93,7 @@ TEST_F(Vssm, IsItsTwin) {
 TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}), 24, 24, light_samples(1),
                     grid_samples(24, {-0.2, 0.6, 0.1}, {0.7, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
-  const CentreMaps maps(device(), stage, kSize, beside(stage));
+  const CentreMaps maps(device(), stage, kMapSize, beside(stage));
   for (const std::uint32_t layers : {5U, 16U}) {
     const VssmSettings settings{.moments = "lvsm", .count = layers};
     const Masks found = run(maps::make_vssm, stage, options_of(settings));
@@ -115,7 +115,7 @@ TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.9, 0, 0}, {0, 0, 0.6}}), 24, 24, light_samples(1),
                     grid_samples(24, {0, 0.6, 0}, {1.9, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
   for (const double exponent : {3.0, 6.0}) {
-    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const CentreMaps maps(device(), stage, kMapSize, beside(stage));
     const VssmSettings settings{.moments = "esm", .exponent = exponent};
     const Masks found = run(maps::make_vssm, stage, options_of(settings));
     const VssmTwin twin(maps, stage, settings);
@@ -132,13 +132,13 @@ TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
 }
 
 /// A floor under half-planes parallel to it and to the light.
-struct Board {
+struct Strip {
   double height, x0, x1;
 };
-scenes::Scene under_boards(const std::vector<Board>& boards, double light = 0.5) {
+scenes::Scene under_boards(const std::vector<Strip>& boards, double light = 0.5) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
-  for (const Board& board : boards) {
+  for (const Strip& board : boards) {
     add_quad(scene, {(board.x0 + board.x1) / 2, board.height, 0}, {(board.x1 - board.x0) / 2, 0, 0}, {0, 0, 3})
         .receives_shadow = false;
   }
@@ -148,7 +148,7 @@ scenes::Scene under_boards(const std::vector<Board>& boards, double light = 0.5)
 }
 
 /// The floor's middle, 48 × 48.
-Stage floor_stage(const std::vector<Board>& boards, double light = 0.5) {
+Stage floor_stage(const std::vector<Strip>& boards, double light = 0.5) {
   return {under_boards(boards, light), 48, 48, light_samples(1),
           grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};
 }
@@ -180,7 +180,7 @@ TEST_F(Vssm, TheBoundIsNeverDarkerThanCountingTheSameTexels) {
     const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 32, 32, light_samples(1));
     const VssmSettings settings{.moments = moments, .count = std::string(moments) == "lvsm" ? 4U : 1U, .exponent = 40};
     const Masks found = run(maps::make_vssm, stage, options_of(settings));
-    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const CentreMaps maps(device(), stage, kMapSize, beside(stage));
     const VssmTwin twin(maps, stage, settings);
     std::size_t brighter = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {

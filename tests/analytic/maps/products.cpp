@@ -14,7 +14,7 @@
 namespace penumbra::tests {
 namespace {
 
-constexpr std::uint32_t kSize = 64;
+constexpr std::uint32_t kMapTexels = 64;
 
 /// A floor below, a sphere between, and for a two-sided light a ceiling above with a board below it.
 scenes::Scene scene_around(bool two_sided, double wall_height) {
@@ -38,9 +38,9 @@ TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
   for (const auto& [two_sided, wall] :
        {std::tuple(false, 0.0), std::tuple(false, 5.0), std::tuple(true, 0.0), std::tuple(true, 6.0)}) {
     const Stage stage(scene_around(two_sided, wall), 4, 4, light_samples(1));
-    const CentreMaps maps(device(), stage, kSize);
+    const CentreMaps maps(device(), stage, kMapTexels);
     ASSERT_EQ(maps.fitted.faces, (wall > 0 ? 5U : 1U) + (two_sided ? (wall > 5 ? 5U : 1U) : 0U));
-    expect_passed(selftest::check_nearest_caster(device(), stage, kSize));
+    expect_passed(selftest::check_nearest_caster(device(), stage, kMapTexels));
     maps::NearestCaster product(device());
     render::Commands commands(device());
     product.record(commands, maps.set(stage));
@@ -101,8 +101,8 @@ class TwoPlanes : public MapsTest {
       corners.insert(corners.end(), {a, b, c, a, c, d});
     }
     const render::Buffer triangles = render::make_buffer<glm::vec3>(device(), "planes", corners);
-    const render::DepthTarget target(device(), "planes", kSize, kSize);
-    render::Buffer depths(device(), "depths", std::uint64_t{kSize} * kSize * sizeof(float));
+    const render::DepthTarget target(device(), "planes", kMapTexels, kMapTexels);
+    render::Buffer depths(device(), "depths", std::uint64_t{kMapTexels} * kMapTexels * sizeof(float));
     const maps::gpu::CasterPush push{.point = {0, 0, 0},
                                      .near = 0x1p-20F,
                                      .row_x = {1, 0, 0},
@@ -112,10 +112,11 @@ class TwoPlanes : public MapsTest {
                                      .row_w = {0, 0, 1},
                                      .filler = 0};
     render::Commands commands(device());
-    pass.record(commands, push, {triangles}, {.width = kSize, .height = kSize, .vertices = 12, .depth = &target});
+    pass.record(commands, push, {triangles},
+                {.width = kMapTexels, .height = kMapTexels, .vertices = 12, .depth = &target});
     target.copy_to(commands, depths);
     commands.submit();
-    std::vector<float> texels(std::size_t{kSize} * kSize);
+    std::vector<float> texels(std::size_t{kMapTexels} * kMapTexels);
     depths.read<float>(texels);
     const bool same = std::ranges::all_of(texels, [&](float texel) { return texel == texels.front(); });
     return same ? texels.front() * kScene : -1;

@@ -158,17 +158,17 @@ TEST_F(SliceProducts, OnePlaneIsTheBlockersMeanHeightWithoutTheGround) {
 }
 
 /// A board parallel to the light, as the light's box sees it from p: what share of it it hides.
-struct Board {
+struct Blocker {
   double height;
   glm::dvec2 lower, upper;  // in x and z
 };
 constexpr double kLight = 4, kHalf = 0.5, kFloor = 1;
 
 /// The light's half size 0.5 at height 4 over a floor of half size 1 that casts no shadow.
-scenes::Scene under(const std::vector<Board>& boards) {
+scenes::Scene under_blockers(const std::vector<Blocker>& boards) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {kFloor, 0, 0}, {0, 0, kFloor}).casts_shadow = false;
-  for (const Board& board : boards) {
+  for (const Blocker& board : boards) {
     const glm::dvec2 middle = 0.5 * (board.lower + board.upper), half = 0.5 * (board.upper - board.lower);
     add_quad(scene, {middle.x, board.height, middle.y}, {half.x, 0, 0}, {0, 0, half.y}).receives_shadow = false;
   }
@@ -177,8 +177,9 @@ scenes::Scene under(const std::vector<Board>& boards) {
   return scene;
 }
 
-Stage floor_stage(const std::vector<Board>& boards, std::uint32_t n = 32) {
-  return {under(boards), n, n, light_samples(1), grid_samples(n, {0, 0, 0}, {0.97, 0, 0}, {0, 0, 0.97}, {0, 1, 0})};
+Stage floor_stage(const std::vector<Blocker>& boards, std::uint32_t n = 32) {
+  return {under_blockers(boards), n, n, light_samples(1),
+          grid_samples(n, {0, 0, 0}, {0.97, 0, 0}, {0, 0, 0.97}, {0, 1, 0})};
 }
 
 /// What `board` hides of the light from p on the floor, as intervals on the light.
@@ -189,7 +190,7 @@ struct Shadow {
     return extent.x * extent.y;
   }
 };
-Shadow shadow_of(const Board& board, const glm::dvec3& p) {
+Shadow shadow_of(const Blocker& board, const glm::dvec3& p) {
   const glm::dvec2 at(p.x, p.z);
   const double to_light = kLight / board.height;
   const auto on_light = [&](const glm::dvec2& corner) { return (at + (corner - at) * to_light) / (2 * kHalf); };
@@ -205,7 +206,7 @@ double half_texels(const CentreMaps& maps, double height) {
   return (2 * (0.5 + 1.0 / 256)) * (texel.x + texel.y) / window;
 }
 
-glm::dvec2 beside(const Stage& stage) {
+glm::dvec2 room_beside(const Stage& stage) {
   return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
 }
 
@@ -220,9 +221,9 @@ class SliceMethods : public MapsTest {
 // Eisemann and Décoret 2006, Soler and Sillion 1998: of one flat blocker parallel to the light the box filter is the
 // share of the light itself.
 TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
-  const Board board{2, {-0.3, -0.2}, {0.25, 0.4}};
+  const Blocker board{2, {-0.3, -0.2}, {0.25, 0.4}};
   const Stage stage = floor_stage({board});
-  const CentreMaps maps(device(), stage, kSize, beside(stage));
+  const CentreMaps maps(device(), stage, kSize, room_beside(stage));
   const double bound = half_texels(maps, board.height) + 1e-5;
   const Masks one = run(maps::make_occlusion_textures, stage, {{"slices", "1"}});
   const Masks blurred = run(maps::make_convolution, stage);
@@ -246,14 +247,14 @@ TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
 
 // S4 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half over one another, nested.
 TEST_F(SliceMethods, TwoBlockersAreMultipliedInEveryLayout) {
-  const Board upper{2, {-0.2, -0.5}, {0.1, 0.5}};
+  const Blocker upper{2, {-0.2, -0.5}, {0.1, 0.5}};
   for (const double shift : {0.45, 0.15, 0.0}) {
     // Nested or beside one another from the floor's middle: the lower one's shadow on the light is moved by `shift`.
-    const Board lower{1, {-0.1 + shift, -0.4}, {0.05 + shift, 0.4}};
+    const Blocker lower{1, {-0.1 + shift, -0.4}, {0.05 + shift, 0.4}};
     // A speck far aside above both begins the slices, so that either board lies in the far plane of one: 2.25, 2, …, 1.
-    const Board speck{2.25, {-0.9, 0.9}, {-0.89, 0.91}};
+    const Blocker speck{2.25, {-0.9, 0.9}, {-0.89, 0.91}};
     const Stage stage = floor_stage({upper, lower, speck});
-    const CentreMaps maps(device(), stage, kSize, beside(stage));
+    const CentreMaps maps(device(), stage, kSize, room_beside(stage));
     const double bound = half_texels(maps, upper.height) + half_texels(maps, lower.height) + 1e-5;
     const Masks found = run(maps::make_occlusion_textures, stage, {{"slices", "5"}});
     double fused = 0;
@@ -283,7 +284,7 @@ double error_of(const Stage& stage, const Masks& found, const Masks& truth) {
 TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   double before = 0;
   for (const double depth : {0.01, 0.6, 1.2}) {
-    scenes::Scene scene = under({});
+    scenes::Scene scene = under_blockers({});
     std::vector<Corners> box = quad({0, 2, 0}, {0.3, 0, 0}, {0, 0, 0.3});
     for (const Corners& side : quad({0.3, 2 - depth / 2, 0}, {0, depth / 2, 0}, {0, 0, 0.3})) box.push_back(side);
     for (const Corners& side : quad({-0.3, 2 - depth / 2, 0}, {0, depth / 2, 0}, {0, 0, 0.3})) box.push_back(side);

@@ -25,7 +25,7 @@ TriangleSoup soup_of(const std::vector<Corners>& triangles) {
   return soup;
 }
 
-Diagnosis diagnosis_of(const TriangleSoup& soup) {
+Diagnosis diagnosed(const TriangleSoup& soup) {
   return diagnose({soup.positions, soup.triangles});
 }
 
@@ -75,7 +75,7 @@ class Soups : public testing::TestWithParam<std::uint32_t> {
 };
 
 void expect_definition(const std::vector<Corners>& soup) {
-  const Diagnosis diagnosis = diagnosis_of(soup_of(soup));
+  const Diagnosis diagnosis = diagnosed(soup_of(soup));
   EXPECT_EQ(counts_of(diagnosis), oracle::count(soup));
   EXPECT_EQ(diagnosis.self_intersections.value().count, oracle::count_self_intersections(soup));
 }
@@ -88,7 +88,7 @@ TEST_P(Soups, ClosedOnesFollowTheDefinitions) {
   const std::vector<Corners> soup = closed_soup(1 + below(3), below(8));
   expect_definition(soup);
   expect_definition(wound_at_random(soup));
-  EXPECT_TRUE(diagnosis_of(soup_of(soup)).closed_as_wound);
+  EXPECT_TRUE(diagnosed(soup_of(soup)).closed_as_wound);
 }
 
 TEST_P(Soups, ATriangleTooFewOpensThem) {
@@ -96,12 +96,12 @@ TEST_P(Soups, ATriangleTooFewOpensThem) {
   const auto t = static_cast<std::size_t>(below(static_cast<int>(soup.size())));
   const bool flat = oracle::count({soup[t]}).zero_area_triangles == 1;
   soup.erase(soup.begin() + static_cast<std::ptrdiff_t>(t));
-  EXPECT_EQ(diagnosis_of(soup_of(soup)).closed_as_wound, flat);
+  EXPECT_EQ(diagnosed(soup_of(soup)).closed_as_wound, flat);
 }
 
 TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
   std::vector<Corners> soup = below(2) == 0 ? random_soup(60, 4) : wound_at_random(closed_soup(6, 12));
-  const Diagnosis before = diagnosis_of(soup_of(soup));
+  const Diagnosis before = diagnosed(soup_of(soup));
   std::ranges::shuffle(soup, random_);
   for (Corners& t : soup) std::rotate(t.begin(), t.begin() + below(3), t.end());
   TriangleSoup shared = soup_of(soup);  // and now with positions that several triangles use, some of them −0
@@ -115,7 +115,7 @@ TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
   for (glm::dvec3& p : shared.positions) {
     if (p.x == 0 && below(2) == 0) p.x = -0.0;
   }
-  const Diagnosis after = diagnosis_of(shared);
+  const Diagnosis after = diagnosed(shared);
   EXPECT_EQ(counts_of(before), counts_of(after));
   EXPECT_EQ(before.self_intersections->count, after.self_intersections->count);
   EXPECT_EQ(before.needles.count, after.needles.count);
@@ -124,8 +124,8 @@ TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
 
 TEST_P(Soups, WindingMattersOnlyToWhatIsAboutIt) {
   const std::vector<Corners> soup = random_soup(60, 4);
-  oracle::Counts before = counts_of(diagnosis_of(soup_of(soup)));
-  oracle::Counts after = counts_of(diagnosis_of(soup_of(wound_at_random(soup))));
+  oracle::Counts before = counts_of(diagnosed(soup_of(soup)));
+  oracle::Counts after = counts_of(diagnosed(soup_of(wound_at_random(soup))));
   for (oracle::Counts* counts : {&before, &after}) {
     counts->inconsistent_windings = counts->duplicate_faces = counts->opposite_faces = 0;
     counts->closed = counts->closed_as_wound = false;
@@ -135,11 +135,11 @@ TEST_P(Soups, WindingMattersOnlyToWhatIsAboutIt) {
 
 TEST_P(Soups, ScalingByAPowerOfTwoChangesNothing) {
   const std::vector<Corners> soup = random_soup(40, 4);
-  const Diagnosis before = diagnosis_of(soup_of(soup));
+  const Diagnosis before = diagnosed(soup_of(soup));
   for (const double scale : {0x1p-400, 0x1p-60, 0x1p100, 0x1p300}) {
     TriangleSoup scaled = soup_of(soup);
     for (glm::dvec3& p : scaled.positions) p *= scale;
-    const Diagnosis after = diagnosis_of(scaled);
+    const Diagnosis after = diagnosed(scaled);
     EXPECT_EQ(counts_of(before), counts_of(after)) << scale;
     EXPECT_EQ(before.self_intersections->count, after.self_intersections->count) << scale;
     EXPECT_EQ(before.needles.count, after.needles.count) << scale;

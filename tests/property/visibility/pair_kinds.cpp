@@ -20,7 +20,7 @@ using namespace tests::rational;
 using tests::ExactTriangle;
 
 /// Light points are floats of 24 bits: far below every determinant of these and lattice points that is not zero.
-const Rational kTiny(1, mpz_class("1" + std::string(90, '0')));
+const Rational kInfinitesimal(1, mpz_class("1" + std::string(90, '0')));
 
 class Numbers {
  public:
@@ -80,7 +80,7 @@ PairOutcome literal_outcome(const SceneFloats& floats, const ViewSamples& sample
   const Rational above = ends ? own.height(exact(l)) : dot(own.normal, exact(l));
   if (above * samples.facing[pixel] <= 0) return PairOutcome::horizon;
   const Vector straight = ends ? exact(l) - exact(p) : exact(l);
-  const Vector moved = straight + kTiny * reading.u + kTiny * kTiny * reading.v;
+  const Vector moved = straight + kInfinitesimal * reading.u + kInfinitesimal * kInfinitesimal * reading.v;
   for (std::uint32_t other = 0; other < floats.triangles.size(); ++other) {
     if (floats.casts_shadow[other] == 0) continue;
     const ExactTriangle triangle(floats.corners(other));

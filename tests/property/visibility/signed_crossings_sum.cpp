@@ -20,21 +20,21 @@ namespace {
 using mesh::Side;
 using Exact = CGAL::MP_Float;  // every sum, difference and product of doubles, without rounding
 
-struct ExactVector {
+struct WideVector {
   Exact x, y, z;
 };
 
 template <typename Vector>
-ExactVector difference(const Vector& to, const Vector& from) {
+WideVector difference(const Vector& to, const Vector& from) {
   const auto one = [](double a, double b) { return Exact(a) - Exact(b); };
   return {one(to.x, from.x), one(to.y, from.y), one(to.z, from.z)};
 }
 
-ExactVector cross(const ExactVector& a, const ExactVector& b) {
+WideVector wide_cross(const WideVector& a, const WideVector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-Exact dot(const ExactVector& a, const ExactVector& b) {
+Exact wide_dot(const WideVector& a, const WideVector& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
@@ -52,12 +52,12 @@ struct Seen {
 class Frame {
  public:
   Frame(const CrossingPair& pair, const Light& light) : p_(pair.p) {
-    const ExactVector u = difference(light.center_u, light.center), v = difference(light.center_v, light.center);
-    const ExactVector towards = difference(pair.l, pair.p);
-    row_s_ = cross(v, towards);
-    row_t_ = cross(towards, u);
-    row_w_ = cross(u, v);
-    light_w_ = dot(row_w_, towards);
+    const WideVector u = difference(light.center_u, light.center), v = difference(light.center_v, light.center);
+    const WideVector towards = difference(pair.l, pair.p);
+    row_s_ = wide_cross(v, towards);
+    row_t_ = wide_cross(towards, u);
+    row_w_ = wide_cross(u, v);
+    light_w_ = wide_dot(row_w_, towards);
     handedness_ = sign(light_w_);
     if (handedness_ < 0) light_w_ = -light_w_;
   }
@@ -66,14 +66,14 @@ class Frame {
   [[nodiscard]] const Exact& light_w() const { return light_w_; }
 
   [[nodiscard]] Seen see(const glm::dvec3& x) const {
-    const ExactVector d = difference(x, glm::dvec3(p_));
-    Seen seen{dot(row_s_, d), dot(row_t_, d), dot(row_w_, d)};
+    const WideVector d = difference(x, glm::dvec3(p_));
+    Seen seen{wide_dot(row_s_, d), wide_dot(row_t_, d), wide_dot(row_w_, d)};
     return handedness_ < 0 ? Seen{-seen.s, -seen.t, -seen.w} : seen;
   }
 
  private:
   glm::vec3 p_;
-  ExactVector row_s_, row_t_, row_w_;
+  WideVector row_s_, row_t_, row_w_;
   Exact light_w_;
   int handedness_ = 0;
 };

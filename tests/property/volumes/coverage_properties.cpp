@@ -21,7 +21,7 @@ namespace {
 
 using Loop = std::vector<glm::dvec2>;
 
-constexpr double kRounding = 1e-12;
+constexpr double kShareRounding = 1e-12;
 
 int draw(int low, int high) {
   return *rc::gen::inRange(low, high + 1);
@@ -101,7 +101,7 @@ RC_GTEST_PROP(Coverage, AClosedLoopHasOneAreaFromWhereverItIsSeen, ()) {
   const Loop loop = draw_loop();
   const glm::dvec2 one = draw_reference(), other = draw_reference();
   if (is_on_a_line(loop, one) || is_on_a_line(loop, other)) RC_DISCARD("on a line");
-  RC_ASSERT(std::abs(area_by(outline, loop, one) - area_by(outline, loop, other)) < kRounding);
+  RC_ASSERT(std::abs(area_by(outline, loop, one) - area_by(outline, loop, other)) < kShareRounding);
 }
 
 RC_GTEST_PROP(Coverage, ALoopWithinTheLightHasItsShoelaceArea, ()) {
@@ -112,7 +112,7 @@ RC_GTEST_PROP(Coverage, ALoopWithinTheLightHasItsShoelaceArea, ()) {
   if (is_on_a_line(loop, c)) RC_DISCARD("on a line");
   double doubled = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) doubled += cross2(loop[i], loop[(i + 1) % loop.size()]);
-  RC_ASSERT(std::abs(area_by(outline, loop, c) - doubled / 2) < kRounding);
+  RC_ASSERT(std::abs(area_by(outline, loop, c) - doubled / 2) < kShareRounding);
 }
 
 RC_GTEST_PROP(Coverage, AnEdgeIsTheSumOfItsPieces, ()) {
@@ -120,7 +120,7 @@ RC_GTEST_PROP(Coverage, AnEdgeIsTheSumOfItsPieces, ()) {
   const Loop ends = draw_loop();
   const glm::dvec2 c = draw_reference(), a = ends[0], b = ends[1], middle = (a + b) / 2.0;
   const double pieces = beyond(outline, c, a, middle) + beyond(outline, c, middle, b);
-  RC_ASSERT(std::abs(beyond(outline, c, a, b) - pieces) < kRounding);
+  RC_ASSERT(std::abs(beyond(outline, c, a, b) - pieces) < kShareRounding);
 }
 
 RC_GTEST_PROP(Coverage, TurningAnEdgeOverOrSeeingItInAMirrorChangesTheSign, ()) {
@@ -132,8 +132,8 @@ RC_GTEST_PROP(Coverage, TurningAnEdgeOverOrSeeingItInAMirrorChangesTheSign, ()) 
   const glm::dvec2 c = draw_reference(), a = ends[0], b = ends[1];
   const auto mirror = [](const glm::dvec2& q) { return glm::dvec2(-q.x, q.y); };
   const double area = beyond(outline, c, a, b);
-  RC_ASSERT(std::abs(area + beyond(outline, c, b, a)) < kRounding);
-  RC_ASSERT(std::abs(area + beyond(mirrored, mirror(c), mirror(a), mirror(b))) < kRounding);
+  RC_ASSERT(std::abs(area + beyond(outline, c, b, a)) < kShareRounding);
+  RC_ASSERT(std::abs(area + beyond(mirrored, mirror(c), mirror(a), mirror(b))) < kShareRounding);
 }
 
 /// By definition: the share of a grid of points whose segment from c crosses the edge.
@@ -194,8 +194,8 @@ RC_GTEST_PROP(Coverage, OrderAndWindingOfTrianglesChangeNoMoreThanTheOrderOfTheS
   const tests::CoverageStage shuffled(tests::soup_scene(soup, lamp));
   for (int i = 0; i < 5; ++i) {
     const glm::vec3 p = tests::soup_receiver(random);
-    RC_ASSERT(std::abs(stage.center(p).blocked - shuffled.center(p).blocked) < kRounding);
-    RC_ASSERT(std::abs(stage.receiver(p).blocked - shuffled.receiver(p).blocked) < kRounding);
+    RC_ASSERT(std::abs(stage.center(p).blocked - shuffled.center(p).blocked) < kShareRounding);
+    RC_ASSERT(std::abs(stage.receiver(p).blocked - shuffled.receiver(p).blocked) < kShareRounding);
   }
 }
 

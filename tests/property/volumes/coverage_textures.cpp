@@ -22,29 +22,29 @@ using Polygon = std::vector<glm::dvec2>;
 
 const Polygon kSquare = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 
-int draw(int low, int high) {
+int drawn(int low, int high) {
   return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(low, high + 1));
 }
 glm::dvec2 draw_end() {
-  return {draw(-40, 40) / 16.0, draw(-40, 40) / 16.0};
+  return {drawn(-40, 40) / 16.0, drawn(-40, 40) / 16.0};
 }
-glm::dvec2 draw_reference() {
-  return {(2 * draw(-500, 500) + 1) / 1024.0, (2 * draw(-500, 500) + 1) / 1024.0};
+glm::dvec2 drawn_reference() {
+  return {(2 * drawn(-500, 500) + 1) / 1024.0, (2 * drawn(-500, 500) + 1) / 1024.0};
 }
 
 visibility::LightTexture draw_texture() {
   visibility::LightTexture texture;
-  texture.width = static_cast<std::uint32_t>(draw(1, 7));
-  texture.height = static_cast<std::uint32_t>(draw(1, 7));
+  texture.width = static_cast<std::uint32_t>(drawn(1, 7));
+  texture.height = static_cast<std::uint32_t>(drawn(1, 7));
   for (std::uint32_t i = 0; i < texture.width * texture.height; ++i) {
-    texture.luminance.push_back(i == 0 ? 1 : draw(0, 16) / 8.0);
+    texture.luminance.push_back(i == 0 ? 1 : drawn(0, 16) / 8.0);
     texture.mean_luminance += texture.luminance.back();
   }
   texture.mean_luminance /= static_cast<double>(texture.luminance.size());
   return texture;
 }
 
-double cross2(const glm::dvec2& a, const glm::dvec2& b) {
+double cross_of(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
@@ -53,7 +53,7 @@ Polygon cut(const Polygon& polygon, const glm::dvec2& a, const glm::dvec2& b) {
   Polygon left;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec2 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double at_p = cross2(b - a, p - a), at_q = cross2(b - a, q - a);
+    const double at_p = cross_of(b - a, p - a), at_q = cross_of(b - a, q - a);
     if (at_p >= 0) left.push_back(p);
     if ((at_p >= 0) != (at_q >= 0)) left.push_back(p + at_p / (at_p - at_q) * (q - p));
   }
@@ -63,7 +63,7 @@ Polygon cut(const Polygon& polygon, const glm::dvec2& a, const glm::dvec2& b) {
 double area_of(const Polygon& polygon) {
   double doubled = 0;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    doubled += cross2(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+    doubled += cross_of(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
   }
   return doubled / 2;
 }
@@ -92,10 +92,10 @@ double tolerance(const TextureWeights& weights, int walks = 3) {
 RC_GTEST_PROP(CoverageTextures, WhatLiesBeyondAnEdgeWeighsItsTexels, ()) {
   const visibility::LightTexture texture = draw_texture();
   const TextureWeights weights(texture);
-  const glm::dvec2 c = draw_reference(), a = draw_end(), b = draw_end();
+  const glm::dvec2 c = drawn_reference(), a = draw_end(), b = draw_end();
   const LightOutline outline{kSquare, 4};
   const auto edge = clip_to_light(outline, {a.x / 2, a.y / 2, 0.5}, {b.x / 2, b.y / 2, 0.5});
-  const double turn = cross2(a - c, b - c);
+  const double turn = cross_of(a - c, b - c);
   if (!edge || turn == 0) RC_DISCARD("not on the light");
   const int side = turn > 0 ? 1 : -1;
   const glm::dvec2 first = side > 0 ? edge->from : edge->to, last = side > 0 ? edge->to : edge->from;
@@ -111,10 +111,10 @@ RC_GTEST_PROP(CoverageTextures, AnEvenTextureWeighsAreas, ()) {
   texture.mean_luminance = 3;
   const TextureWeights weights(texture);
   RC_ASSERT(weights.brightest() == 1);
-  const glm::dvec2 c = draw_reference(), a = draw_end(), b = draw_end();
+  const glm::dvec2 c = drawn_reference(), a = draw_end(), b = draw_end();
   const LightOutline outline{kSquare, 4};
   const auto edge = clip_to_light(outline, {a.x / 2, a.y / 2, 0.5}, {b.x / 2, b.y / 2, 0.5});
-  const double turn = cross2(a - c, b - c);
+  const double turn = cross_of(a - c, b - c);
   if (!edge || turn == 0) RC_DISCARD("not on the light");
   const int side = turn > 0 ? 1 : -1;
   const double area = RadialCoverage(outline, c).beyond(*edge, side) / outline.area;

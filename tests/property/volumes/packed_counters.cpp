@@ -183,12 +183,12 @@ TEST_F(Packed, BoardsAreExact) {
 TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
   const glm::dvec3 u = glm::normalize(glm::dvec3(0.8, 0.31, -0.23)),
                    v = glm::normalize(glm::cross(u, glm::dvec3(0.17, 0.9, 0.41))), n = glm::cross(v, u);
-  constexpr int kPleats = 60;
+  constexpr int kFolds = 60;
   const auto at = [&](int i, double y) {
-    return 2.0 * (static_cast<double>(i) / kPleats - 0.5) * u + y * v + (i % 2 == 0 ? 1e-4 : -1e-4) * n;
+    return 2.0 * (static_cast<double>(i) / kFolds - 0.5) * u + y * v + (i % 2 == 0 ? 1e-4 : -1e-4) * n;
   };
   std::vector<tests::Corners> sheet;
-  for (int i = 0; i < kPleats; ++i) {
+  for (int i = 0; i < kFolds; ++i) {
     sheet.push_back({at(i, -1), at(i + 1, -1), at(i + 1, 1)});
     sheet.push_back({at(i, -1), at(i + 1, 1), at(i, 1)});
   }

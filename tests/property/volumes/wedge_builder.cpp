@@ -15,8 +15,8 @@ namespace penumbra::volumes {
 namespace {
 
 /// A soup and lights over it; not stored around a centre, so that lattices stay lattices.
-struct Stage {
-  Stage(const mesh::TriangleSoup& soup, std::vector<scenes::AreaLight> above) {
+struct Lit {
+  Lit(const mesh::TriangleSoup& soup, std::vector<scenes::AreaLight> above) {
     std::vector<tests::Corners> triangles;
     for (const mesh::Triangle& t : soup.triangles) {
       triangles.push_back({soup.positions[t[0]], soup.positions[t[1]], soup.positions[t[2]]});
@@ -25,7 +25,7 @@ struct Stage {
     scene.lights = std::move(above);
     finish();
   }
-  explicit Stage(scenes::Scene of) : scene(std::move(of)) { finish(); }
+  explicit Lit(scenes::Scene of) : scene(std::move(of)) { finish(); }
 
   void finish() {
     floats = visibility::make_scene_floats(scene);
@@ -57,14 +57,14 @@ std::vector<scenes::AreaLight> moving(std::size_t frames, double height, double 
   return lights;
 }
 
-using Tally = selftest::WedgeTally;
+using WedgeTally = selftest::WedgeTally;
 
 class WedgeBuilderTest : public tests::DeviceTest {
  protected:
   enum class How { like_host, valid, valid_and_like_host };
 
   /// Compares with the host, from every light. Layers::one_a_solid unless the wedges are to be validated.
-  static void expect_sound(const std::string& name, const Stage& stage, How how, Tally& tally) {
+  static void expect_sound(const std::string& name, const Lit& stage, How how, WedgeTally& tally) {
     SCOPED_TRACE(name);
     const Layers layers = how == How::like_host ? Layers::one_a_solid : Layers::every_triangle;
     const selftest::Check check =
@@ -94,7 +94,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
   }
 
   /// All of wedges --validate.
-  static void expect_valid(const Stage& stage, const visibility::Light& light, const LightHull& hull,
+  static void expect_valid(const Lit& stage, const visibility::Light& light, const LightHull& hull,
                            const LightWedges& wedges) {
     const Casters casters = casters_of(stage.floats, light);
     const CastingEdges casting = casting_edges(casters, hull, SilhouettesFrom::center, false);
@@ -103,7 +103,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
     ASSERT_TRUE(report.violations.empty()) << test::text_of(report.violations.front());
   }
 
-  static void print(const char* what, const Tally& tally) {
+  static void print(const char* what, const WedgeTally& tally) {
     fmt::print("{}: {} edges, {} by the host; {} planes proved\n", what, tally.edges, tally.on_host, tally.planes);
   }
 };
@@ -119,17 +119,17 @@ mesh::TriangleSoup small_knot(double scale = 1) {
 }
 
 TEST_F(WedgeBuilderTest, ALightThatMovesOverAKnot) {
-  Tally tally;
-  expect_sound("knot", Stage(small_knot(), moving(20, 5, 0.7)), How::like_host, tally);
+  WedgeTally tally;
+  expect_sound("knot", Lit(small_knot(), moving(20, 5, 0.7)), How::like_host, tally);
   print("20 frames", tally);
   EXPECT_LE(tally.on_host * 100, tally.edges);
 }
 
 TEST_F(WedgeBuilderTest, FarFromOneInSize) {
-  Tally tally;
+  WedgeTally tally;
   for (const double scale : {0x1p-70, 0x1p-20, 0x1p60}) {
-    expect_sound(fmt::format("knot times {}", scale), Stage(small_knot(scale), moving(4, 5, 0.7, scale)),
-                 How::like_host, tally);
+    expect_sound(fmt::format("knot times {}", scale), Lit(small_knot(scale), moving(4, 5, 0.7, scale)), How::like_host,
+                 tally);
   }
   print("scales", tally);
   EXPECT_EQ(tally.on_host, 0U);
@@ -138,7 +138,7 @@ TEST_F(WedgeBuilderTest, FarFromOneInSize) {
 /// Nothing depends on the schedule: a second run, another builder, and buffers that take the wedges in batches give the
 /// same bits. Buffers that do not hold the mesh leave everything to the host.
 TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
-  const Stage stage(mesh::make_lattice_soup({200, 64, 7, glm::dvec3(0), 2}), moving(2, 5, 0.7));
+  const Lit stage(mesh::make_lattice_soup({200, 64, 7, glm::dvec3(0), 2}), moving(2, 5, 0.7));
   const std::uint64_t triangles = stage.floats.triangles.size(), enough = triangles * sizeof(gpu::FacingTriangle);
   std::vector<WedgeBuilder> builders;
   for (const std::uint64_t most_bytes :
@@ -167,19 +167,19 @@ TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
 }
 
 TEST_F(WedgeBuilderTest, ShippedScenesAreValid) {
-  Tally tally;
+  WedgeTally tally;
   for (const char* name : {"broken", "contact", "fusion", "parallel-square"}) {
-    expect_sound(name, Stage(tests::shipped_scene(name)), How::valid_and_like_host, tally);
+    expect_sound(name, Lit(tests::shipped_scene(name)), How::valid_and_like_host, tally);
   }
   print("shipped scenes", tally);
   EXPECT_EQ(tally.on_host, 0U);
 }
 
 TEST_F(WedgeBuilderTest, EveryDefectIsValid) {
-  Tally tally;
+  WedgeTally tally;
   for (const mesh::DefectName& defect : mesh::broken_defects()) {
     const mesh::BrokenMesh mesh = mesh::make_broken_mesh({{std::string(defect.name)}, 1, {0, 1, 0}, 1});
-    expect_sound(std::string(defect.name), Stage(mesh.soup, moving(4, 4, 0.5)), How::valid_and_like_host, tally);
+    expect_sound(std::string(defect.name), Lit(mesh.soup, moving(4, 4, 0.5)), How::valid_and_like_host, tally);
   }
   print("defects", tally);
   EXPECT_GT(tally.planes, 4000U);
@@ -188,12 +188,12 @@ TEST_F(WedgeBuilderTest, EveryDefectIsValid) {
 /// The light among the triangles: edges touch it, cross it, point at it, lie in its plane. Those are the host's; where
 /// they just touch, the device may prove planes that the host leaves out.
 TEST_F(WedgeBuilderTest, LatticeSoupsAroundTheLight) {
-  Tally tally;
+  WedgeTally tally;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const mesh::TriangleSoup soup = mesh::make_lattice_soup({24, 4, seed, glm::dvec3(0), 2});
     std::vector<scenes::AreaLight> lights = moving(4, 0.5, 0.5);
     lights.push_back(tests::ceiling_light(1, 0.5));
-    expect_sound(fmt::format("soup {}", seed), Stage(soup, lights), How::valid, tally);
+    expect_sound(fmt::format("soup {}", seed), Lit(soup, lights), How::valid, tally);
   }
   print("soups", tally);
   EXPECT_GT(tally.on_host, 100U);

@@ -15,7 +15,7 @@
 namespace penumbra::volumes {
 namespace {
 
-const std::filesystem::path kMeshes = std::filesystem::path(PENUMBRA_CGAL_CORPUS) / "meshes";
+const std::filesystem::path kCorpus = std::filesystem::path(PENUMBRA_CGAL_CORPUS) / "meshes";
 
 visibility::SceneFloats floats_of(mesh::TriangleSoup soup) {
   scenes::Scene scene;
@@ -60,15 +60,15 @@ std::uint64_t check(const std::filesystem::path& file, bool closed_only) {
 TEST(WedgeCorpus, SmallMeshes) {
   std::uint64_t wedges = 0;
   for (const char* name : {"cube", "tetrahedron", "sphere", "degtri_sliding", "cube-shuffled"}) {
-    ASSERT_TRUE(std::filesystem::exists(kMeshes / (std::string(name) + ".off"))) << name << ": install libcgal-demo";
-    wedges += check(kMeshes / (std::string(name) + ".off"), false);
+    ASSERT_TRUE(std::filesystem::exists(kCorpus / (std::string(name) + ".off"))) << name << ": install libcgal-demo";
+    wedges += check(kCorpus / (std::string(name) + ".off"), false);
   }
   EXPECT_GT(wedges, 100U);
 }
 
 TEST(WedgeCorpus, AllClosedMeshesFull) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(kMeshes)) {
+  for (const auto& entry : std::filesystem::directory_iterator(kCorpus)) {
     if (entry.path().extension() == ".off") files.push_back(entry.path());
   }
   std::ranges::sort(files);

@@ -14,12 +14,12 @@ namespace {
 using scenes::PictureUse;
 
 /// A triangle in the plane z = 0, seen from above at these points.
-struct Stage {
+struct Surface {
   scenes::Scene scene;
   visibility::SceneFloats floats;
   visibility::ViewSamples samples;
 
-  explicit Stage(const std::vector<glm::vec3>& points) {
+  explicit Surface(const std::vector<glm::vec3>& points) {
     scene.soup.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
     scene.soup.triangles = {{0, 1, 2}};
     scene.soup.object = {0};
@@ -52,7 +52,7 @@ struct Stage {
 };
 
 TEST(Surface, ColoursOfVerticesAreLinear) {
-  Stage stage({{1, 1, 0}, {0, 0, 0}, {2, 0, 0}});
+  Surface stage({{1, 1, 0}, {0, 0, 0}, {2, 0, 0}});
   EXPECT_EQ(look_at(stage.scene, stage.floats, stage.samples, false).colors[0], glm::dvec3(1, 0.5, 0.25));
   stage.scene.looks.colors = {{1, 1, 1, 1}, {0, 1, 1, 1}, {0.5f, 0, 1, 1}};
   const auto colors = look_at(stage.scene, stage.floats, stage.samples, false).colors;
@@ -65,7 +65,7 @@ TEST(Surface, ColoursOfVerticesAreLinear) {
 
 TEST(Surface, PicturesAreFilteredBetweenTexelCentres) {
   // Centres of the upper row's texels are at x = 0.5, 1.5, 2.5, 3.5, its height at y = 1 of 4.
-  Stage stage({{0.5f, 1, 0}, {1.5f, 1, 0}, {1, 1, 0}, {0.75f, 1, 0}, {1.5f, 2, 0}});
+  Surface stage({{0.5f, 1, 0}, {1.5f, 1, 0}, {1, 1, 0}, {0.75f, 1, 0}, {1.5f, 2, 0}});
   stage.paint({.nearest = true});
   EXPECT_EQ(stage.reds(), (std::vector<double>{0, 1, 1, 0, 0}));
   stage.paint({});
@@ -75,7 +75,7 @@ TEST(Surface, PicturesAreFilteredBetweenTexelCentres) {
 }
 
 TEST(Surface, PicturesEndRepeatOrTurnBack) {
-  Stage stage({{0.5f, 1, 0}});
+  Surface stage({{0.5f, 1, 0}});
   const auto red_at = [&](double s, PictureUse::Wrap wrap) {
     stage.paint({.wrap_s = wrap, .nearest = true});
     stage.scene.looks.places.assign(3, {s, 0.25});
@@ -96,7 +96,7 @@ TEST(Surface, PicturesEndRepeatOrTurnBack) {
 }
 
 TEST(Surface, NormalsAreBetweenThoseOfVerticesOnTheViewersSide) {
-  Stage stage({{1, 1, 0}, {4, 0, 0}});
+  Surface stage({{1, 1, 0}, {4, 0, 0}});
   const float h = std::sqrt(0.5f);
   stage.scene.looks.normals = {{0, 0, 1}, {h, 0, h}, {0, h, h}};
   const auto normals = look_at(stage.scene, stage.floats, stage.samples, true).normals;
@@ -113,7 +113,7 @@ TEST(Surface, NormalsAreBetweenThoseOfVerticesOnTheViewersSide) {
 /// A small distant light of area A and radiance 1 gives A cos cos / (π d²): the cosine is the shading normal's, by V
 /// and by form factors alike, and where the light is behind that normal there is none.
 TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {
-  Stage stage({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}});
+  Surface stage({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}});
   scenes::AreaLight far{"far", scenes::Rectangle{{1, 1, 1000}, {0, 0.5, 0}, {0.5, 0, 0}}, glm::dvec3(1)};
   stage.scene.lights = {far};
   const visibility::Light light = visibility::make_light(stage.scene, 0, glm::dvec3(0), {});

@@ -16,10 +16,10 @@ using Triangles = std::vector<mesh::Triangle>;
 
 // A 4 × 2 rectangle in the plane y = 3 whose front is below it: counter-clockwise seen from −y.
 const Points kQuad{{-1, 3, -1}, {3, 3, -1}, {3, 3, 1}, {-1, 3, 1}};
-constexpr double kRounding = 1e-6;
+constexpr double kFlatRounding = 1e-6;
 
 FlatLight recognise(const Points& points, const Triangles& triangles) {
-  return recognise_flat_light(weld(points, triangles), kRounding);
+  return recognise_flat_light(weld(points, triangles), kFlatRounding);
 }
 
 void expect_quad(const FlatLight& light, double side) {
@@ -108,12 +108,12 @@ TEST(FlatLight, OthersSayWhyNot) {
 
 TEST(FlatLight, ToleratesTheRoundingAndNoMore) {
   Points tilted = kQuad;
-  tilted[2].y += 0.9 * kRounding;
+  tilted[2].y += 0.9 * kFlatRounding;
   EXPECT_TRUE(std::holds_alternative<Rectangle>(recognise(tilted, {{0, 1, 2}, {0, 2, 3}})));
-  tilted[2].y += 100 * kRounding;
+  tilted[2].y += 100 * kFlatRounding;
   EXPECT_TRUE(std::holds_alternative<std::string>(recognise(tilted, {{0, 1, 2}, {0, 2, 3}})));
   Points skewed = kQuad;
-  skewed[2].x += 100 * kRounding, skewed[3].x += 100 * kRounding;
+  skewed[2].x += 100 * kFlatRounding, skewed[3].x += 100 * kFlatRounding;
   EXPECT_TRUE(std::holds_alternative<Polygon>(recognise(skewed, {{0, 1, 2}, {0, 2, 3}})));
 }
 

@@ -13,17 +13,17 @@
 namespace penumbra::mesh {
 namespace {
 
-using test::bytes_of;
+using penumbra::test::bytes_of;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-using Corners = std::array<std::array<double, 3>, 3>;
+using FileCorners = std::array<std::array<double, 3>, 3>;
 
 /// The triangles as sets of corner coordinates, each starting at its least corner: what must not depend on the format.
-std::multiset<Corners> triangles_of(const TriangleSoup& soup) {
-  std::multiset<Corners> all;
+std::multiset<FileCorners> triangles_of(const TriangleSoup& soup) {
+  std::multiset<FileCorners> all;
   for (const Triangle& t : soup.triangles) {
-    Corners corners;
+    FileCorners corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::dvec3& p = soup.positions[t[i]];
       corners[i] = {p.x, p.y, p.z};
@@ -36,13 +36,13 @@ std::multiset<Corners> triangles_of(const TriangleSoup& soup) {
 
 /// A tetrahedron: (0 0 0) (2 0 0) (0 3 0) (0 0 5).
 constexpr std::string_view kVertices = "0 0 0\n2 0 0\n0 3 0\n0 0 5\n";
-const std::multiset<Corners> kTetrahedron = [] {
+const std::multiset<FileCorners> kTetrahedron = [] {
   const std::array<double, 3> o{0, 0, 0}, x{2, 0, 0}, y{0, 3, 0}, z{0, 0, 5};
-  return std::multiset<Corners>{{o, y, x}, {o, x, z}, {o, z, y}, {z, x, y}};
+  return std::multiset<FileCorners>{{o, y, x}, {o, x, z}, {o, z, y}, {z, x, y}};
 }();
 // In the multiset's own form each triangle starts at its least corner; z x y does: (0 0 5) is the least of the three.
 
-class MeshImport : public test::FileTest {
+class MeshImport : public penumbra::test::FileTest {
  protected:
   void expect_tetrahedron(const std::string& name, std::string_view content) const {
     SCOPED_TRACE(name);
@@ -234,9 +234,9 @@ TEST_F(MeshImport, RefusesBadFilesWithTheirPlace) {
 
   expect_refused("name.obj", binary_ply<false>(), {".ply", "name wrong"});
   expect_refused("letter.doc", "Dear reader", {"no importer for '.doc'", "*.obj"});
-  EXPECT_THAT(test::input_error([&] { import_mesh(folder_ / "missing.obj"); }), HasSubstr("No such file"));
-  EXPECT_THAT(test::input_error([&] { import_mesh(folder_); }), HasSubstr("folder"));
-  EXPECT_THAT(test::input_error([&] { import_mesh("/dev/zero"); }), HasSubstr("not a regular file"));
+  EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(folder_ / "missing.obj"); }), HasSubstr("No such file"));
+  EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(folder_); }), HasSubstr("folder"));
+  EXPECT_THAT(penumbra::test::input_error([&] { import_mesh("/dev/zero"); }), HasSubstr("not a regular file"));
 }
 
 TEST_F(MeshImport, OpensNoFilesOutsideTheFolder) {

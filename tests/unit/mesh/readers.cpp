@@ -8,13 +8,13 @@
 namespace penumbra::mesh {
 namespace {
 
-using test::bytes_of;
-using test::corner;
+using penumbra::test::bytes_of;
+using penumbra::test::corner;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class MeshReaders : public test::FileTest {
+class MeshReaders : public penumbra::test::FileTest {
  protected:
   [[nodiscard]] ImportedMesh read(const std::string& name, std::string_view content) const {
     return import_mesh(write(name, content));

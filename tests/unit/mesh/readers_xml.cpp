@@ -13,11 +13,11 @@
 namespace penumbra::mesh {
 namespace {
 
-using test::corner;
+using penumbra::test::corner;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-class XmlReaders : public test::FileTest {
+class XmlReaders : public penumbra::test::FileTest {
  protected:
   [[nodiscard]] ImportedMesh read(const std::string& name, std::string_view content) const {
     return import_mesh(write(name, content));
@@ -141,7 +141,7 @@ TEST_F(XmlReaders, ThreeMfSaysWhatItDoesNotShow) {
 TEST_F(XmlReaders, ThreeMfRefusals) {
   const auto refusal = [&](const std::string& content) {
     const auto path = write_zip("bad.3mf", {{"3D/3dmodel.model", content}});
-    return test::input_error([&] { import_mesh(path); });
+    return penumbra::test::input_error([&] { import_mesh(path); });
   };
   EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"9\"/>")), HasSubstr("no object with the id '9'"));
   EXPECT_THAT(refusal(model(object("1") + object("1"), "")), HasSubstr("line 2: the id '1' stands twice"));
@@ -167,7 +167,8 @@ TEST_F(XmlReaders, ThreeMfRefusals) {
   const auto bomb = write_zip("bomb.3mf", {{"3D/3dmodel.model", model(doubled, "<item objectid=\"40\"/>")}});
   ImportLimits limits;
   limits.memory_bytes = std::uint64_t{256} << 20;
-  EXPECT_THAT(test::input_error([&] { import_mesh(bomb, limits); }), HasSubstr("repeats what it holds too often"));
+  EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(bomb, limits); }),
+              HasSubstr("repeats what it holds too often"));
 #endif
 }
 

@@ -11,7 +11,7 @@ namespace penumbra::tests {
 namespace {
 
 constexpr std::uint32_t kAcross = 4, kDown = 2;  // pixels of a packet
-constexpr double kLight = 5, kPlate = 2.5;       // heights over the floor
+constexpr double kLampHeight = 5, kPlate = 2.5;  // heights over the floor
 
 /// Pixels of a packet, in the light's frame.
 using Packet = std::array<glm::dvec3, std::size_t{kAcross} * kDown>;
@@ -48,7 +48,7 @@ class Kernels {
   /// The cells between the texels that a receiver sees in front of the light, and one more before and behind; nothing
   /// where rounding may choose another texel, or the map ends.
   [[nodiscard]] std::optional<Cells> operator()(const glm::dvec3& e) const {
-    constexpr double kNear = kLight - kPlate;
+    constexpr double kNear = kLampHeight - kPlate;
     const glm::dvec2 at(e.x / e.z, e.y / e.z), reach = half_ * (1 / kNear - 1 / e.z);
     const glm::dvec2 from = (at - reach - lower_) / texel_, to = (at + reach - lower_) / texel_;
     for (const glm::dvec2& border : {from, to}) {
@@ -88,7 +88,7 @@ std::optional<Odds> odds_of(const Kernels& kernels, const Packet& packet) {
   }
   const double width = std::sqrt(all.count());
   // Depths from the plate's to what stands for nothing.
-  const double null_share = (deepest - nearest) / (kernels.far() - (kLight - kPlate));
+  const double null_share = (deepest - nearest) / (kernels.far() - (kLampHeight - kPlate));
   return Odds{(std::log2(width) + 1 + static_cast<double>(packet.size())) * width / alone,
               1 - std::pow(1 - null_share, all.count())};
 }
@@ -147,7 +147,7 @@ TEST_F(PacketCosts, PacketsArePartedWhereTheyWouldCostMoreThanTheirPixels) {
   const auto make = [&] {
     const glm::dvec2 middle(number(-1, 1), number(-0.05, 0.05)), spread(number(0.5, 2.5), number(0.01, 0.05));
     Packet packet;
-    for (glm::dvec3& e : packet) e = {middle + spread * glm::dvec2(number(-1, 1), number(-1, 1)), kLight};
+    for (glm::dvec3& e : packet) e = {middle + spread * glm::dvec2(number(-1, 1), number(-1, 1)), kLampHeight};
     return packet;
   };
   const auto packets = choose(kernels, make, [](const Odds& odds) {
@@ -171,7 +171,7 @@ TEST_F(PacketCosts, PacketsArePartedWhereATexelMayLieBetweenTheirPixels) {
     const double apart = number(0.0005, 0.1);
     Packet packet;
     for (glm::dvec3& e : packet)
-      e = {middle + glm::dvec2(number(-0.05, 0.05), number(-0.05, 0.05)), kLight - number(0, apart)};
+      e = {middle + glm::dvec2(number(-0.05, 0.05), number(-0.05, 0.05)), kLampHeight - number(0, apart)};
     return packet;
   };
   const auto packets = choose(kernels, make, [](const Odds& odds) {
