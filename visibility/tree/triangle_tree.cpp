@@ -109,12 +109,12 @@ void make_leaves(RTCThreadLocalAllocator allocator, std::span<Divided> primitive
 
 /// Of so many and fewer the heuristic says little that is worth its time, which is three quarters of a whole build:
 /// what is left is divided in halves.
-constexpr std::size_t kTogether = 4 * TriangleTree::kWidth;
-static_assert(kTogether <= RTC_BUILD_MAX_PRIMITIVES_PER_LEAF);
+constexpr std::size_t kLastTriangles = 4 * TriangleTree::kWidth;
+static_assert(kLastTriangles <= RTC_BUILD_MAX_PRIMITIVES_PER_LEAF);
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count, void*) {
-  PENUMBRA_ASSERT(count <= kTogether, "a leaf of {} triangles", count);
-  std::array<Divided, kTogether> all;
+  PENUMBRA_ASSERT(count <= kLastTriangles, "a leaf of {} triangles", count);
+  std::array<Divided, kLastTriangles> all;
   for (std::size_t i = 0; i < count; ++i) all[i] = {lower_of(primitives[i]) + upper_of(primitives[i]), primitives + i};
   const std::span<Divided> divided = std::span(all).first(count);
   if (count <= TriangleTree::kWidth) return make_leaf(allocator, divided);
@@ -206,8 +206,8 @@ TriangleTree make_tree(std::vector<RTCBuildPrimitive> primitives) {
   arguments.maxBranchingFactor = TriangleTree::kWidth;
   arguments.maxDepth = 64;
   arguments.sahBlockSize = TriangleTree::kWidth;  // a leaf costs the same whether one lane is used or all
-  arguments.minLeafSize = kTogether;
-  arguments.maxLeafSize = kTogether;
+  arguments.minLeafSize = kLastTriangles;
+  arguments.maxLeafSize = kLastTriangles;
   arguments.traversalCost = 1.0F;
   arguments.intersectionCost = 1.0F;
   arguments.bvh = bvh;
