@@ -40,6 +40,14 @@ std::vector<EdgeRecord> turning(int count, double whole, double own, double besi
   return records;
 }
 
+/// A hierarchy, and its nodes' texels with the cones.
+struct EdgeTree {
+  explicit EdgeTree(const std::vector<EdgeRecord>& records)
+      : tree(edge_tree(records)), nodes(edge_texels(records, 1).nodes) {}
+  TriangleTree tree;
+  std::vector<visibility::Texel> nodes;
+};
+
 struct Found {
   std::size_t of_leaves = 0, joined = 0, all = 0;
   double loosest_leaf = 0;
@@ -86,7 +94,7 @@ TEST(EdgeCones, HoldTheNormalsOfAllEdgesBelow) {
   for (const double beside : {0.0, 0.3}) {
     for (const double whole : {0.01, 0.3, 1.2, 2.8}) {
       const std::vector<EdgeRecord> records = turning(3000, whole, 0.05, beside);
-      const EdgeTree edges = edge_tree(records, 1);
+      const EdgeTree edges(records);
       Found found;
       EXPECT_EQ(look_below(edges, records, 0, found).size(), records.size());
       EXPECT_GT(found.of_leaves, records.size() / 16);
@@ -98,13 +106,13 @@ TEST(EdgeCones, HoldTheNormalsOfAllEdgesBelow) {
 }
 
 TEST(EdgeCones, OfNormalsAllOverAreNone) {
-  const EdgeTree edges = edge_tree(turning(3000, 60, 0.05, 0), 1);
+  const EdgeTree edges(turning(3000, 60, 0.05, 0));
   const auto is_all = [&](std::uint32_t child) { return std::bit_cast<float>(edges.nodes[3 * child + 2].number) <= 0; };
   EXPECT_TRUE(is_all(0));  // at the root, where each child has a turn and more
   std::vector<EdgeRecord> open = turning(3000, 0.3, 0.05, 0);
   open[1700].sides[1].n = glm::vec3(0);  // an edge of one triangle
   Found found;
-  look_below(edge_tree(open, 1), open, 0, found);
+  look_below(EdgeTree(open), open, 0, found);
   EXPECT_GE(found.all, 2U);  // its leaf, and each node on the way to it
 }
 
