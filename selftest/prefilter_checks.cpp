@@ -141,8 +141,8 @@ Check check_prefilter_levels(const render::Device& device, const Stage& stage, s
   const Prefiltered found(device, stage, size, options_of(kind));
   const std::uint32_t faces = found.maps.fitted.faces, levels = found.layout.table.levels;
   // Down to one texel, or to the largest window that fits.
-  const int expected = pyramid ? std::bit_width(size - 1) + 1 : std::bit_width(size);
-  check.same(static_cast<int>(levels), expected, [&] { return fmt::format("{} levels of {} texels", levels, size); });
+  const auto expected = static_cast<std::uint32_t>(pyramid ? std::bit_width(size - 1) + 1 : std::bit_width(size));
+  check.same(levels, expected, [&] { return fmt::format("{} levels of {} texels", levels, size); });
   const std::vector<float> depths = found.maps.read();
   const std::vector<Case> all = cases();
   for (std::size_t f = 0; f < all.size(); ++f) {

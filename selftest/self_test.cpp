@@ -68,9 +68,9 @@ class SelfTest {
     for (const auto& [name, sampler] :
          {std::pair("Vulkan", ViewSampler::vulkan), std::pair("OpenGL", ViewSampler::opengl),
           std::pair("processor", ViewSampler::vectors)}) {
-      checks.push_back(each_stage(fmt::format("view samples ({})", name), [&](const Stage& stage) {
+      checks.push_back(each_stage(fmt::format("view samples ({})", name), [this, by = sampler](const Stage& stage) {
         return check_view_samples(device_, stage.floats,
-                                  visibility::brute_force_view_samples(stage.floats, stage.pinhole), sampler);
+                                  visibility::brute_force_view_samples(stage.floats, stage.pinhole), by);
       }));
     }
     for (const Rasteriser rasteriser : {Rasteriser::vulkan, Rasteriser::opengl}) {
