@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <future>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -430,12 +432,19 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   progress_.clear();
   // All are on the disk before the first has its name: what has no room leaves nothing.
   AtomicFile picture(files.picture);
-  write_picture(picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
-  picture.settle();
   std::optional<AtomicFile> png, stats_file;
+  std::future<std::vector<std::byte>> packed;
   if (!files.png.empty()) {
     png.emplace(files.png);
-    png->write(encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops))));
+    // libpng has one thread; OpenEXR's compress beside it.
+    packed = std::async(std::launch::async, [this, &sum, stops] {
+      return encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops)));
+    });
+  }
+  write_picture(picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
+  picture.settle();
+  if (png) {
+    png->write(packed.get());
     png->settle();
   }
   compare::Stats stats = make_stats(session(), lights, run_);

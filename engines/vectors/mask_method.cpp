@@ -51,6 +51,44 @@ Buffers& buffers() {
   return all.local();
 }
 
+/// Eight bytes as a matrix of bits, transposed: bit r of byte c becomes bit c of byte r (H. S. Warren, Hacker's
+/// Delight, 2nd ed., 7-3).
+std::uint64_t transposed(std::uint64_t bits) {
+  std::uint64_t moved = (bits ^ (bits >> 7U)) & 0x00aa00aa00aa00aaU;
+  bits ^= moved ^ (moved << 7U);
+  moved = (bits ^ (bits >> 14U)) & 0x0000cccc0000ccccU;
+  bits ^= moved ^ (moved << 14U);
+  moved = (bits ^ (bits >> 28U)) & 0x00000000f0f0f0f0U;
+  return bits ^ moved ^ (moved << 28U);
+}
+
+/// Bits of light samples in rows, from columns (mask_bit) to their own order, into a mask of zeros.
+void add_rows(const LightGrid& grid, const std::uint16_t* from, std::span<std::uint32_t> mask) {
+  for (std::uint32_t row = 0; row < grid.rows; row += 8) {
+    for (std::uint32_t column = 0; column < grid.columns; column += 8) {
+      std::uint64_t block = 0;  // a byte a column
+      for (std::uint32_t i = 0; i < std::min(grid.columns - column, 8U); ++i) {
+        const std::size_t bit = std::size_t{column + i} * grid.padded_rows + row;
+        block |= std::uint64_t{from[bit / 16] >> bit % 16 & 0xffU} << 8 * i;
+      }
+      block = transposed(block);
+      for (std::uint32_t i = 0; i < std::min(grid.rows - row, 8U); ++i) {
+        const auto bits = static_cast<std::uint32_t>(block >> 8 * i & 0xffU);
+        const std::size_t at = std::size_t{row + i} * grid.columns + column;
+        mask[at / 32] |= bits << at % 32;
+        if (at % 32 > 24 && bits >> (32 - at % 32) != 0) mask[at / 32 + 1] |= bits >> (32 - at % 32);
+      }
+    }
+  }
+}
+
+void add_tiles(const LightGrid& grid, const std::uint16_t* from, std::uint32_t samples, std::span<std::uint32_t> mask) {
+  for (std::uint32_t j = 0; j < samples; ++j) {
+    const std::size_t bit = mask_bit(grid, j);
+    mask[j / 32] |= (from[bit / 16] >> bit % 16 & 1U) << (j % 32);
+  }
+}
+
 }  // namespace
 
 MaskMethod::MaskMethod(visibility::MethodDescription description, std::string pass)
@@ -239,19 +277,17 @@ void MaskMethod::read_masks(std::span<std::uint32_t> masks) {
   const std::uint32_t words = light_->words_per_mask(), count = light_->sample_count();
   const LightGrid& grid = grids_[0];
   const std::size_t own = mask_words(grid);
-  std::vector<std::uint32_t> bit_of(count);
-  for (std::uint32_t j = 0; j < count; ++j) bit_of[j] = static_cast<std::uint32_t>(mask_bit(grid, j));
+  PENUMBRA_ASSERT(grid.tiles || std::size_t{grid.rows} * grid.columns == count, "{} light samples in {} x {}", count,
+                  grid.rows, grid.columns);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, visible_.size(), 256), [&](const auto& range) {
     for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
       const auto mask = masks.subspan(pixel * words, words);
-      std::fill(mask.begin(), mask.end(), 0U);
-      if (visible_[pixel] == 0) continue;
+      const bool all = visible_[pixel] == count;
+      std::fill(mask.begin(), mask.end(), all ? 0xffffffffU : 0U);
+      if (all && count % 32 != 0) mask.back() = (1U << count % 32) - 1;
+      if (all || visible_[pixel] == 0) continue;
       const std::uint16_t* from = &masks_[pixel * own];
-      for (std::uint32_t j = 0; j < count; ++j) {
-        const std::uint32_t bit = bit_of[j];
-        const bool visible = visible_[pixel] == count || (from[bit / 16] >> bit % 16 & 1) != 0;
-        mask[j / 32] |= (visible ? 1U : 0U) << (j % 32);
-      }
+      grid.tiles ? add_tiles(grid, from, count, mask) : add_rows(grid, from, mask);
     }
   });
 }
