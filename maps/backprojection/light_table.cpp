@@ -59,7 +59,7 @@ std::vector<float> shares_of_texture(const visibility::LightTexture& texture) {
 template <typename ShareOf>
 std::vector<float> shares_at_nodes(const ShareOf& share_of) {
   std::vector<float> shares;
-  shares.reserve((kCells + 1) * (kCells + 1));
+  shares.reserve(std::size_t{kCells + 1} * (kCells + 1));
   for (std::uint32_t y = 0; y <= kCells; ++y) {
     for (std::uint32_t x = 0; x <= kCells; ++x) {
       shares.push_back(static_cast<float>(share_of(glm::dvec2(x, y) / static_cast<double>(kCells))));
@@ -71,7 +71,7 @@ std::vector<float> shares_at_nodes(const ShareOf& share_of) {
 std::vector<float> shares_of_polygon(const std::vector<glm::dvec2>& outline, const LightBounds& bounds) {
   const double whole = visibility::area_of(outline);
   std::vector<float> shares;
-  shares.reserve((kCells + 1) * (kCells + 1));
+  shares.reserve(std::size_t{kCells + 1} * (kCells + 1));
   for (std::uint32_t y = 0; y <= kCells; ++y) {
     const double top = glm::mix(bounds.lower.y, bounds.upper.y, y / static_cast<double>(kCells));
     const std::vector<glm::dvec2> below = visibility::clipped_above(outline, 1, top);
