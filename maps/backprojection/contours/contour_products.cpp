@@ -70,7 +70,7 @@ void ContourLightProduct::record(render::Commands& /*commands*/, const MapSet& m
 WorkCounts::WorkCounts(const render::Device& device) : counts_(device, "contour work", 2 * sizeof(gpu::WorkNumbers)) {}
 
 void WorkCounts::make(const MapSource& /*source*/) {
-  counts_.write<std::uint32_t>(std::array<std::uint32_t, 2 * gpu::kWorkCounts>{});
+  counts_.write<std::uint32_t>(std::array<std::uint32_t, std::size_t{2} * gpu::kWorkCounts>{});
 }
 
 void WorkCounts::record(render::Commands& /*commands*/, const MapSet& /*maps*/) {}
