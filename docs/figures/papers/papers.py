@@ -1,4 +1,4 @@
-"""The papers' figures: for each a module has how it is measured and how it is drawn. NAME.json beside this file has the measured
+"""The papers' figures, and others of measured numbers: for each a module has how it is measured and how it is drawn. NAME.json beside this file has the measured
 numbers, NAME.svg the figure drawn of them; docs/figures/make.py draws, docs/figures/papers/measure.py measures."""
 
 import json
@@ -11,12 +11,13 @@ sys.path.insert(0, str(HERE))
 import atty  # noqa: E402
 import bavoil  # noqa: E402
 import course  # noqa: E402
+import scaling  # noqa: E402
 import schwaerzler  # noqa: E402
 import times  # noqa: E402
 import yang  # noqa: E402
 
 FIGURES = {}
-for module in (atty, schwaerzler, bavoil, yang, course, times):
+for module in (atty, schwaerzler, bavoil, yang, course, times, scaling):
     FIGURES |= module.FIGURES
 
 
