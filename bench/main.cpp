@@ -8,6 +8,7 @@
 #include "bench/lines.hpp"
 #include "bench/options.hpp"
 #include "bench/picture.hpp"
+#include "bench/sequence.hpp"
 #include "bench/whole_frame.hpp"
 
 #include <fmt/format.h>
@@ -71,6 +72,13 @@ void run_whole_frames(const bench::Options& options, Output& output) {
   devices.check_validation();
 }
 
+void run_sequences(const bench::Options& options, Output& output) {
+  output.write(bench::sequence_table_head(), "");
+  bench::measure_sequences(options, [&](const bench::SequenceEntry& entry) {
+    output.write(bench::sequence_table_row(entry), bench::sequence_json_line(entry, options));
+  });
+}
+
 void run_methods(const bench::Options& options, Output& output) {
   app::OutputFiles outputs;
   outputs.add("--picture", options.picture);
@@ -101,6 +109,8 @@ int run(const std::vector<std::string>& arguments) {
     run_cpu(options, output);
   } else if (options.frames) {
     run_frames(options, output);
+  } else if (options.sequence) {
+    run_sequences(options, output);
   } else if (options.whole_frames) {
     run_whole_frames(options, output);
   } else {

@@ -42,6 +42,10 @@ const char* const kHelp =
   --frame              instead of shadows alone: whole pictures from scenes in memory, by each method and by a plain
                        program on Embree (default: of bunny and sphere:1000000, by edge-scatter and
                        edge-scatter:rows=exact)
+  --sequence           instead of methods: the program renders 100 pictures, 16:9, as high as --size (default 1080), in
+                       which light and camera move (default: of knot:70000), with exact areas; elapsed seconds over
+                       those of the frames' phases
+  --frames N           of --sequence
   --cpu                instead of methods: edge graphs, edge records, hierarchies and penumbra wedges on the processor
   --wedges-per-frame   instead of methods: silhouettes and wedges of a light that moves, built anew on the device and,
                        in turns with it, on the processor
@@ -149,6 +153,8 @@ const std::map<std::string, Take>& options_with_value() {
        [](Reading& r, auto& option, auto& value) {
          r.options.edges = parse_number<std::uint64_t>(option, value, mesh::kMaxShapeTriangles);
        }},
+      {"--frames", [](Reading& r, auto& option,
+                      auto& value) { r.options.sequence_frames = parse_number<std::uint32_t>(option, value, 9999); }},
       {"--device", [](Reading& r, auto&, auto& value) { r.options.device = value; }},
       {"--json", [](Reading& r, auto&, auto& value) { r.options.json = value; }},
       {"--picture", [](Reading& r, auto&, auto& value) { r.options.picture = value; }},
@@ -167,6 +173,8 @@ void set_defaults(Reading& reading) {
   Options& options = reading.options;
   const char* const usual = options.whole_frames ? "edge-scatter,edge-scatter:rows=exact" : "edge-scatter,view-sample";
   if (options.methods.empty()) add_methods(options.methods, usual);
+  if (options.sequence && reading.subjects.scenes.empty()) reading.subjects.scenes = {"knot:70000"};
+  if (options.sequence && reading.subjects.sizes.empty()) reading.subjects.sizes = {1080};
   if (options.whole_frames && reading.subjects.scenes.empty()) reading.subjects.scenes = {"bunny", "sphere:1000000"};
   if (reading.peers.empty()) reading.peers = {"plain-rays:pattern=jittered", "nontrivial-rays", "adaptive-rays"};
   if (reading.peers != std::vector<std::string>{"none"}) {
@@ -174,8 +182,8 @@ void set_defaults(Reading& reading) {
   }
   options.samples_in_name = !options.light_samples.empty();
   if (options.light_samples.empty()) options.light_samples = {256};
-  if (int{options.cpu} + int{options.frames} + int{options.whole_frames} > 1)
-    throw UsageError("--cpu, --frame and --wedges-per-frame are runs of their own: give one of them");
+  if (int{options.cpu} + int{options.frames} + int{options.whole_frames} + int{options.sequence} > 1)
+    throw UsageError("--cpu, --frame, --sequence and --wedges-per-frame are runs of their own: give one of them");
   const auto few =
       std::ranges::find_if(options.light_samples, [](std::uint32_t count) { return count <= AdaptiveRays::kFew; });
   if (options.whole_frames && few != options.light_samples.end()) {
@@ -186,7 +194,8 @@ void set_defaults(Reading& reading) {
   if (options.triangles.empty() && options.frames) options.triangles = {10'000, 100'000, 1'000'000};
   if (options.triangles.empty()) options.triangles = {5'000, 50'000, 500'000};
   if (methods) options.subjects = make_subjects(reading.subjects);
-  if (!options.picture.empty() && (!methods || options.whole_frames || options.reference == Reference::none))
+  if (!options.picture.empty() &&
+      (!methods || options.whole_frames || options.sequence || options.reference == Reference::none))
     throw UsageError("--picture needs --reference: against their own light samples, right methods have no error");
   std::vector<std::string> rivals = {"plain-rays", "raytrace"}, subjects, samples;  // those two always run
   for (const app::MethodEntry& method : options.methods) rivals.push_back(method.label);
@@ -225,6 +234,8 @@ Options parse_options(const std::vector<std::string>& arguments) {
       reading.options.cpu = true;
     } else if (option == "--frame") {
       reading.options.whole_frames = true;
+    } else if (option == "--sequence") {
+      reading.options.sequence = true;
     } else if (option == "--wedges-per-frame") {
       reading.options.frames = true;
     } else if (const auto take = options_with_value().find(option); take == options_with_value().end()) {

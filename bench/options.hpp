@@ -42,6 +42,8 @@ struct Options {
   std::string commit;
   bool cpu = false;                      ///< time the parts that run on the processor, not methods
   bool whole_frames = false;             ///< time whole pictures beside a plain program on Embree
+  bool sequence = false;                 ///< time the program on a sequence of pictures
+  std::uint32_t sequence_frames = 100;   ///< --sequence: how many
   bool frames = false;                   ///< time silhouettes and wedges of a moving light, on device and processor
   std::vector<std::uint64_t> triangles;  ///< --cpu, --wedges-per-frame: of the knots
   std::uint64_t edges = 1'000'000;       ///< --cpu: how many edges get wedges

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "bench/adaptive_rays.hpp"
 #include "bench/cpu.hpp"
+#include "bench/folder.hpp"
 #include "reference/plain_rays.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
@@ -19,29 +20,8 @@
 #include <optional>
 #include <utility>
 
-#include <unistd.h>
-
 namespace penumbra::bench {
 namespace {
-
-/// A folder for the pictures, which goes with it.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() / fmt::format("penumbra-bench-{}", static_cast<int>(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  [[nodiscard]] std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The program on Embree.
 class PlainProgram {

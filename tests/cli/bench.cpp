@@ -177,6 +177,22 @@ TEST_F(Bench, WholeFrames) {
   EXPECT_EQ(lines("sphere")[0].at("triangles"), 602);  // and the floor's 2
 }
 
+TEST_F(Bench, Sequences) {
+  const Outcome outcome =
+      run({"--sequence", "--scene", "knot:600", "--size", "18", "--frames", "3", "--json", path("lines")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json line = lines("lines").at(0);
+  EXPECT_EQ(line.at("name"), "sequence/knot-600/size=18/frames=3");
+  EXPECT_EQ(line.at("width"), 32);
+  EXPECT_EQ(line.at("triangles"), 602);
+  double work = 0;
+  for (const char* phase : {"view", "light", "evaluate", "beauty", "write"})
+    work += line.at("seconds").at(phase).get<double>();
+  EXPECT_DOUBLE_EQ(line.at("work"), work);
+  EXPECT_GT(line.at("elapsed"), work / 2) << "seconds of one machine";
+  EXPECT_EQ(run({"--sequence", "--cpu"}).code, 2);
+}
+
 TEST_F(Bench, AMovingLight) {
   const Outcome outcome = run({"--wedges-per-frame", "--triangles", "600", "--runs", "1", "--json", path("lines")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
