@@ -14,6 +14,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/farm_slurm.cpp
   cli/farm_tasks.cpp
   cli/frames.cpp
+  cli/image_methods.cpp
   cli/inspect.cpp
   cli/interrupt.cpp
   cli/lights.cpp

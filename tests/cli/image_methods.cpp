@@ -1,0 +1,212 @@
+// The options of image-based methods that scripts give, by their names on the command line: each is taken and does what
+// it says. One comparison of all of them, judged by what metrics.json says.
+#include "tests/cli/program.hpp"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace penumbra::tests {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// A ball and an oblique plate over a floor.
+constexpr const char* kScene = R"({"format": "penumbra-scene/1", "size": [24, 16],
+  "camera": {"eye": [0, 4, 5], "target": [0, 0.2, 0], "up": [0, 1, 0], "verticalFov": 40},
+  "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [3, 0, 0], "halfV": [0, 0, -3]}},
+             {"name": "ball", "shape": {"type": "sphere", "center": [0.4, 0.8, 0], "radius": 0.5, "segments": 16}},
+             {"name": "plate", "quad": {"center": [-0.5, 1.4, 0.2], "halfU": [0.5, 0.2, 0], "halfV": [0, 0, -0.4]}}],
+  "lights": [{"name": "key", "rectangle": {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}}]})";
+
+class ImageMethods : public ProgramTest {
+ protected:
+  void compare(const std::vector<std::string>& entries) {
+    std::string methods;
+    for (const std::string& entry : entries) methods += (methods.empty() ? "" : ",") + entry + ":size=64";
+    const Outcome outcome = run({"compare", write("scene.json", kScene).string(), "-o", path("out"), "--methods",
+                                 methods, "--reference", "exact", "--light-samples", "16", "--runs", "1"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json metrics = json::parse(read("out/metrics.json"));
+    ASSERT_EQ(metrics.at("methods").size(), entries.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      found_[entries[i]] = metrics["methods"][i];
+      EXPECT_TRUE(found_[entries[i]].at("failure").is_null()) << entries[i] << ": " << found_[entries[i]];
+    }
+  }
+  double bias(const std::string& entry) const { return found_.at(entry).at("error").at("bias").get<double>(); }
+  double rmse(const std::string& entry) const { return found_.at(entry).at("error").at("rmse").get<double>(); }
+  int count(const std::string& entry, const char* what) const {
+    return found_.at(entry).at("counters").at(what).get<int>();
+  }
+  void expect_same(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(found_.at(a).at("error"), found_.at(b).at("error")) << a << " and " << b;
+  }
+
+  std::map<std::string, json> found_;
+};
+
+TEST_F(ImageMethods, OptionsOfPatchesAndOutlinesDoWhatTheySay) {
+  compare({"backproject:fill=none",
+           "backproject",
+           "backproject:fill=diagonal",
+           "backproject:search=none",
+           "backproject:search=hsm",
+           "backproject:search=mssm",
+           "backproject:search=ysm",
+           "backproject:form=sphere",
+           "backproject-peel:layers=1",
+           "backproject-peel:layers=3",
+           "backproject-peel:samples=9",
+           "backproject-peel:depth=second",
+           "bitmask",
+           "bitmask:occluder=patch",
+           "bitmask:occluder=patch:fill=edges",
+           "bitmask:occluder=triangle",
+           "bitmask:occluder=rect",
+           "bitmask:occluder=rect:level=2",
+           "bitmask:layers=3",
+           "bitmask:search=none",
+           "bitmask:search=hsm",
+           "bitmask:search=ysm",
+           "contour",
+           "contour:search=none",
+           "contour:search=mssm",
+           "contour:search=ysm",
+           "contour:traversal=flat",
+           "contour:traversal=minmax",
+           "packet:packet=1x1",
+           "packet:packet=4x2",
+           "packet:hierarchy=off",
+           "packet:sublights=2"});
+  EXPECT_GT(bias("backproject:fill=none"), bias("backproject"));
+  EXPECT_GT(bias("backproject"), bias("backproject:fill=diagonal"));
+  EXPECT_GT(bias("backproject"), bias("backproject:form=sphere")) << "bounding spheres are larger";
+  for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
+    expect_same(std::string("backproject:search=") + search, "backproject");
+    if (search != std::string("mssm")) expect_same(std::string("bitmask:search=") + search, "bitmask");
+    if (search != std::string("hsm")) expect_same(std::string("contour:search=") + search, "contour");
+  }
+  expect_same("backproject-peel:layers=1", "backproject:fill=none");
+  EXPECT_GT(bias("backproject-peel:layers=1"), bias("backproject-peel:layers=3"));
+  EXPECT_GT(rmse("backproject-peel:samples=9"), rmse("backproject-peel:layers=3"));
+  EXPECT_GT(bias("backproject-peel:depth=second"), bias("backproject-peel:layers=3") + 0.03) << "the plate is open";
+  EXPECT_GT(bias("bitmask"), bias("bitmask:occluder=triangle"));
+  EXPECT_GT(bias("bitmask"), bias("bitmask:layers=3"));
+  EXPECT_GT(bias("bitmask:occluder=patch"), bias("bitmask:occluder=patch:fill=edges"));
+  expect_same("bitmask:occluder=rect", "bitmask:occluder=patch");
+  EXPECT_GT(bias("bitmask:occluder=rect"), bias("bitmask:occluder=rect:level=2")) << "coarse texels are fatter";
+  for (const char* way : {"contour:traversal=flat", "contour:traversal=minmax", "packet:packet=1x1",
+                          "packet:packet=4x2", "packet:hierarchy=off"}) {
+    expect_same(way, "contour");
+  }
+  EXPECT_GT(count("contour:traversal=flat", "cells"), count("contour:traversal=minmax", "cells"));
+  EXPECT_GT(count("contour:traversal=minmax", "cells"), count("contour", "cells"));
+  EXPECT_GT(count("packet:packet=1x1", "cells"), count("packet:packet=4x2", "cells"));
+  EXPECT_EQ(count("packet:hierarchy=off", "nodes"), 0);
+  EXPECT_EQ(count("packet:sublights=2", "maps"), 4);
+}
+
+TEST_F(ImageMethods, OptionsOfFiltersListsAndManyMapsDoWhatTheySay) {
+  std::vector<std::string> entries{"shadow-map",
+                                   "pcf:window=1",
+                                   "pcf",
+                                   "pcf:window=15",
+                                   "soft-shadow-map",
+                                   "soft-shadow-map:passes=2",
+                                   "soft-shadow-map:precision=fp16",
+                                   "adaptive-light:levels=1",
+                                   "adaptive-light:epsilon=0",
+                                   "adaptive-light:epsilon=0.5",
+                                   "adaptive-light:gamma=0.5",
+                                   "adaptive-light:compare=light",
+                                   "adaptive-light:pcf=off",
+                                   "adaptive-light",
+                                   "layered-attenuation:epsilon=0.001",
+                                   "layered-attenuation:epsilon=0.1",
+                                   "deep-penumbra:bound=0",
+                                   "deep-penumbra:bound=0.2",
+                                   "accumulate",
+                                   "accumulate:rasteriser=vulkan",
+                                   "occlusion-textures:slices=1",
+                                   "occlusion-textures:slices=8",
+                                   "convolution"};
+  for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
+    for (const char* filter : {"sat", "mip", "n-buffer"}) {
+      entries.push_back(std::string("vssm:moments=") + moments + ":filter=" + filter);
+    }
+  }
+  const std::vector<std::string> single{"shadow-map",        "pcf", "pcss", "vssm", "soft-shadow-map", "convolution",
+                                        "occlusion-textures"};
+  for (const std::string& method : single) {
+    for (const char* depth : {"first", "second", "midpoint", "dual"}) entries.push_back(method + ":depth=" + depth);
+  }
+  compare(entries);
+  expect_same("pcf:window=1", "shadow-map");
+  EXPECT_LT(rmse("pcf"), rmse("pcf:window=1"));
+  EXPECT_LT(rmse("pcf"), rmse("pcf:window=15"));
+  EXPECT_EQ(count("soft-shadow-map:passes=2", "patches"), 2 * count("soft-shadow-map", "patches"));
+  EXPECT_LT(bias("soft-shadow-map:passes=2"), bias("soft-shadow-map"));
+  EXPECT_NE(rmse("soft-shadow-map:precision=fp16"), rmse("soft-shadow-map"));
+  EXPECT_EQ(count("adaptive-light:levels=1", "maps"), 9);
+  EXPECT_EQ(count("adaptive-light:epsilon=0", "maps"), 81);
+  EXPECT_EQ(count("adaptive-light:epsilon=0.5", "maps"), 4);
+  EXPECT_EQ(count("adaptive-light:gamma=0.5", "maps"), 4);
+  EXPECT_NE(count("adaptive-light:compare=light", "maps"), count("adaptive-light", "maps"));
+  EXPECT_NE(rmse("adaptive-light:pcf=off"), rmse("adaptive-light"));
+  EXPECT_LT(bias("layered-attenuation:epsilon=0.001"), bias("layered-attenuation:epsilon=0.1")) << "speckle";
+  EXPECT_LT(rmse("deep-penumbra:bound=0"), rmse("deep-penumbra:bound=0.2"));
+  expect_same("accumulate:rasteriser=vulkan", "accumulate");
+  EXPECT_GT(rmse("occlusion-textures:slices=1"), rmse("occlusion-textures:slices=8"));
+  for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {
+    const std::string way = std::string("vssm:moments=") + moments + ":filter=";
+    EXPECT_GT(rmse(way + "mip"), rmse(way + "sat")) << "levels are coarse";
+    EXPECT_NE(rmse(way + "n-buffer"), rmse(way + "sat"));
+  }
+  for (const std::string& method : single) {
+    EXPECT_GT(bias(method + ":depth=second"), bias(method + ":depth=first") + 0.03) << method << ": the plate is open";
+    for (const char* depth : {"midpoint", "dual"}) {
+      EXPECT_LT(rmse(method + ":depth=" + depth), rmse(method + ":depth=second")) << method << " " << depth;
+    }
+  }
+}
+
+// Pixels on what casts shadows see their light above the horizon alone, which is the paper's limit: whoever renders
+// with it is told, in words and in numbers, unless another method answers there.
+TEST_F(ImageMethods, SoftShadowMapSaysWhereItHasNoShadows) {
+  const std::string scene = write("scene.json", kScene).string();
+  for (const bool answered : {false, true}) {
+    const Outcome outcome =
+        run({"render", scene, "-o", path("out.exr"), "--stats", path("stats.json"), "--method", "soft-shadow-map",
+             "--method-option", "size=32", "--method-option", answered ? "self=backproject" : "self=none"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::string warnings = json::parse(read("stats.json")).at("warnings").dump();
+    const testing::Matcher<std::string> said = HasSubstr("self=backproject");
+    const testing::Matcher<std::string> is_right = answered ? testing::Matcher<std::string>(testing::Not(said)) : said;
+    EXPECT_THAT(outcome.err, is_right);
+    EXPECT_THAT(warnings, is_right);
+  }
+  compare({"soft-shadow-map", "soft-shadow-map:self=backproject"});
+  EXPECT_THAT(found_["soft-shadow-map"].at("warnings").dump(), HasSubstr("self=backproject"));
+  EXPECT_THAT(found_["soft-shadow-map:self=backproject"].at("warnings"), testing::IsEmpty());
+}
+
+TEST_F(ImageMethods, WhatIsNoValueIsRefusedWithThoseThatAre) {
+  for (const auto& [entry, values] : std::map<std::string, std::string>{{"bitmask:occluder=disc", "triangle"},
+                                                                        {"vssm:moments=vm", "evsm"},
+                                                                        {"contour:traversal=tree", "minmax"},
+                                                                        {"pcf:window=0", "64"},
+                                                                        {"soft-shadow-map:passes=3", "1"},
+                                                                        {"accumulate:depth=second", "rasteriser"}}) {
+    const Outcome outcome = run({"compare", tiny_scene(), "-o", path("out"), "--methods", entry});
+    EXPECT_EQ(outcome.code, 2) << entry;
+    EXPECT_THAT(outcome.err, HasSubstr(values)) << entry;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests
