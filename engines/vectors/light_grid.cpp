@@ -74,7 +74,14 @@ LightGrid make_light_grid(const LightGridInput& input) {
   const auto some = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(input.points.size()))));
   grid.rows = in_rows ? input.rows : some;
   grid.columns = in_rows ? input.columns : some;
-  grid.radius = (glm::length(input.light.u) + glm::length(input.light.v)) * 1.0001F + input.light.deviation;
+  grid.deviation = input.light.deviation;
+  if (!input.window) {
+    // Edges are placed from the frame's corner, and counting begins at the one in the stored points' plane: the frame's
+    // rounding is between the two, whether or not light samples show it.
+    const glm::dvec3 apart = glm::dvec3(input.light.center) - u - v - grid.corner;
+    grid.deviation += 1.0001F * static_cast<float>(glm::length(apart));
+  }
+  grid.radius = (glm::length(input.light.u) + glm::length(input.light.v)) * 1.0001F + grid.deviation;
   grid.half_cells = 0.5F * glm::vec2(static_cast<float>(grid.columns), static_cast<float>(grid.rows));
   grid.first_cell = grid.half_cells - 0.5F;
   const std::array axes = axes_of(u, v, input.side, grid.half_cells);
@@ -91,7 +98,6 @@ LightGrid make_light_grid(const LightGridInput& input) {
   grid.per_length = std::max(glm::length(grid.across), glm::length(grid.along)) * 1.00001F;
   grid.skew = float_size1(u) * float_size1(v) / static_cast<float>(std::sqrt(squared)) * 1.00001F;
   if (input.window) grid.skew += static_cast<float>(input.window->skew);
-  grid.deviation = input.light.deviation;
   grid.reach = input.reach;
   grid.cut_reach = input.cut_reach;
   grid.side = input.side;
