@@ -47,6 +47,14 @@ visibility::MethodDescription layered_attenuation_description() {
   return description;
 }
 
+std::optional<std::string> layered_attenuation_warning(const std::map<std::string, std::uint64_t>& counters) {
+  const auto found = counters.find(kUnknownReceivers);
+  if (found == counters.end() || found->second == 0) return std::nullopt;
+  return "layered-attenuation knows only surfaces that cast shadows: those that cast none (counter "
+         "receiversThatCastNone: "
+         "their triangles) are dark in its picture; let them cast, or take accumulate, which draws the same maps";
+}
+
 std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Device& device,
                                                              const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = layered_attenuation_description(),

@@ -4,6 +4,7 @@
 #include "maps/products/lists/layered_depth.shared.h"
 #include "maps/products/lists/layered_merge.comp.spv.hpp"
 #include "maps/products/lists/layered_warp.comp.spv.hpp"
+#include "visibility/receivers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,13 @@ void LayeredDepth::make(const MapSource& source) {
     if (merge_all(source)) break;
   }
   source.counters["layers"] = layers_;
+  std::uint64_t unknown = 0;
+  for (std::uint32_t i = 0; i < source.scene.triangles.size(); ++i) {
+    const bool has_area = source.scene.plane[i] != visibility::SceneFloats::kNoPlane;
+    if (has_area && source.scene.casts_shadow[i] == 0 && visibility::is_receiver(source.scene, source.light.index, i))
+      ++unknown;
+  }
+  source.counters[kUnknownReceivers] = unknown;
 }
 
 bool LayeredDepth::merge_all(const MapSource& source) {

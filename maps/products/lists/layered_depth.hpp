@@ -6,6 +6,9 @@
 
 namespace penumbra::maps {
 
+/// Counter: triangles that receive shadow and cast none. No light sample's map holds them.
+inline constexpr const char* kUnknownReceivers = "receiversThatCastNone";
+
 /// A layered depth image from the light's centre (Agrawala, Ramamoorthi, Heirich and Moll 2000): for each texel the
 /// surfaces that light samples see in its direction, and how many of them do.
 ///
