@@ -1,5 +1,6 @@
 #include "engines/vectors/trees.hpp"
 
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 
 #include <bit>
@@ -17,7 +18,8 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
 }  // namespace
 
 std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stride) {
-  std::vector<WideNode> nodes(texels.size() / stride / kWide);
+  std::vector<WideNode> nodes;
+  resize_on_all_cores(nodes, texels.size() / stride / kWide);
   mesh::for_each_index(nodes.size(), [&](std::size_t n) {
     WideNode& node = nodes[n];
     for (std::size_t lane = 0; lane < kWide; ++lane) {
@@ -53,7 +55,7 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
   const std::vector<Texel> texels = visibility::node_texels(tree, scale);
   wide.nodes = wide_nodes(texels, 2);
   if (!wide.nodes.empty()) wide.roots = {0};
-  wide.leaves.resize(tree.leaves.size());
+  resize_on_all_cores(wide.leaves, tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t i) {
     WideTriangles& leaf = wide.leaves[i];
     for (std::size_t lane = 0; lane < kWide; ++lane) {

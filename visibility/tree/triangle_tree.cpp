@@ -2,6 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 
 #include <embree3/rtcore.h>
@@ -221,8 +222,8 @@ TriangleTree make_tree(std::vector<RTCBuildPrimitive> primitives) {
   const auto* root = static_cast<const Built*>(rtcBuildBVH(&arguments));
   if (root != nullptr) {
     Flattener flattener(tree);
-    tree.leaves.resize(root->leaves);
-    tree.nodes.resize(std::max(root->nodes, 1U));
+    resize_on_all_cores(tree.leaves, root->leaves);
+    resize_on_all_cores(tree.nodes, std::max(root->nodes, 1U));
     tree.depth = std::max(root->depth, 1U);
     if (root->is_leaf()) {
       const auto [lower, upper] = bounds_of_all;

@@ -1,5 +1,6 @@
 #include "volumes/edges/edge_set.hpp"
 
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
 #include "mesh/sorted_sides.hpp"
@@ -81,7 +82,7 @@ EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uin
 
 EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters) : scene_(&scene), casters_(&casters) {
   const std::size_t count = casters.triangle.size();
-  planes_.resize(count);
+  resize_on_all_cores(planes_, count);
   mesh::for_each_index(count, [&](std::size_t i) { planes_[i] = plane_of(scene, casters, casters.triangle[i]); });
   std::vector<mesh::Triangle> chosen;
   if (count < scene.triangles.size()) {
@@ -128,7 +129,7 @@ void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles) {
                        [&](std::size_t from) { for_each_pair(from, [&](const Pair&) { ++first[from]; }); });
   std::uint32_t pairs = 0;
   for (std::uint32_t& number : first) pairs += std::exchange(number, pairs);
-  pairs_.resize(pairs);
+  resize_on_all_cores(pairs_, pairs);
   mesh::for_each_index(vertex.size(), [&](std::size_t from) {
     std::uint32_t next = first[from];
     for_each_pair(from, [&](const Pair& pair) { pairs_[next++] = pair; });

@@ -1,8 +1,10 @@
 #include "volumes/scatter/vectors/cut.hpp"
 
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -69,11 +71,9 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
 }
 
 template <typename Records>
-vectors::WideEdgeTree wide_tree(const visibility::TriangleTree& tree, const Records& records, float scale) {
+vectors::WideEdgeTree wide_leaves(const visibility::TriangleTree& tree, const Records& records, float scale) {
   vectors::WideEdgeTree wide;
-  if (tree.nodes.empty()) return wide;
-  wide.roots = {0};
-  wide.leaves.resize(tree.leaves.size());
+  resize_on_all_cores(wide.leaves, tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
     WideEdges& leaf = wide.leaves[number];
     const visibility::TriangleTree::Leaf& slots = tree.leaves[number];
@@ -90,6 +90,13 @@ vectors::WideEdgeTree wide_tree(const visibility::TriangleTree& tree, const Reco
       leaf.used |= 1U << lane;
     }
   });
+  return wide;
+}
+
+/// Above its leaves.
+void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree, float scale) {
+  if (tree.nodes.empty()) return;
+  wide.roots = {0};
   const auto normals_of = [&](std::size_t number) {
     const WideEdges& leaf = wide.leaves[number];
     LeafNormals normals;
@@ -98,17 +105,24 @@ vectors::WideEdgeTree wide_tree(const visibility::TriangleTree& tree, const Reco
     return normals;
   };
   wide.nodes = vectors::wide_nodes(edge_nodes(tree, scale, normals_of), 3);
-  return wide;
 }
 
 }  // namespace
 
-vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale) {
-  return wide_tree(edge_tree(records, triangles), records, scale);
+vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::TriangleTree& triangles, float scale) {
+  const visibility::TriangleTree tree = edge_tree(records, triangles);
+  vectors::WideEdgeTree wide = wide_leaves(tree, records, scale);
+  // Half a gigabyte of ten million triangles, where most is in use.
+  { const EdgeRecords done = std::move(records); }
+  add_nodes(wide, tree, scale);
+  return wide;
 }
 
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale) {
-  return wide_tree(edge_tree(records), records, scale);
+  const visibility::TriangleTree tree = edge_tree(records);
+  vectors::WideEdgeTree wide = wide_leaves(tree, records, scale);
+  add_nodes(wide, tree, scale);
+  return wide;
 }
 
 void CutEdges::restore() {

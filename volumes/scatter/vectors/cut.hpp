@@ -14,7 +14,7 @@
 namespace penumbra::volumes {
 
 /// Of all records of a scene, along the tree over its triangles; of any records.
-vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale);
+vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::TriangleTree& triangles, float scale);
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
 
 /// A hierarchy of edges that is cut at a light's plane, and restored for the next light. Only what the plane cuts is
