@@ -3,6 +3,7 @@
 #include "app/method_warnings.hpp"
 #include "app/methods.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "compare/beauty.hpp"
 #include "compare/error_picture.hpp"
 #include "compare/machine.hpp"
@@ -152,6 +153,36 @@ std::string device_of(const std::string& method, const visibility::MethodOptions
   return runs_on_device(method, options, light, devices) ? devices.name() : compare::this_machine().processor;
 }
 
+namespace {
+
+template <typename... Lists>
+std::uint64_t bytes_of(const Lists&... lists) {
+  return (... + (lists.capacity() * sizeof(typename Lists::value_type)));
+}
+
+/// What is held while a method runs: the scene as read, the numbers that all methods share, what the camera sees, the
+/// method's own, and its answers (V, and their part of the light).
+std::map<std::string, std::uint64_t> memory_of(const Session& session, std::size_t lights, const MethodRun& run) {
+  const mesh::TriangleSoup& soup = session.scene.soup;
+  const auto floats_bytes = [](const visibility::SceneFloats& floats) {
+    return bytes_of(floats.positions, floats.triangles, floats.object, floats.plane, floats.casts_shadow,
+                    floats.receives_shadow, floats.emits);
+  };
+  const visibility::ViewSamples& samples = session.samples;
+  std::map<std::string, std::uint64_t> memory = {
+      {"scene", bytes_of(soup.positions, soup.triangles, soup.object, soup.source_face)},
+      {"sceneFloats", floats_bytes(session.floats)},
+      {"viewSamples", bytes_of(samples.triangle, samples.p, samples.n, samples.depth, samples.facing)},
+      {"method", run.memory_bytes},
+      {"answers", lights * session.pixel_count() * (sizeof(float) + sizeof(glm::vec3))},
+      {"peakResident", peak_resident_bytes()}};
+  for (const visibility::SceneFloats& linked : session.linked) memory["sceneFloats"] += floats_bytes(linked);
+  for (const auto& classes : session.classes) memory["viewSamples"] += bytes_of(classes);
+  return memory;
+}
+
+}  // namespace
+
 compare::Stats make_stats(const Session& session, const LabelledLights& lights, const MethodRun& run) {
   const MethodLabel& label = lights.label(0);
   const std::vector<WholeLight> wholes = whole_lights(lights.lights);
@@ -180,6 +211,7 @@ compare::Stats make_stats(const Session& session, const LabelledLights& lights, 
   stats.seconds.total = stats.seconds.sum();
   stats.passes = run.passes;
   stats.peak_memory_bytes = run.memory_bytes;
+  stats.memory = memory_of(session, wholes.size(), run);
   stats.counters = run.counters;
   stats.warnings = session.warnings;
   std::ranges::move(method_warnings(stats.method, stats.options, run.counters), std::back_inserter(stats.warnings));

@@ -132,6 +132,15 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
                       in_bytes(room.bytes), room.limit, remedy);
 }
 
+std::uint64_t peak_resident_bytes() {
+  // Of this program alone: what getrusage says begins with the size of whoever started it.
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10U;  // in KiB
+  }
+  return 0;
+}
+
 std::string in_bytes(std::uint64_t bytes) {
   constexpr double kMebi = 1u << 20, kGibi = 1u << 30;
   const auto value = static_cast<double>(bytes);

@@ -22,6 +22,9 @@ MemoryRoom memory_room(const std::filesystem::path& root = "/");
 /// ResourceError "WHAT needs about 5.2 GiB of memory, more than the 3.1 GiB that …; REMEDY".
 void require_memory(std::uint64_t bytes, std::string_view what, std::string_view remedy);
 
+/// The most memory that this process has had in use at once (its largest resident set); 0: the system does not say.
+std::uint64_t peak_resident_bytes();
+
 /// "1.5 GiB", "320 MiB", "12 bytes".
 std::string in_bytes(std::uint64_t bytes);
 

@@ -123,7 +123,8 @@ Json to_json(const Stats& stats) {
   for (const visibility::PassTime& pass : stats.passes) {
     passes.push_back({{"name", pass.name}, {"milliseconds", pass.milliseconds}});
   }
-  Json counters = Json::object(), lights = Json::array();
+  Json counters = Json::object(), memory = Json::object(), lights = Json::array();
+  for (const auto& [name, bytes] : stats.memory) memory[name] = bytes;
   for (const auto& [name, count] : stats.counters) counters[name] = count;
   for (const LightStats& light : stats.lights) lights.push_back(to_json(light));
   return {{"scene", stats.scene},
@@ -137,6 +138,7 @@ Json to_json(const Stats& stats) {
           {"seconds", to_json(stats.seconds)},
           {"passes", passes},
           {"peakMemoryBytes", stats.peak_memory_bytes},
+          {"memory", memory},
           {"counters", counters},
           {"warnings", stats.warnings},
           {"lights", lights}};

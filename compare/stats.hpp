@@ -55,7 +55,8 @@ struct Stats {
   std::vector<LightStats> lights;   ///< what stands above is of the first
   Seconds seconds;
   std::vector<visibility::PassTime> passes;
-  std::uint64_t peak_memory_bytes = 0;
+  std::uint64_t peak_memory_bytes = 0;          ///< the method's own structures
+  std::map<std::string, std::uint64_t> memory;  ///< bytes of each structure of the run, and what all of it took
   std::map<std::string, std::uint64_t> counters;
   std::vector<std::string> warnings;
 };

@@ -148,6 +148,13 @@ TEST_P(Render, StatsAndPng) {
   for (const char* key : {"device", "scene", "options", "passes", "peakMemoryBytes", "counters", "warnings"}) {
     EXPECT_TRUE(stats.contains(key)) << key;
   }
+  std::uint64_t held = 0;
+  for (const char* key : {"scene", "sceneFloats", "viewSamples", "answers"}) {
+    held += stats.at("memory").at(key).get<std::uint64_t>();
+  }
+  EXPECT_EQ(stats["memory"].at("method"), stats["peakMemoryBytes"]) << "which may be the device's";
+  EXPECT_GE(stats["memory"]["viewSamples"], 48 * 32 * 33) << "a triangle, p, n, depth and facing a pixel";
+  EXPECT_LE(held, stats["memory"].at("peakResident").get<std::uint64_t>());
   for (const char* key : {"load", "mesh", "view", "light", "evaluate", "shadow", "total"}) {
     EXPECT_GE(stats.at("seconds").at(key).get<double>(), 0) << key;
   }

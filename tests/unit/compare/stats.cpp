@@ -34,6 +34,7 @@ Stats some_stats() {
                    .total = 3.0};
   stats.passes = {{"filter", 12.5}, {"blockers", 3.0}};
   stats.peak_memory_bytes = 1ull << 40;
+  stats.memory = {{"method", 1ull << 40}, {"scene", 12}};
   stats.counters = {{"texels", 1234567890123ull}};
   stats.warnings = {"a \"warning\""};
   return stats;
@@ -53,7 +54,7 @@ TEST(StatsJson, HasTheNamesOfTheInterface) {
   const auto json = to_json(some_stats());
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"scene", "size", "device", "triangles", "method", "options",
                                                      "lightSamples", "samplePattern", "seconds", "passes",
-                                                     "peakMemoryBytes", "counters", "warnings", "lights"}));
+                                                     "peakMemoryBytes", "memory", "counters", "warnings", "lights"}));
   EXPECT_EQ(json["size"], nlohmann::ordered_json::array({640, 480}));
   EXPECT_EQ(json["options"]["search"], "16");
   EXPECT_EQ(keys_of(json["seconds"]), (std::vector<std::string>{"load", "mesh", "view", "light", "evaluate", "shadow",
@@ -63,6 +64,8 @@ TEST(StatsJson, HasTheNamesOfTheInterface) {
   EXPECT_EQ(json["passes"][0]["name"], "filter");
   EXPECT_EQ(json["passes"][1]["milliseconds"], 3.0);
   EXPECT_EQ(json["peakMemoryBytes"], 1099511627776ull);
+  EXPECT_EQ(json["memory"]["method"], 1099511627776ull);
+  EXPECT_EQ(json["memory"]["scene"], 12);
   EXPECT_EQ(json["counters"]["texels"], 1234567890123ull);
   EXPECT_EQ(json["warnings"][0], "a \"warning\"");
 }
