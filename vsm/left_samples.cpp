@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 
 namespace penumbra::vsm {
 namespace {
@@ -54,11 +53,17 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
       }
       // Left of the lines of all distances below some: it is put into the last of these, and runs down from there.
       const auto put = [&](std::vector<std::uint32_t>& map, const auto& is_left) {
-        const auto distances_left = std::views::iota(0U, distances);
-        const auto end =
-            std::ranges::partition_point(distances_left, [&](std::uint32_t k) { return is_left(k * width - radius_); });
-        if (end == distances_left.begin()) return;
-        map[(std::size_t{i} * distances + *(end - 1)) * words_ + j / 32] |= 1U << j % 32;
+        std::uint32_t end = 0;
+        for (std::uint32_t beyond = distances; end < beyond;) {
+          const std::uint32_t half = end + (beyond - end) / 2;
+          if (is_left(half * width - radius_)) {
+            end = half + 1;
+          } else {
+            beyond = half;
+          }
+        }
+        if (end == 0) return;
+        map[(std::size_t{i} * distances + end - 1) * words_ + j / 32] |= 1U << j % 32;
       };
       put(all_, [&](double r) { return least - 4 * kMargin * radius_ > r + width; });
       put(any_, [&](double r) { return most + 4 * kMargin * radius_ > r; });

@@ -264,7 +264,7 @@ TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
   const ExrFile seen = picture();
   for (std::size_t x = 0; x < 33; ++x) {
     if (x == 16) continue;
-    EXPECT_FLOAT_EQ(seen.floats.at("P.Y")[10 * 33 + x], x > 16 ? 2.0f : 0.0f) << x;
+    EXPECT_FLOAT_EQ(seen.floats.at("P.Y")[std::size_t{10} * 33 + x], x > 16 ? 2.0f : 0.0f) << x;
   }
 }
 
@@ -301,9 +301,9 @@ TEST_F(AlphaSurfaces, OrthographicCamerasRender) {
   const ExrFile seen = picture();
   for (std::size_t x = 0; x < 33; ++x) {
     const float at = 0.2f * (static_cast<float>(x) + 0.5f) - 3.3f;
-    EXPECT_NEAR(seen.floats.at("P.X")[10 * 33 + x], at, 1e-5f);
+    EXPECT_NEAR(seen.floats.at("P.X")[std::size_t{10} * 33 + x], at, 1e-5f);
     if (std::abs(std::abs(at) - 2) < 0.01f) continue;  // on the card's edge
-    EXPECT_FLOAT_EQ(seen.floats.at("Z")[10 * 33 + x], std::abs(at) < 2 ? 2.0f : 4.0f) << "a solid card";
+    EXPECT_FLOAT_EQ(seen.floats.at("Z")[std::size_t{10} * 33 + x], std::abs(at) < 2 ? 2.0f : 4.0f) << "a solid card";
   }
   EXPECT_NEAR(seen.matrices.at("worldToNDC")[0][0], 1 / 3.3, 1e-6);
   const Outcome volume = render({"--method", "soft-volume"});

@@ -190,7 +190,8 @@ CellPlanes::Plane in_cells(const LightGrid& grid, const glm::dvec3& f, double er
 }  // namespace
 
 CellPlanes planes_in_cells(const CarefulInput& input) {
-  const auto& [middle, u, v, off] = seen_light(input);
+  const SeenLight seen = seen_light(input);
+  const glm::dvec3 &middle = seen.middle, &u = seen.u, &v = seen.v;
   const Corners corners = corners_of(input);
   const glm::dvec3 p(input.at.p), pa = glm::dvec3(corners[0]) - p, pb = glm::dvec3(corners[1]) - p,
                                   pc = glm::dvec3(corners[2]) - p;
@@ -198,7 +199,7 @@ CellPlanes planes_in_cells(const CarefulInput& input) {
   const double reach = size1(middle) + size1(u) + size1(v);
   const auto plane = [&](const glm::dvec3& normal, double from, double sizes, double lengths) {
     return in_cells(input.in.grid, {glm::dot(normal, u), glm::dot(normal, v), glm::dot(normal, middle) - from},
-                    off * size1(normal) + kSlack * sizes * lengths);
+                    seen.off * size1(normal) + kSlack * sizes * lengths);
   };
   // The differences of differences are right to the lengths of what they are differences of.
   const double side = glm::dot(n, pa), far = size1(pa) + size1(pb) + size1(pc), sizes = far * far;

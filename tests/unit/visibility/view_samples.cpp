@@ -179,7 +179,7 @@ TEST(Horizon, BulkAnswersAreTheExactOnes) {
     }
     const std::int8_t facing = round % 2 == 0 ? std::int8_t{1} : std::int8_t{-1};
     Light light;
-    if (round % 4 > 1) light.sun.emplace();  // points are directions
+    if (round % 4 > 1) light.sun = Light::Directions{};  // points are directions
     const HorizonTest horizon(light, carrier, facing, {glm::vec3(-2.001f), glm::vec3(2.001f)});
     std::array<std::uint32_t, 2> words{~0u, ~0u};
     horizon.mask(points, words);
