@@ -46,7 +46,8 @@ std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const
   const gpu::PcfPush push{parsed[kWindow]};
   // The window reaches half its texels beside a receiver's direction. How wide a texel is depends on what the window
   // holds: no window of receivers is wider than ±kWidestTangent.
-  const double beside = 2 * kWidestTangent * (push.window / 2) / parsed[kMapSize];
+  const std::uint32_t reach = push.window / 2;  // in whole texels
+  const double beside = 2 * kWidestTangent * reach / parsed[kMapSize];
   recipe.beside = [beside](const visibility::Light& /*light*/, const LightBasis& /*basis*/) {
     return glm::dvec2(beside);
   };

@@ -35,7 +35,8 @@ class MapMethod final : public visibility::Method {
         casters_(device, options.size, options.rasteriser),
         look_up_(device, {.name = recipe_.look_up_name,
                           .spirv = recipe_.look_up,
-                          .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) + 4 * recipe_.push_words),
+                          .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) +
+                                                                   sizeof(std::uint32_t) * recipe_.push_words),
                           .constants = recipe_.constants}) {
     if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
     PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",
