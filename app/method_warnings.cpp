@@ -2,7 +2,6 @@
 
 #ifdef PENUMBRA_HAS_MAPS
 #include "maps/backprojection/soft_shadow_map/soft_shadow_map.hpp"
-#include "maps/sampling/layered_attenuation.hpp"
 #endif
 
 #include <optional>
@@ -16,8 +15,6 @@ std::vector<std::string> method_warnings([[maybe_unused]] std::string_view metho
 #ifdef PENUMBRA_HAS_MAPS
   if (method == "soft-shadow-map") {
     if (auto warning = maps::soft_shadow_map_warning(options, counters)) warnings.push_back(*std::move(warning));
-  } else if (method == "layered-attenuation") {
-    if (auto warning = maps::layered_attenuation_warning(counters)) warnings.push_back(*std::move(warning));
   }
 #endif
   return warnings;

@@ -5,6 +5,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/adaptive_light_maps.cpp
   analytic/maps/box_means.cpp
   analytic/maps/closed_form.cpp
+  analytic/maps/degenerate.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/formulas.cpp
   analytic/maps/identities.cpp

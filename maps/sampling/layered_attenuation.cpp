@@ -47,14 +47,6 @@ visibility::MethodDescription layered_attenuation_description() {
   return description;
 }
 
-std::optional<std::string> layered_attenuation_warning(const std::map<std::string, std::uint64_t>& counters) {
-  const auto found = counters.find(kUnknownReceivers);
-  if (found == counters.end() || found->second == 0) return std::nullopt;
-  return "layered-attenuation knows only surfaces that cast shadows: those that cast none (counter "
-         "receiversThatCastNone: "
-         "their triangles) are dark in its picture; let them cast, or take accumulate, which draws the same maps";
-}
-
 std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Device& device,
                                                              const visibility::MethodOptions& options) {
   MapRecipe recipe{.description = layered_attenuation_description(),
@@ -63,7 +55,7 @@ std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Devic
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
   const double epsilon = parsed[kSameDepth];
   const bool neighbours = parsed[kNeighbours];
-  auto layers = std::make_unique<LayeredDepth>(device, epsilon);
+  auto layers = std::make_unique<LayeredDepth>(device, epsilon, parsed[kRasteriser]);
   recipe.push_words = sizeof(gpu::AttenuationPush) / sizeof(std::uint32_t);
   recipe.push = [epsilon, neighbours, &made = *layers](const visibility::Light& light) {
     return push_words(gpu::AttenuationPush{.sample_count = light.sample_count(),

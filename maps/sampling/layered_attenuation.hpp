@@ -3,11 +3,7 @@
 #include "render/device.hpp"
 #include "visibility/method.hpp"
 
-#include <cstdint>
-#include <map>
 #include <memory>
-#include <optional>
-#include <string>
 
 namespace penumbra::maps {
 
@@ -17,9 +13,5 @@ std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Devic
 
 /// What it is; needs no device.
 visibility::MethodDescription layered_attenuation_description();
-
-/// What who looks at its picture must know, from a run's counters: nothing, or that surfaces which cast no shadow are
-/// dark.
-std::optional<std::string> layered_attenuation_warning(const std::map<std::string, std::uint64_t>& counters);
 
 }  // namespace penumbra::maps

@@ -195,22 +195,6 @@ TEST_F(ImageMethods, SoftShadowMapSaysWhereItHasNoShadows) {
   EXPECT_THAT(found_["soft-shadow-map:self=backproject"].at("warnings"), testing::IsEmpty());
 }
 
-// What casts no shadow is in none of its maps.
-TEST_F(ImageMethods, LayeredAttenuationSaysWhatItLeavesDark) {
-  for (const bool casts : {false, true}) {
-    json scene = json::parse(kScene);
-    for (json& mesh : scene["meshes"]) mesh["castsShadow"] = casts;
-    const Outcome outcome =
-        run({"render", write("scene.json", scene.dump()).string(), "-o", path("out.exr"), "--stats", path("stats.json"),
-             "--method", "layered-attenuation", "--method-option", "size=16", "--light-samples", "4"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const json stats = json::parse(read("stats.json"));
-    EXPECT_EQ(stats.at("counters").at("receiversThatCastNone") == 0, casts);
-    const testing::Matcher<std::string> said = HasSubstr("layered-attenuation knows only surfaces that cast shadows");
-    EXPECT_THAT(outcome.err, casts ? testing::Matcher<std::string>(testing::Not(said)) : said);
-  }
-}
-
 TEST_F(ImageMethods, WhatIsNoValueIsRefusedWithThoseThatAre) {
   for (const auto& [entry, values] : std::map<std::string, std::string>{{"bitmask:occluder=disc", "triangle"},
                                                                         {"vssm:moments=vm", "evsm"},

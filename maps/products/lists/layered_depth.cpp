@@ -8,6 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace penumbra::maps {
 namespace {
@@ -18,9 +22,10 @@ std::uint64_t groups_of(std::uint64_t texels) {
 
 }  // namespace
 
-LayeredDepth::LayeredDepth(const render::Device& device, double epsilon)
+LayeredDepth::LayeredDepth(const render::Device& device, double epsilon, Rasteriser rasteriser)
     : device_(&device),
       epsilon_(epsilon),
+      rasteriser_(rasteriser),
       samples_(device),
       warp_(device, {.name = "warp maps",
                      .spirv = shaders::kLayeredWarpComp,
@@ -33,6 +38,7 @@ LayeredDepth::LayeredDepth(const render::Device& device, double epsilon)
 
 void LayeredDepth::make(const MapSource& source) {
   samples_.make(source);
+  make_others(source);
   render::grow(*device_, centre_, "centre's view", sizeof(gpu::LightView));
   centre_->write<gpu::LightView>(std::span(&source.centre, 1));
   for (auto* word : {&node_count_, &most_}) render::grow(*device_, *word, "layer counter", sizeof(std::uint32_t));
@@ -56,13 +62,24 @@ void LayeredDepth::make(const MapSource& source) {
     if (merge_all(source)) break;
   }
   source.counters["layers"] = layers_;
-  std::uint64_t unknown = 0;
-  for (std::uint32_t i = 0; i < source.scene.triangles.size(); ++i) {
+}
+
+void LayeredDepth::make_others(const MapSource& source) {
+  std::vector<std::uint8_t> drawn_alone(source.scene.casts_shadow.size());
+  for (std::uint32_t i = 0; i < drawn_alone.size(); ++i) {
     const bool has_area = source.scene.plane[i] != visibility::SceneFloats::kNoPlane;
-    if (has_area && source.scene.casts_shadow[i] == 0 && visibility::is_receiver(source.scene, source.light.index, i))
-      ++unknown;
+    const bool receives = has_area && visibility::is_receiver(source.scene, source.light, i);
+    drawn_alone[i] = receives && source.scene.casts_shadow[i] == 0 ? 1 : 0;
   }
-  source.counters[kUnknownReceivers] = unknown;
+  others_.reset();
+  if (std::ranges::count(drawn_alone, 1) == 0) return;
+  visibility::SceneFloats others = source.scene;
+  others.casts_shadow = std::move(drawn_alone);
+  CasterMaps drawn(*device_, source.size, rasteriser_);
+  drawn.upload(others);
+  std::map<std::string, std::uint64_t> counted;  // counters are of the casters' maps
+  others_.emplace(*device_).make({source.scene, source.light, source.basis, drawn, source.centre, source.faces,
+                                  source.size, source.bias, source.times, counted});
 }
 
 bool LayeredDepth::merge_all(const MapSource& source) {
@@ -73,7 +90,9 @@ bool LayeredDepth::merge_all(const MapSource& source) {
   commands.fill(*counts_, 0);
   commands.fill(*most_, 0);
   commands.fill(*entries_, 0);
-  for (const SampleMaps::Part& part : samples_.parts()) {
+  const std::vector<SampleMaps::Part> parts = samples_.parts(), of_others = others_ ? others_->parts() : parts;
+  for (std::size_t number = 0; number < parts.size(); ++number) {
+    const SampleMaps::Part& part = parts[number];
     for (std::uint32_t k = 0; k < part.count; ++k) {
       commands.fill(*heads_, 0);
       commands.fill(*node_count_, 0);
@@ -85,8 +104,12 @@ bool LayeredDepth::merge_all(const MapSource& source) {
                                .sample_faces = samples_.faces(),
                                .node_capacity = static_cast<std::uint32_t>(node_capacity_),
                                .epsilon = static_cast<float>(epsilon_)};
-      warp_.record(commands, warp, {*centre_, samples_.views(), *part.maps, *heads_, *nodes_, *node_count_},
-                   groups_of(sample_texels));
+      const auto record_warp = [&](const render::Buffer& maps) {
+        warp_.record(commands, warp, {*centre_, samples_.views(), maps, *heads_, *nodes_, *node_count_, *part.maps},
+                     groups_of(sample_texels));
+      };
+      record_warp(*part.maps);
+      if (others_) record_warp(*of_others[number].maps);
       const gpu::MergePush merge{texels, layers_, part.first + k, static_cast<float>(epsilon_)};
       merge_.record(commands, merge, {*heads_, *nodes_, samples_.weights(), *counts_, *entries_, *most_},
                     groups_of(texels));
@@ -107,7 +130,7 @@ bool LayeredDepth::merge_all(const MapSource& source) {
 }
 
 std::uint64_t LayeredDepth::memory_bytes() const {
-  std::uint64_t bytes = samples_.memory_bytes();
+  std::uint64_t bytes = samples_.memory_bytes() + (others_ ? others_->memory_bytes() : 0);
   for (const auto* buffer : {&centre_, &heads_, &nodes_, &node_count_, &counts_, &entries_, &most_})
     bytes += *buffer ? (*buffer)->bytes() : 0;
   return bytes;

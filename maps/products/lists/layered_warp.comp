@@ -15,6 +15,7 @@ layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
 layout(scalar, binding = 3) buffer Heads { uint heads[]; };   // the last node of each texel of the centre, counted from 1
 layout(scalar, binding = 4) buffer Nodes { uvec2 nodes[]; };  // bits of the depth, the node before
 layout(scalar, binding = 5) buffer NodeCount { uint node_count; };
+layout(scalar, binding = 6) readonly buffer Casters { float casters[]; };  // what they hide of Maps is left out
 layout(scalar, push_constant) uniform Push { WarpPush push; };
 
 // Coordinates on face k of a side, and back (face_of in map_fit.cpp).
@@ -39,7 +40,7 @@ void main() {
   const LightView view = views[push.point];
   const uint first = push.first_map * push.size * push.size;
   const float stored = maps[first + i];
-  if (stored >= 1.0) return;
+  if (stored >= 1.0 || casters[first + i] < stored) return;
   const float w = stored * view.far;
   const ivec2 at = ivec2(i % push.size, i / push.size % push.size);
   const uint face = i / (push.size * push.size), s = face >= view.side[0].first_face + view.side[0].face_count ? 1 : 0;
