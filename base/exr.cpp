@@ -144,15 +144,16 @@ void write_exr(AtomicFile& file, const ExrImage& image) {
 }
 
 ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection) {
+  const std::string shown = selection.shown.empty() ? path.string() : selection.shown;
   try {
     Imf::InputFile input(path.c_str());
     const Imf::Header& header = input.header();
     const Imath::Box2i window = header.dataWindow();
-    if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", path.string());
+    if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", shown);
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     if (std::max(width, height) > selection.largest_side) {
-      throw InputError("\"{}\": {}x{} pixels; at most {} a side", path.string(), width, height, selection.largest_side);
+      throw InputError("\"{}\": {}x{} pixels; at most {} a side", shown, width, height, selection.largest_side);
     }
     ExrFile file;
     file.width = static_cast<std::uint32_t>(width);
@@ -182,7 +183,7 @@ ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selectio
       file.channel_names.emplace_back(channel.name());
       if (!wanted.empty() && std::ranges::find(wanted, channel.name()) == wanted.end()) continue;
       if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-        throw InputError("\"{}\": channel {} is subsampled, which is not supported", path.string(), channel.name());
+        throw InputError("\"{}\": channel {} is subsampled, which is not supported", shown, channel.name());
       }
       if (channel.channel().type == Imf::UINT) {
         insert(channel.name(), Imf::UINT, file.integers[channel.name()]);
@@ -200,7 +201,7 @@ ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selectio
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throw InputError("\"{}\" is no readable OpenEXR image: {}", path.string(), error.what());
+    throw InputError("\"{}\" is no readable OpenEXR image: {}", shown, error.what());
   }
 }
 

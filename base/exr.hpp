@@ -62,6 +62,7 @@ struct ExrFile {
 struct ExrSelection {
   std::uint32_t largest_side = kLargestExrSide;
   std::vector<std::string> channels;  ///< these alone, where the file has them; none: all
+  std::string shown = {};             ///< what messages call the file; empty: its path
 };
 
 /// Reads a scan-line or tiled image: its data window. Throws InputError for what is none, or has a side of more than

@@ -43,9 +43,10 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{}{}", fmt::join(first, ", "), names.size() > kMost ? ", and others" : "");
 }
 
-LinearImage read_exr_picture(const std::filesystem::path& file) {
+LinearImage read_exr_picture(const std::filesystem::path& file, const std::string& shown) {
   // No more than is used: a file may have thousands of channels, and 16 MiB each in memory.
-  const ExrFile exr = read_exr(file, {.largest_side = kLargestTextureSide, .channels = {"R", "G", "B", "Y"}});
+  const ExrFile exr =
+      read_exr(file, {.largest_side = kLargestTextureSide, .channels = {"R", "G", "B", "Y"}, .shown = shown});
   const std::array<const char*, 3> names =
       exr.floats.contains("Y") && !exr.floats.contains("R") ? std::array{"Y", "Y", "Y"} : std::array{"R", "G", "B"};
   std::array<const std::vector<float>*, 3> channels{};
@@ -76,7 +77,8 @@ Texture read_texture_file(const mesh::InputFile& input) {
   }
   // OpenEXR opens files by name: this is the one that is open already.
   const std::filesystem::path opened = fmt::format("/proc/self/fd/{}", input.content.get());
-  LinearImage image = is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(opened);
+  LinearImage image =
+      is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(opened, input.name.string());
   return {{}, image.width, image.height, std::move(image.pixels)};
 }
 

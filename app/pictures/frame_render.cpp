@@ -73,8 +73,8 @@ std::vector<std::pair<const char*, std::filesystem::path>> FrameFiles::all() con
 
 bool FrameFiles::all_there() const {
   return std::ranges::all_of(all(), [](const auto& file) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(file.second, error);
+    std::error_code error;  // what is empty was made by somebody else, to keep the place
+    return std::filesystem::is_regular_file(file.second, error) && std::filesystem::file_size(file.second, error) > 0;
   });
 }
 

@@ -180,6 +180,13 @@ void check_light(const AreaLight& light, const std::string& where) {
   if (!is_finite(light.radiance) || least < 0 || greatest > kBrightest)
     throw InputError("{}: the radiance is {}; expected numbers from 0 to {:g}", where, show(light.radiance),
                      kBrightest);
+  if (!light.texture) return;
+  glm::vec3 brightest(0);
+  for (const glm::vec3& texel : light.texture->texels) brightest = glm::max(brightest, texel);
+  if (largest(glm::dvec3(brightest) * light.radiance) > kBrightest) {
+    throw InputError("{}: the radiance is {} and the texture's brightest texels {}; expected a product of at most {:g}",
+                     where, show(light.radiance), show(glm::dvec3(brightest)), kBrightest);
+  }
 }
 
 void check_camera(const Camera& camera, const std::string& where) {

@@ -1,5 +1,6 @@
 #include "scenes/formats/json_reader.hpp"
 
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "mesh/soup_memory.hpp"
@@ -9,6 +10,7 @@
 #include "scenes/formats/json_schema.hpp"
 #include "scenes/light_texture.hpp"
 
+#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
@@ -185,6 +187,28 @@ std::vector<AreaLight> read_lights(const json& document, const Place& root, cons
   return lights;
 }
 
+template <typename Named>
+[[noreturn]] void throw_unknown(const char* what, const std::string& name, const Place& place,
+                                const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  for (const Named& one : all) {
+    if (std::ranges::find(names, one.name) == names.end()) names.push_back(one.name);
+  }
+  constexpr std::size_t kMost = 16;
+  const std::string near = did_you_mean(name, names);
+  const bool more = names.size() > kMost;
+  if (more) names.resize(kMost);
+  throw InputError("{}: no {} is named \"{}\"; there {}: {}{}{}", place.str(), what, name,
+                   names.size() == 1 ? "is" : "are", fmt::join(names, ", "), more ? " and others" : "", near);
+}
+
+std::uint32_t named_light(const json& value, const Place& place, const std::vector<AreaLight>& lights) {
+  const std::string name = value.get<std::string>();
+  const auto found = std::ranges::find(lights, name, &AreaLight::name);
+  if (found == lights.end()) throw_unknown("light", name, place, lights);
+  return static_cast<std::uint32_t>(found - lights.begin());
+}
+
 Object read_object(const json& value, const Place& place, const std::vector<AreaLight>& lights,
                    std::string fallback_name) {
   Object object;
@@ -192,20 +216,12 @@ Object read_object(const json& value, const Place& place, const std::vector<Area
   if (value.contains("color")) object.color = read_vector(value["color"]);
   object.casts_shadow = value.value("castsShadow", true);
   object.receives_shadow = value.value("receivesShadow", true);
-  if (value.contains("emits")) {
-    const std::string name = value["emits"].get<std::string>();
-    const auto light = std::find_if(lights.begin(), lights.end(), [&](const AreaLight& l) { return l.name == name; });
-    if (light == lights.end()) throw InputError("{}: no light is named \"{}\"", (place / "emits").str(), name);
-    object.emits = static_cast<std::uint32_t>(light - lights.begin());
-  }
+  if (value.contains("emits")) object.emits = named_light(value["emits"], place / "emits", lights);
   if (value.contains("lights")) {
     std::set<std::uint32_t> lit_by;
     const json& names = value["lights"];
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::string name = names[i].get<std::string>();
-      const auto light = std::find_if(lights.begin(), lights.end(), [&](const AreaLight& l) { return l.name == name; });
-      if (light == lights.end()) throw InputError("{}: no light is named \"{}\"", (place / "lights" / i).str(), name);
-      lit_by.insert(static_cast<std::uint32_t>(light - lights.begin()));
+      lit_by.insert(named_light(names[i], place / "lights" / i, lights));
     }
     object.lit_by.emplace(lit_by.begin(), lit_by.end());
   }
@@ -223,7 +239,7 @@ std::set<std::uint32_t> named_objects(const json& names, const Place& place, con
       found.insert(object);
       any = true;
     }
-    if (!any) throw InputError("{}: no mesh is named \"{}\"", (place / i).str(), name);
+    if (!any) throw_unknown("mesh", name, place / i, objects);
   }
   return found;
 }

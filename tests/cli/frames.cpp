@@ -71,7 +71,7 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
   ASSERT_EQ(render(sequence).code, 0);
   const std::string third = read("s.0003.exr"), picture = read("s.0003.png");
   write("s.0002.exr", "kept as it is");
-  std::filesystem::remove(path("s.0003.exr"));
+  write("s.0003.exr", "");  // somebody's placeholder, or what a full disk left
   const Outcome again = render(sequence);
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(read("s.0002.exr"), "kept as it is");

@@ -35,6 +35,7 @@ class TexturedLightFiles : public testing::Test {
     const std::string message = expect_error(ExitCode::input, fragment, [&] { (void)read(texture_bytes); });
     EXPECT_NE(message.find("scene.json: /lights/0/texture: "), std::string::npos) << message;
     EXPECT_NE(message.find("t.png"), std::string::npos) << message;
+    EXPECT_EQ(message.find("/proc/"), std::string::npos) << message;
   }
   std::string exr(std::uint32_t width, std::uint32_t height, const std::vector<std::string>& channels,
                   const std::vector<float>& values) {
@@ -126,6 +127,9 @@ TEST_F(TexturedLightFiles, BadPicturesAreRefusedWithTheReason) {
   refuse(exr(1, 1, {"R", "G", "B"}, {std::numeric_limits<float>::infinity()}), "expected finite numbers");
   refuse(exr(1, 1, {"diffuse.R", "G"}, {1}), "this file has: G, diffuse.R");
   refuse(exr(64, 64, {"R", "G", "B"}, std::vector<float>(4096, 1)).substr(0, 400), "no readable OpenEXR image");
+  expect_error(ExitCode::input, "brightest texels (3e+37, 3e+37, 3e+37); expected a product of at most 1e+36", [&] {
+    (void)read(exr(1, 1, {"R", "G", "B"}, {3e37f}));
+  });
 }
 
 TEST_F(TexturedLightFiles, OnlyRectanglesHaveOneAndOnlyInsideTheFolder) {
