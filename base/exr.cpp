@@ -4,6 +4,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 
+#include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
@@ -14,8 +15,10 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVecAttribute.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <exception>
 #include <limits>
 #include <mutex>
@@ -46,6 +49,26 @@ class MemoryStream : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
+class MemoryInput : public Imf::IStream {
+ public:
+  MemoryInput(std::span<const std::byte> bytes, const std::string& shown) : IStream(shown.c_str()), bytes_(bytes) {}
+  bool read(char* to, int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (position_ > bytes_.size() || size > bytes_.size() - position_) {
+      throw Iex::InputExc(fmt::format("the file ends too early, after {} bytes", bytes_.size()));
+    }
+    std::memcpy(to, bytes_.data() + position_, size);
+    position_ += size;
+    return position_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override { position_ = position; }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t position_ = 0;
+};
+
 /// OpenEXR's worker threads are the process's; they only compress and uncompress, so they never change the bytes.
 void start_worker_threads() {
   static std::once_flag once;
@@ -67,6 +90,69 @@ Imf::Slice slice_of(Imf::PixelType type, const Value* values, std::size_t stride
   // Slice wants a mutable pointer for both directions; writing a file only reads.
   char* base = reinterpret_cast<char*>(const_cast<Value*>(values));
   return {type, base, stride * sizeof(Value), stride * sizeof(Value) * width};
+}
+
+/// From what OpenEXR opens: a name, or a stream.
+template <typename Source>
+ExrFile read_from(const std::string& shown, const ExrSelection& selection, Source&& source) {
+  try {
+    Imf::InputFile input(source);
+    const Imf::Header& header = input.header();
+    const Imath::Box2i window = header.dataWindow();
+    if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", shown);
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    if (std::max(width, height) > selection.largest_side) {
+      throw InputError("\"{}\": {}x{} pixels; at most {} a side", shown, width, height, selection.largest_side);
+    }
+    ExrFile file;
+    file.width = static_cast<std::uint32_t>(width);
+    file.height = static_cast<std::uint32_t>(height);
+    const std::size_t pixel_count = std::size_t{file.width} * file.height;
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute())) {
+        file.attributes[attribute.name()] = text->value();
+      } else if (const auto* vector = dynamic_cast<const Imf::V3dAttribute*>(&attribute.attribute())) {
+        const Imath::V3d& v = vector->value();
+        file.vectors[attribute.name()] = {v.x, v.y, v.z};
+      } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute.attribute())) {
+        glm::mat4& to = file.matrices[attribute.name()];
+        for (int i = 0; i < 4; ++i) {
+          for (int j = 0; j < 4; ++j) to[i][j] = matrix->value()[i][j];
+        }
+      }
+    }
+    Imf::FrameBuffer pixels;
+    const auto insert = [&](const char* name, Imf::PixelType type, auto& values) {
+      values.resize(pixel_count);
+      // OpenEXR addresses pixels by their absolute place: shift so that the window's corner is element 0.
+      pixels.insert(name, Imf::Slice::Make(type, values.data(), window));
+    };
+    const std::vector<std::string>& wanted = selection.channels;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+      file.channel_names.emplace_back(channel.name());
+      if (!wanted.empty() && std::ranges::find(wanted, channel.name()) == wanted.end()) continue;
+      if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
+        throw InputError("\"{}\": channel {} is subsampled, which is not supported", shown, channel.name());
+      }
+      if (channel.channel().type == Imf::UINT) {
+        insert(channel.name(), Imf::UINT, file.integers[channel.name()]);
+      } else {
+        insert(channel.name(), Imf::FLOAT, file.floats[channel.name()]);
+      }
+    }
+    if (pixels.begin() != pixels.end()) {
+      input.setFrameBuffer(pixels);
+      input.readPixels(window.min.y, window.max.y);
+    }
+    return file;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError("\"{}\" is no readable OpenEXR image: {}", shown, error.what());
+  }
 }
 
 }  // namespace
@@ -144,65 +230,12 @@ void write_exr(AtomicFile& file, const ExrImage& image) {
 }
 
 ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection) {
-  const std::string shown = selection.shown.empty() ? path.string() : selection.shown;
-  try {
-    Imf::InputFile input(path.c_str());
-    const Imf::Header& header = input.header();
-    const Imath::Box2i window = header.dataWindow();
-    if (window.isEmpty()) throw InputError("\"{}\": an image without pixels", shown);
-    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    if (std::max(width, height) > selection.largest_side) {
-      throw InputError("\"{}\": {}x{} pixels; at most {} a side", shown, width, height, selection.largest_side);
-    }
-    ExrFile file;
-    file.width = static_cast<std::uint32_t>(width);
-    file.height = static_cast<std::uint32_t>(height);
-    const std::size_t pixel_count = std::size_t{file.width} * file.height;
-    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
-      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute())) {
-        file.attributes[attribute.name()] = text->value();
-      } else if (const auto* vector = dynamic_cast<const Imf::V3dAttribute*>(&attribute.attribute())) {
-        const Imath::V3d& v = vector->value();
-        file.vectors[attribute.name()] = {v.x, v.y, v.z};
-      } else if (const auto* matrix = dynamic_cast<const Imf::M44fAttribute*>(&attribute.attribute())) {
-        glm::mat4& to = file.matrices[attribute.name()];
-        for (int i = 0; i < 4; ++i) {
-          for (int j = 0; j < 4; ++j) to[i][j] = matrix->value()[i][j];
-        }
-      }
-    }
-    Imf::FrameBuffer pixels;
-    const auto insert = [&](const char* name, Imf::PixelType type, auto& values) {
-      values.resize(pixel_count);
-      // OpenEXR addresses pixels by their absolute place: shift so that the window's corner is element 0.
-      pixels.insert(name, Imf::Slice::Make(type, values.data(), window));
-    };
-    const std::vector<std::string>& wanted = selection.channels;
-    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
-      file.channel_names.emplace_back(channel.name());
-      if (!wanted.empty() && std::ranges::find(wanted, channel.name()) == wanted.end()) continue;
-      if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-        throw InputError("\"{}\": channel {} is subsampled, which is not supported", shown, channel.name());
-      }
-      if (channel.channel().type == Imf::UINT) {
-        insert(channel.name(), Imf::UINT, file.integers[channel.name()]);
-      } else {
-        insert(channel.name(), Imf::FLOAT, file.floats[channel.name()]);
-      }
-    }
-    if (pixels.begin() != pixels.end()) {
-      input.setFrameBuffer(pixels);
-      input.readPixels(window.min.y, window.max.y);
-    }
-    return file;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw InputError("\"{}\" is no readable OpenEXR image: {}", shown, error.what());
-  }
+  return read_from(path.string(), selection, path.c_str());
+}
+
+ExrFile read_exr(std::span<const std::byte> bytes, const std::string& shown, const ExrSelection& selection) {
+  MemoryInput stream(bytes, shown);
+  return read_from(shown, selection, stream);
 }
 
 }  // namespace penumbra

@@ -62,11 +62,12 @@ struct ExrFile {
 struct ExrSelection {
   std::uint32_t largest_side = kLargestExrSide;
   std::vector<std::string> channels;  ///< these alone, where the file has them; none: all
-  std::string shown = {};             ///< what messages call the file; empty: its path
 };
 
 /// Reads a scan-line or tiled image: its data window. Throws InputError for what is none, or has a side of more than
 /// `largest_side` pixels, which is found out before anything is decoded. Channels that are not selected take no memory.
 ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection = {});
+/// The same from memory; messages call it `shown`.
+ExrFile read_exr(std::span<const std::byte> bytes, const std::string& shown, const ExrSelection& selection = {});
 
 }  // namespace penumbra

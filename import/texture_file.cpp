@@ -43,10 +43,9 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{}{}", fmt::join(first, ", "), names.size() > kMost ? ", and others" : "");
 }
 
-LinearImage read_exr_picture(const std::filesystem::path& file, const std::string& shown) {
+LinearImage read_exr_picture(std::span<const std::byte> bytes, const std::string& shown) {
   // No more than is used: a file may have thousands of channels, and 16 MiB each in memory.
-  const ExrFile exr =
-      read_exr(file, {.largest_side = kLargestTextureSide, .channels = {"R", "G", "B", "Y"}, .shown = shown});
+  const ExrFile exr = read_exr(bytes, shown, {.largest_side = kLargestTextureSide, .channels = {"R", "G", "B", "Y"}});
   const std::array<const char*, 3> names =
       exr.floats.contains("Y") && !exr.floats.contains("R") ? std::array{"Y", "Y", "Y"} : std::array{"R", "G", "B"};
   std::array<const std::vector<float>*, 3> channels{};
@@ -75,10 +74,8 @@ Texture read_texture_file(const mesh::InputFile& input) {
   if (!is_png && !begins_with(bytes, kExrMark)) {
     throw InputError("it is neither a PNG nor an OpenEXR picture; a texture is one of the two");
   }
-  // OpenEXR opens files by name: this is the one that is open already.
-  const std::filesystem::path opened = fmt::format("/proc/self/fd/{}", input.content.get());
   LinearImage image =
-      is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(opened, input.name.string());
+      is_png ? decode_linear_png(bytes, kLargestTextureSide) : read_exr_picture(bytes, input.name.string());
   return {{}, image.width, image.height, std::move(image.pixels)};
 }
 

@@ -127,7 +127,7 @@ TEST_F(TexturedLightFiles, BadPicturesAreRefusedWithTheReason) {
   refuse(exr(1, 1, {"R", "G", "B"}, {std::numeric_limits<float>::infinity()}), "expected finite numbers");
   refuse(exr(1, 1, {"diffuse.R", "G"}, {1}), "this file has: G, diffuse.R");
   refuse(exr(64, 64, {"R", "G", "B"}, std::vector<float>(4096, 1)).substr(0, 400), "no readable OpenEXR image");
-  expect_error(ExitCode::input, "brightest texels (3e+37, 3e+37, 3e+37); expected a product of at most 1e+36", [&] {
+  expect_error(ExitCode::input, "; expected a product of at most 1e+36", [&] {
     (void)read(exr(1, 1, {"R", "G", "B"}, {3e37f}));
   });
 }
