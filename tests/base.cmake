@@ -1,6 +1,7 @@
-# EXR, PNG and JPEG, files that appear whole or not at all, and names that are nearly right.
+# EXR, PNG and JPEG, files that appear whole or not at all, names that are nearly right, and sorting on all cores.
 find_package(JPEG REQUIRED)
 find_package(OpenEXR REQUIRED)
+find_package(TBB REQUIRED)
 penumbra_test(base
-  SOURCES unit/did_you_mean.cpp unit/exr.cpp unit/image.cpp unit/jpeg.cpp
-  LIBRARIES penumbra_base JPEG::JPEG OpenEXR::OpenEXR)
+  SOURCES unit/buckets.cpp unit/did_you_mean.cpp unit/exr.cpp unit/image.cpp unit/jpeg.cpp
+  LIBRARIES penumbra_base JPEG::JPEG OpenEXR::OpenEXR TBB::tbb)

@@ -3,6 +3,7 @@
 #include "base/assert.hpp"
 #include "base/buckets.hpp"
 #include "base/parallel.hpp"
+#include "visibility/tree/halves.hpp"
 
 #include <glm/common.hpp>
 #include <tbb/parallel_for.h>
@@ -35,12 +36,6 @@ Bounds nothing() {
   constexpr float kFar = std::numeric_limits<float>::infinity();
   return {glm::vec3(kFar), glm::vec3(-kFar)};
 }
-
-/// A box, as its place among those that are divided, and twice its middle.
-struct Item {
-  glm::vec3 middle;
-  std::uint32_t at;
-};
 
 /// Adds to a tree from its leaves upward.
 class Maker {
@@ -97,16 +92,16 @@ class Maker {
 
  private:
   /// Parts of eight times eight times … items, so that all leaves but the last are full.
-  Child divide(std::span<Item> items, std::uint32_t depth) {
+  Child divide(std::span<Divided> items, std::uint32_t depth) {
     if (items.size() <= kWidth) return leaf(items);
     std::size_t step = kWidth;
     while (step * kWidth < items.size()) step *= kWidth;
     return node(depth, [&](const auto& add) {
-      halve(items, step, [&](std::span<Item> part) { add(divide(part, depth + 1)); });
+      halve(items, step, [&](std::span<Divided> part) { add(divide(part, depth + 1)); });
     });
   }
 
-  Child leaf(std::span<const Item> items) {
+  Child leaf(std::span<const Divided> items) {
     TriangleTree::Leaf slots;
     slots.fill(TriangleTree::kNoTriangle);
     Bounds all = nothing();
@@ -119,27 +114,10 @@ class Maker {
     return {all.lower, all.upper, static_cast<std::uint32_t>(tree.leaves.size() - 1) | TriangleTree::kLeafBit};
   }
 
-  /// Into parts of `step` items (the last may have fewer), in halves along the longest side of their middles.
-  template <typename Take>
-  void halve(std::span<Item> items, std::size_t step, const Take& take) {
-    const std::size_t parts = (items.size() + step - 1) / step, first = parts / 2 * step;
-    if (parts == 1) return take(items);
-    Bounds middles = nothing();
-    for (const Item& item : items) include(middles, {item.middle, item.middle});
-    const glm::vec3 extent = middles.upper - middles.lower;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(first), items.end(),
-                     [&](const Item& x, const Item& y) {
-                       return x.middle[axis] != y.middle[axis] ? x.middle[axis] < y.middle[axis] : x.at < y.at;
-                     });
-    halve(items.first(first), step, take);
-    halve(items.subspan(first), step, take);
-  }
-
   const BoxesNear* all_;
   std::span<const std::uint32_t> numbers_;  // of what is divided
   std::vector<Bounds> boxes_;
-  std::vector<Item> items_;
+  std::vector<Divided> items_;
 };
 
 class Along {
@@ -222,6 +200,13 @@ class Along {
     }
   }
 
+  /// Only leaves are below, or it is one.
+  [[nodiscard]] bool is_last(std::uint32_t reference) const {
+    return is_leaf(reference) || std::ranges::all_of(guide_.nodes[reference], [](const Child& child) {
+             return child.reference == TriangleTree::kNoChild || is_leaf(child.reference);
+           });
+  }
+
   void find_parts(const Part& part) {
     const std::size_t count = boxes_of(part).size();
     if (count == 0) return;
@@ -238,7 +223,7 @@ class Along {
     const std::span<const std::uint32_t> numbers = boxes_of(part);
     if (numbers.empty()) return {};
     if (const std::optional<Child> there = made(part)) return *there;
-    if (numbers.size() > kTogether && !is_leaf(part.reference)) {
+    if (numbers.size() > kTogether && !is_last(part.reference)) {
       return maker.node(depth, [&](const auto& add) {
         for_each_child(part, [&](const Part& child) { add(below(child, depth + 1, maker, made)); });
       });

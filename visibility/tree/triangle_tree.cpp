@@ -1,255 +1,340 @@
+// Binned surface area heuristic: I. Wald, On fast construction of SAH-based bounding volume hierarchies, 2007; eight
+// children as in Wald, Benthin, Boulos, Getting rid of packets, 2008: the largest is divided until there are eight.
+// What is divided are groups of neighbouring boxes (box_groups.hpp), and the last dozens in halves.
+
 #include "visibility/tree/triangle_tree.hpp"
 
-#include "base/assert.hpp"
-#include "base/error.hpp"
 #include "base/pages.hpp"
 #include "base/parallel.hpp"
+#include "visibility/tree/box_groups.hpp"
+#include "visibility/tree/halves.hpp"
 
-#include <embree3/rtcore.h>
 #include <glm/common.hpp>
 #include <tbb/task_group.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <new>
+#include <list>
+#include <mutex>
 #include <utility>
 
 namespace penumbra::visibility {
 namespace {
 
-/// A node or a leaf while Embree builds, in the builder's own memory: what is below it, itself included.
-struct Built {
-  std::uint32_t nodes = 0, leaves = 0, depth = 0;
-  [[nodiscard]] bool is_leaf() const { return nodes == 0; }
-};
-struct BuiltNode : Built {
-  std::array<Built*, TriangleTree::kWidth> children{};
-  std::array<RTCBounds, TriangleTree::kWidth> bounds{};
-  std::uint32_t count = 0;
-};
-struct BuiltLeaf : Built {
-  TriangleTree::Leaf triangles{};
-};
+constexpr std::uint32_t kWidth = TriangleTree::kWidth;
 
-template <typename Made>
-Made* allocate(RTCThreadLocalAllocator allocator) {
-  return new (rtcThreadLocalAlloc(allocator, sizeof(Made), alignof(Made))) Made{};
-}
+/// Of so many and fewer the heuristic says little that is worth its time: one node, whose leaves are full. Their edges,
+/// half as many again, fill another (tree_along.cpp).
+constexpr std::uint32_t kTogether = 5 * kWidth;
 
-void* create_node(RTCThreadLocalAllocator allocator, unsigned int count, void*) {
-  BuiltNode* node = allocate<BuiltNode>(allocator);
-  node->count = count;
-  return static_cast<Built*>(node);
-}
+/// Below so many nodes, groups are halved whatever they look like: a tree is never as deep as its boxes are many.
+constexpr std::uint32_t kDeep = 24;
 
-/// Children are complete by now.
-void set_children(void* made, void** children, unsigned int count, void*) {
-  auto* node = static_cast<BuiltNode*>(static_cast<Built*>(made));
-  node->nodes = 1;
-  for (unsigned int i = 0; i < count; ++i) {
-    const auto* child = node->children[i] = static_cast<Built*>(children[i]);
-    node->nodes += child->nodes;
-    node->leaves += child->leaves;
-    node->depth = std::max(node->depth, child->depth);
+constexpr std::uint32_t kTask = 1U << 13U;  // boxes worth one
+
+struct Box {
+  glm::vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
+
+  void include(const glm::vec3& low, const glm::vec3& high) {
+    lower = glm::min(lower, low);
+    upper = glm::max(upper, high);
   }
-  ++node->depth;
-}
-
-void set_bounds(void* made, const RTCBounds** bounds, unsigned int count, void*) {
-  auto* node = static_cast<BuiltNode*>(static_cast<Built*>(made));
-  for (unsigned int i = 0; i < count; ++i) node->bounds[i] = *bounds[i];
-}
-
-glm::vec3 lower_of(const RTCBuildPrimitive& p) {
-  return {p.lower_x, p.lower_y, p.lower_z};
-}
-glm::vec3 upper_of(const RTCBuildPrimitive& p) {
-  return {p.upper_x, p.upper_y, p.upper_z};
-}
-
-/// Primitives with what they are divided by: twice their middles.
-struct Divided {
-  glm::vec3 middle;
-  const RTCBuildPrimitive* primitive;
+  void include(const Box& box) { include(box.lower, box.upper); }
+  /// Half of its surface; 0 if it is empty. In double: no product of floats is too large for it.
+  [[nodiscard]] double area() const {
+    if (lower.x > upper.x) return 0;
+    const glm::dvec3 size = glm::dvec3(upper) - glm::dvec3(lower);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  }
 };
 
-Built* make_leaf(RTCThreadLocalAllocator allocator, std::span<const Divided> primitives) {
-  BuiltLeaf* leaf = allocate<BuiltLeaf>(allocator);
-  leaf->leaves = 1;
-  leaf->triangles.fill(TriangleTree::kNoTriangle);
-  for (std::size_t i = 0; i < primitives.size(); ++i) leaf->triangles[i] = primitives[i].primitive->primID;
-  std::sort(leaf->triangles.begin(), leaf->triangles.end());  // kNoTriangle is the largest
-  return leaf;
-}
+/// Groups that follow one another.
+struct Range {
+  std::span<BoxGroup> groups;
+  std::uint32_t boxes = 0;
+  Box box;
 
-/// Full leaves but for the last, in halves along the longest side of their middles.
-void make_leaves(RTCThreadLocalAllocator allocator, std::span<Divided> primitives, BuiltNode& node) {
-  const std::size_t leaves = (primitives.size() + TriangleTree::kWidth - 1) / TriangleTree::kWidth;
-  glm::vec3 lower(std::numeric_limits<float>::infinity()), upper = -lower;
-  if (leaves > 1) {
-    for (const Divided& one : primitives) lower = glm::min(lower, one.middle), upper = glm::max(upper, one.middle);
-    const glm::vec3 extent = upper - lower;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::size_t first = leaves / 2 * TriangleTree::kWidth;
-    std::nth_element(primitives.begin(), primitives.begin() + static_cast<std::ptrdiff_t>(first), primitives.end(),
-                     [&](const Divided& x, const Divided& y) {
-                       if (x.middle[axis] != y.middle[axis]) return x.middle[axis] < y.middle[axis];
-                       return x.primitive->primID < y.primitive->primID;
-                     });
-    make_leaves(allocator, primitives.first(first), node);
-    make_leaves(allocator, primitives.subspan(first), node);
-    return;
+  [[nodiscard]] bool is_last() const { return boxes <= kTogether; }
+};
+
+Range range_of(std::span<BoxGroup> groups) {
+  Range range{groups, 0, {}};
+  for (const BoxGroup& group : groups) {
+    range.boxes += group.count;
+    range.box.include(group.lower, group.upper);
   }
-  for (const Divided& one : primitives) {
-    lower = glm::min(lower, lower_of(*one.primitive));
-    upper = glm::max(upper, upper_of(*one.primitive));
-  }
-  node.bounds[node.count] = {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, 0};
-  node.children[node.count++] = make_leaf(allocator, primitives);
+  return range;
 }
 
-/// Of so many and fewer the heuristic says little that is worth its time, which is three quarters of a whole build:
-/// what is left is divided in halves.
-constexpr std::size_t kLastTriangles = 4 * TriangleTree::kWidth;
-static_assert(kLastTriangles <= RTC_BUILD_MAX_PRIMITIVES_PER_LEAF);
-
-void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count, void*) {
-  PENUMBRA_ASSERT(count <= kLastTriangles, "a leaf of {} triangles", count);
-  std::array<Divided, kLastTriangles> all;
-  for (std::size_t i = 0; i < count; ++i) all[i] = {lower_of(primitives[i]) + upper_of(primitives[i]), primitives + i};
-  const std::span<Divided> divided = std::span(all).first(count);
-  if (count <= TriangleTree::kWidth) return make_leaf(allocator, divided);
-  BuiltNode* node = allocate<BuiltNode>(allocator);
-  make_leaves(allocator, divided, *node);
-  node->nodes = node->depth = 1;
-  node->leaves = node->count;
-  return static_cast<Built*>(node);
+/// What a division costs: boxes are tested in blocks of eight, as often as a ray meets what is around them.
+double cost(double area, std::uint32_t boxes) {
+  return area * ((boxes + kWidth - 1) / kWidth);
 }
 
-RTCBuildPrimitive primitive_of(const Bounds& box, std::uint32_t number) {
-  const auto& [lower, upper] = box;
-  return {lower.x, lower.y, lower.z, 0, upper.x, upper.y, upper.z, number};
-}
+/// Where groups may be divided, the cheapest way so far.
+struct Division {
+  double cost = std::numeric_limits<double>::infinity();
+  std::uint32_t uneven = 0;  // of equal costs, the one whose halves differ less
+  int axis = -1;
+  std::size_t bin = 0;       // the second half's first
+  std::uint32_t groups = 0;  // of the first half
+  std::array<std::uint32_t, 2> boxes{};
+  std::array<Box, 2> box;
+};
 
-std::vector<RTCBuildPrimitive> primitives_of(const SceneFloats& scene) {
-  std::vector<std::uint32_t> casters;
-  casters.reserve(scene.triangles.size());
-  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-    if (scene.casts_shadow[i] != 0) casters.push_back(i);
-  }
-  std::vector<RTCBuildPrimitive> primitives(casters.size());
-  mesh::for_each_index(casters.size(), [&](std::size_t i) {
-    const auto [a, b, c] = scene.corners(casters[i]);
-    primitives[i] = primitive_of({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}, casters[i]);
-  });
-  return primitives;
-}
-
-glm::vec3 lower_of(const RTCBounds& b) {
-  return {b.lower_x, b.lower_y, b.lower_z};
-}
-glm::vec3 upper_of(const RTCBounds& b) {
-  return {b.upper_x, b.upper_y, b.upper_z};
-}
-
-/// Puts nodes and leaves into their places: depth first, so that the leaves below a node follow one another.
-class Flattener {
+/// Slabs of equal width along each axis, and what has its middle in each.
+class Bins {
  public:
-  explicit Flattener(TriangleTree& tree) : tree_(&tree) {}
-
-  void node(const BuiltNode& built, std::uint32_t number, std::uint32_t first_leaf) {
-    constexpr std::uint32_t kTask = 1024;  // nodes worth one
-    if (built.nodes <= kTask) return children(built, number, first_leaf, [](const auto& below) { below(); });
-    tbb::task_group tasks;
-    children(built, number, first_leaf, [&](const auto& below) { tasks.run(below); });
-    tasks.wait();
+  explicit Bins(const Range& range) : count_(std::clamp<std::size_t>(range.groups.size(), 4, kMost)) {
+    Box middles;
+    for (const BoxGroup& group : range.groups) middles.include(group.middle(), group.middle());
+    const glm::dvec3 extent = glm::dvec3(middles.upper) - glm::dvec3(middles.lower);
+    lower_ = middles.lower;
+    for (int axis = 0; axis < 3; ++axis) {
+      slabs_[axis] = extent[axis] > 0 ? static_cast<double>(count_) / extent[axis] : 0;
+      std::fill_n(bins_[static_cast<std::size_t>(axis)].begin(), count_, Bin{});
+    }
+    for (const BoxGroup& group : range.groups) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Bin& bin = bins_[static_cast<std::size_t>(axis)][bin_of(group, axis)];
+        bin.box.include(group.lower, group.upper);
+        bin.boxes += group.count;
+        ++bin.groups;
+      }
+    }
   }
-
-  void leaf(const BuiltLeaf& built, std::uint32_t number) { tree_->leaves[number] = built.triangles; }
+  [[nodiscard]] std::size_t bin_of(const BoxGroup& group, int axis) const {
+    const double middle = 0.5F * group.lower[axis] + 0.5F * group.upper[axis];
+    return std::min(static_cast<std::size_t>((middle - lower_[axis]) * slabs_[axis]), count_ - 1);
+  }
+  /// axis < 0: all middles are one.
+  [[nodiscard]] Division best(const Range& range) const {
+    Division best;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (slabs_[axis] > 0) find_better(range, axis, best);
+    }
+    return best;
+  }
 
  private:
-  template <typename Run>
-  void children(const BuiltNode& built, std::uint32_t number, std::uint32_t first_leaf, const Run& run) {
+  static constexpr std::size_t kMost = 32;
+  struct Bin {
+    Box box;
+    std::uint32_t boxes = 0, groups = 0;
+  };
+
+  void find_better(const Range& range, int axis, Division& best) const {
+    const std::array<Bin, kMost>& bins = bins_[static_cast<std::size_t>(axis)];
+    std::array<double, kMost> areas;  // from each slab on
+    Box box;
+    for (std::size_t i = count_; i-- > 1;) {
+      box.include(bins[i].box);
+      areas[i] = box.area();
+    }
+    box = {};
+    std::uint32_t boxes = 0, groups = 0;
+    bool is_better = false;
+    for (std::size_t i = 1; i < count_; ++i) {
+      if (bins[i - 1].groups == 0) continue;  // as before
+      box.include(bins[i - 1].box);
+      boxes += bins[i - 1].boxes;
+      groups += bins[i - 1].groups;
+      if (boxes == range.boxes) break;
+      const double costs = cost(box.area(), boxes) + cost(areas[i], range.boxes - boxes);
+      const std::uint32_t uneven = std::max(boxes, range.boxes - boxes);
+      if (costs > best.cost || (costs == best.cost && uneven >= best.uneven)) continue;
+      best = {costs, uneven, axis, i, groups, {boxes, range.boxes - boxes}, {box, {}}};
+      is_better = true;
+    }
+    if (!is_better) return;
+    for (std::size_t i = best.bin; i < count_; ++i) best.box[1].include(bins[i].box);
+  }
+
+  std::size_t count_;
+  glm::dvec3 lower_{0}, slabs_{0};  // slabs a unit
+  std::array<std::array<Bin, kMost>, 3> bins_;
+};
+
+using Halves = std::array<Range, 2>;
+
+Halves in_the_middle(const Range& range) {
+  const std::size_t half = range.groups.size() / 2;
+  return {range_of(range.groups.first(half)), range_of(range.groups.subspan(half))};
+}
+
+/// Of at least two groups.
+Halves divided(const Range& range) {
+  const Bins bins(range);
+  const Division best = bins.best(range);
+  if (best.axis < 0) return in_the_middle(range);  // all at one place
+  std::partition(range.groups.begin(), range.groups.end(),
+                 [&](const BoxGroup& group) { return bins.bin_of(group, best.axis) < best.bin; });
+  return {Range{range.groups.first(best.groups), best.boxes[0], best.box[0]},
+          Range{range.groups.subspan(best.groups), best.boxes[1], best.box[1]}};
+}
+
+/// A node with what is below it, until all is put into its place: how many nodes and leaves that is, itself included.
+struct Planned {
+  Range range;
+  std::uint32_t nodes = 0, leaves = 0, depth = 0;
+  std::vector<Planned> children;  // none: at most kTogether boxes
+
+  [[nodiscard]] bool is_leaf() const { return nodes == 0; }
+};
+
+class Builder {
+ public:
+  explicit Builder(std::span<NumberedBox> boxes) : boxes_(boxes) {}
+
+  [[nodiscard]] Planned plan(const Range& range, std::uint32_t depth) {
+    Planned planned{range, 0, 0, 0, {}};
+    if (range.is_last()) {
+      planned.leaves = (range.boxes + kWidth - 1) / kWidth;
+      planned.nodes = planned.depth = planned.leaves > 1 ? 1 : 0;
+      return planned;
+    }
+    std::array<Range, kWidth> parts{range};
+    std::size_t count = 1;
+    while (count < kWidth) {
+      const auto largest = std::max_element(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(count),
+                                            [&](const Range& a, const Range& b) { return before(a, b, depth); });
+      if (largest->is_last()) break;
+      auto [first, second] = halves(*largest, depth);
+      *largest = first;
+      parts[count++] = second;
+    }
+    planned.children.resize(count);
+    const auto below = [&](std::size_t i) { planned.children[i] = plan(parts[i], depth + 1); };
+    if (range.boxes > kTask) {
+      tbb::task_group tasks;
+      for (std::size_t i = 0; i < count; ++i) tasks.run([&, i] { below(i); });
+      tasks.wait();
+    } else {
+      for (std::size_t i = 0; i < count; ++i) below(i);
+    }
+    planned.nodes = 1;
+    for (const Planned& child : planned.children) {
+      planned.nodes += child.nodes;
+      planned.leaves += child.leaves;
+      planned.depth = std::max(planned.depth, child.depth);
+    }
+    ++planned.depth;
+    return planned;
+  }
+
+  /// Depth first, so that the leaves below a node follow one another.
+  void place(const Planned& planned, std::uint32_t number, std::uint32_t first_leaf) {
+    if (planned.children.empty()) return place_leaves(planned, tree.nodes[number], first_leaf);
+    tbb::task_group tasks;
     std::uint32_t next_node = number + 1, next_leaf = first_leaf;
-    for (std::uint32_t i = 0; i < built.count; ++i) {
-      const Built& child = *built.children[i];
-      const std::uint32_t reference = child.is_leaf() ? next_leaf | TriangleTree::kLeafBit : next_node;
-      tree_->nodes[number][i] = {lower_of(built.bounds[i]), upper_of(built.bounds[i]), reference};
-      if (child.is_leaf())
-        leaf(static_cast<const BuiltLeaf&>(child), next_leaf);
-      else
-        run([this, &child, next_node, next_leaf] { node(static_cast<const BuiltNode&>(child), next_node, next_leaf); });
+    for (std::size_t i = 0; i < planned.children.size(); ++i) {
+      const Planned& child = planned.children[i];
+      const auto& [lower, upper] = child.range.box;
+      if (child.is_leaf()) {
+        TriangleTree::Node alone;
+        place_leaves(child, alone, next_leaf);
+        tree.nodes[number][i] = alone[0];
+      } else {
+        tree.nodes[number][i] = {lower, upper, next_node};
+        const auto below = [this, &child, next_node, next_leaf] { place(child, next_node, next_leaf); };
+        if (child.range.boxes > kTask)
+          tasks.run(below);
+        else
+          below();
+      }
       next_node += child.nodes;
       next_leaf += child.leaves;
     }
+    tasks.wait();
   }
 
-  TriangleTree* tree_;
+  TriangleTree tree;
+
+ private:
+  /// Which of two is divided later?
+  [[nodiscard]] static bool before(const Range& a, const Range& b, std::uint32_t depth) {
+    if (a.is_last() != b.is_last()) return a.is_last();
+    const double area_a = depth < kDeep ? a.box.area() : 0, area_b = depth < kDeep ? b.box.area() : 0;
+    return area_a != area_b ? area_a < area_b : a.boxes < b.boxes;
+  }
+
+  [[nodiscard]] Halves halves(const Range& range, std::uint32_t depth) {
+    if (range.groups.size() == 1) {
+      const BoxGroup& one = range.groups.front();
+      std::vector<BoxGroup> groups = group_again(boxes_.subspan(one.first, one.count));
+      for (BoxGroup& group : groups) group.first += one.first;
+      return halves({keep(std::move(groups)), range.boxes, range.box}, depth);
+    }
+    return depth < kDeep ? divided(range) : in_the_middle(range);
+  }
+  std::span<BoxGroup> keep(std::vector<BoxGroup> groups) {
+    const std::scoped_lock lock(mutex_);
+    return grouped_again_.emplace_back(std::move(groups));
+  }
+
+  /// Leaves of at most kTogether boxes, as children of a node.
+  void place_leaves(const Planned& planned, TriangleTree::Node& node, std::uint32_t next_leaf) {
+    std::array<Divided, kTogether> items;
+    std::array<const NumberedBox*, kTogether> boxes;
+    std::uint32_t count = 0;
+    for (const BoxGroup& group : planned.range.groups) {
+      for (const NumberedBox& box : boxes_.subspan(group.first, group.count)) {
+        items[count] = {box.middle(), count};
+        boxes[count++] = &box;
+      }
+    }
+    std::size_t children = 0;
+    halve(std::span(items).first(count), kWidth, [&](std::span<const Divided> part) {
+      TriangleTree::Leaf& leaf = tree.leaves[next_leaf];
+      leaf.fill(TriangleTree::kNoTriangle);
+      Box all;
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        const NumberedBox& box = *boxes[part[i].at];
+        leaf[i] = box.number;
+        all.include(box.lower, box.upper);
+      }
+      std::sort(leaf.begin(), leaf.begin() + static_cast<std::ptrdiff_t>(part.size()));
+      node[children++] = {all.lower, all.upper, TriangleTree::kLeafBit | next_leaf++};
+    });
+  }
+
+  std::span<NumberedBox> boxes_;
+  std::mutex mutex_;
+  std::list<std::vector<BoxGroup>> grouped_again_;
 };
 
-TriangleTree make_tree(std::vector<RTCBuildPrimitive> primitives) {
-  TriangleTree tree;
-  if (primitives.empty()) return tree;
-  const std::size_t count = primitives.size();
-  Bounds bounds_of_all{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
-  for (const RTCBuildPrimitive& p : std::span(primitives).first(std::min<std::size_t>(count, TriangleTree::kWidth))) {
-    // of one leaf; before the builder reorders and splits them
-    bounds_of_all.lower = glm::min(bounds_of_all.lower, {p.lower_x, p.lower_y, p.lower_z});
-    bounds_of_all.upper = glm::max(bounds_of_all.upper, {p.upper_x, p.upper_y, p.upper_z});
-  }
-
-  const RTCDevice device = rtcNewDevice(nullptr);
-  if (device == nullptr)
-    throw ResourceError("Embree cannot start (error {})", static_cast<int>(rtcGetDeviceError(nullptr)));
-  const RTCBVH bvh = rtcNewBVH(device);
-  RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
-  arguments.maxBranchingFactor = TriangleTree::kWidth;
-  arguments.maxDepth = 64;
-  arguments.sahBlockSize = TriangleTree::kWidth;  // a leaf costs the same whether one lane is used or all
-  arguments.minLeafSize = kLastTriangles;
-  arguments.maxLeafSize = kLastTriangles;
-  arguments.traversalCost = 1.0F;
-  arguments.intersectionCost = 1.0F;
-  arguments.bvh = bvh;
-  arguments.primitives = primitives.data();
-  arguments.primitiveCount = count;
-  arguments.primitiveArrayCapacity = count;
-  arguments.createNode = create_node;
-  arguments.setNodeChildren = set_children;
-  arguments.setNodeBounds = set_bounds;
-  arguments.createLeaf = create_leaf;
-  const auto* root = static_cast<const Built*>(rtcBuildBVH(&arguments));
-  if (root != nullptr) {
-    Flattener flattener(tree);
-    resize_on_all_cores(tree.leaves, root->leaves);
-    resize_on_all_cores(tree.nodes, std::max(root->nodes, 1U));
-    tree.depth = std::max(root->depth, 1U);
-    if (root->is_leaf()) {
-      const auto [lower, upper] = bounds_of_all;
-      tree.nodes[0][0] = {lower, upper, TriangleTree::kLeafBit};
-      flattener.leaf(static_cast<const BuiltLeaf&>(*root), 0);
-    } else {
-      flattener.node(static_cast<const BuiltNode&>(*root), 0, 0);
-    }
-  }
-  rtcReleaseBVH(bvh);
-  rtcReleaseDevice(device);
-  if (root == nullptr) throw ResourceError("no memory for the hierarchy over {} boxes", count);
-  return tree;
+TriangleTree make_tree(std::size_t count, const std::function<NumberedBox(std::size_t)>& box) {
+  if (count == 0) return {};
+  GroupedBoxes grouped = group_boxes(count, box);
+  Builder builder({grouped.boxes.get(), count});
+  const Planned root = builder.plan(range_of(grouped.groups), 0);
+  TriangleTree& tree = builder.tree;
+  resize_on_all_cores(tree.leaves, root.leaves);
+  resize_on_all_cores(tree.nodes, std::max(root.nodes, 1U));
+  tree.depth = std::max(root.depth, 1U);
+  builder.place(root, 0, 0);
+  return std::move(tree);
 }
 
 }  // namespace
 
 TriangleTree make_triangle_tree(const SceneFloats& scene) {
-  return make_tree(primitives_of(scene));
+  std::vector<std::uint32_t> casters;
+  casters.reserve(scene.triangles.size());
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+    if (scene.casts_shadow[i] != 0) casters.push_back(i);
+  }
+  return make_tree(casters.size(), [&](std::size_t i) -> NumberedBox {
+    const auto [a, b, c] = scene.corners(casters[i]);
+    return {glm::min(a, glm::min(b, c)), casters[i], glm::max(a, glm::max(b, c)), 0};
+  });
 }
 
 TriangleTree make_tree_over(std::span<const Bounds> boxes) {
-  std::vector<RTCBuildPrimitive> primitives(boxes.size());
-  mesh::for_each_index(boxes.size(),
-                       [&](std::size_t i) { primitives[i] = primitive_of(boxes[i], static_cast<std::uint32_t>(i)); });
-  return make_tree(std::move(primitives));
+  return make_tree(boxes.size(), [&](std::size_t i) -> NumberedBox {
+    return {boxes[i].lower, static_cast<std::uint32_t>(i), boxes[i].upper, 0};
+  });
 }
 
 }  // namespace penumbra::visibility

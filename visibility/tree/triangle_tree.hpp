@@ -15,8 +15,9 @@
 
 namespace penumbra::visibility {
 
-/// An eight-wide bounding volume hierarchy over the triangles that cast shadow, built by Embree's builder (surface area
-/// heuristic in blocks of eight). Made for one lane a child and one lane a triangle.
+/// An eight-wide bounding volume hierarchy over the triangles that cast shadow, by the surface area heuristic in blocks
+/// of eight. Made for one lane a child and one lane a triangle. A function of the scene alone, whatever the number of
+/// threads.
 struct TriangleTree {
   static constexpr std::uint32_t kWidth = 8;
   static constexpr std::uint32_t kNoChild = 0xffffffffu;

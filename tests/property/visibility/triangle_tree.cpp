@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/common.hpp>
+#include <tbb/global_control.h>
 
 namespace penumbra::visibility {
 namespace {
@@ -99,6 +100,74 @@ TEST(TriangleTree, HoldsDoublesAsOftenAsTheyAre) {
     check(visibility::make_scene_floats(
         with(std::vector<tests::Corners>(count, {glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}))));
   }
+}
+
+/// Small triangles around a place.
+void add_heap(std::vector<tests::Corners>& triangles, std::uint32_t seed, std::uint32_t count, const glm::dvec3& at,
+              double size) {
+  tests::LatticeSoup soup(seed, 100);
+  for (const tests::Corners& corners : soup.triangles(count)) {
+    tests::Corners placed = corners;
+    for (glm::dvec3& corner : placed) corner = at + size * corner;
+    triangles.push_back(placed);
+  }
+}
+
+TEST(TriangleTree, HoldsHeapsThatAreSpecksBesideTheWhole) {
+  std::vector<tests::Corners> triangles{{glm::dvec3(-8), glm::dvec3(8, -8, 8), glm::dvec3(8)}};
+  double size = 0.01;
+  for (std::uint32_t i = 0; i < 12; ++i, size *= 0.25)  // each fits a cell of the grid that its heap before is in
+    add_heap(triangles, i, 500, glm::dvec3(size), 0.001 * size);
+  const SceneFloats floats = make_scene_floats(with(triangles));
+  check(floats);
+  EXPECT_LE(make_triangle_tree(floats).depth, 16U) << "6,001 triangles, an eighth of them below each child: 5";
+}
+
+TEST(TriangleTree, IsTheSameForAnyNumberOfThreads) {
+  std::vector<tests::Corners> triangles;
+  add_heap(triangles, 1, 30000, glm::dvec3(0), 0.05);
+  add_heap(triangles, 2, 9000, glm::dvec3(1), 1e-6);
+  const SceneFloats floats = make_scene_floats(with(triangles));
+  const TriangleTree many = make_triangle_tree(floats);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const TriangleTree one = make_triangle_tree(floats);
+  EXPECT_EQ(one.leaves, many.leaves);
+  ASSERT_EQ(one.nodes.size(), many.nodes.size());
+  for (std::size_t i = 0; i < one.nodes.size(); ++i) {
+    for (std::size_t child = 0; child < TriangleTree::kWidth; ++child) {
+      const TriangleTree::Child &a = one.nodes[i][child], &b = many.nodes[i][child];
+      EXPECT_TRUE(a.reference == b.reference && a.lower == b.lower && a.upper == b.upper) << i;
+    }
+  }
+}
+
+/// Half of the surface of the children's boxes over the whole's: how many nodes and leaves a random ray touches.
+double touched(const TriangleTree& tree) {
+  double sum = 0;
+  Bounds all{glm::vec3(1e30F), glm::vec3(-1e30F)};
+  const auto area = [](const Bounds& box) {
+    const glm::dvec3 size = glm::dvec3(box.upper) - glm::dvec3(box.lower);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+  };
+  for (const TriangleTree::Node& node : tree.nodes) {
+    for (const TriangleTree::Child& child : node) {
+      if (child.reference == TriangleTree::kNoChild) continue;
+      sum += area({child.lower, child.upper});
+      all = {glm::min(all.lower, child.lower), glm::max(all.upper, child.upper)};
+    }
+  }
+  return sum / area(all);
+}
+
+TEST(TriangleTree, DividesWhereRaysPassBetween) {
+  // Two heaps far apart and a triangle across both: the first division parts the heaps, and a ray meets few boxes.
+  std::vector<tests::Corners> triangles{{glm::dvec3(-8), glm::dvec3(8, -8, 8), glm::dvec3(8)}};
+  add_heap(triangles, 1, 2000, glm::dvec3(-7), 0.001);
+  add_heap(triangles, 2, 2000, glm::dvec3(7), 0.001);
+  const TriangleTree tree = make_triangle_tree(make_scene_floats(with(triangles)));
+  // The large triangle's own leaf is 1; the boxes around a heap are 2e-4 of the whole each, and some dozens of each
+  // level are around one point of it.
+  EXPECT_LT(touched(tree), 1.5);
 }
 
 TEST(TriangleTree, AlongAnotherHoldsEveryBoxOnce) {
