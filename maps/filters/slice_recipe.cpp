@@ -14,8 +14,7 @@ MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescripti
                        const SliceOptions& options, PrefilterKind filter) {
   MapRecipe recipe{.description = std::move(description),
                    .look_up_name = "slices look-up",
-                   .look_up = shaders::kOcclusionTexturesComp,
-                   .constants = {static_cast<std::uint32_t>(filter)}};
+                   .look_up = shaders::kOcclusionTexturesComp};
   std::vector<PrefilterFunction> bits;
   for (std::uint32_t k = 0; k < options.count; ++k) {
     bits.push_back({.kind = gpu::kBit, .a = static_cast<float>(k), .digits = 0});

@@ -7,7 +7,7 @@
 #define PREFILTER_FIRST 6
 #include "maps/products/prefilter.glsl"
 
-layout(constant_id = 1) const uint kModel = kVariance;
+layout(constant_id = 2) const uint kModel = kVariance;
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 5) readonly buffer Frame { MapFrame frame; };
@@ -41,6 +41,7 @@ float log2_scale(uint i, float t) {
 // The exponential where it is below 1, texel by texel (Annen, Mertens et al. 2008, section 3.4); of a large box, some.
 const uint kFallbackTaps = 16;  // along an axis
 float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
+  if (!(box.inside > 0.0)) return 1.0;  // beside the map there is nothing
   const vec2 first = floor(box.lower), extent = ceil(box.upper) - first;
   const uvec2 count = uvec2(min(extent, vec2(kFallbackTaps)));
   float sum = 0.0;

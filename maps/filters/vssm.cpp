@@ -152,7 +152,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   MapRecipe recipe{.description = vssm_description(),
                    .look_up_name = "vssm look-up",
                    .look_up = shaders::kVssmComp,
-                   .constants = {static_cast<std::uint32_t>(parsed[kFilter]), model}};
+                   .constants = {model}};
   // An exponential takes nothing off a receiver's height.
   recipe.products.push_back(
       std::make_unique<ShadowDepths>(device, parsed[kDepth], moments == Moments::esm ? 0 : parsed[kBias]));

@@ -33,11 +33,8 @@ class MapMethod final : public visibility::Method {
         recipe_(std::move(recipe)),
         options_(options),
         casters_(device, options.size, options.rasteriser),
-        look_up_(device, {.name = recipe_.look_up_name,
-                          .spirv = recipe_.look_up,
-                          .push_bytes = static_cast<std::uint32_t>(sizeof(gpu::LookupPush) +
-                                                                   sizeof(std::uint32_t) * recipe_.push_words),
-                          .constants = recipe_.constants}) {
+        constants_(constants_for(1)),
+        look_up_(make_look_up()) {
     if (options_.depth != DepthUse::first) recipe_.layers.count = std::max(recipe_.layers.count, 2u);
     PENUMBRA_ASSERT(recipe_.points == MapPoints::centre || total_layers() == 1, "{}: layers of a light sample's map",
                     recipe_.description.name);
@@ -79,6 +76,10 @@ class MapMethod final : public visibility::Method {
   }
   [[nodiscard]] std::uint32_t total_layers() const { return recipe_.layers.count + (recipe_.layers.farthest ? 1 : 0); }
 
+  /// Specialization constants of the look-up, for a light whose maps have so many faces: most have one.
+  [[nodiscard]] std::vector<std::uint32_t> constants_for(std::uint32_t faces) const;
+  [[nodiscard]] render::ComputePass make_look_up() const;
+
   /// Workgroups that answer packets of pixels.
   [[nodiscard]] std::uint64_t packets(const Receivers::Part& part) const {
     const std::uint32_t width = std::max(receivers_.width(), 1U), rows = part.count / width;
@@ -106,7 +107,8 @@ class MapMethod final : public visibility::Method {
   MapRecipe recipe_;
   MapOptions options_;
   CasterMaps casters_;
-  render::ComputePass look_up_;
+  std::vector<std::uint32_t> constants_;
+  render::ComputePass look_up_;  ///< with these constants
   Receivers receivers_;
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
@@ -124,6 +126,24 @@ class MapMethod final : public visibility::Method {
   std::unique_ptr<render::Buffer> views_, depths_, results_;
   std::vector<double> mean_;  ///< V of the tile last evaluated, if the light has several parts
 };
+
+std::vector<std::uint32_t> MapMethod::constants_for(std::uint32_t faces) const {
+  std::vector<std::uint32_t> constants;
+  for (const std::unique_ptr<MapProduct>& product : recipe_.products) {
+    std::ranges::copy(product->constants(options_.size, faces), std::back_inserter(constants));
+  }
+  std::ranges::copy(recipe_.constants, std::back_inserter(constants));
+  return constants;
+}
+
+render::ComputePass MapMethod::make_look_up() const {
+  const std::size_t push_bytes = sizeof(gpu::LookupPush) + sizeof(std::uint32_t) * recipe_.push_words;
+  return {*device_,
+          {.name = recipe_.look_up_name,
+           .spirv = recipe_.look_up,
+           .push_bytes = static_cast<std::uint32_t>(push_bytes),
+           .constants = constants_}};
+}
 
 void MapMethod::prepare_mesh(const visibility::SceneFloats& scene) {
   scene_ = &scene;
@@ -151,6 +171,10 @@ void MapMethod::prepare_light(const visibility::Light& light) {
       fit_views(*scene_, light, basis_, many ? std::span(light.points) : std::span<const glm::vec3>(centres), fit);
   const std::uint32_t faces = std::max(fitted_.faces, 1u);
   check_faces_fit(*device_, options_.size, faces * total_layers());
+  if (std::vector<std::uint32_t> constants = constants_for(faces); constants != constants_) {
+    constants_ = std::move(constants);
+    look_up_ = make_look_up();
+  }
 
   const std::uint64_t point_bytes =
       std::uint64_t{faces} * total_layers() * options_.size * options_.size * sizeof(float);

@@ -77,6 +77,11 @@ class MapProduct {
   [[nodiscard]] virtual const render::Buffer& buffer() const = 0;
   /// What a look-up binds, in this order; there are always as many.
   [[nodiscard]] virtual std::vector<render::BufferReference> buffers() const { return {buffer()}; }
+  /// Specialization constants of its look-ups' code, for maps of this size: as many for any.
+  [[nodiscard]] virtual std::vector<std::uint32_t> constants([[maybe_unused]] std::uint32_t size,
+                                                             [[maybe_unused]] std::uint32_t faces) const {
+    return {};
+  }
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return buffer().bytes(); }
   /// What its look-ups counted since (Method::counters).
   virtual void add_counters([[maybe_unused]] std::map<std::string, std::uint64_t>& counters) const {}
@@ -108,7 +113,7 @@ struct MapRecipe {
   /// look_up.glsl names. It reads receivers, views, depths, results and then the products' buffers, in this order.
   std::string look_up_name;
   std::span<const std::uint32_t> look_up{};
-  std::vector<std::uint32_t> constants{};  ///< its specialization constants 0, 1, 2 …
+  std::vector<std::uint32_t> constants{};  ///< its specialization constants behind those of the products
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// How far beside a receiver's direction the look-up taps (FitOptions::beside), for a light. Empty: not at all.
   std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};

@@ -78,12 +78,11 @@ Prefilter::Prefilter(const render::Device& device, PrefilterOptions options, con
       sums_(device) {}
 
 void Prefilter::record(render::Commands& commands, const MapSet& maps) {
-  const std::uint64_t buffer_bytes = device_->limits().max_storage_buffer_range;
   const std::uint32_t faces = std::max(maps.faces, 1U);
-  const auto layout = prefilter_layout(options_, maps.size, faces, buffer_bytes);
+  const auto layout = prefilter_layout(options_, maps.size, faces, buffer_bytes());
   if (!layout) {
     std::uint32_t size = maps.size;
-    while (size > 1 && !prefilter_layout(options_, size, faces, buffer_bytes)) --size;
+    while (size > 1 && !prefilter_layout(options_, size, faces, buffer_bytes())) --size;
     throw ResourceError(
         "method option size={}: what this method makes of {} maps is more than {} buffers of {} can hold; take "
         "size={} or less",
@@ -138,6 +137,16 @@ std::vector<render::BufferReference> Prefilter::buffers() const {
   std::vector<render::BufferReference> buffers{*table_};
   for (const auto& images : images_) buffers.emplace_back(*images);
   return buffers;
+}
+
+std::uint64_t Prefilter::buffer_bytes() const {
+  return options_.buffer_bytes != 0 ? options_.buffer_bytes : device_->limits().max_storage_buffer_range;
+}
+
+std::vector<std::uint32_t> Prefilter::constants(std::uint32_t size, std::uint32_t faces) const {
+  const auto layout = prefilter_layout(options_, size, faces, buffer_bytes());
+  const bool one = layout && layout->blocks <= layout->table.per_buffer;
+  return {static_cast<std::uint32_t>(options_.kind), one ? 1 : gpu::kPrefilterBuffers};  // if there is none: see record
 }
 
 std::uint64_t Prefilter::memory_bytes() const {

@@ -1,8 +1,10 @@
 // Means of prefiltered functions over boxes of a face. Bindings PREFILTER_FIRST … PREFILTER_FIRST + 4 are the product's,
-// specialization constant 0 is its scheme. A look-up calls mean_over in one place, in a loop: compilers copy it to each.
+// specialization constants 0 and 1 are its scheme and how many buffers it fills. A look-up calls mean_over in one place, in a loop: compilers copy it to each.
 #include "maps/products/prefilter_value.glsl"
 
 layout(constant_id = 0) const uint kScheme = kTable;  // a pipeline knows one way to take means alone
+// Few devices jump over what a switch does not choose for all of a group's invocations: some fetch from each buffer.
+layout(constant_id = 1) const uint kBuffers = kPrefilterBuffers;
 
 layout(scalar, binding = PREFILTER_FIRST) readonly buffer Table { PrefilterTable table; PrefilterValue values[]; };
 layout(scalar, binding = PREFILTER_FIRST + 1) readonly buffer Images0 { uint images0[]; };
@@ -23,6 +25,7 @@ struct Box {
 
 uint word_at(uint block, uint place) {
   PREFILTER_FETCHES;
+  if (kBuffers == 1) return images0[block * table.block + place];
   const uint at = block % table.per_buffer * table.block + place;
   switch (block / table.per_buffer) {
     case 0: return images0[at];
@@ -168,12 +171,15 @@ Box box_through(LightView view, vec3 d, vec2 half_box, float z) {
   const SideView side = view.side[d.z < 0.0 ? 1 : 0];
   Box box;
   box.face = side.first_face + hit.face;
-  box.lower = clamp(own - 0.5 * extent, vec2(0.0), vec2(table.size));
-  box.upper = clamp(own + 0.5 * extent, vec2(0.0), vec2(table.size));
+  const vec2 lower = own - 0.5 * extent, upper = own + 0.5 * extent;
+  box.lower = clamp(lower, vec2(0.0), vec2(table.size));
+  box.upper = clamp(upper, vec2(0.0), vec2(table.size));
   const vec2 inside = box.upper - box.lower;
+  // To the bit: what is beside, an exponential of the whole depth, makes light of the last digit of a share.
+  const bool whole = box.lower == lower && box.upper == upper;
   // Beside the window of a map there is nothing; beside a face of a hemicube there are the others, of which the part on
   // this face is taken to be a fair sample.
-  box.inside = inside.x > 0.0 && inside.y > 0.0 ? (side.face_count == 1 ? inside.x * inside.y / (extent.x * extent.y) : 1.0)
+  box.inside = inside.x > 0.0 && inside.y > 0.0 ? (side.face_count == 1 && !whole ? inside.x * inside.y / (extent.x * extent.y) : 1.0)
                                                 : 0.0;
   return box;
 }

@@ -30,7 +30,8 @@ struct PrefilterFunction {
 struct PrefilterOptions {
   PrefilterKind kind = PrefilterKind::table;
   std::vector<PrefilterFunction> functions{};
-  bool of_bits = false;  ///< texels are words of bits; else the maps' depths
+  bool of_bits = false;            ///< texels are words of bits; else the maps' depths
+  std::uint64_t buffer_bytes = 0;  ///< no buffer is larger; 0: than the device allows
 };
 
 /// Functions of the texels of one light point's maps, prefiltered: a look-up gets their means over windows of any size
@@ -53,9 +54,12 @@ class Prefilter final : public MapProduct {
   void record(render::Commands& commands, const MapSet& maps) override;
   [[nodiscard]] const render::Buffer& buffer() const override { return *table_; }
   [[nodiscard]] std::vector<render::BufferReference> buffers() const override;
+  /// The scheme, and how many of its buffers it fills.
+  [[nodiscard]] std::vector<std::uint32_t> constants(std::uint32_t size, std::uint32_t faces) const override;
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  private:
+  [[nodiscard]] std::uint64_t buffer_bytes() const;
   void record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const;
 
   const render::Device* device_;

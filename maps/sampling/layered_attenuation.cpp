@@ -13,6 +13,7 @@
 #include "maps/sampling/layered_attenuation.comp.spv.hpp"
 #include "maps/sampling/layered_attenuation.shared.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace penumbra::maps {
@@ -23,6 +24,10 @@ constexpr visibility::RealOption kSameDepth{"epsilon", 0, 1, 0.02,
 constexpr visibility::ChoiceOption kNeighbours = visibility::flag_option(
     "neighbours", true, "looks for a receiver that its own texel knows nothing of in the eight around");
 constexpr visibility::IntegerOption kLayeredSize = map_size(256);
+
+/// Depths in maps, and of planes, are off by no more than sixteen roundings to 24 binary digits: what is as near is as
+/// near as can be said.
+constexpr double kDepthRounding = 0x1p-20;
 
 visibility::MeshVerdict layered_attenuation_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("light samples counted on the surfaces that they see, off by a texel beside them", mesh);
@@ -53,7 +58,7 @@ std::unique_ptr<visibility::Method> make_layered_attenuation(const render::Devic
                    .look_up_name = "layered-attenuation look-up",
                    .look_up = shaders::kLayeredAttenuationComp};
   const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
-  const double epsilon = parsed[kSameDepth];
+  const double epsilon = std::max(parsed[kSameDepth], kDepthRounding);
   const bool neighbours = parsed[kNeighbours];
   auto layers = std::make_unique<LayeredDepth>(device, epsilon, parsed[kRasteriser]);
   recipe.push_words = sizeof(gpu::AttenuationPush) / sizeof(std::uint32_t);

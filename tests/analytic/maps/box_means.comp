@@ -7,12 +7,12 @@ uint fetches = 0;
 #define PREFILTER_FIRST 4
 #include "maps/products/prefilter.glsl"
 
-// Means of function 0 over boxes of one face, and how many words each took. Boxes come as receivers: p.xy to n.xy, of which
+// Means of function first_point over boxes of one face, and how many words each took. Boxes come as receivers: p.xy to n.xy, of which
 // the share p.z is in the map.
 void main() {
   const uint i = this_receiver();
   if (i >= lookup.receiver_count) return;
   const Receiver box = receivers[i];
-  results[2 * i] = floatBitsToUint(mean_over(0, Box(0, box.p.xy, box.n.xy, box.p.z), 0.0));
+  results[2 * i] = floatBitsToUint(mean_over(lookup.first_point, Box(0, box.p.xy, box.n.xy, box.p.z), 0.0));
   results[2 * i + 1] = fetches;
 }

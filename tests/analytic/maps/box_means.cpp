@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -98,13 +99,14 @@ class Picture {
 
 class BoxMeans : public MapsTest {
  protected:
-  static constexpr std::uint32_t kSize = 128;
+  static constexpr std::uint32_t kSize = 128, kFunctions = 7;
   struct Found {
     double mean;
     std::uint32_t fetches;
   };
-  static std::vector<Found> means(const Picture& picture, maps::PrefilterKind kind,
-                                  const std::vector<TexelBox>& boxes) {
+  /// Of a picture's bit, `function` of several functions, which buffers of `buffer_bytes` hold (0: as large as may be).
+  static std::vector<Found> means(const Picture& picture, maps::PrefilterKind kind, const std::vector<TexelBox>& boxes,
+                                  std::uint32_t function = 0, std::uint64_t buffer_bytes = 0) {
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
     scene.lights.push_back(ceiling_light(3, 0.5));
@@ -112,14 +114,17 @@ class BoxMeans : public MapsTest {
     const Stage stage(scene, 4, 4, light_samples(1));
     const CentreMaps maps(device(), stage, kSize);
     EXPECT_EQ(maps.fitted.faces, 1U);
-    const Words words(device(), picture.texels()), none(device(), {0, 0, 0, 0, 0, 0, 0, 0});
-    maps::Prefilter product(
-        device(), {.kind = kind, .functions = {{.kind = maps::gpu::kBit, .a = 0, .digits = 0}}, .of_bits = true},
-        {.nearest = &none, .frame = &none, .bits = &words});
+    std::vector<std::uint32_t> bits = picture.texels();  // the other functions are 0
+    for (std::uint32_t& bit : bits) bit <<= function;
+    const Words words(device(), bits), none(device(), {0, 0, 0, 0, 0, 0, 0, 0});
+    maps::PrefilterOptions options{.kind = kind, .of_bits = true, .buffer_bytes = buffer_bytes};
+    for (std::uint32_t k = 0; k < kFunctions; ++k)
+      options.functions.push_back({.kind = maps::gpu::kBit, .a = static_cast<float>(k), .digits = 0});
+    maps::Prefilter product(device(), options, {.nearest = &none, .frame = &none, .bits = &words});
     const render::ComputePass pass(device(), {.name = "box means",
                                               .spirv = shaders::kBoxMeansComp,
                                               .push_bytes = sizeof(maps::gpu::LookupPush),
-                                              .constants = {static_cast<std::uint32_t>(kind)}});
+                                              .constants = product.constants(kSize, 1)});
     std::vector<maps::gpu::Receiver> asked;
     for (const TexelBox& box : boxes) asked.push_back({glm::vec3(box.lower, 1), glm::vec3(box.upper, 0)});
     const render::Buffer receivers = render::make_buffer<maps::gpu::Receiver>(device(), "boxes", asked);
@@ -127,6 +132,7 @@ class BoxMeans : public MapsTest {
     maps::gpu::LookupPush push{};
     push.size = kSize;
     push.receiver_count = static_cast<std::uint32_t>(boxes.size());
+    push.first_point = function;
     render::Commands commands(device());
     product.record(commands, maps.set(stage));
     std::vector<render::BufferReference> buffers{receivers, maps.views, maps.depths, results};
@@ -203,6 +209,26 @@ TEST_F(BoxMeans, TakeAsManyFetchesWhateverTheBoxesSize) {
       EXPECT_GE(mosts.size(), 5U);
       for (const auto& [octave, fetches] : mosts) {
         EXPECT_EQ(fetches, most) << name << ", boxes of 2^" << octave << " texels, " << aspect << " times as long";
+      }
+    }
+  }
+}
+
+// Look-ups of what is in one buffer are other code than those of what is in four.
+TEST_F(BoxMeans, AreTheSameInOneBufferAndInFour) {
+  const Picture picture(kSize, 3);
+  const std::vector<TexelBox> asked = boxes(1, 200);
+  for (const auto& [kind, words] : {std::pair(maps::PrefilterKind::table, kSize * kSize),
+                                    {maps::PrefilterKind::pyramid, kSize * kSize * 4 / 3 + 1},
+                                    {maps::PrefilterKind::windows, kSize * kSize * 8}}) {
+    const std::uint64_t two_functions = std::uint64_t{2} * words * sizeof(std::uint32_t);
+    const std::vector<Found> truth = means(picture, kind, asked);
+    EXPECT_GT(std::ranges::max(truth, {}, &Found::mean).mean, 0.5);
+    for (std::uint32_t function = 0; function < kFunctions; ++function) {  // 2, 2, 2 and 1
+      for (const std::uint64_t buffer_bytes : {std::uint64_t{0}, two_functions}) {
+        const std::vector<Found> found = means(picture, kind, asked, function, buffer_bytes);
+        for (std::size_t i = 0; i < asked.size(); ++i)
+          ASSERT_EQ(found[i].mean, truth[i].mean) << "function " << function << ", buffers of " << buffer_bytes;
       }
     }
   }

@@ -332,6 +332,17 @@ TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact
   EXPECT_GT(shares(contact, "0.06").leak, 0.5);
 }
 
+// Of a surface parallel to the light all depths are the same but for rounding, which no epsilon leaves out.
+TEST_F(LayeredAttenuation, WithoutEpsilonOrBiasAParallelFloorIsFound) {
+  const Stage stage(parallel_square(), 32, 32, light_samples(16));
+  const auto visibility = [&](const char* epsilon) {
+    return run(maps::make_layered_attenuation, stage, {{"size", "64"}, {"bias", "0"}, {"epsilon", epsilon}}).visibility;
+  };
+  const std::vector<float> none = visibility("0");
+  EXPECT_EQ(none, visibility("0.0001"));
+  EXPECT_GT(std::ranges::count(none, 1.0F), std::ssize(none) / 2);
+}
+
 TEST_F(MapLists, TilesAndRepetitionChangeNothingAndVIsDefinedEverywhere) {
   scenes::Scene nothing = parallel_square(), crossing = parallel_square(), inside, disk = crowded(false, false);
   nothing.objects[1].casts_shadow = nothing.objects[0].casts_shadow = false;

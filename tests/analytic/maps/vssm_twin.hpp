@@ -111,7 +111,8 @@ class VssmTwin {
     Box box{glm::clamp(own - 0.5 * extent, glm::dvec2(0), whole), glm::clamp(own + 0.5 * extent, glm::dvec2(0), whole),
             1};
     const glm::dvec2 inside = box.upper - box.lower;
-    box.inside = inside.x * inside.y / (extent.x * extent.y);
+    const bool in_map = box.lower == own - 0.5 * extent && box.upper == own + 0.5 * extent;
+    box.inside = in_map ? 1 : inside.x * inside.y / (extent.x * extent.y);
     return box;
   }
 
@@ -124,12 +125,14 @@ class VssmTwin {
         sum += share * f(heights_[std::size_t{y} * maps_->size + x]);
       }
     }
+    if (box.inside == 0) return f(1);
     const glm::dvec2 extent = box.upper - box.lower;
     return box.inside * sum / (extent.x * extent.y) + (1 - box.inside) * f(1);
   }
 
   /// Of all texels that the box touches, or of 16 along an axis; whole ones.
   [[nodiscard]] double texel_by_texel(const Box& box, const std::function<double(double)>& f) const {
+    if (box.inside == 0) return 1;
     const glm::dvec2 first = glm::floor(box.lower), extent = glm::ceil(box.upper) - first,
                      count = glm::min(extent, glm::dvec2(16));
     double sum = 0;
