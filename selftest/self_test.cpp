@@ -61,6 +61,12 @@ class SelfTest {
     for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
       stages_.emplace_back(crowd_with_needles(wall, two_sided), kPixels, kPixels, light_samples(36));
     }
+    scenes::Scene disk = crowd_with_needles(false, true), triangle = crowd_with_needles(true, false);
+    disk.lights[0].shape = scenes::Disk{{0, 3, 0}, {0.2, -1, 0.1}, 0.5};
+    triangle.lights[0].shape = scenes::Polygon{{{-0.5, 3, -0.4}, {0.6, 3, -0.3}, {0.1, 3, 0.6}}};
+    point_stages_.emplace_back(disk, kPixels, kPixels, light_samples(36));
+    point_stages_.emplace_back(triangle, kPixels, kPixels,
+                               visibility::SampleRequest{50, 0, 0, visibility::SamplePattern::sobol, 1});
   }
 
   std::vector<Check> run() {
@@ -100,6 +106,12 @@ class SelfTest {
     checks.push_back(repeated("penumbra wedges", [&](Check& all) { wedges(all); }));
     checks.push_back(masks("view-sample", vsm::make_view_sample, {{"engine", "vulkan"}}));
     checks.push_back(masks("edge-scatter", volumes::make_edge_scatter, {{"engine", "vulkan"}}));
+    checks.push_back(repeated("masks of edge-scatter, light samples anywhere", [&](Check& all) {
+      for (const Stage& stage : point_stages_) {
+        join(all, check_masks(*volumes::make_edge_scatter(device_, {{"engine", "vulkan"}}), stage,
+                              "edge-scatter, light samples anywhere"));
+      }
+    }));
     checks.push_back(masks("depth-complexity", volumes::make_depth_complexity, {{"engine", "vulkan"}}));
     checks.push_back(each_stage("counters of depth-complexity", [&](const Stage& stage) {
       CounterTally tally;
@@ -184,7 +196,7 @@ class SelfTest {
   }
 
   const render::Device& device_;
-  std::vector<Stage> stages_;
+  std::vector<Stage> stages_, point_stages_;  // light samples in rows; anywhere
 };
 
 }  // namespace

@@ -343,5 +343,68 @@ def tiles_figure():
     return d.finish()
 
 
+def upward(a, b, k):
+    """(low end, high end, change of depth to the right) of an edge from a to b with multiplicity k."""
+    return (a, b, -k) if a[1] < b[1] else (b, a, k)
+
+
+def change_on_the_way(edge, q, middle, left=-1.0):
+    """What an edge changes on the way to q: up the left side, along the row's middle, and then straight to q."""
+    (x0, y0), (x1, y1), jump = edge
+    spans, over = y0 <= middle < y1, x1 - x0
+
+    def is_right(y):
+        return over < 0 if y >= y1 else over > 0 if y < y0 else (q[0] - x0) * (y1 - y0) > (y - y0) * over
+
+    along = spans if q[0] >= max(x0, x1) else 0
+    if min(x0, x1) <= q[0] < max(x0, x1):
+        along = is_right(q[1]) - (0 if spans else is_right(middle))
+    ends = (y1 <= middle and x1 < left) - (y0 <= middle and x0 < left)
+    return jump * (along + ends)
+
+
+def points_figure():
+    """Light samples of a disk in rows of equal height, and the ways to two of them past an edge."""
+    rows, count = 9, 84
+    samples = scattered_samples(count)
+    corners = [(0.42, -0.36), (0.74, 0.88), (-0.62, 0.13)]
+    edges = [upward(corners[i], corners[(i + 1) % 3], 1) for i in range(3)]
+
+    def middle_of(q):
+        return -1 + (min(rows - 1, int((q[1] + 1) * rows / 2)) + 0.5) * 2 / rows
+
+    for q in samples:
+        found = sum(change_on_the_way(edge, q, middle_of(q)) for edge in edges)
+        assert found == inside(q, counter_clockwise(corners)), "closed outlines add up to the depth"
+
+    low, high, jump = edges[2]      # from the triangle's left corner down to the right
+    middle = middle_of((0, -0.05))
+    d = Drawing(760, 420, "Light samples of a disk in rows, and the ways to two of them")
+    d.text((20, 26), "The way to a light sample: up the left side, along its row's middle, then straight up or down", 14, bold=True)
+    view = View(d, (20, 42, 356, 356), (-1.05, 1.05), (-1.05, 1.05))
+    view.polygon([(-1, middle - 1 / rows), (1, middle - 1 / rows), (1, middle + 1 / rows), (-1, middle + 1 / rows)], "#e8f3e8")
+    view.polygon([(cos(i * pi / 60), sin(i * pi / 60)) for i in range(120)], None, LIGHT, 2)
+    view.line((-1, middle), (1, middle), GREEN, 1, dash="4 3")
+    view.line((-1, -1), (-1, 1), FAINT, 1.2)
+    in_row = sorted(q for q in samples if middle_of(q) == middle)
+    changed = [q for q in in_row if change_on_the_way((low, high, jump), q, middle)]
+    beside = [q for q in in_row if min(low[0], high[0]) <= q[0] < max(low[0], high[0])]
+    shown = [beside[0], next(q for q in in_row if q[0] > max(low[0], high[0]))]
+    assert changed and len(changed) < len(in_row)
+    for q, color in zip(shown, (BLUE, DARK)):
+        for x, y in (((-1, -1), (-1, middle)), ((-1, middle), (q[0], middle)), ((q[0], middle), q)):
+            view.line(x, y, color, 1.8)
+    for q in samples:
+        view.dot(q, 3.2, RED if q in changed else LIGHT if q in in_row else PALE, stroke=INK, width=0.5)
+    view.line(low, high, INK, 2.2)
+    d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "of this row: changes"), ("dot", LIGHT, "of this row: does not change"),
+                         ("line", BLUE, "the way to a light sample between its ends"), ("line", DARK, "and to one right of it")], step=24)
+    d.text((410, 226), "All light samples of a row that are right of the edge's", 12.5)
+    d.text((410, 243), "right end change alike: by its multiplicity if it crosses", 12.5)
+    d.text((410, 260), "the row's middle, else not at all. Only those between its", 12.5)
+    d.text((410, 277), "ends, where it passes the row, are tested one by one.", 12.5)
+    return d.finish()
+
+
 FIGURES = {"edge-scatter-rows": rows_figure, "edge-scatter-shaft": shaft_figure, "edge-scatter-open": open_figure,
-           "edge-scatter-tiles": tiles_figure}
+           "edge-scatter-tiles": tiles_figure, "edge-scatter-points": points_figure}

@@ -66,7 +66,9 @@ INSTANTIATE_TEST_SUITE_P(At, AimedPairs,
                          testing::Combine(testing::ValuesIn(tests::kAims), testing::ValuesIn(tests::kAllMaskMethods)),
                          name_of_aim);
 INSTANTIATE_TEST_SUITE_P(Searched, AimedPairs,
-                         testing::Values(std::tuple(Aim::beside, tests::MaskMethod(tests::kEdgeScatter))), name_of_aim);
+                         testing::Combine(testing::Values(Aim::beside),
+                                          testing::Values(tests::kEdgeScatter, tests::kEdgeScatterPoints)),
+                         name_of_aim);
 
 }  // namespace
 }  // namespace penumbra

@@ -41,10 +41,11 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
   options["engine"] = kNative ? "native" : "vulkan";
   return volumes::make_edge_scatter(device, options);
 }
-inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false>, false};
+inline constexpr MaskMethod kEdgeScatter{"edge_scatter", make_edge_scatter<false>, true};
 inline constexpr MaskMethod kNativeEdgeScatter{"native_edge_scatter", make_edge_scatter<true>, true};
 
-/// Its path for light samples that form no rows.
+/// Their paths for light samples that form no rows.
+inline constexpr MaskMethod kEdgeScatterPoints{"edge_scatter_points", make_edge_scatter<false>, true, true};
 inline constexpr MaskMethod kNativeEdgeScatterPoints{"native_edge_scatter_points", make_edge_scatter<true>, true, true};
 
 template <bool kNative>
@@ -60,9 +61,9 @@ inline constexpr MaskMethod kNativeDepthComplexity{"native_depth_complexity", ma
 /// The two fast methods, each on both engines.
 inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeScatter, kNativeEdgeScatter};
 /// All methods that promise every bit.
-inline constexpr std::array kAllMaskMethods{kViewSample,           kNativeViewSample,        kEdgeScatter,
-                                            kNativeEdgeScatter,    kNativeEdgeScatterPoints, kDepthComplexity,
-                                            kNativeDepthComplexity};
+inline constexpr std::array kAllMaskMethods{kViewSample,        kNativeViewSample,     kEdgeScatter,
+                                            kNativeEdgeScatter, kEdgeScatterPoints,    kNativeEdgeScatterPoints,
+                                            kDepthComplexity,   kNativeDepthComplexity};
 /// Those that do spheres and suns.
 inline constexpr std::array kConeMethods{kNativeEdgeScatter, kNativeViewSample, kNativeDepthComplexity};
 

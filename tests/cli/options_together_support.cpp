@@ -148,15 +148,11 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
     const auto found = options.find(key);
     return found != options.end() && found->second == value;
   };
-  const auto is_rectangle = [](const std::string& kind) { return kind == "rectangle"; };
-  if (method == "edge-scatter") {
-    const bool exact = is("rows", "exact"), on_device = is("engine", "vulkan");
-    const bool in_rows = row["pattern"].empty() || row["pattern"] == "rows" || row["pattern"] == "grid";
-    return (exact && on_device) || (on_device && !in_rows) ||
-           (on_device && !std::ranges::all_of(scene.lights, is_rectangle));
-  }
   const auto is_planar = [](const std::string& kind) { return kind != "sphere" && kind != "sun"; };
   const bool all_planar = std::ranges::all_of(scene.lights, is_planar);
+  if (method == "edge-scatter") {
+    return is("engine", "vulkan") && (is("rows", "exact") || !all_planar);
+  }
   if (method == "view-sample") {
     const bool on_device = is("engine", "vulkan"), sintorn = is("variant", "sintorn");
     return (on_device && (sintorn || !all_planar)) || (sintorn && std::ranges::count(scene.lights, "sphere") > 0);

@@ -244,11 +244,24 @@ TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
   const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "sobol"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "edge-scatter");
-  const Outcome named = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered", "--method",
+  // Either engine can: the bits are the same.
+  std::vector<std::string> bits;
+  for (const char* engine : {"engine=vulkan", "engine=native"}) {
+    const Outcome named = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered",
+                               "--method", "edge-scatter", "--method-option", engine, "--bits", path("out.bits")});
+    EXPECT_EQ(named.code, 0) << named.err;
+    bits.push_back(read("out.bits"));
+  }
+  EXPECT_EQ(bits[0], bits[1]);
+}
+
+TEST_F(RenderOnce, SpheresAreNotForTheDevice) {
+  write("scene.json", scene_text_with("/lights/0", kBulb));
+  const Outcome named = run({"render", path("scene.json"), "-o", path("out.exr"), "--light-samples", "16", "--method",
                              "edge-scatter", "--method-option", "engine=vulkan"});
   EXPECT_EQ(named.code, 3);
-  EXPECT_THAT(named.err, HasSubstr("--sample-pattern rows"));
-  EXPECT_THAT(named.err, HasSubstr("without engine=vulkan"));
+  EXPECT_THAT(named.err,
+              HasSubstr("is a sphere; method edge-scatter, as asked for, can do: rectangle, disk, ellipse, polygon"));
 }
 
 TEST_F(RenderOnce, MeshesOutsideTheRuleAreAlwaysLit) {

@@ -23,7 +23,7 @@ struct ScatterPush {
   uint width;                 // pixels in a row
   uint first_row, row_count;  // of the band in the stored view samples
   uint first_pixel;           // of the band in the tile, whose masks and questions these are
-  uint rows, columns;         // of light samples
+  uint rows, columns;         // of light samples; of those in no rows, cells of the light's frame
   uint shift_step;            // a row's shift in cells is (row · step) / 2¹⁶ modulo 1
   uint list_capacity;         // words
   uint question_capacity;
@@ -32,7 +32,8 @@ struct ScatterPush {
   uint near_plane;                  // something is near the light's plane: view samples close to that are for the host
   uint part_levels, part;  // find_edges: of both hierarchies only what lies below one child of each of so many levels;
                            // which child, three bits a level from the lowest
-  uint touched_low, touched_high;  // light rows with samples that something touches; of more than 64 rows: all or none
+  uint touched_low, touched_high;  // light rows with samples that something touches; of more than 64 rows, or where
+                                   // there are none: all or none
 };
 
 // What float arithmetic left open of a pixel (of the tile): light rows, bit i of (low, high) is row first_row + i; and

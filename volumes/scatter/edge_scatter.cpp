@@ -1,5 +1,5 @@
 // Depth complexity by silhouette edges (Laine et al. 2005), for any soup by signed multiplicities (Bergeron 1986), on a
-// grid of light samples: docs/edge-scatter.md.
+// grid of light samples, or on light samples anywhere in rows of about the same height: docs/edge-scatter.md.
 
 #include "volumes/scatter/edge_scatter.hpp"
 
@@ -11,13 +11,21 @@
 #include "visibility/lights/device_light.hpp"
 #include "volumes/edges/edge_method.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
+#include "volumes/scatter/point_rows.hpp"
 #include "volumes/scatter/scatter_edges.comp.spv.hpp"
+#include "volumes/scatter/scatter_points.comp.spv.hpp"
 #include "volumes/scatter/vectors/edge_scatter_vectors.hpp"
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace penumbra::volumes {
@@ -42,65 +50,112 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
 }
 
+bool is_planar_light(const visibility::Light& light) {
+  return visibility::is_planar(light.kind);
+}
+
+static_assert(sizeof(gpu::PointQuestion) == sizeof(gpu::RowQuestion), "one list holds either");
+
 class EdgeScatter final : public EdgeMethod {
  public:
   EdgeScatter(const render::Device& device, visibility::MethodDescription given)
       : EdgeMethod(device, std::move(given), sizeof(gpu::RowQuestion)) {}
 
-  void prepare_light(const visibility::Light& light) override {
-    if (!visibility::has_rows(light)) {
-      throw InputError(
-          "light \"{}\": edge-scatter with engine=vulkan takes light samples in rows of a rectangle (--sample-pattern "
-          "rows or grid); without engine=vulkan it takes every light and pattern",
-          light.name);
-    }
-    EdgeMethod::prepare_light(light);
-  }
-
  private:
   /// As many light rows at a time as the histograms of a subgroup leave room for.
   device::MaskLayout prepare_kernel() override {
-    PENUMBRA_ASSERT(device_light().rows, "light {} has no rows that a step describes", light().name);
-    const std::uint32_t lanes = device().limits().subgroup_size;
-    const std::uint32_t room = device().limits().max_shared_memory / (4 * lanes * light().columns);
-    if (room == 0) {
-      throw InputError(
-          "light \"{}\": edge-scatter handles rows of up to {} light samples on {}; this has {}; use view-sample",
-          light().name, device().limits().max_shared_memory / (lanes * 4), device().info().name, light().columns);
-    }
-    band_words_ = std::min({room, kMostBandWords, row_words()});
-    const std::uint32_t block_width = lanes >= 32 ? 8 : 4;
-    const std::vector<std::uint32_t> constants{lanes,           lanes,       block_width,
-                                               light().columns, band_words_, light().columns * band_words_};
-    if (!scatter_ || constants != constants_) {
-      scatter_.emplace(device(), render::ComputePassOptions{.name = "scatter edges",
-                                                            .spirv = shaders::kScatterEdgesComp,
-                                                            .push_bytes = sizeof(gpu::ScatterPush),
-                                                            .constants = constants,
-                                                            .full_subgroups = true});
+    const bool in_rows = device_light().rows;
+    device::MaskLayout layout = in_rows ? arrange_rows() : arrange_points();
+    const std::uint32_t lanes = device().limits().subgroup_size, block_width = lanes >= 32 ? 8 : 4;
+    const std::uint32_t words = in_rows ? columns_ * band_rows_ / 4 : words_of_points(points_->fours, band_rows_);
+    const std::vector<std::uint32_t> constants{
+        lanes, lanes, block_width, in_rows ? columns_ : points_->fours, in_rows ? band_rows_ / 4 : band_rows_, words};
+    if (!scatter_ || constants != constants_ || in_rows != passes_rows_) {
+      scatter_.emplace(device(), render::ComputePassOptions{
+                                     .name = "scatter edges",
+                                     .spirv = in_rows ? std::span<const std::uint32_t>(shaders::kScatterEdgesComp)
+                                                      : std::span<const std::uint32_t>(shaders::kScatterPointsComp),
+                                     .push_bytes = sizeof(gpu::ScatterPush),
+                                     .constants = constants,
+                                     .full_subgroups = true});
       constants_ = constants;
+      passes_rows_ = in_rows;
     }
-    return blocks_of_samples();
+    return layout;
+  }
+
+  /// Words of shared memory that a lane may have.
+  [[nodiscard]] std::uint32_t room() const {
+    return device().limits().max_shared_memory / (4 * device().limits().subgroup_size);
   }
 
   /// Words of 8 columns × 4 rows, those of a column of words one after the other.
-  [[nodiscard]] device::MaskLayout blocks_of_samples() const {
+  device::MaskLayout arrange_rows() {
+    points_.reset();
+    rows_ = light().rows;
+    columns_ = light().columns;
+    if (room() < columns_) {
+      throw InputError(
+          "light \"{}\": edge-scatter handles rows of up to {} light samples on {}; this has {}; use view-sample",
+          light().name, room(), device().info().name, columns_);
+    }
+    band_rows_ = 4 * std::min({room() / columns_, kMostBandWords, row_words()});
     device::MaskLayout layout{.words = column_words() * row_words()};
     for (std::uint32_t bit = 0; bit < 32 * layout.words; ++bit) {
       const std::uint32_t word = bit / 32, row = word % row_words() * 4 + bit % 32 / 8,
                           column = word / row_words() * 8 + bit % 8;
-      const bool is_sample = row < light().rows && column < light().columns;
-      layout.light_sample.push_back(is_sample ? row * light().columns + column : device::MaskLayout::kNone);
+      const bool is_sample = row < rows_ && column < columns_;
+      layout.light_sample.push_back(is_sample ? row * columns_ + column : device::MaskLayout::kNone);
     }
     return layout;
   }
-  [[nodiscard]] std::uint32_t row_words() const { return (light().rows + 3) / 4; }
-  [[nodiscard]] std::uint32_t column_words() const { return (light().columns + 7) / 8; }
+  [[nodiscard]] std::uint32_t row_words() const { return (rows_ + 3) / 4; }
+  [[nodiscard]] std::uint32_t column_words() const { return (columns_ + 7) / 8; }
+
+  /// As scatter_points.comp counts a lane's words; `rows` is a multiple of kPointRowsAtOnce.
+  static std::uint32_t words_of_points(std::uint32_t fours, std::uint32_t rows) {
+    return rows * fours + rows / 4 + rows * fours / 8;
+  }
+
+  /// A bit a slot; bands of as nearly the same height as there is room for.
+  device::MaskLayout arrange_points() {
+    constexpr std::uint32_t kStep = gpu::kPointRowsAtOnce;
+    constexpr std::uint32_t kWordsAFour = kStep + kStep / 8;  // and words_of_points has kStep / 4 more
+    PointRows points = make_point_rows(device_light().coordinates, (room() - kStep / 4) / kWordsAFour);
+    rows_ = points.rows;
+    columns_ = points.columns;
+    const std::uint32_t steps = (rows_ + kStep - 1) / kStep, at_once = room() / words_of_points(points.fours, kStep);
+    if (at_once == 0) {
+      throw InputError(
+          "light \"{}\": edge-scatter has no room on {} for {} light samples side by side; take fewer, or use "
+          "view-sample",
+          light().name, device().info().name, points.fours * gpu::kPointsAtOnce);
+    }
+    const std::uint32_t bands = (steps + at_once - 1) / at_once;
+    band_rows_ = (steps + bands - 1) / bands * kStep;
+    const std::uint32_t slots = bands * band_rows_ * points.fours * gpu::kPointsAtOnce;
+    points.sample_of.resize(slots, PointRows::kNone);
+    points.places.resize(slots / 2);  // nothing is made of what these rows say
+    std::vector<glm::uvec2> words(slots / 32, glm::uvec2(0));
+    std::vector<char> touched(light().sample_count(), 0);
+    for (const std::uint32_t sample : edges().touch().samples) touched[sample] = 1;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const std::uint32_t sample = points.sample_of[slot];
+      if (sample == PointRows::kNone) continue;
+      words[slot / 32].x |= 1U << (slot % 32);
+      words[slot / 32].y |= touched[sample] != 0 ? 1U << (slot % 32) : 0U;
+    }
+    points_.emplace(Points{
+        render::make_buffer<glm::vec4>(device(), "places of light samples", points.places),
+        render::make_buffer<std::uint32_t>(device(), "starts in rows of light samples", points.starts),
+        render::make_buffer<glm::uvec2>(device(), "slots of light samples", words), points.fours, std::move(words)});
+    return {.words = slots / 32, .light_sample = std::move(points.sample_of)};
+  }
 
   [[nodiscard]] gpu::ScatterPush make_push() const override {
     gpu::ScatterPush push{};
-    push.rows = light().rows;
-    push.columns = light().columns;
+    push.rows = rows_;
+    push.columns = columns_;
     push.shift_step = device_light().shift_step;
     return push;
   }
@@ -111,15 +166,16 @@ class EdgeScatter final : public EdgeMethod {
       commands().fill(counts(), 0, std::uint64_t{4} * push.first_pixel, std::uint64_t{4} * band.row_count * push.width);
     }
     inputs.insert(inputs.end(), {masks(), counts(), questions().buffer()});
+    if (points_) inputs.insert(inputs.end(), {points_->places, points_->starts, points_->slots});
     const std::uint64_t blocks =
         std::uint64_t{(push.width + kBlock - 1) / kBlock} * ((band.row_count + kBlock - 1) / kBlock);
-    const std::uint32_t lanes = device().limits().subgroup_size,
-                        bands = (light().rows + 4 * band_words_ - 1) / (4 * band_words_);
+    const std::uint32_t lanes = device().limits().subgroup_size, bands = (rows_ + band_rows_ - 1) / band_rows_;
     scatter_->record(commands(), std::as_bytes(std::span(&push, 1)), inputs,
                      blocks * (kBlock * kBlock / lanes) * bands);
   }
 
   std::vector<device::OpenBits> open_bits(std::uint32_t count) override {
+    if (points_) return open_points(count);
     std::vector<gpu::RowQuestion> asked(count);
     questions().read(std::span(asked));
     open_pixels_ += count;
@@ -128,10 +184,39 @@ class EdgeScatter final : public EdgeMethod {
     return open;
   }
 
+  /// Of a band of which all is asked, nothing is asked singly: a driver may have ended the loop that does that.
+  std::vector<device::OpenBits> open_points(std::uint32_t count) {
+    std::vector<gpu::PointQuestion> asked(count);
+    questions().read(std::span(asked));
+    using Band = std::pair<std::uint32_t, std::uint32_t>;
+    std::vector<Band> whole;
+    for (const gpu::PointQuestion& question : asked) {
+      if ((question.pixel & device::gpu::kWholePixel) != 0)
+        whole.emplace_back(question.pixel & ~device::gpu::kWholePixel, question.word);
+    }
+    std::ranges::sort(whole);
+    const std::uint32_t band_words = band_rows_ * points_->fours / 8;
+    std::vector<device::OpenBits> open;
+    std::vector<std::uint32_t> pixels;
+    for (const gpu::PointQuestion& question : asked) {
+      const bool is_whole = (question.pixel & device::gpu::kWholePixel) != 0;
+      pixels.push_back(question.pixel & ~device::gpu::kWholePixel);
+      if (!is_whole && std::ranges::binary_search(whole, Band(pixels.back(), question.word / band_words * band_words)))
+        continue;
+      for (std::uint32_t word = question.word; word < question.word + question.words; ++word) {
+        open.push_back({question.pixel, word, is_whole ? points_->words[word].x : question.bits});
+        open_pairs_ += static_cast<std::uint64_t>(std::popcount(open.back().bits));
+      }
+    }
+    std::ranges::sort(pixels);
+    open_pixels_ += static_cast<std::uint64_t>(std::ranges::unique(pixels).begin() - pixels.begin());
+    return open;
+  }
+
   void add_open(const gpu::RowQuestion& question, std::vector<device::OpenBits>& open) {
     const std::uint64_t rows = question.low | std::uint64_t{question.high} << 32U;
     open_rows_ += static_cast<std::uint64_t>(std::popcount(rows));
-    for (std::uint32_t row = question.first_row; row < std::min(question.first_row + 64, light().rows); row += 4) {
+    for (std::uint32_t row = question.first_row; row < std::min(question.first_row + 64, rows_); row += 4) {
       const auto four = static_cast<std::uint32_t>(rows >> (row - question.first_row) & 15U);
       if (four == 0) continue;
       std::uint32_t bits = 0;
@@ -142,7 +227,7 @@ class EdgeScatter final : public EdgeMethod {
     }
     for (const std::uint32_t sample : {question.sample_1, question.sample_2}) {
       if (sample == gpu::kNoSample) continue;
-      const std::uint32_t row = sample / light().columns, column = sample % light().columns;
+      const std::uint32_t row = sample / columns_, column = sample % columns_;
       if ((rows >> (row - question.first_row) & 1U) != 0) continue;  // asked already
       open.push_back({question.pixel, column / 8 * row_words() + row / 4, 1U << (row % 4 * 8 + column % 8)});
     }
@@ -152,13 +237,25 @@ class EdgeScatter final : public EdgeMethod {
     EdgeMethod::count(counters);
     if (open_pixels_ == 0) return;
     counters["openPixels"] += std::exchange(open_pixels_, 0);
-    counters["openRows"] += std::exchange(open_rows_, 0);
+    if (points_) {
+      counters["openPairs"] += std::exchange(open_pairs_, 0);
+    } else {
+      counters["openRows"] += std::exchange(open_rows_, 0);
+    }
   }
 
+  std::uint32_t rows_ = 0, columns_ = 0;  // of light samples, or of cells
+  std::uint32_t band_rows_ = 1;
+  struct Points {
+    render::Buffer places, starts, slots;
+    std::uint32_t fours;            ///< PointRows
+    std::vector<glm::uvec2> words;  ///< what `slots` has
+  };
+  std::optional<Points> points_;  // of light samples that form no rows of a rectangle
   std::optional<render::ComputePass> scatter_;
   std::vector<std::uint32_t> constants_;
-  std::uint32_t band_words_ = 1;
-  std::uint64_t open_pixels_ = 0, open_rows_ = 0;  // to be counted
+  bool passes_rows_ = false;                                        // what scatter_ is for
+  std::uint64_t open_pixels_ = 0, open_rows_ = 0, open_pairs_ = 0;  // to be counted
 };
 
 visibility::MethodDescription describe() {
@@ -181,8 +278,7 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   const bool on_device = options[engines::kEngine] == engines::Engine::vulkan;
   if (on_device && options[kExactRows])
     throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
-  // Other lights are refused by the engine itself, which knows what can do them.
-  if (on_device) description.exact_for += " (rows of a rectangle light)";
+  if (on_device) std::erase_if(description.lights, [](auto kind) { return !visibility::is_planar(kind); });
   if (!options[kExactRows]) return description;
   description.output = visibility::Output::radiance;
   description.exact_for =
@@ -202,7 +298,7 @@ std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& devi
   if (engine == engines::Engine::vulkan) return std::make_unique<EdgeScatter>(device, std::move(description));
   return engines::make_engine_by_light(
       {[&device, description] { return std::make_unique<EdgeScatter>(device, description); },
-       [description] { return make_edge_scatter_on_vectors(description, false); }, visibility::has_rows});
+       [description] { return make_edge_scatter_on_vectors(description, false); }, is_planar_light});
 }
 
 bool edge_scatter_on_vectors(const render::Device& device, const visibility::MethodOptions& given,
@@ -210,7 +306,7 @@ bool edge_scatter_on_vectors(const render::Device& device, const visibility::Met
   const visibility::ParsedOptions options = visibility::parse_options(describe(), given);
   const engines::Engine engine = options[engines::kEngine];
   return options[kExactRows] || engines::runs_on_vectors(device, engine) ||
-         (engine == engines::Engine::automatic && !visibility::has_rows(light));
+         (engine == engines::Engine::automatic && !is_planar_light(light));
 }
 
 }  // namespace penumbra::volumes

@@ -8,9 +8,8 @@
 namespace penumbra::volumes {
 
 /// `edge-scatter`: signed silhouette edges scattered into a grid of light samples, one running sum a light row.
-/// Rectangle lights, one- and two-sided, light samples in rows (patterns rows and grid), any triangle soup, no bias.
-/// Every bit is the truth of its pair: rows that float arithmetic leaves open are decided by exact predicates.
-/// docs/edge-scatter.md.
+/// Any light, one- and two-sided, any pattern, any triangle soup, no bias; on the device planar lights. Every bit is
+/// the truth of its pair: what float arithmetic leaves open is decided by exact predicates. docs/edge-scatter.md.
 std::unique_ptr<visibility::Method> make_edge_scatter(const render::Device& device,
                                                       const visibility::MethodOptions& options);
 

@@ -1,4 +1,5 @@
-// The depth at the light's corner, to which the changes are added. Part of scatter_edges.comp.
+// The depth at the light's corner, to which the changes are added. Part of scatter_edges.comp and
+// scatter_points.comp.
 
 // Where p is on a triangle within rounding, its side of it is not certain, and half of all ways from p depend on that, not only
 // what is near its edges. Such a triangle is in the list of those that the way to the corner may meet. (bound on)

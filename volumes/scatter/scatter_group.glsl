@@ -1,4 +1,5 @@
-// Which edges of a list matter to the view samples of a subgroup, one lane an edge; those are scattered. Part of scatter_edges.comp.
+// Which edges of a list matter to the view samples of a subgroup, one lane an edge; those are scattered. Part of scatter_edges.comp and
+// scatter_points.comp.
 
 // The box of the group's view samples in each frame that edges are tested in.
 struct GroupBounds {
@@ -105,9 +106,8 @@ void drain(bool on, GroupBounds g) {
     const bool bounded = at_a.bounded && at_b.bounded;
     const vec2 low = min(at_a.low, at_b.low), high = max(at_a.high, at_b.high);
     const bool beside = any(greaterThan(low, light_high)) || any(lessThan(high, light_low));
-    const bool crosses = low.x < -0.5 || floor(high.y) >= ceil(low.y);
     const bool behind = min(dot(axis, a - push.center), dot(axis, b - push.center)) > g.height_high + 128.0 * kRound * push.reach;
-    const bool needed = used && !behind && !(bounded && (beside || !crosses));
+    const bool needed = used && !behind && !(bounded && (beside || !may_change(low, high)));
     const Multiplicities m = multiplicities(uintBitsToFloat(t2.xyz), uintBitsToFloat(t3.xyz), t0.w, uintBitsToFloat(t4.xyz),
                                             uintBitsToFloat(t5.xyz), t1.w, on);
     const float sliver = 16.0 * kRound * (max(length(uintBitsToFloat(t3.xyz) - g.middle), length(uintBitsToFloat(t5.xyz) - g.middle)) + length(g.half_size));

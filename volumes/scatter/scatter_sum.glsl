@@ -1,8 +1,4 @@
-// From changes to depths, from depths to masks. Part of scatter_edges.comp.
-
-uint bytes_sum(uint x, uint y) { return ((x & 0x7f7f7f7fu) + (y & 0x7f7f7f7fu)) ^ ((x ^ y) & 0x80808080u); }
-// 0x01 in each byte that is 0.
-uint zero_bytes(uint x) { return (~(((x & 0x7f7f7f7fu) + 0x7f7f7f7fu) | x) & 0x80808080u) >> 7; }
+// From changes to depths, from depths to masks, for light samples in rows of a rectangle. Part of scatter_edges.comp.
 
 uint words_per_mask() { return (push.columns + 7) / 8 * ((push.rows + 3) / 4); }
 uint mask_word(uint pixel, uint column_word, uint row_word) {
@@ -57,12 +53,12 @@ uint cut_at_horizon(uint pixel, vec3 above, float error) {
       uint bits = masks[mask_word(pixel, column_word, uint(row) >> 2)];
       for (int i = 0; i < 32; ++i) {
         const int r = row + (i >> 3);
-        const float column = float(column_word * 8 + uint(i & 7)) + row_shift(r);
-        const vec2 light_point = (vec2(column, float(r)) - first_cell) / half_cells;
+        const uint column = column_word * 8 + uint(i & 7);
+        const vec2 place = vec2(float(column) + row_shift(r), float(r)), light_point = (place - first_cell) / half_cells;
         const float value = above.x * light_point.x + above.y * light_point.y + above.z;
         if (value <= error) bits &= ~(1u << ((i >> 3) * 8 + (i & 7)));
         ++bits_seen;
-        open_row(float(r), abs(value) <= error && column < float(kColumns) && r <= last_row);
+        open_row(float(r), abs(value) <= error && column < kColumns && r <= last_row);
       }
       masks[mask_word(pixel, column_word, uint(row) >> 2)] = bits;
       visible += bitCount(bits);
