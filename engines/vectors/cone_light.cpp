@@ -1,5 +1,6 @@
 #include "engines/vectors/cone_light.hpp"
 
+#include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/size1.hpp"
 #include "base/error.hpp"
 #include "visibility/lights/device_light.hpp"
@@ -44,26 +45,13 @@ struct Rectangle {
   }
 };
 
-/// Of a triangle given by (s, t, height), the part within ±`most` of height 0: does its box meet ±`around`?
-bool meets_slab(const std::array<glm::dvec3, 3>& corners, double most, double around) {
-  Rectangle box;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
-    if (std::abs(a.z) <= most) box.add(glm::dvec2(a));
-    for (const double level : {-most, most}) {
-      if ((a.z < level) == (b.z < level)) continue;
-      box.add(glm::dvec2(a + (level - a.z) / (b.z - a.z) * (b - a)));
-    }
-  }
-  return box.low.x <= around && box.low.y <= around && box.high.x >= -around && box.high.y >= -around;
-}
-
 }  // namespace
 
 ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloats& scene,
                      const visibility::TriangleTree& tree, const ConeOptions& options)
     : light_(light),
       light_samples_(options.light_samples),
+      cuts_casters_(options.cuts_casters),
       scale_(static_cast<double>(visibility::device_scale(scene))) {
   for (int i = 0; i < 3; ++i) reach_ = std::max({reach_, std::abs(scene.lower[i]), std::abs(scene.upper[i])});
   reach_ *= static_cast<float>(scale_);
@@ -93,8 +81,15 @@ ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloa
   tree.for_each_near(light.center - box, light.center + box, [&](std::uint32_t triangle) {
     if (scene.casts_shadow[triangle] == 0 || scene.emits[triangle] == light.index) return;
     const auto corners = scene.corners(triangle);
-    near_.push_back(
-        {scale_ * glm::dvec3(corners[0]), scale_ * glm::dvec3(corners[1]), scale_ * glm::dvec3(corners[2])});
+    NearCaster& caster = near_.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)  // as edges have them
+      caster.corners[i] = glm::dvec3(corners[i] * static_cast<float>(scale_));
+    std::ranges::sort(caster.corners, comes_first);
+    caster.middle = (caster.corners[0] + caster.corners[1] + caster.corners[2]) / 3.0;
+    for (const glm::dvec3& corner : caster.corners)
+      caster.radius = std::max(caster.radius, 1.001 * glm::length(corner - caster.middle));
+    caster.triangle = triangle;
+    caster.plane = scene.plane[triangle];
   });
 }
 
@@ -115,6 +110,7 @@ LightGrid ConeLight::make_grid() const {
   grid.cones = LightGrid::Cones{};  // clang 14 knows no emplace() for a type that ends with the class around it
   grid.cones->end = !light_.sun;
   grid.cones->deviation = static_cast<float>(deviation_ * 1.0001);
+  grid.cones->reach = static_cast<double>(reach_);
   return grid;
 }
 
@@ -145,29 +141,20 @@ SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, Grid
   at.above = glm::vec3(above);
   at.above_error = static_cast<float>(error);
   if (above.z + span < -error) return SampleClass::none_visible;
-  if (!near_.empty() && touches(cone, glm::dvec3(at.p))) return SampleClass::open;
+  if (!near_.empty() && touches(*view.grid.cones, cone, glm::dvec3(at.p))) return SampleClass::open;
   at.straddles = above.z - span <= error;
   return SampleClass::in_front;
 }
 
 /// May a caster meet the square around the disk, or its plane so near to it that floats do not know on which side?
-/// (bound ends)
-bool ConeLight::touches(const LightCone& cone, const glm::dvec3& p) const {
-  const double height = glm::length(cone.middle), radius = glm::length(cone.u), reach = static_cast<double>(reach_);
-  const double slab = 4 * deviation_ + 512 * kRoundingOf * reach;
-  const double off = 8 * reach / height * 24 * kRoundingOf * (height / radius + 1) + 12 * kRoundingOf +
-                     deviation_ / height + deviation_ / radius;
-  const double around = 1 + 0x1p-6 + 8 * off + 4 * slab / height;
+/// Yes where places there are not known to half a square either. (bound ends)
+bool ConeLight::touches(const LightGrid::Cones& cones, const LightCone& cone, const glm::dvec3& p) const {
+  const double around = around_disk(cones, cone);
   if (!(around < 1.5)) return true;
-  return std::ranges::any_of(near_, [&](const std::array<glm::dvec3, 3>& triangle) {
-    std::array<glm::dvec3, 3> placed;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const glm::dvec3 way = triangle[i] - p;
-      placed[i] = {glm::dot(way, cone.u) / (radius * radius), glm::dot(way, cone.v) / (radius * radius),
-                   glm::dot(way, cone.middle) / height - height};
-    }
-    return meets_slab(placed, slab, around);
-  });
+  if (cuts_casters_) return false;
+  const DiskPlane plane(cone, p);
+  const double slab = slab_of(cones);
+  return std::ranges::any_of(near_, [&](const NearCaster& caster) { return meets_disk(plane, caster, slab, around); });
 }
 
 bool ConeLight::turn(LightGrid& grid, std::span<GridSample> samples) const {
@@ -280,6 +267,9 @@ void see_cone(const LightGrid& grid, ClusterSample& at) {
   at.lean = glm::vec2(place_of(cone.corner()));
   at.end = grid.cones->end ? static_cast<float>(-glm::dot(axis, cone.corner())) : 1e30F;
   at.per_lean = kRound * (16 * grid.per_length + 24 * glm::length(at.lean));
+  const LightGrid::Cones& cones = *grid.cones;
+  at.meets_end = cones.near != nullptr &&
+                 any_may_meet(DiskPlane(cone, glm::dvec3(at.p)), *cones.near, slab_of(cones), around_disk(cones, cone));
 }
 
 }  // namespace penumbra::vectors

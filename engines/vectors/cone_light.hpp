@@ -20,6 +20,7 @@ namespace penumbra::vectors {
 struct ConeOptions {
   std::string method;         ///< names errors
   bool light_samples = true;  ///< else the light itself: cells have nothing to do with light samples
+  bool cuts_casters = false;  ///< the method cuts casters at the disks that view samples see of a sphere
 };
 
 /// `tree` is that of the scene; `light` must outlive it.
@@ -36,18 +37,22 @@ class ConeLight {
   /// Turns the grid to view samples that have cones, and places them over it. False: they see the light from such
   /// different sides that no rectangle will do. One alone always sees it through one.
   [[nodiscard]] bool turn(LightGrid& grid, std::span<GridSample> samples) const;
+  /// Of a sphere, for methods that cut casters: those that may meet the disk that anyone sees.
+  [[nodiscard]] std::span<const NearCaster> near() const {
+    return cuts_casters_ ? std::span<const NearCaster>(near_) : std::span<const NearCaster>();
+  }
 
  private:
-  [[nodiscard]] bool touches(const LightCone& cone, const glm::dvec3& p) const;
+  [[nodiscard]] bool touches(const LightGrid::Cones& cones, const LightCone& cone, const glm::dvec3& p) const;
 
   const visibility::Light& light_;
-  bool light_samples_;
+  bool light_samples_, cuts_casters_;
   double scale_;
   double tangent_ = 0;    // of a sun: of half the angle of the cone that the square is around
   double deviation_ = 0;  // of a stored light point (of a sun: at distance 1), scaled
   double beyond_ = 0;     // of a sun: all casters are nearer to it than this height, scaled
   float reach_ = 0;
-  std::vector<std::array<glm::dvec3, 3>> near_;  // a sphere: casters that may touch a disk, scaled
+  std::vector<NearCaster> near_;
 };
 
 /// A cluster of which everything may matter to a method.

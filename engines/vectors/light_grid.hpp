@@ -30,6 +30,22 @@ struct LightCone {
   [[nodiscard]] glm::dvec3 corner() const { return middle - u - v; }
 };
 
+/// A caster that may meet the disk that a view sample sees of a sphere.
+struct NearCaster {
+  std::array<glm::dvec3, 3> corners{};  ///< scaled, lexicographically sorted
+  glm::dvec3 middle{0};
+  double radius = 0;  ///< no corner is farther from the middle
+  std::uint32_t triangle = 0, plane = 0;
+};
+/// The same, side by side: columns of corners (x, y, z each), middle and radius, that end with room for a vector.
+struct NearCasters {
+  static constexpr std::size_t kMiddle = 9, kRadius = 12, kFields = 13, kRoom = 32;
+
+  std::array<std::vector<double>, kFields> columns;
+  std::vector<std::uint32_t> triangle, plane;
+  std::size_t count = 0;
+};
+
 /// The light, or a rectangle around it, as a grid of cells, for one of its two sides. A point x of its plane has the
 /// grid coordinates (X, Y) = (across, along) · (x − center) + first_cell: where samples are in rows, column and row of
 /// the light sample there, before the row's shift; else there are about as many cells as light samples, which are in
@@ -61,6 +77,10 @@ struct LightGrid {
     bool end = false;               ///< at the light, so that what is behind it hides nothing: not a sun's
     float deviation = 0;            ///< a stored light point from its place, as LightCone::u
     float lowest_end = 0;           ///< nothing higher over the grid's plane is behind the light
+    double reach = 0;               ///< of scene and light, whatever the grid's rectangle
+    /// Casters that may meet the disks of a few view samples, if the method cuts them there; else whoever has such
+    /// casters is left to exact predicates.
+    const NearCasters* near = nullptr;
   };
   std::optional<Cones> cones = {};
 };
@@ -131,6 +151,7 @@ struct ClusterSample : GridSample {
   Placing on_light;
   glm::mat3 turn{1};
   LightGrid::Range window{};  ///< of the grid's cells, that p sees the light through
+  bool meets_end = false;     ///< some of LightGrid::Cones::near may meet the square around its disk
 };
 
 /// The hull of view samples and a rectangle of the light's plane. (bound shaft)

@@ -2,6 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/open_judge.hpp"
 #include "visibility/masks/visible_share.hpp"
 
@@ -43,6 +44,8 @@ struct Buffers {
   std::vector<GridSample> samples;
   std::vector<SampleMask> masks;
   std::vector<LightCone> cones;  // of the region's view samples
+  std::vector<NearCaster> near_region, near_cluster;
+  NearCasters near;
   LightGrid turned;              // to a region's or a cluster's
   std::uint64_t turned_for = 0;  // the light
 };
@@ -115,7 +118,7 @@ void MaskMethod::prepare_light(const visibility::Light& light) {
   grids_.clear();
   cone_.reset();
   if (!visibility::is_planar(light.kind)) {
-    cone_.emplace(light, *scene_, tree_, ConeOptions{description_.name, asks_for_light_samples()});
+    cone_.emplace(light, *scene_, tree_, ConeOptions{description_.name, asks_for_light_samples(), cuts_casters()});
     static_cast<void>(prepare_casters());
     grids_.push_back(cone_->make_grid());
     return;
@@ -237,6 +240,7 @@ Blocks MaskMethod::enter_region(const LightGrid& grid, std::span<GridSample> sam
   if (!cone_) return begin_region(grid, make_cluster(grid, samples));
   LightGrid& turned = turned_grid();
   turned.cones->of = buffers().cones;
+  find_near_disks(turned, samples, cone_->near(), buffers().near_region);
   return begin_region(turned, cone_->turn(turned, samples) ? make_cluster(turned, samples) : everything(samples));
 }
 
@@ -251,17 +255,26 @@ void MaskMethod::do_block(const LightGrid& grid, std::span<GridSample> block, Op
     if (!cone_) {
       do_cluster(grid, cluster, judge, masks);
     } else if (cone_->turn(turned_grid(), cluster)) {
-      do_cluster(turned_grid(), cluster, judge, masks);
+      do_turned(cluster, judge, masks);
     } else {
       for (std::size_t i = 0; i < cluster.size(); ++i) {
         const bool sees_it = cone_->turn(turned_grid(), cluster.subspan(i, 1));
         PENUMBRA_ASSERT(sees_it, "light {}: no rectangle for pixel {}", light_->name, cluster[i].pixel);
-        do_cluster(turned_grid(), cluster.subspan(i, 1), judge, std::span(masks).subspan(i, 1));
+        do_turned(cluster.subspan(i, 1), judge, std::span(masks).subspan(i, 1));
       }
     }
     for (std::size_t i = 0; i < cluster.size(); ++i) visible_[tile_pixel(cluster[i])] = masks[i].visible;
     begin = end;
   }
+}
+
+void MaskMethod::do_turned(std::span<const GridSample> samples, OpenJudge& judge, std::span<SampleMask> masks) {
+  LightGrid& turned = turned_grid();
+  Buffers& own = buffers();
+  find_near_disks(turned, samples, own.near_region, own.near_cluster);
+  if (!own.near_cluster.empty()) set_near_casters(own.near_cluster, own.near);
+  turned.cones->near = own.near_cluster.empty() ? nullptr : &own.near;
+  do_cluster(turned, samples, judge, masks);
 }
 
 void MaskMethod::decide_all(const GridSample& sample, OpenJudge& judge) {

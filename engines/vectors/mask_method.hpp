@@ -70,6 +70,8 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] virtual GridShape grid_shape() const;
   /// Of a sphere or sun.
   [[nodiscard]] virtual bool asks_for_light_samples() const { return true; }
+  /// Of a sphere: ConeOptions.
+  [[nodiscard]] virtual bool cuts_casters() const { return false; }
   /// Runs do_cluster again for the tile last evaluated, for a result that was not asked for the first time. Counters
   /// stay.
   void repeat();
@@ -99,6 +101,7 @@ class MaskMethod : public visibility::Method {
   void do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top);
   Blocks enter_region(const LightGrid& grid, std::span<GridSample> samples);
   void do_block(const LightGrid& grid, std::span<GridSample> block, OpenJudge& judge);
+  void do_turned(std::span<const GridSample> samples, OpenJudge& judge, std::span<SampleMask> masks);
   void decide_all(const GridSample& sample, OpenJudge& judge);
   [[nodiscard]] std::uint16_t* mask_of(const GridSample& at) { return &masks_[tile_pixel(at) * mask_words(grids_[0])]; }
 

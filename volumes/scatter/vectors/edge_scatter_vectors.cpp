@@ -23,6 +23,7 @@ class VectorEdgeScatter final : public VectorEdges {
       : VectorEdges(std::move(given), "scatter edges", false) {}
 
  private:
+  [[nodiscard]] bool cuts_casters() const override { return true; }
   void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask> masks) override {
     scatter(input, scratch_.local(), judge, masks);
   }

@@ -3,6 +3,7 @@
 // samples anywhere".
 
 #include "engines/vectors/horizon.hpp"
+#include "volumes/scatter/vectors/disk_cuts.hpp"
 #include "volumes/scatter/vectors/precise.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 
@@ -48,11 +49,16 @@ class PointScatter {
     at_ = &at;
     const auto special = [&](const SpecialEdges& edges) { place_special(in_, s_, at, edges, judge_); };
     Projection{in_, at, s_.lists, s_.crossing}(special);
+    if (at.meets_end) add_disk_cuts({in_.grid, at}, judge_, s_.open, s_.crossing);
     for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) add(i);
     return s_.crossing.count > 0 || s_.open.any();
   }
 
  private:
+  [[nodiscard]] bool is_disk_cut(const UpwardEdge& e) const {
+    return std::bit_cast<std::uint32_t>(s_.crossing[kEdge][e.crossing()]) == kDiskCut;
+  }
+
   void add(std::size_t first) {
     UpwardEdges edges;
     const M beside = turn_upward(in_.grid, s_.crossing, first, edges);
@@ -163,6 +169,7 @@ class PointScatter {
   };
   const OwnEdge& own(const UpwardEdge& e) {
     if (own_) return *own_;
+    if (is_disk_cut(e)) return own_.emplace(OwnEdge{{}, e[kNear]});
     const CrossingTable& table = s_.crossing;
     const std::size_t i = e.crossing();
     PreciseInput precise = precise_of(e);
@@ -185,6 +192,7 @@ class PointScatter {
     const auto& [s, near] = own(e);
     if (std::abs(side) > near) return;
     const std::uint32_t sample = tiles_.sample_of[slot];
+    if (is_disk_cut(e)) return s_.open.samples.push_back(sample);
     // Where an end may be on either side of it, so may be what goes on from there.
     const bool at_end = std::abs(s.near.y - y) < 2 * s.error_near || std::abs(s.far.y - y) < 2 * s.error_far;
     const bool has_y = e[kLowY] <= y && y < e[kHighY];
@@ -259,7 +267,8 @@ std::int32_t depth_by_a_sample(const LightTiles& tiles, const PointChanges& chan
 void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge,
                     SampleMask& mask) {
   const LightTiles& tiles = *in.grid.tiles;
-  const std::size_t some = scratch.lists.settled.count + scratch.lists.unsettled.count;
+  const std::size_t some =
+      scratch.lists.settled.count + scratch.lists.unsettled.count + (at.meets_end ? std::size_t{1} : 0);
   std::int32_t depth = 0;
   if (scratch.lists.triangles.count > 0) {
     depth = static_cast<std::int32_t>(

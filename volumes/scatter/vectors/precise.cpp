@@ -1,5 +1,7 @@
 #include "volumes/scatter/vectors/precise.hpp"
 
+#include "volumes/scatter/vectors/disk_cuts.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -188,19 +190,32 @@ void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from,
   row = static_cast<Counter>(row + up);
 }
 
+/// As stored.
+std::array<glm::dvec3, 2> ends_of(const ScatterInput& in, std::size_t edge) {
+  const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
+  const WideEdges& leaf = in.edge_tree.leaves[slot / kWide];
+  const auto point = [&](const WidePoints& end) {
+    const std::size_t lane = slot % kWide;
+    return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]);
+  };
+  return {point(leaf.a), point(leaf.b)};
+}
+
 /// The part of an edge in a window of about twice the light. (bound window)
 struct WindowPart {
   Way start, end;
   float far_start, far_end;
+  bool passes_at_start = false, passes_at_end = false;  ///< through a sphere's disk
   bool is_empty = false;
 };
 
 /// Widened by the lift, so that rounding cannot put an edge at p's own height below the window.
-WindowPart cut_to_window(const LightGrid& grid, const Placing& place, const Way& a, const Way& b, float far_a,
-                         float far_b) {
+WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Way& a, const Way& b, float far_a,
+                         float far_b, const PassingEdge& passing) {
+  const Placing& place = at.on_light;
   const float lift = place.per_lift * std::max(far_a, far_b);
   const glm::vec2 window = 2.0F * grid.half_cells + 2.0F, off = place.foot - grid.first_cell;
-  float from = 0, to = 1;
+  float from = passing.behind[0] ? passing.share : 0, to = passing.behind[1] ? passing.share : 1;
   const auto cut = [&](float inside_a, float inside_b) {
     const float t = inside_a / (inside_a - inside_b);
     if (inside_a < 0) from = std::max(from, inside_b < 0 ? 2.0F : t);
@@ -211,12 +226,14 @@ WindowPart cut_to_window(const LightGrid& grid, const Placing& place, const Way&
     for (const float sign : {-1.0F, 1.0F})
       cut(window[axis] * (a.z + lift) + sign * xa, window[axis] * (b.z + lift) + sign * xb);
   }
-  if (grid.cones && grid.cones->end) cut(place.height - a.z, place.height - b.z);
+  if (grid.cones && grid.cones->end && !at.meets_end) cut(place.height - a.z, place.height - b.z);
   return {.start = from > 0 ? glm::mix(a, b, from) : a,
           .end = to < 1 ? glm::mix(a, b, to) : b,
           .far_start = from > 0 ? glm::mix(far_a, far_b, from) : far_a,
           .far_end = to < 1 ? glm::mix(far_a, far_b, to) : far_b,
-          .is_empty = from > to};
+          .passes_at_start = passing.behind[0] && from == passing.share,
+          .passes_at_end = passing.behind[1] && to == passing.share,
+          .is_empty = from > to || (passing.behind[0] && passing.behind[1])};
 }
 
 }  // namespace
@@ -237,13 +254,8 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
 }
 
 int side_of_way(const PreciseInput& in, const glm::dvec3& l) {
-  const auto slot = std::bit_cast<std::uint32_t>(in.scatter.edges[kEdgeSlot][in.edge]);
-  const WideEdges& leaf = in.scatter.edge_tree.leaves[slot / kWide];
-  const auto from_p = [&](const WidePoints& end) {
-    const std::size_t lane = slot % kWide;
-    return glm::dvec3(end[0][lane], end[1][lane], end[2][lane]) - glm::dvec3(in.at.p);
-  };
-  const glm::dvec3 a = from_p(leaf.a), b = from_p(leaf.b);
+  const auto [from, to] = ends_of(in.scatter, in.edge);
+  const glm::dvec3 a = from - glm::dvec3(in.at.p), b = to - glm::dvec3(in.at.p);
   const double side = glm::dot(l, glm::cross(a, b));
   // As in visibility::certainly_meets.
   const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
@@ -265,14 +277,19 @@ std::optional<ProjectedEdge> place_edge(const PreciseInput& in, Open& open) {
   const Way b = way_to(edges[kBx][edge], edges[kBy][edge], edges[kBh][edge]);
   const float far = edges[kFar][edge] + at.far, far_a = far_of(grid, place, a, far),
               far_b = far_of(grid, place, b, far);
-  const WindowPart part = in.settled ? WindowPart{a, b, far_a, far_b} : cut_to_window(grid, place, a, b, far_a, far_b);
+  const PassingEdge passing =
+      !in.settled && at.meets_end ? pass_disk({grid, at}, ends_of(in.scatter, edge)) : PassingEdge();
+  const WindowPart part =
+      in.settled ? WindowPart{a, b, far_a, far_b} : cut_to_window(grid, at, a, b, far_a, far_b, passing);
   if (part.is_empty || in.k == 0) return std::nullopt;
   if (!in.settled && (part.start.z < place.through_p * part.far_start || part.end.z < place.through_p * part.far_end)) {
     open.pixel = true;
     return std::nullopt;
   }
-  const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : appears(place, part.start);
-  const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : appears(place, part.end);
+  const glm::vec2 start = part.passes_at_start ? passing.place : appears(place, part.start),
+                  end = part.passes_at_end ? passing.place : appears(place, part.end);
+  const glm::vec2 projected_a = in.projected ? (*in.projected)[0] : start;
+  const glm::vec2 projected_b = in.projected ? (*in.projected)[1] : end;
   const float foot_a = glm::length(projected_a - place.foot), foot_b = glm::length(projected_b - place.foot);
   ProjectedEdge edge_on_light =
       project_edge(grid, projected_a, projected_b, error_of(place, part.far_start, part.start.z, foot_a),

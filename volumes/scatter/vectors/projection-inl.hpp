@@ -7,6 +7,7 @@
 #define PENUMBRA_VOLUMES_PROJECTION_INL_HPP
 #endif
 
+#include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 
@@ -139,7 +140,14 @@ class Projection {
       keep_inside(hn::Add(wide_a, xa), hn::Add(wide_b, xb));
     }
     // What is behind a sphere's disk. (bound ends)
-    if (grid.cones && grid.cones->end) keep_inside(hn::Sub(set(place_.height), a.w), hn::Sub(set(place_.height), b.w));
+    M at_end = hn::FirstN(d, 0);
+    if (at_.meets_end) {
+      const V slab = set(static_cast<float>(vectors::slab_of(*grid.cones)) * 1.0001F), end = set(place_.height);
+      live = hn::And(live, hn::Lt(hn::Min(a.w, b.w), hn::Add(end, slab)));
+      at_end = hn::Gt(hn::Max(a.w, b.w), hn::Sub(end, slab));
+    } else if (grid.cones && grid.cones->end) {
+      keep_inside(hn::Sub(set(place_.height), a.w), hn::Sub(set(place_.height), b.w));
+    }
     live = hn::And(live, hn::Le(from, to));
     if (hn::AllFalse(d, live)) return;
     const auto at = [&](V t, M cut, V x, V y, V uncut) {
@@ -151,7 +159,7 @@ class Projection {
     const V far_start = at(from, cut_a, far_a, far_b, far_a), far_end = at(to, cut_b, far_a, far_b, far_b);
     const V through_p = set(place_.through_p);
     const M near_p = hn::Or(hn::Lt(start.w, hn::Mul(through_p, far_start)), hn::Lt(end.w, hn::Mul(through_p, far_end)));
-    const M other = hn::And(live, hn::Or(open_ones(m), near_p));
+    const M other = hn::And(live, hn::Or(hn::Or(open_ones(m), near_p), at_end));
     if (!hn::AllFalse(d, other)) special({table, i, other, m, false});
     const LightPoints place_a = appears(start), place_b = appears(end);
     const V error =

@@ -59,13 +59,16 @@ void VectorEdges::do_cluster(const LightGrid& grid, std::span<const GridSample> 
                              std::span<SampleMask> masks) {
   Scratch& scratch = scratch_.local();
   const std::vector<std::uint32_t>& roots = edge_roots(grid, view_samples);
-  if (roots.empty() && scratch.triangle_roots.empty()) return do_unoccluded(grid, view_samples, judge, masks);
+  const bool at_disk = grid.cones && grid.cones->near != nullptr;  // a caster may be cut whose own edges do not matter
+  if (roots.empty() && scratch.triangle_roots.empty() && !at_disk)
+    return do_unoccluded(grid, view_samples, judge, masks);
   const Cluster cluster = make_cluster(grid, view_samples);
   find_triangles({grid, triangles(), cluster, cluster.corner}, scratch.triangle_roots, scratch.stack,
                  scratch.triangles);
   find_edges({grid, edges_of(grid), cluster}, roots, scratch.stack, scratch.edges);
   scratch.listed += scratch.edges.count;
-  if (scratch.edges.count + scratch.triangles.count == 0) return do_unoccluded(grid, view_samples, judge, masks);
+  if (scratch.edges.count + scratch.triangles.count == 0 && !at_disk)
+    return do_unoccluded(grid, view_samples, judge, masks);
   scratch.samples.clear();
   for (const GridSample& at : view_samples) scratch.samples.push_back(complete(grid, cluster, at));
   do_occluded(

@@ -1,0 +1,316 @@
+#include "volumes/scatter/vectors/disk_cuts.hpp"
+
+#include "engines/vectors/disk_plane.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volumes/scatter/vectors/disk_cuts.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+#ifndef PENUMBRA_DISK_CUTS_ONCE
+#define PENUMBRA_DISK_CUTS_ONCE
+namespace penumbra::volumes {
+
+/// How places in the plane become crossings.
+struct DiskCells {
+  glm::dvec2 middle, half;
+  double cells, rounding, per_far, fixed;
+
+  explicit DiskCells(const DiskCutInput& in)
+      : middle(in.grid.first_cell),
+        half(in.grid.half_cells),
+        cells(std::max(half.x, half.y)),
+        rounding(4.04 * static_cast<double>(kRound)),
+        per_far(1.2 * static_cast<double>(in.at.on_light.per_foot) + rounding),
+        fixed(1.2 * static_cast<double>(in.at.on_light.fixed) + rounding * glm::length(middle)) {}
+};
+
+/// One caster, number by number: one that has a corner within rounding of the plane, or of whose plane p is.
+class SlowDiskCut {
+ public:
+  SlowDiskCut(const DiskCutInput& in, const vectors::DiskPlane& plane, double slab, double most)
+      : in_(in), plane_(plane), cells_(in), slab_(slab), most_(most) {}
+
+  void add(std::size_t number, OpenJudge& judge, Open& open, CrossingTable& out) const {
+    const vectors::NearCasters& near = *in_.grid.cones->near;
+    if (near.plane[number] == in_.at.plane) return;
+    std::array<glm::dvec3, 3> corners;
+    std::array<glm::dvec2, 3> place;
+    std::array<double, 3> height{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = {near.columns[3 * i][number], near.columns[3 * i + 1][number], near.columns[3 * i + 2][number]};
+      place[i] = plane_.place(corners[i]);
+      height[i] = plane_.height(corners[i]);
+    }
+    if (std::ranges::min(height) > slab_ || std::ranges::max(height) < -slab_) return;
+    glm::dvec2 from = place[0], to = from;
+    const bool passes = std::ranges::min(height) < 0 && std::ranges::max(height) >= 0;
+    // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
+    for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
+      if (!passes || (height[i] < 0) == (height[next] < 0)) continue;
+      (height[i] < 0 ? from : to) = plane_.pass(corners[std::min(i, next)], corners[std::max(i, next)]);
+    }
+    const double wide = around_cut(place, height, from, to);
+    const glm::dvec2 low = glm::min(from, to) - wide, high = glm::max(from, to) + wide;
+    if (low.x > most_ || low.y > most_ || high.x < -most_ || high.y < -most_) return;
+    const int turn = passes ? turn_from(corners, near.triangle[number], judge) : 0;
+    open.pixel = open.pixel || (passes && turn == 0);
+    const double farthest = cells_.cells * std::max(glm::length(from), glm::length(to));
+    const glm::vec2 a(cells_.middle + cells_.half * from), b(cells_.middle + cells_.half * to);
+    out[kX0][out.count] = a.x;
+    out[kY0][out.count] = a.y;
+    out[kX1][out.count] = b.x;
+    out[kY1][out.count] = b.y;
+    out[kK][out.count] = static_cast<float>(turn);
+    out[kError][out.count] =
+        static_cast<float>(1.01 * (cells_.cells * wide + cells_.per_far * farthest + cells_.fixed));
+    out[kEdge][out.count] = std::bit_cast<float>(kDiskCut);
+    ++out.count;
+  }
+
+ private:
+  static double distance(const glm::dvec2& x, const glm::dvec2& from, const glm::dvec2& to) {
+    const glm::dvec2 way = to - from;
+    const double squared = glm::dot(way, way);
+    const double share = squared > 0 ? std::clamp(glm::dot(x - from, way) / squared, 0.0, 1.0) : 0.0;
+    return glm::length(x - from - share * way);
+  }
+  /// How far what is within the slab may be from the segment where the caster passes through.
+  [[nodiscard]] double around_cut(const std::array<glm::dvec2, 3>& place, const std::array<double, 3>& height,
+                                  const glm::dvec2& from, const glm::dvec2& to) const {
+    double wide = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t next = (i + 1) % 3;
+      if (std::abs(height[i]) <= slab_) wide = std::max(wide, distance(place[i], from, to));
+      for (const double level : {-slab_, slab_}) {
+        if ((height[i] < level) == (height[next] < level)) continue;
+        const double share = (level - height[i]) / (height[next] - height[i]);
+        wide = std::max(wide, distance(place[i] + share * (place[next] - place[i]), from, to));
+      }
+    }
+    return wide;
+  }
+  /// +1: from p the corners run counter-clockwise; 0: p is in their plane, or they are so thin that nobody knows.
+  [[nodiscard]] int turn_from(const std::array<glm::dvec3, 3>& corners, std::uint32_t triangle,
+                              OpenJudge& judge) const {
+    const glm::dvec3 a = corners[0] - plane_.p, b = corners[1] - plane_.p, c = corners[2] - plane_.p;
+    const double side = -glm::dot(a, glm::cross(b, c));
+    // As in visibility::certainly_meets.
+    if (std::abs(side) > 0x1p-46 * glm::length(a) * glm::length(b) * glm::length(c)) return side > 0 ? 1 : -1;
+    const double along =
+        glm::dot(judge.normal_towards(in_.at, triangle), glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return along > 0 ? 1 : along < 0 ? -1 : 0;
+  }
+
+  const DiskCutInput& in_;
+  const vectors::DiskPlane& plane_;
+  DiskCells cells_;
+  double slab_, most_;
+};
+
+}  // namespace penumbra::volumes
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::volumes::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Doubles = hn::ScalableTag<double>;
+using Double = hn::Vec<Doubles>;
+using Which = hn::Mask<Doubles>;
+
+struct Double3 {
+  Double x, y, z;
+};
+Double number(double x) {
+  return hn::Set(Doubles(), x);
+}
+Double product(const Double3& a, const Double3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+Double along(const glm::dvec3& n, const Double3& x) {
+  return product({number(n.x), number(n.y), number(n.z)}, x);
+}
+
+/// Casters side by side.
+class FastDiskCuts {
+ public:
+  FastDiskCuts(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out)
+      : in_(in),
+        near_(*in.grid.cones->near),
+        plane_(in.grid.cones->of[in.at.cone], glm::dvec3(in.at.p)),
+        cells_(in),
+        slab_(thin_slab(*in.grid.cones)),
+        most_(vectors::around_disk(*in.grid.cones, in.grid.cones->of[in.at.cone])),
+        slow_(in, plane_, slab_, most_),
+        judge_(judge),
+        open_(open),
+        out_(out) {}
+
+  void operator()() {
+    out_.reserve(out_.count + near_.count);
+    for (std::size_t i = 0; i < near_.count; i += hn::Lanes(Doubles())) add(i);
+  }
+
+ private:
+  /// Light samples are this near to the plane: stored ones are rounded, and it is computed in double.
+  static double thin_slab(const LightGrid::Cones& cones) {
+    return 2 * static_cast<double>(cones.deviation) + 0x1p-40 * cones.reach;
+  }
+  /// The way from p to a point.
+  [[nodiscard]] Double3 way(std::size_t field, std::size_t i) const {
+    const auto column = [&](std::size_t axis) { return hn::LoadU(Doubles(), &near_.columns[field + axis][i]); };
+    return {hn::Sub(column(0), number(plane_.p.x)), hn::Sub(column(1), number(plane_.p.y)),
+            hn::Sub(column(2), number(plane_.p.z))};
+  }
+  /// As DiskPlane.
+  struct Corner {
+    Double3 way;
+    Double height, s, t;
+  };
+  [[nodiscard]] Double height(const Double3& w) const { return hn::Sub(along(plane_.axis, w), number(plane_.end)); }
+  [[nodiscard]] Corner corner(std::size_t which, std::size_t i) const {
+    const Double3 w = way(3 * which, i);
+    return {w, height(w), along(plane_.u, w), along(plane_.v, w)};
+  }
+  struct Passing {
+    Double s, t;
+    Double wide;  // how far what is within the slab may be from it
+  };
+  [[nodiscard]] Passing pass(const Corner& a, const Corner& b) const {
+    const Double across = hn::Sub(a.height, b.height), share = hn::Div(a.height, across);
+    const Double to_s = hn::Sub(b.s, a.s), to_t = hn::Sub(b.t, a.t);
+    const Double size = hn::Add(hn::Abs(to_s), hn::Abs(to_t));
+    return {hn::Add(a.s, hn::Mul(share, to_s)), hn::Add(a.t, hn::Mul(share, to_t)),
+            hn::Div(hn::Mul(number(1.01 * slab_), size), hn::Abs(across))};
+  }
+
+  void add(std::size_t first) {
+    const Doubles d;
+    const Which used = hn::FirstN(d, near_.count - first);
+    const Double most_off = hn::Add(hn::LoadU(d, &near_.columns[vectors::NearCasters::kRadius][first]), number(slab_));
+    // A radius has room for rounding.
+    const Which near = hn::And(used, hn::Le(hn::Abs(height(way(vectors::NearCasters::kMiddle, first))), most_off));
+    if (hn::AllFalse(d, near)) return;
+    const Corner a = corner(0, first), b = corner(1, first), c = corner(2, first);
+    const Double zero = hn::Zero(d), slab = number(slab_);
+    const Double least = hn::Min(a.height, hn::Min(b.height, c.height)),
+                 highest = hn::Max(a.height, hn::Max(b.height, c.height)),
+                 nearest = hn::Min(hn::Abs(a.height), hn::Min(hn::Abs(b.height), hn::Abs(c.height)));
+    const Which meets = hn::And(near, hn::And(hn::Le(least, slab), hn::Ge(highest, hn::Neg(slab))));
+    if (hn::AllFalse(d, meets)) return;
+    const Double side = hn::Neg(product(a.way, {hn::Sub(hn::Mul(b.way.y, c.way.z), hn::Mul(b.way.z, c.way.y)),
+                                                hn::Sub(hn::Mul(b.way.z, c.way.x), hn::Mul(b.way.x, c.way.z)),
+                                                hn::Sub(hn::Mul(b.way.x, c.way.y), hn::Mul(b.way.y, c.way.x))}));
+    // As in visibility::certainly_meets.
+    const Double unsure =
+        hn::Mul(number(0x1p-46),
+                hn::Sqrt(hn::Mul(product(a.way, a.way), hn::Mul(product(b.way, b.way), product(c.way, c.way)))));
+    const Which sure = hn::And(hn::Gt(nearest, slab), hn::Gt(hn::Abs(side), unsure));
+    each(hn::AndNot(sure, meets), first, [&](std::size_t i) { slow_.add(i, judge_, open_, out_); });
+    if (hn::AllFalse(d, hn::And(meets, sure))) return;
+    // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
+    const Passing ab = pass(a, b), bc = pass(b, c), ac = pass(a, c);
+    const Which a_before = hn::Lt(a.height, zero), b_before = hn::Lt(b.height, zero), c_before = hn::Lt(c.height, zero);
+    const Which from_ab = hn::AndNot(b_before, a_before), from_bc = hn::AndNot(c_before, b_before),
+                to_ab = hn::AndNot(a_before, b_before), to_bc = hn::AndNot(b_before, c_before);
+    const auto choose = [&](Which is_ab, Which is_bc, Double of_ab, Double of_bc, Double of_ac) {
+      return hn::IfThenElse(is_ab, of_ab, hn::IfThenElse(is_bc, of_bc, of_ac));
+    };
+    const Double from_s = choose(from_ab, from_bc, ab.s, bc.s, ac.s),
+                 from_t = choose(from_ab, from_bc, ab.t, bc.t, ac.t);
+    const Double to_s = choose(to_ab, to_bc, ab.s, bc.s, ac.s), to_t = choose(to_ab, to_bc, ab.t, bc.t, ac.t);
+    const Double wide =
+        hn::Max(choose(from_ab, from_bc, ab.wide, bc.wide, ac.wide), choose(to_ab, to_bc, ab.wide, bc.wide, ac.wide));
+    const auto within = [&](Double x, Double y) {
+      return hn::And(hn::Le(hn::Sub(hn::Min(x, y), wide), number(most_)),
+                     hn::Ge(hn::Add(hn::Max(x, y), wide), number(-most_)));
+    };
+    Which kept = hn::And(hn::And(meets, sure), hn::And(within(from_s, to_s), within(from_t, to_t)));
+    each(kept, first, [&](std::size_t i) {
+      if (near_.plane[i] == in_.at.plane)
+        kept = hn::AndNot(hn::Eq(hn::Iota(d, 0), number(static_cast<double>(i - first))), kept);
+    });
+    const Double farthest = hn::Mul(number(cells_.cells), hn::Max(hn::Add(hn::Abs(from_s), hn::Abs(from_t)),
+                                                                  hn::Add(hn::Abs(to_s), hn::Abs(to_t))));
+    const Double error =
+        hn::Mul(number(1.01), hn::Add(hn::Mul(number(cells_.cells), wide),
+                                      hn::Add(hn::Mul(number(cells_.per_far), farthest), number(cells_.fixed))));
+    const std::size_t more = hn::CountTrue(d, kept);
+    const auto store = [&](std::size_t field, Double x) {
+      HWY_ALIGN double packed[hn::MaxLanes(Doubles())];
+      hn::CompressStore(x, kept, d, packed);
+      for (std::size_t i = 0; i < more; ++i) out_[field][out_.count + i] = static_cast<float>(packed[i]);
+    };
+    const auto cell = [&](Double x, double middle, double half) {
+      return hn::Add(number(middle), hn::Mul(number(half), x));
+    };
+    store(kX0, cell(from_s, cells_.middle.x, cells_.half.x));
+    store(kY0, cell(from_t, cells_.middle.y, cells_.half.y));
+    store(kX1, cell(to_s, cells_.middle.x, cells_.half.x));
+    store(kY1, cell(to_t, cells_.middle.y, cells_.half.y));
+    store(kK, hn::CopySign(number(1), side));
+    store(kError, error);
+    for (std::size_t i = 0; i < more; ++i) out_[kEdge][out_.count + i] = std::bit_cast<float>(kDiskCut);
+    out_.count += more;
+  }
+
+  template <typename Visit>
+  static void each(Which which, std::size_t first, Visit visit) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(Doubles(), which, bytes);
+    for (std::uint32_t left = bytes[0]; left != 0; left &= left - 1)
+      visit(first + static_cast<std::size_t>(std::countr_zero(left)));
+  }
+
+  const DiskCutInput& in_;
+  const vectors::NearCasters& near_;
+  vectors::DiskPlane plane_;
+  DiskCells cells_;
+  double slab_, most_;
+  SlowDiskCut slow_;
+  OpenJudge& judge_;
+  Open& open_;
+  CrossingTable& out_;
+};
+
+void add_disk_cuts_here(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out) {
+  FastDiskCuts(in, judge, open, out)();
+}
+
+}  // namespace
+}  // namespace penumbra::volumes::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::volumes {
+
+HWY_EXPORT(add_disk_cuts_here);
+
+void add_disk_cuts(const DiskCutInput& input, OpenJudge& judge, Open& open, CrossingTable& out) {
+  HWY_DYNAMIC_DISPATCH(add_disk_cuts_here)(input, judge, open, out);
+}
+
+PassingEdge pass_disk(const DiskCutInput& in, const std::array<glm::dvec3, 2>& ends) {
+  const vectors::DiskPlane plane(in.grid.cones->of[in.at.cone], glm::dvec3(in.at.p));
+  const std::array heights{plane.height(ends[0]), plane.height(ends[1])};
+  PassingEdge passing{{heights[0] >= 0, heights[1] >= 0}};
+  if (passing.behind[0] == passing.behind[1]) return passing;
+  const bool turn = vectors::comes_first(ends[1], ends[0]);
+  const DiskCells cells(in);
+  passing.place = glm::vec2(cells.middle + cells.half * plane.pass(ends[turn ? 1 : 0], ends[turn ? 0 : 1]));
+  passing.share = static_cast<float>(heights[0] / (heights[0] - heights[1]));
+  return passing;
+}
+
+}  // namespace penumbra::volumes
+#endif
