@@ -1,6 +1,7 @@
 #include "volumes/scatter/vectors/row_sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -24,17 +25,22 @@ double RowSweep::next_row() {
   return next;
 }
 
-/// The gap whose sides cross before all others do; 1 if none do. Found again only where the last one found is gone.
+/// The gap whose sides cross before all others do, the leftmost of several. Looked for only where the last one found is
+/// gone. Four minima side by side do not wait for one another.
 std::size_t RowSweep::first_crossing() {
-  const auto earlier = [](const Gap& a, const Gap& b) { return a.crossing < b.crossing; };
-  const auto first = std::min_element(gaps_.begin() + 1, gaps_.end(), earlier);
-  soonest_ = first->crossing;
+  std::array<double, 4> least{kNever, kNever, kNever, kNever};
+  std::size_t i = 0;
+  for (; i + least.size() <= crossings_.size(); i += least.size()) {
+    for (std::size_t j = 0; j < least.size(); ++j) least[j] = std::min(least[j], crossings_[i + j]);
+  }
+  for (; i < crossings_.size(); ++i) least[0] = std::min(least[0], crossings_[i]);
+  soonest_ = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
   soonest_is_known_ = true;
-  return static_cast<std::size_t>(first - gaps_.begin());
+  return static_cast<std::size_t>(std::find(crossings_.begin(), crossings_.end(), soonest_) - crossings_.begin());
 }
 
-void RowSweep::forget(const Gap& gap) {
-  if (gap.crossing <= soonest_) soonest_is_known_ = false;
+void RowSweep::forget(std::size_t gap) {
+  if (crossings_[gap] <= soonest_) soonest_is_known_ = false;
 }
 
 void RowSweep::end_gap(std::size_t number, double y) {
@@ -59,8 +65,8 @@ void RowSweep::end_gap(std::size_t number, double y) {
 
 void RowSweep::look_ahead(std::size_t number, double y) {
   const Line &left = lines_[number - 1], &right = lines_[number];
-  double& crossing = gaps_[number].crossing;
-  forget(gaps_[number]);
+  double& crossing = crossings_[number];
+  forget(number);
   crossing = kNever;
   if (number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
   const double end = std::min(left.end, right.end);
@@ -106,7 +112,8 @@ bool RowSweep::hand_over(double y) {
 void RowSweep::remove(std::size_t line, double y) {
   end_gap(line, y);
   end_gap(line + 1, y);
-  forget(gaps_[line]);
+  forget(line);
+  crossings_.erase(crossings_.begin() + static_cast<std::ptrdiff_t>(line));
   lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(line));
   gaps_.erase(gaps_.begin() + static_cast<std::ptrdiff_t>(line));
   gaps_[line].is_new = true;
@@ -124,7 +131,8 @@ void RowSweep::insert(const RowEdge& edge, double y) {
   const auto gap = static_cast<std::size_t>(place - lines_.begin());
   if (!gaps_[gap].is_new) end_gap(gap, y);
   lines_.insert(place, line);
-  gaps_.insert(gaps_.begin() + static_cast<std::ptrdiff_t>(gap), Gap{y, kNever, 0, true});
+  gaps_.insert(gaps_.begin() + static_cast<std::ptrdiff_t>(gap), Gap{y, 0, true});
+  crossings_.insert(crossings_.begin() + static_cast<std::ptrdiff_t>(gap), kNever);
   gaps_[gap + 1].is_new = true;
 }
 
@@ -178,12 +186,12 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
   soonest_ = kNever;
   soonest_is_known_ = true;
   lines_ = {{0, 0, 0, kNever, 0, 0}, {in_.width, 0, 0, kNever, in_.width, 0}};
-  gaps_ = {{}, {0, kNever, in_.depth}};
+  gaps_ = {{}, {0, in_.depth}};
+  crossings_ = {kNever, kNever};
   for (;;) {
     const double next = next_row();
-    if (soonest_ <= next && !soonest_is_known_) static_cast<void>(first_crossing());
+    const std::size_t gap = soonest_ <= next ? first_crossing() : 0;
     if (soonest_ <= next) {
-      const std::size_t gap = first_crossing();
       change_places(gap, soonest_);
     } else if (next < in_.height) {
       change_lines(next);

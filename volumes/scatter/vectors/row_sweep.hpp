@@ -58,7 +58,7 @@ class RowSweep {
   };
   /// To the left of the line of the same number, since a row.
   struct Gap {
-    double since = 0, crossing = 0;  // where its two sides do
+    double since = 0;
     std::int32_t depth = 0;
     bool is_new = false;  // its sides have become neighbours: neither crossing nor depth is known
   };
@@ -73,12 +73,13 @@ class RowSweep {
   void remove(std::size_t line, double y);
   void insert(const RowEdge& edge, double y);
   void renew_gaps(double y);
-  void forget(const Gap& gap);
+  void forget(std::size_t gap);
 
   Input in_;
   Area area_;
-  std::vector<Line> lines_;  // in order, between the light's two sides
-  std::vector<Gap> gaps_;    // [0] is none
+  std::vector<Line> lines_;        // in order, between the light's two sides
+  std::vector<Gap> gaps_;          // [0] is none
+  std::vector<double> crossings_;  // where a gap's two sides cross
   std::vector<RowEdge> begin_;
   std::vector<double> ends_;  // of all edges, ascending
   std::size_t next_edge_ = 0, next_step_ = 0, next_end_ = 0;
