@@ -98,13 +98,22 @@ MaskMethod::MaskMethod(visibility::MethodDescription description, std::string pa
     : description_(std::move(description)), pass_(std::move(pass)) {}
 
 void MaskMethod::prepare_mesh(const visibility::SceneFloats& scene) {
+  prepare_tree(scene);
+  prepare_triangles();
+}
+
+void MaskMethod::prepare_tree(const visibility::SceneFloats& scene) {
   scene_ = &scene;
   scale_ = visibility::device_scale(scene);
+  triangles_ = {};  // of a scene before
   tree_ = visibility::make_triangle_tree(scene);
-  triangles_ = wide_triangle_tree(scene, tree_, scale_);
-  normal_is_known_.resize(scene.triangles.size());
-  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene.triangles.size()), [&](std::uint32_t i) {
-    normal_is_known_[i] = visibility::normal_is_known(scene.corners(i)) ? 1 : 0;
+}
+
+void MaskMethod::prepare_triangles() {
+  triangles_ = wide_triangle_tree(*scene_, tree_, scale_);
+  normal_is_known_.resize(scene_->triangles.size());
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene_->triangles.size()), [&](std::uint32_t i) {
+    normal_is_known_[i] = visibility::normal_is_known(scene_->corners(i)) ? 1 : 0;
   });
 }
 

@@ -46,6 +46,9 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  protected:
+  /// The two halves of prepare_mesh: tree(), then triangles().
+  void prepare_tree(const visibility::SceneFloats& scene);
+  void prepare_triangles();
   /// Called once for each region, before its clusters and on the same thread. Returns how large the region's blocks
   /// are.
   virtual Blocks begin_region(const LightGrid& grid, const Cluster& all) = 0;

@@ -17,23 +17,14 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
 
 }  // namespace
 
-std::vector<WideNode> wide_nodes(std::span<const Texel> texels, std::size_t stride) {
-  std::vector<WideNode> nodes;
-  resize_on_all_cores(nodes, texels.size() / stride / kWide);
-  mesh::for_each_index(nodes.size(), [&](std::size_t n) {
-    WideNode& node = nodes[n];
-    for (std::size_t lane = 0; lane < kWide; ++lane) {
-      const auto at = texels.subspan((n * kWide + lane) * stride, stride);
-      store(node.middle, lane, at[0].value);
-      store(node.half, lane, at[1].value);
-      node.reference[lane] = at[0].number;
-      if (at[0].number != TriangleTree::kNoChild) node.used |= 1U << lane;
-      if (stride < 3) continue;
-      for (int i = 0; i < 3; ++i) node.cone[static_cast<std::size_t>(i)][lane] = at[2].value[i];
-      node.cone[3][lane] = std::bit_cast<float>(at[2].number);
-    }
-  });
-  return nodes;
+void store(WideNode& node, std::size_t lane, std::span<const Texel> texels) {
+  store(node.middle, lane, texels[0].value);
+  store(node.half, lane, texels[1].value);
+  node.reference[lane] = texels[0].number;
+  if (texels[0].number != TriangleTree::kNoChild) node.used |= 1U << lane;
+  if (texels.size() < 3) return;
+  for (int i = 0; i < 3; ++i) node.cone[static_cast<std::size_t>(i)][lane] = texels[2].value[i];
+  node.cone[3][lane] = std::bit_cast<float>(texels[2].number);
 }
 
 void append(WideEdgeTree& tree, const WideEdgeTree& more) {
@@ -52,8 +43,11 @@ void append(WideEdgeTree& tree, const WideEdgeTree& more) {
 
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
   WideTriangleTree wide;
-  const std::vector<Texel> texels = visibility::node_texels(tree, scale);
-  wide.nodes = wide_nodes(texels, 2);
+  resize_on_all_cores(wide.nodes, tree.nodes.size());
+  mesh::for_each_index(wide.nodes.size(), [&](std::size_t node) {
+    for (std::size_t lane = 0; lane < kWide; ++lane)
+      store(wide.nodes[node], lane, visibility::child_texels(tree.nodes[node][lane], scale));
+  });
   if (!wide.nodes.empty()) wide.roots = {0};
   resize_on_all_cores(wide.leaves, tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t i) {

@@ -59,9 +59,9 @@ void append(WideEdgeTree& tree, const WideEdgeTree& more);
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale);
 
-/// `stride` texels a child: (middle, reference), (half extent, –) and, with three, (axis, cosine), as of
-/// volumes/edges/edge_set.hpp, edge_nodes.
-std::vector<WideNode> wide_nodes(std::span<const visibility::Texel> texels, std::size_t stride);
+/// A child's texels: (middle, reference), (half extent, –) and, if there are three, (axis, cosine) of its cone, as of
+/// volumes/edges/edge_set.hpp.
+void store(WideNode& node, std::size_t lane, std::span<const visibility::Texel> texels);
 
 template <typename Tree>
 std::uint64_t bytes_of(const Tree& tree) {

@@ -2,15 +2,17 @@
 
 #include "base/assert.hpp"
 #include "base/buckets.hpp"
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "visibility/tree/halves.hpp"
 
 #include <glm/common.hpp>
-#include <tbb/parallel_for.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,7 +23,7 @@ using Child = TriangleTree::Child;
 
 constexpr std::size_t kWidth = TriangleTree::kWidth;
 constexpr std::size_t kTogether = kWidth * kWidth;    // of so many boxes and fewer the guide says nothing
-constexpr std::size_t kPart = std::size_t{1} << 13U;  // boxes worth a task of their own
+constexpr std::size_t kTask = std::size_t{1} << 13U;  // boxes worth one
 
 bool is_leaf(std::uint32_t reference) {
   return (reference & TriangleTree::kLeafBit) != 0;
@@ -37,72 +39,85 @@ Bounds nothing() {
   return {glm::vec3(kFar), glm::vec3(-kFar)};
 }
 
-/// Adds to a tree from its leaves upward.
-class Maker {
- public:
-  explicit Maker(const BoxesNear& boxes) : all_(&boxes) {}
+/// How many nodes and leaves a subtree has, its root included, and how many nodes are on its longest way down.
+struct Size {
+  std::uint32_t nodes = 0, leaves = 0, depth = 0;
 
-  /// A node of the children that `fill` gives to a function.
-  template <typename Fill>
-  Child node(std::uint32_t depth, const Fill& fill) {
-    const auto number = static_cast<std::uint32_t>(tree.nodes.size());
-    tree.nodes.emplace_back();
-    tree.depth = std::max(tree.depth, depth);
-    std::size_t count = 0;
-    Bounds all = nothing();
-    fill([&](const Child& child) {
-      if (child.reference == TriangleTree::kNoChild) return;
-      tree.nodes[number][count++] = child;
-      include(all, {child.lower, child.upper});
-    });
-    return {all.lower, all.upper, number};
+  void add(const Size& child, std::uint32_t times = 1) {
+    nodes += times * child.nodes;
+    leaves += times * child.leaves;
+    depth = std::max(depth, child.depth);
   }
+  /// A node over what was added.
+  void close() {
+    ++nodes;
+    ++depth;
+  }
+};
 
-  /// Of these boxes alone.
-  Child divide(std::span<const std::uint32_t> numbers, std::uint32_t depth) {
+/// Parts of eight times eight times … boxes, so that all leaves but the last are full: of how many, below a node.
+std::size_t step_of(std::size_t count) {
+  std::size_t step = kWidth;
+  while (step * kWidth < count) step *= kWidth;
+  return step;
+}
+
+Size size_of(std::size_t count) {
+  if (count <= kWidth) return {0, count > 0 ? 1U : 0U, 0};
+  const std::size_t step = step_of(count);
+  Size size;
+  size.add(size_of(step), static_cast<std::uint32_t>(count / step));
+  size.add(size_of(count % step));
+  size.close();
+  return size;
+}
+
+/// Where a subtree begins: its root is the first of its nodes, or, if it has none, its leaf.
+struct Place {
+  std::uint32_t node = 0, leaf = 0;
+
+  [[nodiscard]] std::uint32_t reference(const Size& size) const {
+    return size.nodes > 0 ? node : leaf | TriangleTree::kLeafBit;
+  }
+  void pass(const Size& size) {
+    node += size.nodes;
+    leaf += size.leaves;
+  }
+};
+
+/// Divides boxes in halves, into places of a tree. One a thread.
+class Divider {
+ public:
+  Bounds divide(const BoxesNear& all, std::span<const std::uint32_t> numbers, const Place& place, TriangleTree& tree) {
+    tree_ = &tree;
     numbers_ = numbers;
     boxes_.clear();
     items_.clear();
     for (const std::uint32_t number : numbers) {
-      const Bounds& box = boxes_.emplace_back(all_->box(number));
+      const Bounds& box = boxes_.emplace_back(all.box(number));
       items_.push_back({box.lower + box.upper, static_cast<std::uint32_t>(items_.size())});
     }
-    return divide(std::span(items_), depth);
+    return divide(std::span(items_), place);
   }
-
-  /// What another maker made.
-  Child append(const TriangleTree& more, const Child& root) {
-    const auto first_node = static_cast<std::uint32_t>(tree.nodes.size()),
-               first_leaf = static_cast<std::uint32_t>(tree.leaves.size());
-    const auto moved = [&](Child child) {
-      if (child.reference != TriangleTree::kNoChild)
-        child.reference += is_leaf(child.reference) ? first_leaf : first_node;
-      return child;
-    };
-    for (TriangleTree::Node node : more.nodes) {
-      for (Child& child : node) child = moved(child);
-      tree.nodes.push_back(node);
-    }
-    tree.leaves.insert(tree.leaves.end(), more.leaves.begin(), more.leaves.end());
-    tree.depth = std::max(tree.depth, more.depth);
-    return moved(root);
-  }
-
-  TriangleTree tree;
 
  private:
-  /// Parts of eight times eight times … items, so that all leaves but the last are full.
-  Child divide(std::span<Divided> items, std::uint32_t depth) {
-    if (items.size() <= kWidth) return leaf(items);
-    std::size_t step = kWidth;
-    while (step * kWidth < items.size()) step *= kWidth;
-    return node(depth, [&](const auto& add) {
-      halve(items, step, [&](std::span<Divided> part) { add(divide(part, depth + 1)); });
+  Bounds divide(std::span<Divided> items, const Place& place) {
+    if (items.size() <= kWidth) return leaf(items, place.leaf);
+    Bounds all = nothing();
+    Place next{place.node + 1, place.leaf};
+    std::size_t count = 0;
+    halve(items, step_of(items.size()), [&](std::span<Divided> part) {
+      const Size size = size_of(part.size());
+      const Bounds box = divide(part, next);
+      tree_->nodes[place.node][count++] = {box.lower, box.upper, next.reference(size)};
+      include(all, box);
+      next.pass(size);
     });
+    return all;
   }
 
-  Child leaf(std::span<const Divided> items) {
-    TriangleTree::Leaf slots;
+  Bounds leaf(std::span<const Divided> items, std::uint32_t number) {
+    TriangleTree::Leaf& slots = tree_->leaves[number];
     slots.fill(TriangleTree::kNoTriangle);
     Bounds all = nothing();
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -110,11 +125,10 @@ class Maker {
       include(all, boxes_[items[i].at]);
     }
     std::sort(slots.begin(), slots.end());  // kNoTriangle is the largest
-    tree.leaves.push_back(slots);
-    return {all.lower, all.upper, static_cast<std::uint32_t>(tree.leaves.size() - 1) | TriangleTree::kLeafBit};
+    return all;
   }
 
-  const BoxesNear* all_;
+  TriangleTree* tree_ = nullptr;
   std::span<const std::uint32_t> numbers_;  // of what is divided
   std::vector<Bounds> boxes_;
   std::vector<Divided> items_;
@@ -122,7 +136,8 @@ class Maker {
 
 class Along {
  public:
-  Along(const TriangleTree& guide, const BoxesNear& boxes) : guide_(guide), boxes_(boxes), end_(guide.nodes.size()) {
+  Along(const TriangleTree& guide, const BoxesNear& boxes)
+      : guide_(guide), boxes_(boxes), end_(guide.nodes.size()), size_(guide.nodes.size()) {
     static_cast<void>(find_end(0, 0));
     std::uint32_t most = 0;
     for (const TriangleTree::Leaf& leaf : guide.leaves) {
@@ -145,31 +160,22 @@ class Along {
 
   TriangleTree make() {
     const Part whole{0, 0};
-    find_parts(whole);
-    std::vector<Maker> makers(parts_.size(), Maker(boxes_));
-    std::vector<Child> roots(parts_.size());
-    tbb::parallel_for(std::size_t{0}, parts_.size(), [&](std::size_t i) {
-      roots[i] = below(parts_[i], parts_[i].depth, makers[i], [](const Part&) { return std::optional<Child>(); });
-    });
-    Maker all(boxes_);
-    std::size_t next = 0;
-    const Child root = below(whole, 1, all, [&](const Part& part) -> std::optional<Child> {
-      if (next == parts_.size() || !(part == parts_[next])) return std::nullopt;
-      const Child made = all.append(makers[next].tree, roots[next]);
-      makers[next++].tree = {};
-      return made;
-    });
-    if (is_leaf(root.reference)) all.node(1, [&](const auto& add) { add(root); });
-    return std::move(all.tree);
+    find_size(whole);
+    Size all = size_of_part(whole);
+    const bool alone = all.nodes == 0;  // one leaf, which gets a node above it
+    if (alone) all.close();
+    resize_on_all_cores(tree_.leaves, all.leaves);
+    resize_on_all_cores(tree_.nodes, all.nodes);
+    tree_.depth = all.depth;
+    const Bounds box = place(whole, {});
+    if (alone) tree_.nodes[0][0] = {box.lower, box.upper, TriangleTree::kLeafBit};
+    return std::move(tree_);
   }
 
  private:
   /// What hangs below one of the guide's nodes or is one of its leaves: leaves from `first` on.
   struct Part {
     std::uint32_t reference, first;
-    std::uint32_t depth = 1;  // of its root
-
-    bool operator==(const Part& other) const { return reference == other.reference; }
   };
 
   /// The leaves below a node follow one another; where those below this one end.
@@ -194,7 +200,7 @@ class Along {
     std::uint32_t first = part.first;
     for (const Child& child : guide_.nodes[part.reference]) {
       if (child.reference == TriangleTree::kNoChild) continue;
-      const Part one{child.reference, first, part.depth + 1};
+      const Part one{child.reference, first};
       visit(one);
       first = end_of(one);
     }
@@ -207,35 +213,62 @@ class Along {
            });
   }
 
-  void find_parts(const Part& part) {
-    const std::size_t count = boxes_of(part).size();
-    if (count == 0) return;
-    if (count <= kPart || is_leaf(part.reference)) {
-      parts_.push_back(part);
-    } else {
-      for_each_child(part, [&](const Part& child) { find_parts(child); });
-    }
+  /// Does the guide divide it?
+  [[nodiscard]] bool is_divided(const Part& part) const {
+    return boxes_of(part).size() > kTogether && !is_last(part.reference);
   }
 
-  /// `made`: what is there already.
-  template <typename Made>
-  Child below(const Part& part, std::uint32_t depth, Maker& maker, const Made& made) const {
-    const std::span<const std::uint32_t> numbers = boxes_of(part);
-    if (numbers.empty()) return {};
-    if (const std::optional<Child> there = made(part)) return *there;
-    if (numbers.size() > kTogether && !is_last(part.reference)) {
-      return maker.node(depth, [&](const auto& add) {
-        for_each_child(part, [&](const Part& child) { add(below(child, depth + 1, maker, made)); });
-      });
+  /// Of the guide's nodes that divide.
+  void find_size(const Part& part) {
+    if (!is_divided(part)) return;
+    Size size;
+    for_each_child(part, [&](const Part& child) {
+      find_size(child);
+      size.add(size_of_part(child));
+    });
+    size.close();
+    size_[part.reference] = size;
+  }
+  [[nodiscard]] Size size_of_part(const Part& part) const {
+    return is_divided(part) ? size_[part.reference] : size_of(boxes_of(part).size());
+  }
+
+  Bounds place(const Part& part, const Place& at) {
+    if (!is_divided(part)) return dividers_.local().divide(boxes_, boxes_of(part), at, tree_);
+    std::array<Bounds, kWidth> boxes;
+    tbb::task_group tasks;
+    Place next{at.node + 1, at.leaf};
+    std::size_t count = 0;
+    TriangleTree::Node& node = tree_.nodes[at.node];
+    for_each_child(part, [&](const Part& child) {
+      const Size size = size_of_part(child);
+      if (size.leaves == 0) return;  // no box is near it
+      node[count].reference = next.reference(size);
+      const auto below = [this, child, next, &box = boxes[count]] { box = place(child, next); };
+      if (boxes_of(child).size() > kTask)
+        tasks.run(below);
+      else
+        below();
+      next.pass(size);
+      ++count;
+    });
+    tasks.wait();
+    Bounds all = nothing();
+    for (std::size_t i = 0; i < count; ++i) {
+      node[i].lower = boxes[i].lower;
+      node[i].upper = boxes[i].upper;
+      include(all, boxes[i]);
     }
-    return maker.divide(numbers, depth);
+    return all;
   }
 
   const TriangleTree& guide_;
   const BoxesNear& boxes_;
   std::vector<std::uint32_t> end_;  // of each of the guide's nodes
   Buckets by_leaf_;
-  std::vector<Part> parts_;
+  std::vector<Size> size_;  // of each of them that divides
+  TriangleTree tree_;
+  tbb::enumerable_thread_specific<Divider> dividers_;
 };
 
 }  // namespace

@@ -294,12 +294,17 @@ EdgeTexels texels_of(const TriangleTree& tree, const Records& records, float sca
     texels.slots[4][i] = {t.n, used ? 1U : 0U};
     texels.slots[5][i] = {t.anchor * scale, used ? 1 + record.cut : 0U};
   });
-  texels.nodes = edge_nodes(tree, scale, [&](std::size_t leaf) {
+  const auto normals_of = [&](std::size_t leaf) {
     LeafNormals normals;
     const auto n = [&](std::size_t list) { return texels.slots[list][leaf * TriangleTree::kWidth + normals.count]; };
     for (; normals.count < TriangleTree::kWidth && n(2).number != 0; ++normals.count)
       normals.n[normals.count] = {n(2).value, n(4).value};
     return normals;
+  };
+  constexpr std::size_t kTexels = 3 * TriangleTree::kWidth;  // of a node
+  texels.nodes.resize(tree.nodes.size() * kTexels);
+  for_each_edge_node(tree, scale, normals_of, [&](std::size_t node, std::span<const EdgeChild> children) {
+    for (std::size_t i = 0; i < kTexels; ++i) texels.nodes[node * kTexels + i] = children[i / 3][i % 3];
   });
   if (texels.nodes.empty()) texels.nodes.emplace_back();  // a buffer is never empty
   for (auto& list : texels.slots) {
@@ -324,22 +329,23 @@ TriangleTree edge_tree(std::span<const EdgeRecord> records) {
   return visibility::make_tree_over(boxes);
 }
 
-std::vector<visibility::Texel> edge_nodes(const TriangleTree& tree, float scale,
-                                          const std::function<LeafNormals(std::size_t)>& normals_of) {
+void for_each_edge_node(const TriangleTree& tree, float scale,
+                        const std::function<LeafNormals(std::size_t)>& normals_of,
+                        const std::function<void(std::size_t, std::span<const EdgeChild>)>& take) {
   const Cones cones(tree, normals_of);
-  std::vector<visibility::Texel> nodes(tree.nodes.size() * TriangleTree::kWidth * 3);
-  mesh::for_each_index(tree.nodes.size() * TriangleTree::kWidth, [&](std::size_t i) {
-    const std::size_t node = i / TriangleTree::kWidth, child = i % TriangleTree::kWidth;
-    const auto [middle, half] = visibility::child_texels(tree.nodes[node][child], scale);
-    const Cone& cone = cones.of_child(node, child);
-    // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
-    // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a quarter of this in 20 levels.
-    const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
-    nodes[3 * i] = middle;
-    nodes[3 * i + 1] = half;
-    nodes[3 * i + 2] = {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)};
+  mesh::for_each_index(tree.nodes.size(), [&](std::size_t node) {
+    std::array<EdgeChild, TriangleTree::kWidth> children;
+    for (std::size_t child = 0; child < children.size(); ++child) {
+      const auto [middle, half] = visibility::child_texels(tree.nodes[node][child], scale);
+      const Cone& cone = cones.of_child(node, child);
+      // A little wider than it is: float32 rounds axis and cosine, by 2⁻²⁴ each; and near 0 an angle is off by the root
+      // of what rounds its cosine, 2⁻²⁶, a few times a level, which is less than a quarter of this in 20 levels.
+      const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
+      children[child] = {
+          middle, half, {glm::vec3(cone.axis), std::bit_cast<std::uint32_t>(cone.is_all() ? 0.0F : cosine)}};
+    }
+    take(node, children);
   });
-  return nodes;
 }
 
 EdgeTexels edge_texels(const EdgeRecords& records, const TriangleTree& triangles, float scale) {

@@ -94,9 +94,12 @@ struct LeafNormals {
   std::array<std::array<glm::vec3, 2>, visibility::TriangleTree::kWidth> n;
   std::size_t count = 0;
 };
-/// A hierarchy's nodes as EdgeTexels has them. `normals_of(leaf)` is called on all cores.
-std::vector<visibility::Texel> edge_nodes(const visibility::TriangleTree& tree, float scale,
-                                          const std::function<LeafNormals(std::size_t)>& normals_of);
+/// A child of a hierarchy's node as EdgeTexels has it.
+using EdgeChild = std::array<visibility::Texel, 3>;
+/// Gives all children of each node of a hierarchy at once to `take(node, children)`. Both are called on all cores.
+void for_each_edge_node(const visibility::TriangleTree& tree, float scale,
+                        const std::function<LeafNormals(std::size_t leaf)>& normals_of,
+                        const std::function<void(std::size_t node, std::span<const EdgeChild> children)>& take);
 
 /// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
 /// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),

@@ -104,7 +104,10 @@ void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree
       normals.n[normals.count] = {point(leaf.n[0], normals.count), point(leaf.n[1], normals.count)};
     return normals;
   };
-  wide.nodes = vectors::wide_nodes(edge_nodes(tree, scale, normals_of), 3);
+  resize_on_all_cores(wide.nodes, tree.nodes.size());
+  for_each_edge_node(tree, scale, normals_of, [&](std::size_t node, std::span<const EdgeChild> children) {
+    for (std::size_t lane = 0; lane < children.size(); ++lane) vectors::store(wide.nodes[node], lane, children[lane]);
+  });
 }
 
 }  // namespace

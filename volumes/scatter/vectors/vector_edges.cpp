@@ -14,9 +14,11 @@ constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples
 }  // namespace
 
 void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
-  MaskMethod::prepare_mesh(scene);
+  prepare_tree(scene);
   sides_.prepare_mesh(scene);
+  whole_ = CutEdges();  // of a scene before
   whole_ = CutEdges(wide_edges(sides_.records(), tree(), scale()));
+  prepare_triangles();  // after edges, which take the most on their way: half a gigabyte of ten million triangles
   without_body_.reset();
   front_ = &whole_;
 }
