@@ -11,6 +11,8 @@
 #include <glm/common.hpp>
 #include <tbb/global_control.h>
 
+#include <cmath>
+
 namespace penumbra::visibility {
 namespace {
 
@@ -160,14 +162,14 @@ double touched(const TriangleTree& tree) {
 }
 
 TEST(TriangleTree, DividesWhereRaysPassBetween) {
-  // Two heaps far apart and a triangle across both: the first division parts the heaps, and a ray meets few boxes.
-  std::vector<tests::Corners> triangles{{glm::dvec3(-8), glm::dvec3(8, -8, 8), glm::dvec3(8)}};
-  add_heap(triangles, 1, 2000, glm::dvec3(-7), 0.001);
-  add_heap(triangles, 2, 2000, glm::dvec3(7), 0.001);
-  const TriangleTree tree = make_triangle_tree(make_scene_floats(with(triangles)));
-  // The large triangle's own leaf is 1; the boxes around a heap are 2e-4 of the whole each, and some dozens of each
-  // level are around one point of it.
-  EXPECT_LT(touched(tree), 1.5);
+  std::vector<tests::Corners> triangles;  // heaps of different sizes along a spiral
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const double turned = 2.4 * i;
+    const glm::dvec3 at(std::cos(turned), std::sin(turned), 0.01 * i);
+    add_heap(triangles, i, 20 + i % 7 * 10, (1 + 0.02 * i) * at, 0.0002);
+  }
+  // 2.2; with the dearest of all divisions in place of the cheapest 15.
+  EXPECT_LT(touched(make_triangle_tree(make_scene_floats(with(triangles)))), 4);
 }
 
 TEST(TriangleTree, AlongAnotherHoldsEveryBoxOnce) {
