@@ -11,7 +11,7 @@
 namespace penumbra::mesh {
 namespace {
 
-constexpr std::size_t kHeader = 6;  // a chunk's number, and its length with these six bytes
+constexpr std::size_t kChunkHeader = 6;  // a chunk's number, and its length with these six bytes
 
 std::uint32_t little_endian(std::string_view bytes, std::size_t at, std::size_t count) {
   std::uint32_t value = 0;
@@ -52,10 +52,10 @@ void audit_3ds(std::string_view content, const std::string& file) {
   while (!waiting.empty()) {  // no recursion: a file may nest a million chunks
     Span span = waiting.back();
     waiting.pop_back();
-    while (span.end - span.first >= kHeader) {
+    while (span.end - span.first >= kChunkHeader) {
       const std::uint32_t number = little_endian(content, span.first, 2),
                           length = little_endian(content, span.first + 2, 4);
-      if (length < kHeader || length > span.end - span.first) {
+      if (length < kChunkHeader || length > span.end - span.first) {
         // Some writers put zeros or other filling after the last chunk of the file.
         if (span.end == content.size() && span.first > 0 && waiting.empty() && number == 0) break;
         throw InputError(
@@ -63,7 +63,7 @@ void audit_3ds(std::string_view content, const std::string& file) {
             "truncated or damaged",
             file, number, span.first, length, span.end - span.first);
       }
-      Span inside{span.first + kHeader, span.first + length};
+      Span inside{span.first + kChunkHeader, span.first + length};
       if (number == kObject) {
         const std::size_t name_end = content.find('\0', inside.first);
         inside.first = std::min(name_end == std::string_view::npos ? inside.end : name_end + 1, inside.end);

@@ -97,9 +97,9 @@ std::uint64_t residue(float value) {
 }
 
 /// n and n·a modulo p. All zero: no ratio.
-using Plane = std::array<std::uint64_t, 4>;
+using PlaneResidues = std::array<std::uint64_t, 4>;
 
-Plane plane_of(const std::array<glm::vec3, 3>& corners) {
+PlaneResidues plane_of(const std::array<glm::vec3, 3>& corners) {
   std::uint64_t q[3][3];
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) q[i][axis] = residue(corners[static_cast<std::size_t>(i)][axis]);
@@ -109,14 +109,14 @@ Plane plane_of(const std::array<glm::vec3, 3>& corners) {
     u[axis] = sub(q[1][axis], q[0][axis]);
     v[axis] = sub(q[2][axis], q[0][axis]);
   }
-  Plane plane = {sub(mul(u[1], v[2]), mul(u[2], v[1])), sub(mul(u[2], v[0]), mul(u[0], v[2])),
-                 sub(mul(u[0], v[1]), mul(u[1], v[0])), 0};
+  PlaneResidues plane = {sub(mul(u[1], v[2]), mul(u[2], v[1])), sub(mul(u[2], v[0]), mul(u[0], v[2])),
+                         sub(mul(u[0], v[1]), mul(u[1], v[0])), 0};
   plane[3] = add(add(mul(plane[0], q[0][0]), mul(plane[1], q[0][1])), mul(plane[2], q[0][2]));
   return plane;
 }
 
 /// The first number that is not zero, or 1.
-std::uint64_t pivot_of(const Plane& plane) {
+std::uint64_t pivot_of(const PlaneResidues& plane) {
   const auto found = std::ranges::find_if(plane, [](std::uint64_t x) { return x != 0; });
   return found == plane.end() ? 1 : *found;
 }
@@ -124,7 +124,7 @@ std::uint64_t pivot_of(const Plane& plane) {
 constexpr std::uint64_t kFlat = 0, kNoRatio = 1;  // no keys of planes
 
 /// Equal for exactly coplanar triangles; kNoRatio if the plane has none modulo p. `scale`: pivot⁻¹.
-std::uint64_t key_of(const Plane& plane, std::uint64_t scale) {
+std::uint64_t key_of(const PlaneResidues& plane, std::uint64_t scale) {
   if ((plane[0] | plane[1] | plane[2] | plane[3]) == 0) return kNoRatio;
   std::uint64_t key = 0x9e3779b97f4a7c15ull;
   for (const std::uint64_t x : plane) key = (key ^ (key >> 29) ^ mul(x, scale)) * 0xbf58476d1ce4e5b9ull;
@@ -133,7 +133,7 @@ std::uint64_t key_of(const Plane& plane, std::uint64_t scale) {
 
 /// The keys of some triangles. One inverse for all: that of their pivots' product (Montgomery).
 void find_keys(const SceneFloats& scene, std::uint32_t first, std::span<std::uint64_t> keys) {
-  std::vector<Plane> planes(keys.size());
+  std::vector<PlaneResidues> planes(keys.size());
   std::vector<std::uint64_t> before(keys.size());  // the product of the pivots of all planes before
   std::uint64_t product = 1;
   for (std::size_t i = 0; i < keys.size(); ++i) {

@@ -1,7 +1,8 @@
 #include "vsm/closed_parts.hpp"
 
-#include "mesh/closed_components.hpp"
 #include "base/parallel.hpp"
+#include "base/size1.hpp"
+#include "mesh/closed_components.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -65,10 +66,6 @@ std::vector<std::uint32_t> plane_owners(const SceneFloats& scene, const std::vec
     of_plane = of_plane == kUnseen || of_plane == component[t] ? component[t] : kNone;
   }
   return owner;
-}
-
-double size1(const glm::dvec3& x) {
-  return glm::abs(x.x) + glm::abs(x.y) + glm::abs(x.z);
 }
 
 /// ±1: every light sample certainly sees the triangle from this side; 0: not certain. All arithmetic is in double on

@@ -1,5 +1,6 @@
 #include "engines/vectors/clusters.hpp"
 
+#include "base/size1.hpp"
 #include "visibility/receivers.hpp"
 
 #include <glm/common.hpp>
@@ -10,10 +11,6 @@
 
 namespace penumbra::vectors {
 namespace {
-
-float size1(const glm::vec3& x) {
-  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
-}
 
 constexpr std::size_t kMostClusters = 4;
 

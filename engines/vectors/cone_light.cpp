@@ -1,8 +1,8 @@
 #include "engines/vectors/cone_light.hpp"
 
-#include "engines/vectors/disk_plane.hpp"
-#include "engines/vectors/size1.hpp"
 #include "base/error.hpp"
+#include "base/size1.hpp"
+#include "engines/vectors/disk_plane.hpp"
 #include "visibility/lights/device_light.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"

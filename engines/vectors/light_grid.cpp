@@ -1,7 +1,7 @@
 #include "engines/vectors/light_grid.hpp"
 
 #include "engines/vectors/cone_light.hpp"
-#include "engines/vectors/size1.hpp"
+#include "base/size1.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -14,7 +14,7 @@
 #include "engines/vectors/scan_conversion.hpp"
 
 #include "engines/vectors/scan_tile.hpp"
-#include "engines/vectors/size1.hpp"
+#include "base/size1.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

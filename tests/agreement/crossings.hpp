@@ -3,6 +3,7 @@
 // Where edge-scatter says that an edge crosses the row of a light sample, beside where it does: what a search for input
 // that uses most of that bound maximises.
 
+#include "base/size1.hpp"
 #include "tests/agreement/device_twins.hpp"
 #include "tests/agreement/most_used.hpp"
 #include "visibility/lights/device_light.hpp"
@@ -81,7 +82,6 @@ class DevicePlaces {
   }
 
  private:
-  static float size1(const glm::vec3& x) { return std::abs(x.x) + std::abs(x.y) + std::abs(x.z); }
   [[nodiscard]] float error_of(float far, float w, float from_foot) const {
     const float height = frame_.height, q = height / w;
     return 0x1p-24F * (4 * per_length_ * far * q + from_foot * (4 * far / w + 4 * away_ / height + 8) +

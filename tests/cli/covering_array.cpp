@@ -1,6 +1,7 @@
 #include "tests/cli/covering_array.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <unordered_set>
 
@@ -36,28 +37,46 @@ class Pairs {
   std::vector<bool> wanted_;
 };
 
-/// Calls `visit(code)` for each wanted combination of `strength` chosen values; given `with`, only for
-/// those that contain this factor.
+/// Calls `visit(code)` for each wanted combination of `strength` chosen values.
 template <typename Visit>
-void for_each_combination(const Pairs& pairs, const Choices& row, std::size_t strength, std::optional<std::size_t> with,
-                          Visit visit) {
-  const auto has = [&](std::size_t i) { return row[i].has_value(); };
-  const auto wanted = [&](std::size_t a, std::size_t b, std::size_t c) {
-    return !with || *with == a || *with == b || *with == c;
-  };
+void for_each_combination(const Pairs& pairs, const Choices& row, std::size_t strength, Visit visit) {
   for (std::size_t a = 0; a < row.size(); ++a) {
-    if (!has(a)) continue;
+    if (!row[a]) continue;
     for (std::size_t b = a + 1; b < row.size(); ++b) {
-      if (!has(b) || !pairs.wanted(a, b)) continue;
+      if (!row[b] || !pairs.wanted(a, b)) continue;
       const Code two = code_of(a, *row[a]) << kBits | code_of(b, *row[b]);
       if (strength == 2) {
-        if (wanted(a, b, b)) visit(two);
+        visit(two);
         continue;
       }
       for (std::size_t c = b + 1; c < row.size(); ++c) {
-        if (!has(c) || !pairs.wanted(a, c) || !pairs.wanted(b, c)) continue;
-        if (wanted(a, b, c)) visit(two << kBits | code_of(c, *row[c]));
+        if (row[c] && pairs.wanted(a, c) && pairs.wanted(b, c)) visit(two << kBits | code_of(c, *row[c]));
       }
+    }
+  }
+}
+
+/// Only those that contain the value of `factor`.
+template <typename Visit>
+void for_each_combination_with(const Pairs& pairs, const Choices& row, std::size_t strength, std::size_t factor,
+                               Visit visit) {
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i != factor && row[i] && pairs.wanted(i, factor)) others.push_back(i);
+  }
+  const auto code = [&](std::size_t i) { return code_of(i, *row[i]); };
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (strength == 2) {
+      std::array<std::size_t, 2> two{factor, others[i]};
+      std::ranges::sort(two);
+      visit(code(two[0]) << kBits | code(two[1]));
+      continue;
+    }
+    for (std::size_t j = i + 1; j < others.size(); ++j) {
+      if (!pairs.wanted(others[i], others[j])) continue;
+      std::array<std::size_t, 3> three{factor, others[i], others[j]};
+      std::ranges::sort(three);
+      visit((code(three[0]) << kBits | code(three[1])) << kBits | code(three[2]));
     }
   }
 }
@@ -123,7 +142,7 @@ class Generator {
       if (combination[factor] && !choose(factors_, factor, *combination[factor], seed)) return;
     }
     if (!allowed_(seed)) return;
-    for_each_combination(pairs_, combination, strength_, {}, [&](Code code) {
+    for_each_combination(pairs_, combination, strength_, [&](Code code) {
       wanted_.emplace_back(seed, code);
       open_.insert(code);
     });
@@ -152,7 +171,8 @@ class Generator {
       row[factor] = value;
       if (!allowed_(row)) continue;
       std::size_t gain = 0;
-      for_each_combination(pairs_, row, strength_, factor, [&](Code code) { gain += open_.contains(code) ? 1 : 0; });
+      for_each_combination_with(pairs_, row, strength_, factor,
+                                [&](Code code) { gain += open_.contains(code) ? 1 : 0; });
       const std::pair<std::size_t, std::size_t> now{gain, SIZE_MAX - used_[factor][value]};
       if (best && now <= best_gain) continue;
       best = value;
@@ -162,7 +182,7 @@ class Generator {
   }
 
   void cover(const Choices& row) {
-    for_each_combination(pairs_, row, strength_, {}, [&](Code code) { open_.erase(code); });
+    for_each_combination(pairs_, row, strength_, [&](Code code) { open_.erase(code); });
     for (std::size_t factor = 0; factor < row.size(); ++factor) {
       if (row[factor]) ++used_[factor][*row[factor]];
     }
@@ -194,7 +214,7 @@ std::vector<std::set<std::string>> groups_with_news(const std::vector<Factor>& f
   std::unordered_set<Code> seen;
   std::vector<std::set<std::string>> news(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for_each_combination(pairs, rows[i], strength, {}, [&](Code code) {
+    for_each_combination(pairs, rows[i], strength, [&](Code code) {
       if (!seen.insert(code).second) return;
       for (Code rest = code; rest != 0; rest >>= kBits) {
         const std::string& group = factors[factor_of(rest)].group;

@@ -12,6 +12,7 @@
 
 #include "visibility/alpha/alpha_reach.hpp"
 
+#include "base/size1.hpp"
 #include "base/assert.hpp"
 #include "visibility/pair_truth.hpp"
 
@@ -32,10 +33,6 @@ namespace penumbra::visibility {
 namespace {
 
 constexpr double kRoom = 0x1p-20, kRounding = 0x1p-46;
-
-double size1(const glm::dvec3& x) {
-  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
-}
 
 bool sees_it(PixelClass pixel) {
   return pixel == PixelClass::judged || pixel == PixelClass::horizon || pixel == PixelClass::other_body;

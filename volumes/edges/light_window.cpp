@@ -1,19 +1,13 @@
 #include "volumes/edges/light_window.hpp"
 
+#include "base/size1.hpp"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <cmath>
 
 namespace penumbra::volumes {
-namespace {
-
-double size1(const glm::dvec3& x) {
-  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
-}
-
-}  // namespace
-
 LightWindow window_of(const visibility::Light& light) {
   LightWindow window;
   if (light.kind != visibility::LightKind::polygon) return window;

@@ -4,6 +4,7 @@
 
 #include "vsm/vectors/pairs.hpp"
 
+#include "base/size1.hpp"
 #include "visibility/certain_meeting.hpp"
 
 #include <glm/common.hpp>
@@ -19,10 +20,6 @@ namespace penumbra::vsm {
 namespace {
 
 constexpr double kSlack = 0x1p-44;  // of all lengths that enter: hundreds of times double's rounding
-
-double size1(const glm::dvec3& x) {
-  return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
-}
 
 /// Of the light's (row, column): at + row · per_row + column · per_column, known to ±error.
 struct HalfPlane {

@@ -130,7 +130,7 @@ void Contacts::look(std::uint32_t seed, int rounds) {
 }
 
 TEST_P(Contacts, AreTheExactBitsAndAreas) {
-  look(11, std::get<0>(GetParam()) == 0 ? 3 : 10);
+  look(11, std::get<0>(GetParam()) == 0 ? 2 : 5);
 }
 /// 4,000 clusters of each kind of light.
 TEST_P(Contacts, AreTheExactBitsAndAreasFull) {

@@ -4,11 +4,12 @@
 
 #include <cmath>
 
-namespace penumbra::vectors {
+namespace penumbra {
 
 /// The sum of the components' sizes: bounds the length.
-inline double size1(const glm::dvec3& x) {
+template <typename T>
+T size1(const glm::vec<3, T>& x) {
   return std::abs(x.x) + std::abs(x.y) + std::abs(x.z);
 }
 
-}  // namespace penumbra::vectors
+}  // namespace penumbra
