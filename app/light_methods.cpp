@@ -94,11 +94,12 @@ std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, 
   for (const Light& light : lights) all.push_back(choose(light, wish));
   for (const WholeLight& whole : whole_lights(lights)) unite(lights, whole, all);
   for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, lights[i]);
-  for (const auto& [key, value] : wish.options) {
+  for (const auto& option : wish.options) {
+    const std::string& key = option.first;
     if (std::ranges::any_of(all, [&](const LightMethod& one) { return one.options.contains(key); })) continue;
     std::set<std::string> names;
     for (const LightMethod& one : all) names.insert(one.description.name);
-    throw UsageError("--method-option {}={}: {} has no such option; see `penumbra methods`", key, value,
+    throw UsageError("--method-option {}={}: {} has no such option; see `penumbra methods`", key, option.second,
                      fmt::format("{}", fmt::join(names, ", ")));
   }
   return all;

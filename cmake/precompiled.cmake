@@ -38,7 +38,7 @@ endfunction()
 # Highway compiles once a vector target.
 function(penumbra_join target)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
-  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+  if(PENUMBRA_JOIN OR NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 60)
     # With more to inline, g++ 12 warns falsely of what it thinks std::string and std::optional do (as in GCC bugs 105651 and
     # 80635). Where files are compiled alone these warnings stay errors.

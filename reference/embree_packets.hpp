@@ -22,6 +22,7 @@ struct Packet<1> {
     rtcIntersect1(scene, context, rays);
   }
 };
+// NOLINTBEGIN(readability-identifier-naming): these constants are called, and are named, as the functions above
 template <>
 struct Packet<4> {
   using Rays = RTCRay4;
@@ -43,6 +44,7 @@ struct Packet<16> {
   static constexpr auto occluded = rtcOccluded16;
   static constexpr auto intersect = rtcIntersect16;
 };
+// NOLINTEND(readability-identifier-naming)
 
 /// The lanes of a packet's field, which is an array, or of a single ray's, which is not.
 template <typename Field>

@@ -23,7 +23,7 @@ void Bindings::bind(Commands::State& commands, vk::PipelineBindPoint point, std:
   PENUMBRA_ASSERT(push.size() == shader_.push_bytes, "{}: {} bytes of push constants for {}", name_, push.size(),
                   shader_.push_bytes);
   const vk::raii::Device& d = device_->device;
-  if (buffers.size() > 0) {
+  if (!buffers.empty()) {
     const auto count = static_cast<std::uint32_t>(buffers.size());
     const std::array sizes{vk::DescriptorPoolSize(vk::DescriptorType::eStorageBuffer, count),
                            vk::DescriptorPoolSize(vk::DescriptorType::eUniformTexelBuffer, count)};

@@ -72,9 +72,9 @@ struct VisibilityBuffer::State {
 
 VisibilityBuffer::VisibilityBuffer(const Device& device, const visibility::SceneFloats& scene) {
   const std::vector<std::uint32_t> ranks = visibility::ranks(scene);
-  state_.reset(new State{&device, &scene, make_pass(device, "view samples: nearest", 0),
-                         make_pass(device, "view samples: rank", 1), upload(device, scene, ranks),
-                         triangles_by_rank(ranks)});
+  state_ = std::make_unique<State>(State{&device, &scene, make_pass(device, "view samples: nearest", 0),
+                                         make_pass(device, "view samples: rank", 1), upload(device, scene, ranks),
+                                         triangles_by_rank(ranks)});
 }
 
 VisibilityBuffer::~VisibilityBuffer() = default;

@@ -71,7 +71,7 @@ std::vector<glm::dvec2> jittered(const SampleLayout& layout, std::uint32_t seed)
     const double in_row = end - begin;
     for (std::uint32_t i = begin; i < end; ++i) {
       const double x = to_unit(hash(seed, i, 0)), y = to_unit(hash(seed, i, 1));
-      samples.push_back({((i - begin) + x) / in_row, (begin + in_row * y) / layout.count});
+      samples.emplace_back(((i - begin) + x) / in_row, (begin + in_row * y) / layout.count);
     }
   }
   return samples;
@@ -129,7 +129,7 @@ std::vector<glm::dvec2> unit_square_samples(const SampleRequest& request) {
   for (std::uint32_t row = 0; row < layout.rows; ++row) {
     const double shift = request.pattern == SamplePattern::rows ? row_shift_of(row) : 0.0;
     for (std::uint32_t column = 0; column < layout.columns; ++column) {
-      samples.push_back({(column + 0.5 + shift) / layout.columns, (row + 0.5) / layout.rows});
+      samples.emplace_back((column + 0.5 + shift) / layout.columns, (row + 0.5) / layout.rows);
     }
   }
   return samples;

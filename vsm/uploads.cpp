@@ -37,7 +37,7 @@ std::uint32_t mark_child(const TriangleTree& tree, const TriangleTree::Child& ch
   for (std::size_t i = 0; i < node.size(); ++i) {
     if (node[i].reference == TriangleTree::kNoChild) continue;
     const std::uint32_t part = mark_child(tree, node[i], dispensable, nodes);
-    nodes[2 * (child.reference * TriangleTree::kWidth + i) + 1].number = part;
+    nodes[2 * (std::size_t{child.reference} * TriangleTree::kWidth + i) + 1].number = part;
     add(part);
   }
   return common == kUnseen ? 0 : common;
@@ -76,7 +76,7 @@ SampleTable make_sample_table(const visibility::DeviceLight& frame, bool rows) {
     points.clear();
     for (const std::uint32_t j : table.bit_of) points.push_back(frame.coordinates[j]);
     for (std::uint32_t cell = 0; cell < kCells; ++cell) {
-      const float from = -1.0F + static_cast<float>(cell) / (kCells / 2);
+      const float from = -1.0F + 2 * static_cast<float>(cell) / kCells;
       const auto first =
           std::lower_bound(points.begin(), points.end(), from, [](const glm::vec2& at, float t) { return at.y < t; });
       first_point[cell] = static_cast<std::uint32_t>(first - points.begin());

@@ -11,12 +11,12 @@
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <ctime>
 #include <sstream>
 #include <string>
 #include <system_error>
 
 #include <fcntl.h>
-#include <time.h>
 #include <unistd.h>
 
 namespace penumbra::app {

@@ -211,8 +211,9 @@ class Drawing {
     const glm::dvec2 size = 2.0 / glm::dvec2(cells);
     put("<g class=\"texels\" stroke=\"#b7950b\" stroke-width=\"0.2\">\n");
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      const auto row = static_cast<double>(i / cells.x), column = static_cast<double>(i % cells.x);
-      const glm::dvec2 low(-1 + column * size.x, 1 - (row + 1) * size.y), high = low + size;  // rows run from the top
+      const std::size_t row = i / cells.x, column = i % cells.x;
+      const glm::dvec2 low(-1 + static_cast<double>(column) * size.x, 1 - static_cast<double>(row + 1) * size.y),
+          high = low + size;  // rows run from the top
       polygon({low, {high.x, low.y}, high, {low.x, high.y}},
               fmt::format("fill-opacity=\"{:.3f}\"", kDarkest * (1 - sums[i] / brightest)));
     }

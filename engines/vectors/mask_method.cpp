@@ -211,7 +211,7 @@ void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint3
   ExactOpenJudge judge(pairs, grid);
   const ViewInput view{*scene_, *samples_, device_light_, grid, normal_is_known_, scale_};
   std::vector<GridSample>& samples = buffers().samples;
-  std::array<std::size_t, kRegionPixels / (kSmallBlock * kSmallBlock)> ends{};  // of its small blocks
+  std::array<std::size_t, kRegionPixels / (std::size_t{kSmallBlock} * kSmallBlock)> ends{};  // of its small blocks
   samples.resize(kRegionPixels);
   std::vector<LightCone>& cones = buffers().cones;
   cones.resize(cone_ ? kRegionPixels : 0);

@@ -258,7 +258,8 @@ class Joiner {
     repaired.positions.resize(fans_);
     for (std::uint32_t t = 0; t < turn_.size(); ++t) {
       for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i) repaired.positions[fan_[i]] = soup_.positions[vertex(i)];
-      Triangle corners = {fan_[3 * t], fan_[3 * t + 1], fan_[3 * t + 2]};
+      const std::size_t first = 3 * std::size_t{t};
+      Triangle corners = {fan_[first], fan_[first + 1], fan_[first + 2]};
       if (turn_[t]) std::swap(corners[1], corners[2]);
       repaired.triangles.push_back(corners);
     }

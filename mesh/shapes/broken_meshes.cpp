@@ -101,8 +101,9 @@ void set_beside_each_other(std::vector<Part>& parts) {
   for (const Part& part : parts) widest = glm::max(widest, part.box.high - part.box.low);
   const glm::dvec3 pitch = glm::dvec3(widest) + double(broken::kCell);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto column = static_cast<double>(i % columns), row = static_cast<double>(i / columns);
-    parts[i].at = glm::dvec3(column * pitch.x, 0, -row * pitch.z) - glm::dvec3(parts[i].box.low);
+    const std::size_t column = i % columns, row = i / columns;
+    parts[i].at = glm::dvec3(static_cast<double>(column) * pitch.x, 0, -static_cast<double>(row) * pitch.z) -
+                  glm::dvec3(parts[i].box.low);
   }
 }
 

@@ -78,7 +78,8 @@ Known know_flipped_triangle(Count s) {
 void build_flipped_patch(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int j = 0; j < patch(s); ++j) {
-    for (int i = 0; i < 2 * patch(s); ++i) mesh.turn(static_cast<std::size_t>(2 * s * j + i));
+    for (int i = 0; i < 2 * patch(s); ++i)
+      mesh.turn(2 * static_cast<std::size_t>(s) * static_cast<std::size_t>(j) + static_cast<std::size_t>(i));
   }
 }
 Known know_flipped_patch(Count s) {
@@ -95,7 +96,10 @@ void build_inside_out(LatticeMesh& mesh, int s) {
 
 void build_duplicate_face(LatticeMesh& mesh, int s) {
   box(mesh, s);
-  for (int i = 0; i < s; ++i) mesh.triangles.push_back(Triangle(mesh.triangles[2 * static_cast<std::size_t>(i)]));
+  for (int i = 0; i < s; ++i) {
+    const Triangle again = mesh.triangles[2 * static_cast<std::size_t>(i)];
+    mesh.triangles.push_back(again);
+  }
 }
 Known know_duplicate_face(Count s) {
   Known known = known_box(s);
@@ -246,9 +250,9 @@ Known know_lid(Count s) {
   known.triangles += 6 * s * s;
   known.vertices += (2 * s + 1) * (2 * s + 1) - 4 * s - (s - 1) * (s - 1);
   known.components = known.boundary_loops = 2;
-  known.boundary_edges = (8 + 4) * s;
+  known.boundary_edges = 12 * s;
   known.t_junctions = known.non_manifold_vertices = 4 * s;
-  known.self_intersections = 3 * 4 * s;
+  known.self_intersections = 12 * s;
   return known;
 }
 

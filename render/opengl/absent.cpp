@@ -47,6 +47,7 @@ namespace {
 }
 }  // namespace
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the context that there is keeps the name
 Buffer::Buffer(const Context& /*context*/, std::string name, std::uint64_t /*bytes*/) {
   no_context(name);
 }

@@ -46,7 +46,8 @@ glm::vec2 coordinates_of(const DeviceLight& frame, const glm::dvec3& point) {
 constexpr std::uint32_t kShiftUnit = 65536;
 
 double shift_of(std::uint32_t row, std::uint32_t step) {
-  return (static_cast<double>((row * step + kShiftUnit / 2) % kShiftUnit) - kShiftUnit / 2) / kShiftUnit;
+  constexpr double kHalf = kShiftUnit / 2.0;
+  return (static_cast<double>((row * step + kShiftUnit / 2) % kShiftUnit) - kHalf) / kShiftUnit;
 }
 
 /// The step that gives the light's row shifts, if the samples form rows that have one.

@@ -140,7 +140,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
       }
       for (std::uint32_t i = 0; i < 32; ++i) {
         if ((question.bits >> i & 1U) == 0) continue;
-        counters[std::size_t{question.pixel} * light().sample_count() + question.word * 32 + i] =
+        counters[std::size_t{question.pixel} * light().sample_count() + std::size_t{question.word} * 32 + i] =
             DepthCounters::kNoCounter;
       }
     }

@@ -108,7 +108,7 @@ std::uint32_t CutEnds::of_edge(const glm::vec3& a, const glm::vec3& b, bool at_a
   } else {
     end.place = plane_->place(from, to);
   }
-  edges_.push_back(std::move(edge));
+  edges_.push_back(edge);
   return static_cast<std::uint32_t>(edges_.size());
 }
 

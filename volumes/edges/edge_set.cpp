@@ -255,7 +255,8 @@ class Cones {
   static constexpr std::uint32_t kTaskLevels = 3;  // 512 tasks
 
   Cone of_node(std::uint32_t node, std::uint32_t level) {
-    const std::span<Cone> own = std::span(of_child_).subspan(node * TriangleTree::kWidth, TriangleTree::kWidth);
+    const std::span<Cone> own =
+        std::span(of_child_).subspan(std::size_t{node} * TriangleTree::kWidth, TriangleTree::kWidth);
     const auto of_child = [&](std::size_t i) {
       const std::uint32_t reference = tree_.nodes[node][i].reference;
       if (reference == TriangleTree::kNoChild) return;

@@ -251,8 +251,8 @@ void VolumeCount::State::classify(const Tile& tile) {
                              visibility::in_front_of_light(*light, p);
     kinds[i] = faces_light ? Kind::counted : Kind::dark;
     if (!faces_light) return;
-    const glm::dvec2 center(static_cast<double>(pixel % samples->width) + 0.5,
-                            static_cast<double>(pixel / samples->width) + 0.5);
+    const std::size_t column = pixel % samples->width, row = pixel / samples->width;
+    const glm::dvec2 center(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     if (appears_in_place(boxes, corners, p, volumes.l, center)) {
       receivers[i] = {p, scene->plane[carrier]};
     } else {

@@ -155,9 +155,9 @@ bool drop_edge(Points& polygon) {
 
 Receivers::Receivers(const visibility::ViewSamples& samples, const std::optional<glm::dvec3>& center)
     : columns_((samples.width + kBlock - 1) / kBlock), rows_((samples.height + kBlock - 1) / kBlock) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  blocks_.assign(std::size_t{columns_} * rows_, {glm::dvec3(kInfinity), glm::dvec3(-kInfinity)});
-  double nearest = kInfinity;
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  blocks_.assign(std::size_t{columns_} * rows_, {glm::dvec3(kEndless), glm::dvec3(-kEndless)});
+  double nearest = kEndless;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
     const glm::dvec3 p(samples.p[i]);
@@ -177,7 +177,7 @@ Receivers::Receivers(const visibility::ViewSamples& samples, const std::optional
   for (const Box& block : blocks_) {
     bounds_ = {glm::min(bounds_.lower, block.lower), glm::max(bounds_.upper, block.upper)};
   }
-  if (nearest < kInfinity) nearest_ = std::max(nearest / 2, std::numeric_limits<double>::min());
+  if (nearest < kEndless) nearest_ = std::max(nearest / 2, std::numeric_limits<double>::min());
 }
 
 FootprintFinder::FootprintFinder(const visibility::PinholeCamera& camera, const Receivers& receivers, WedgeTests tests)

@@ -86,8 +86,8 @@ gpu::WedgePush wedge_push(const visibility::Light& light) {
 }
 
 bool appears_in_place(const visibility::PinholeCamera& camera, const glm::vec3& p, std::size_t pixel) {
-  const glm::dvec2 center(static_cast<double>(pixel % camera.width) + 0.5,
-                          static_cast<double>(pixel / camera.width) + 0.5);
+  const std::size_t column = pixel % camera.width, row = pixel / camera.width;
+  const glm::dvec2 center(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
   return BoxFinder(camera).appears_at(p, center);
 }
 

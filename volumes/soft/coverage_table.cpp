@@ -31,7 +31,8 @@ Point square_point(int index) {
 }
 
 Point disk_point(int index) {
-  const double radius = (2 * (index / kSpokes) + 1) / static_cast<double>(2 * kCircles - 1);
+  const int circle = index / kSpokes;
+  const double radius = (2 * circle + 1) / static_cast<double>(2 * kCircles - 1);
   const double half_angle = (index % kSpokes + 0.5) / kSpokes * std::numbers::pi;
   return {radius * glm::dvec2(std::cos(2 * half_angle), std::sin(2 * half_angle)), half_angle};
 }

@@ -57,8 +57,8 @@ TextureWeights::TextureWeights(const visibility::LightTexture& texture)
     double* sums = &words_[height_ + 1 + std::size_t{2} * row * (width_ + 1)];
     double p = 0, pp = 0;
     for (std::uint32_t column = 0; column <= width_; ++column) {
-      sums[2 * column] = p;
-      sums[2 * column + 1] = pp;
+      sums[std::size_t{2} * column] = p;
+      sums[std::size_t{2} * column + 1] = pp;
       if (column == width_) break;
       const double rise = texture.luminance[std::size_t{height_ - 1 - row} * width_ + column] / whole * step;
       pp += (p + rise / 2) * step;

@@ -190,7 +190,7 @@ bool WedgeProofs::is_proved_crop(const Job& job, const Plane& plane) const {
   const auto crop = crop_of(input_.casters, input_.casting.edges[job.wedge.source], input_.light);
   if (!crop || side_of(plane, job.cast.a) < 0 || side_of(plane, job.cast.b) < 0) return false;
   std::vector<mpq_class> heights;
-  for (const glm::dvec3& l : job.cast.light) heights.push_back(crop->others * volume(crop->triangle, l));
+  for (const glm::dvec3& l : job.cast.light) heights.emplace_back(crop->others * volume(crop->triangle, l));
   for (const glm::dvec3& x : {job.cast.a, job.cast.b}) {
     std::vector<mpq_class> ways;
     for (const glm::dvec3& l : job.cast.light) ways.push_back(along(plane.normal(), x, l));

@@ -137,7 +137,7 @@ Tightness tightness_of(std::span<const Wedge> wedges, const LightHull& light, st
 
 std::optional<double> quantile(std::span<const double> ascending, double share) {
   if (ascending.empty()) return std::nullopt;
-  return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1) + 0.5)];
+  return ascending[static_cast<std::size_t>(std::lround(share * static_cast<double>(ascending.size() - 1)))];
 }
 
 }  // namespace penumbra::volumes

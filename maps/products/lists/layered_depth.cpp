@@ -50,8 +50,9 @@ void LayeredDepth::make(const MapSource& source) {
   for (;;) {
     const std::uint64_t bytes = texels * layers_ * sizeof(gpu::LayerEntry);
     if (bytes > device_->limits().max_storage_buffer_range) {
-      const double fits = std::sqrt(static_cast<double>(device_->limits().max_storage_buffer_range) /
-                                    static_cast<double>(source.faces * layers_ * sizeof(gpu::LayerEntry)));
+      const double fits =
+          std::sqrt(static_cast<double>(device_->limits().max_storage_buffer_range) /
+                    static_cast<double>(std::uint64_t{source.faces} * layers_ * sizeof(gpu::LayerEntry)));
       throw ResourceError(
           "layered-attenuation: {} layers a texel do not fit into one buffer of {}; take size={} or less, or a larger "
           "epsilon",

@@ -196,7 +196,7 @@ void see_counted(const LightTiles& tiles, const CountScratch& counting, float de
   for (std::uint32_t tile = 0; tile < tiles.tile_count(); ++tile) {
     std::uint32_t bits = 0;
     for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
-      const TileV counter = hn::LoadU(d, &counting.counters[tile * LightTiles::kWide + lane]);
+      const TileV counter = hn::LoadU(d, &counting.counters[std::size_t{tile} * LightTiles::kWide + lane]);
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(d, hn::Eq(counter, hn::Set(d, -depth)), bytes);
       bits |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << lane;

@@ -133,8 +133,9 @@ void CutEdges::restore() {
   ends_.reset();
   plane_of_light_ = vectors::Cluster::kSeveral;
   // Backwards: of one that was changed more than once, the first is what it was.
-  for (auto it = nodes_.rbegin(); it != nodes_.rend(); ++it) tree_.nodes[it->number].used = it->used;
-  for (auto it = leaves_.rbegin(); it != leaves_.rend(); ++it) tree_.leaves[it->number].used = it->used;
+  std::for_each(nodes_.rbegin(), nodes_.rend(), [&](const auto& node) { tree_.nodes[node.number].used = node.used; });
+  std::for_each(leaves_.rbegin(), leaves_.rend(),
+                [&](const auto& leaf) { tree_.leaves[leaf.number].used = leaf.used; });
   nodes_.clear();
   leaves_.clear();
   tree_.roots.resize(roots_);

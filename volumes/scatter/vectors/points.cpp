@@ -234,7 +234,7 @@ void sum_up(const LightTiles& tiles, const PointChanges& changes, std::int32_t d
     std::uint32_t bits = 0;
     for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
       std::uint8_t bytes[8] = {};
-      const auto none = hn::Eq(hn::LoadU(d, changes.slots + tile * LightTiles::kWide + lane), zero);
+      const auto none = hn::Eq(hn::LoadU(d, changes.slots + std::size_t{tile} * LightTiles::kWide + lane), zero);
       visible += static_cast<std::uint32_t>(hn::CountTrue(d, none));
       hn::StoreMaskBits(d, none, bytes);
       bits |= (bytes[0] | std::uint32_t{bytes[1]} << 8U) << lane;
