@@ -17,8 +17,6 @@
 namespace penumbra::vectors {
 namespace {
 
-using visibility::LightKind;
-
 /// A thinner sun's light points are float32's rounding away from one another.
 constexpr double kThinnest = 0x1p-12;
 constexpr std::uint32_t kCells = 16;  ///< of a side, without light samples

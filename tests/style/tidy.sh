@@ -41,7 +41,7 @@ case $what in
     sources=$(grep -vF "$build/" <<<"$sources"; grep -F /Unity/ <<<"$sources")
     options=(--checks=-bugprone-suspicious-include "--header-filter=^$source/(app|areas|base|bench|compare|engines|import|maps|mesh|reference|render|scenes|selftest|tests|visibility|volumes|vsm)/") ;;
   changed)
-    wanted=$(changed_sources)
+    wanted=$(changed_sources || true)  # no history, as in a shallow clone: nothing
     sources=$(grep -vF "$build/" <<<"$sources" | grep -Fxf <(sed "s,^,$source/," <<<"$wanted") || true)
     [[ $sources && $wanted ]] || { echo 'style: no source changed'; exit 77; }
     if (($(wc -l <<<"$sources") > most)); then
