@@ -339,6 +339,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
                           result.times.light - result.times.evaluate;
     result.times.warmup = std::max(longer, 0.0);
   }
+  for (const auto& [name, count] : method.take_mesh_counters()) result.counters[name] += count;
   result.prepared = host.prepared();
   result.passes = method.take_pass_times();
   result.memory_bytes = method.memory_bytes();

@@ -11,6 +11,11 @@ class EngineByLight final : public visibility::Method {
  public:
   explicit EngineByLight(TwoEngines engines) : engines_(std::move(engines)) { usual_.method = engines_.usual(); }
 
+  void expect_frames() override {
+    expects_frames_ = true;
+    usual_.method->expect_frames();
+  }
+
   [[nodiscard]] const visibility::MethodDescription& description() const override {
     return usual_.method->description();
   }
@@ -24,7 +29,10 @@ class EngineByLight final : public visibility::Method {
   void prepare_light(const visibility::Light& light) override {
     PENUMBRA_ASSERT(scene_ != nullptr, "prepare_mesh comes first: {}", light.name);
     current_ = engines_.is_usual(light) ? &usual_ : &other_;
-    if (!current_->method) current_->method = engines_.other();
+    if (!current_->method) {
+      current_->method = engines_.other();
+      if (expects_frames_) current_->method->expect_frames();
+    }
     give_mesh(*current_);
     current_->method->prepare_light(light);
     if (samples_ != nullptr) give_view(*current_);
@@ -43,6 +51,12 @@ class EngineByLight final : public visibility::Method {
   }
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override {
     return current_ == nullptr ? std::map<std::string, std::uint64_t>{} : current().counters();
+  }
+  std::map<std::string, std::uint64_t> take_mesh_counters() override {
+    std::map<std::string, std::uint64_t> all = usual_.method->take_mesh_counters();
+    if (!other_.method) return all;
+    for (const auto& [name, count] : other_.method->take_mesh_counters()) all[name] += count;
+    return all;
   }
   [[nodiscard]] std::uint64_t memory_bytes() const override {
     return usual_.method->memory_bytes() + (other_.method ? other_.method->memory_bytes() : 0);
@@ -68,6 +82,7 @@ class EngineByLight final : public visibility::Method {
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
   Engine usual_, other_;
+  bool expects_frames_ = false;
   Engine* current_ = nullptr;
 };
 

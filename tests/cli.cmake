@@ -13,7 +13,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/farm.cpp
   cli/farm_slurm.cpp
   cli/farm_tasks.cpp
-  cli/frames.cpp
+  cli/animated_meshes.cpp cli/frames.cpp
   cli/image_methods.cpp
   cli/inspect.cpp
   cli/interrupt.cpp

@@ -1,6 +1,7 @@
 # View-sample mapping against the exact decision and closed forms.
 penumbra_test(vsm
   SOURCES
+  agreement/volumes/kept_meshes.cpp
   analytic/view_sample_closed_forms.cpp
   property/volumes/cut_ends.cpp
   property/volumes/edge_cut.cpp

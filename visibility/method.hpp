@@ -75,6 +75,9 @@ class Method {
   /// leaves the rest out and gives NaN as their V; others need not listen. Without a call: all pixels.
   virtual void want_pixels([[maybe_unused]] std::span<const std::uint32_t> pixels) {}
 
+  /// Meshes will follow one another as frames do. What a method can carry over from the one before it then keeps, at
+  /// the cost of memory; answers are the same bits as without. Before the first prepare_mesh.
+  virtual void expect_frames() {}
   /// Once a mesh: adjacency, hierarchies, upload. `scene` must outlive the method.
   virtual void prepare_mesh(const SceneFloats& scene) = 0;
   /// Redone when a light moves. `light` must outlive its use.
@@ -100,6 +103,9 @@ class Method {
   virtual std::vector<PassTime> take_pass_times() { return {}; }
   /// Counters for --stats (candidate pairs, retries, fallbacks …) of the last evaluate calls since prepare_light.
   [[nodiscard]] virtual std::map<std::string, std::uint64_t> counters() const { return {}; }
+  /// Since the last call: what was made for meshes (treesBuilt, edgesBuilt …), and what only had to follow those of the
+  /// mesh before (treesRefit, edgesRefit …). Docs: frames.md.
+  virtual std::map<std::string, std::uint64_t> take_mesh_counters() { return {}; }
   /// Bytes of device memory (or, for CPU methods, of their own structures) at their peak.
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return 0; }
 };

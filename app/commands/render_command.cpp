@@ -70,6 +70,7 @@ class RenderCommand : public Command {
     }
     outputs.refuse_inputs(now.scene.sources);
     const bool moves = now.scene.motion.has_value();
+    if (moves && (frames.size() > 1 || request_.moments > 1)) renderer.expect_frames();
     if (frames.front() && !moves) {
       progress.clear();
       spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);

@@ -81,6 +81,7 @@ FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {
   }
   kept_.push_back(
       {wanted, make_method(wanted.description.name, wanted.options, devices_), nullptr, lit().mesh_version});
+  if (expects_frames_) kept_.back().method->expect_frames();
   return kept_.back();
 }
 
@@ -127,6 +128,8 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
           bits_seconds_ += watch.seconds();
         },
         progress_);
+    // Whatever was made for a mesh is counted by who made it (Method::take_mesh_counters).
+    if (!std::exchange(kept.used, true) && kept.prepared == run.prepared) ++run.counters["meshesKept"];
     kept.prepared = run.prepared;
     // Whatever is no phase of the method's is about its answers.
     const RunTimes& times = run.times;

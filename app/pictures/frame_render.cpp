@@ -34,6 +34,23 @@ std::vector<glm::vec3> sum_of(std::span<const std::vector<glm::vec3>> parts, std
   return sum;
 }
 
+/// What became of the meshes of the picture before (docs/frames.md); empty: nothing is known.
+std::string mesh_line(const std::map<std::string, std::uint64_t>& counters) {
+  std::string line;
+  for (const auto& [counter, words] : {std::pair{"meshesKept", "nothing moved"},
+                                       {"treesRefit", "triangles' hierarchy refit"},
+                                       {"treesBuilt", "triangles' hierarchy built"},
+                                       {"edgesRefit", "edges refit"},
+                                       {"edgeTreesBuilt", "edges' hierarchy built"},
+                                       {"edgesBuilt", "edges found"}}) {
+    const auto count = counters.find(counter);
+    if (count == counters.end() || count->second == 0) continue;
+    line += (line.empty() ? "meshes: " : ", ") + std::string(words);
+    if (count->second > 1) line += fmt::format(" {} times", count->second);
+  }
+  return line;
+}
+
 double sum_of(std::span<const double> seconds) {
   return std::reduce(seconds.begin(), seconds.end());
 }
@@ -197,6 +214,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   bits_.reset();
   mean_.reset();
   lamps_.clear();
+  for (Kept& kept : kept_) kept.used = false;
   done_.clear();
   notes_.clear();
   run_ = {};
@@ -322,6 +340,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   bits_.reset();
   picture.commit();
   if (png) png->commit();
+  if (const std::string line = mesh_line(run_.counters); expects_frames_ && !line.empty()) spdlog::debug("{}", line);
   if (stats_file) stats_file->commit();
   return stats;
 }

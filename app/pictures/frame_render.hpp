@@ -45,6 +45,8 @@ class FrameRenderer {
   /// All must outlive it.
   FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices, Progress& progress);
 
+  /// Scenes will follow one another as frames of an animation do. Before the first.
+  void expect_frames() { expects_frames_ = true; }
   /// Looks at a scene and computes all lights' V and beauty: of it, or the mean of `frame.moments`; then positions,
   /// normals, depths and ids are those of `scene` and of pixels' centres. `read_seconds`: what reading the scene took,
   /// perhaps while the picture before was made; of the first, all since the process began.
@@ -62,6 +64,7 @@ class FrameRenderer {
     std::unique_ptr<visibility::Method> method;
     const visibility::SceneFloats* prepared = nullptr;
     std::uint64_t mesh_version = 0;
+    bool used = false;  // for the picture computed last
   };
 
   /// For the view samples that a session looks at.
@@ -97,6 +100,7 @@ class FrameRenderer {
   RunOptions fine_options_;  // of the next, whose picture is several times as large
   std::optional<SessionMaker> fine_;
   std::vector<Kept> kept_;
+  bool expects_frames_ = false;
   std::vector<std::string> said_;  // warnings, once each
   bool camera_said_ = false;
 

@@ -5,6 +5,7 @@
 #include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/open_judge.hpp"
 #include "visibility/masks/visible_share.hpp"
+#include "visibility/tree/tree_refit.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -105,16 +106,28 @@ void MaskMethod::prepare_mesh(const visibility::SceneFloats& scene) {
 void MaskMethod::prepare_tree(const visibility::SceneFloats& scene) {
   scene_ = &scene;
   scale_ = visibility::device_scale(scene);
-  triangles_ = {};  // of a scene before
-  tree_ = visibility::make_triangle_tree(scene);
+  if (refit_tree()) {
+    count_for_mesh("treesRefit");
+  } else {
+    triangles_ = {};  // of a scene before
+    tree_ = visibility::make_triangle_tree(scene);
+    if (expects_frames_) built_cost_ = visibility::tree_cost(tree_);
+    count_for_mesh("treesBuilt");
+  }
 }
 
 void MaskMethod::prepare_triangles() {
-  triangles_ = wide_triangle_tree(*scene_, tree_, scale_);
+  triangles_ = wide_triangle_tree(*scene_, tree_, scale_, std::move(triangles_));
   normal_is_known_.resize(scene_->triangles.size());
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene_->triangles.size()), [&](std::uint32_t i) {
     normal_is_known_[i] = visibility::normal_is_known(scene_->corners(i)) ? 1 : 0;
   });
+}
+
+bool MaskMethod::refit_tree() {
+  if (!expects_frames_ || tree_.nodes.empty() || !visibility::holds_casters(tree_, *scene_)) return false;
+  visibility::refit_triangle_tree(tree_, *scene_);
+  return visibility::tree_cost(tree_) <= visibility::kMostGrowth * built_cost_;
 }
 
 void MaskMethod::prepare_light(const visibility::Light& light) {

@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace penumbra::vectors {
@@ -33,6 +34,7 @@ class MaskMethod : public visibility::Method {
   MaskMethod(visibility::MethodDescription description, std::string pass);
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
+  void expect_frames() override { expects_frames_ = true; }
   void prepare_mesh(const visibility::SceneFloats& scene) override;
   void prepare_light(const visibility::Light& light) override;
   void prepare_view(const visibility::ViewSamples& samples) override { samples_ = &samples; }
@@ -43,6 +45,7 @@ class MaskMethod : public visibility::Method {
   std::vector<visibility::PassTime> take_pass_times() override;
   /// openPixels, openPairs (left to exact predicates) and what count() was told.
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override { return counters_; }
+  std::map<std::string, std::uint64_t> take_mesh_counters() override { return std::exchange(mesh_counters_, {}); }
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
  protected:
@@ -78,6 +81,8 @@ class MaskMethod : public visibility::Method {
   /// Runs do_cluster again for the tile last evaluated, for a result that was not asked for the first time. Counters
   /// stay.
   void repeat();
+  /// Something that is made for a mesh was made, or has followed the mesh before.
+  void count_for_mesh(const char* name) { ++mesh_counters_[name]; }
   /// Adds to the counters after a tile.
   virtual void count(std::map<std::string, std::uint64_t>& counters) = 0;
 
@@ -98,6 +103,8 @@ class MaskMethod : public visibility::Method {
   [[nodiscard]] std::size_t tile_pixel(const GridSample& at) const { return at.pixel - first_pixel(); }
 
  private:
+  /// Lets the last mesh's hierarchy follow. False: it does not fit this one, or not well.
+  bool refit_tree();
   void do_tile();
   /// What this thread turns to view samples of a sphere or sun.
   [[nodiscard]] LightGrid& turned_grid() const;
@@ -112,7 +119,9 @@ class MaskMethod : public visibility::Method {
   std::string pass_;
   const visibility::SceneFloats* scene_ = nullptr;
   float scale_ = 1;
+  bool expects_frames_ = false;
   visibility::TriangleTree tree_;
+  double built_cost_ = 0;  // visibility::tree_cost when it was built, where frames are expected
   WideTriangleTree triangles_;
   std::vector<std::uint8_t> normal_is_known_;  // of each triangle
   const visibility::Light* light_ = nullptr;
@@ -126,7 +135,7 @@ class MaskMethod : public visibility::Method {
   std::vector<std::uint32_t> visible_;
   std::atomic<std::uint64_t> open_pixels_ = 0, open_pairs_ = 0;
   double milliseconds_ = 0;
-  std::map<std::string, std::uint64_t> counters_;
+  std::map<std::string, std::uint64_t> counters_, mesh_counters_;
 };
 
 }  // namespace penumbra::vectors

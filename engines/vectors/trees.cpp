@@ -1,5 +1,6 @@
 #include "engines/vectors/trees.hpp"
 
+#include "base/assert.hpp"
 #include "base/pages.hpp"
 #include "base/parallel.hpp"
 
@@ -41,17 +42,22 @@ void append(WideEdgeTree& tree, const WideEdgeTree& more) {
   tree.leaves.insert(tree.leaves.end(), more.leaves.begin(), more.leaves.end());
 }
 
-WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
-  WideTriangleTree wide;
-  resize_on_all_cores(wide.nodes, tree.nodes.size());
+WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale,
+                                    WideTriangleTree wide) {
+  if (wide.nodes.empty()) resize_on_all_cores(wide.nodes, tree.nodes.size());
+  PENUMBRA_ASSERT(wide.nodes.size() == tree.nodes.size(), "{} nodes of {}", wide.nodes.size(), tree.nodes.size());
   mesh::for_each_index(wide.nodes.size(), [&](std::size_t node) {
+    wide.nodes[node].used = 0;
     for (std::size_t lane = 0; lane < kWide; ++lane)
       store(wide.nodes[node], lane, visibility::child_texels(tree.nodes[node][lane], scale));
   });
   if (!wide.nodes.empty()) wide.roots = {0};
-  resize_on_all_cores(wide.leaves, tree.leaves.size());
+  if (wide.leaves.empty()) resize_on_all_cores(wide.leaves, tree.leaves.size());
+  PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(), tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t i) {
     WideTriangles& leaf = wide.leaves[i];
+    leaf.used = 0;
+    leaf.closed.fill(0);
     for (std::size_t lane = 0; lane < kWide; ++lane) {
       const std::uint32_t triangle = tree.leaves[i][lane];
       if (triangle == TriangleTree::kNoTriangle) continue;

@@ -56,8 +56,9 @@ struct WideTriangleTree {
 
 /// One more root.
 void append(WideEdgeTree& tree, const WideEdgeTree& more);
+/// `memory`: a tree of the same form, to be written over.
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
-                                    float scale);
+                                    float scale, WideTriangleTree memory = {});
 
 /// A child's texels: (middle, reference), (half extent, –) and, if there are three, (axis, cosine) of its cone, as of
 /// volumes/edges/edge_set.hpp.

@@ -12,6 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -80,16 +81,65 @@ EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uin
   return {turned_alike(scene, triangle, chosen) ? n : -n, corners[0], plane};
 }
 
-EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters) : scene_(&scene), casters_(&casters) {
+EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters, Flat flat)
+    : scene_(&scene), casters_(&casters) {
   const std::size_t count = casters.triangle.size();
   resize_on_all_cores(planes_, count);
-  mesh::for_each_index(count, [&](std::size_t i) { planes_[i] = plane_of(scene, casters, casters.triangle[i]); });
+  find_planes();
   std::vector<mesh::Triangle> chosen;
   if (count < scene.triangles.size()) {
     chosen.resize(count);
     mesh::for_each_index(count, [&](std::size_t i) { chosen[i] = scene.triangles[casters.triangle[i]]; });
   }
-  find_pairs(count < scene.triangles.size() ? chosen : scene.triangles);
+  find_pairs(count < scene.triangles.size() ? chosen : scene.triangles, flat);
+  if (flat == Flat::kept) keep_places();
+}
+
+void EdgeRecords::keep_places() {
+  kept_.places = scene_->positions;
+  kept_.casters = casters_->triangle;
+  kept_.largest.resize(planes_.size());
+  kept_.corners.resize(planes_.size());
+  kept_.moved.assign(planes_.size(), 1);
+  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+    kept_.largest[i] = casters_->largest_in_plane[planes_[i].plane];
+    kept_.corners[i] = scene_->triangles[casters_->triangle[i]];
+  });
+}
+
+/// Which casters, or the triangles that their planes are of, have another corner than in the last frame. False:
+/// vertices have met or parted, somewhere.
+bool EdgeRecords::find_moved() {
+  const SceneFloats& scene = *scene_;
+  std::vector<std::uint8_t> other(scene.positions.size());
+  mesh::for_each_index(other.size(), [&](std::size_t i) {
+    other[i] = kept_.places[i] != scene.positions[i] ? 1 : 0;
+    kept_.places[i] = scene.positions[i];
+  });
+  std::vector<std::uint8_t> itself(scene.triangles.size());
+  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+    const auto& corners = scene.triangles[casters_->triangle[i]];
+    const bool same = kept_.corners[i] == corners && (other[corners[0]] | other[corners[1]] | other[corners[2]]) == 0;
+    itself[casters_->triangle[i]] = same ? 0 : 1;
+    kept_.corners[i] = corners;
+  });
+  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+    const std::uint32_t triangle = casters_->triangle[i], plane = scene.plane[triangle];
+    const std::uint32_t largest = casters_->largest_in_plane[plane];
+    const bool same =
+        itself[triangle] == 0 && itself[largest] == 0 && kept_.largest[i] == largest && planes_[i].plane == plane;
+    kept_.moved[i] = same ? 0 : 1;
+    kept_.largest[i] = largest;
+  });
+  std::vector<std::uint32_t> vertex = mesh::merge_equal(std::span(scene.positions));
+  std::swap(kept_.vertex, vertex);
+  return vertex == kept_.vertex;
+}
+
+void EdgeRecords::find_planes() {
+  mesh::for_each_index(planes_.size(), [&](std::size_t i) {
+    if (kept_.moved.empty() || kept_.moved[i] != 0) planes_[i] = plane_of(*scene_, *casters_, casters_->triangle[i]);
+  });
 }
 
 /// In front where (a, b, apex) runs counter-clockwise, for the edge a→b.
@@ -108,10 +158,10 @@ bool EdgeRecords::is_flat(const Pair& pair) const {
   return glm::dot(side(pair.sides[0]).n, side(pair.sides[1]).n) < 0;
 }
 
-void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles) {
-  const std::vector<std::uint32_t> vertex = mesh::merge_equal(std::span(scene_->positions));
+void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles, Flat flat) {
+  std::vector<std::uint32_t> vertex = mesh::merge_equal(std::span(scene_->positions));
   const mesh::SortedSides sorted = mesh::sort_sides(vertex, triangles);
-  const auto for_each_pair = [&](std::size_t from, const auto& visit) {
+  const auto for_each_pair = [&](std::size_t from, bool wanted_flat, const auto& visit) {
     const std::span<const mesh::SortedSide> here = sorted.from(from);
     const auto coded = [&](const mesh::SortedSide& side) {
       const std::uint32_t triangle = side.number / 3;
@@ -121,19 +171,67 @@ void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles) {
     for (std::size_t i = 0; i < here.size(); ++i) {
       Pair pair{static_cast<std::uint32_t>(from), here[i].other, {coded(here[i]), kNoSide}};
       if (i + 1 < here.size() && here[i + 1].other == pair.b) pair.sides[1] = coded(here[++i]);
-      if (!is_flat(pair)) visit(pair);
+      if (is_flat(pair) == wanted_flat) visit(pair);
     }
   };
   std::vector<std::uint32_t> first(vertex.size() + 1, 0);
-  mesh::for_each_index(vertex.size(),
-                       [&](std::size_t from) { for_each_pair(from, [&](const Pair&) { ++first[from]; }); });
-  std::uint32_t pairs = 0;
-  for (std::uint32_t& number : first) pairs += std::exchange(number, pairs);
-  resize_on_all_cores(pairs_, pairs);
-  mesh::for_each_index(vertex.size(), [&](std::size_t from) {
-    std::uint32_t next = first[from];
-    for_each_pair(from, [&](const Pair& pair) { pairs_[next++] = pair; });
+  const auto append = [&](bool wanted_flat) {
+    std::ranges::fill(first, 0U);
+    mesh::for_each_index(vertex.size(), [&](std::size_t from) {
+      for_each_pair(from, wanted_flat, [&](const Pair&) { ++first[from]; });
+    });
+    auto pairs = static_cast<std::uint32_t>(pairs_.size());
+    for (std::uint32_t& number : first) pairs += std::exchange(number, pairs);
+    pairs_.empty() ? resize_on_all_cores(pairs_, pairs) : pairs_.resize(pairs);
+    mesh::for_each_index(vertex.size(), [&](std::size_t from) {
+      std::uint32_t next = first[from];
+      for_each_pair(from, wanted_flat, [&](const Pair& pair) { pairs_[next++] = pair; });
+    });
+  };
+  append(false);
+  size_ = pairs_.size();
+  if (flat == Flat::dropped) return;
+  append(true);
+  kept_.vertex = std::move(vertex);
+}
+
+/// Are both ends still ends of both triangles? Then also which way these run, since they are sorted by place.
+bool EdgeRecords::follow(Pair& pair, std::span<const std::uint32_t> vertex) const {
+  for (std::uint32_t& side : pair.sides) {
+    if (side == kNoSide) continue;
+    const mesh::Triangle& corners = scene_->triangles[triangle_of(side)];
+    const std::array<std::uint32_t, 3> at{vertex[corners[0]], vertex[corners[1]], vertex[corners[2]]};
+    const auto runs = [&](std::uint32_t from, std::uint32_t to) {
+      return (at[0] == from && at[1] == to) || (at[1] == from && at[2] == to) || (at[2] == from && at[0] == to);
+    };
+    side &= ~kReversed;
+    if (runs(pair.b, pair.a))
+      side |= kReversed;
+    else if (!runs(pair.a, pair.b))
+      return false;
+  }
+  return true;
+}
+
+/// The casters of before, and each side of each where it was: so none is new, and edges have the sides that they had,
+/// in the same order, that of triangles' numbers.
+EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCasters& casters) {
+  if (casters.triangle != kept_.casters || scene.positions.size() != kept_.places.size()) return Followed::nothing;
+  scene_ = &scene;
+  casters_ = &casters;
+  const bool same_vertices = find_moved();
+  std::atomic<bool> same = true;
+  mesh::for_each_index(pairs_.size(), [&](std::size_t i) {
+    if (same_vertices && !has_moved(i)) return;
+    if (!follow(pairs_[i], kept_.vertex)) same.store(false, std::memory_order_relaxed);
   });
+  if (!same) return Followed::nothing;
+  find_planes();
+  const auto before = size_;
+  const auto bent = std::partition(pairs_.begin() + static_cast<std::ptrdiff_t>(size_), pairs_.end(),
+                                   [&](const Pair& pair) { return !is_flat(pair); });
+  size_ = static_cast<std::size_t>(bent - pairs_.begin());
+  return size_ > before ? Followed::more : Followed::all;
 }
 
 EdgeRecord EdgeRecords::operator[](std::size_t record) const {
@@ -156,13 +254,7 @@ std::vector<EdgeRecord> edge_records(const SceneFloats& scene, const EdgeCasters
 
 namespace {
 
-/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all.
-struct Cone {
-  glm::dvec3 axis{0};
-  double cosine = 1;
-
-  [[nodiscard]] bool is_all() const { return cosine <= 0; }
-};
+using Cone = NormalCone;
 constexpr Cone kAllDirections{{0, 0, 0}, 0};
 constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space leave nothing out
 
@@ -241,15 +333,21 @@ Cone joined(std::span<const Cone> cones) {
 
 class Cones {
  public:
-  Cones(const TriangleTree& tree, const std::function<LeafNormals(std::size_t)>& normals_of) : tree_(tree) {
+  Cones(const TriangleTree& tree, const std::function<LeafNormals(std::size_t)>& normals_of, LeafCones* kept)
+      : tree_(tree) {
     of_child_.resize(tree.nodes.size() * TriangleTree::kWidth);
+    if (kept != nullptr) of_leaf_ = std::move(kept->cones);
+    const bool known = !of_leaf_.empty();
     of_leaf_.resize(tree.leaves.size());
-    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) { of_leaf_[i] = cone_of(normals_of(i)); });
+    mesh::for_each_index(of_leaf_.size(), [&](std::size_t i) {
+      if (!known || kept->has_moved(i)) of_leaf_[i] = cone_of(normals_of(i));
+    });
     if (!tree.nodes.empty()) static_cast<void>(of_node(0, 0));
   }
   [[nodiscard]] const Cone& of_child(std::size_t node, std::size_t child) const {
     return of_child_[node * TriangleTree::kWidth + child];
   }
+  [[nodiscard]] std::vector<Cone> of_leaves() && { return std::move(of_leaf_); }
 
  private:
   static constexpr std::uint32_t kTaskLevels = 3;  // 512 tasks
@@ -332,8 +430,8 @@ TriangleTree edge_tree(std::span<const EdgeRecord> records) {
 
 void for_each_edge_node(const TriangleTree& tree, float scale,
                         const std::function<LeafNormals(std::size_t)>& normals_of,
-                        const std::function<void(std::size_t, std::span<const EdgeChild>)>& take) {
-  const Cones cones(tree, normals_of);
+                        const std::function<void(std::size_t, std::span<const EdgeChild>)>& take, LeafCones* kept) {
+  Cones cones(tree, normals_of, kept);
   mesh::for_each_index(tree.nodes.size(), [&](std::size_t node) {
     std::array<EdgeChild, TriangleTree::kWidth> children;
     for (std::size_t child = 0; child < children.size(); ++child) {
@@ -347,6 +445,7 @@ void for_each_edge_node(const TriangleTree& tree, float scale,
     }
     take(node, children);
   });
+  if (kept != nullptr) kept->cones = std::move(cones).of_leaves();
 }
 
 EdgeTexels edge_texels(const EdgeRecords& records, const TriangleTree& triangles, float scale) {

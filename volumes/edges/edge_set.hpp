@@ -51,16 +51,38 @@ EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& caste
 /// planes; a list of them takes half a gigabyte for ten million edges.
 class EdgeRecords {
  public:
+  /// What becomes of edges with k_e 0 everywhere.
+  enum class Flat : std::uint8_t {
+    dropped,
+    kept,  ///< aside: in another frame they may not be flat
+  };
   /// All must outlive it.
-  EdgeRecords(const visibility::SceneFloats& scene, const EdgeCasters& casters);
+  EdgeRecords(const visibility::SceneFloats& scene, const EdgeCasters& casters, Flat flat = Flat::dropped);
 
-  [[nodiscard]] std::size_t size() const { return pairs_.size(); }
+  enum class Followed : std::uint8_t {
+    all,      ///< each record is of the same edge as before; those with is_flat() add nothing now
+    more,     ///< after these there are others, which were flat
+    nothing,  ///< other edges: vertices have met or parted, or others cast. What was known is lost
+  };
+  /// The records of the next frame, in which vertices have moved; of one made with Flat::kept. Who shares an edge with
+  /// whom is checked, not found again.
+  [[nodiscard]] Followed follow(const visibility::SceneFloats& scene, const EdgeCasters& casters);
+  [[nodiscard]] bool is_flat(std::size_t record) const { return is_flat(pairs_[record]); }
+  /// After follow: may any of its floats be another than before?
+  [[nodiscard]] bool has_moved(std::size_t record) const {
+    const auto [first, second] = pairs_[record].sides;
+    return kept_.moved[first & ~kReversed] != 0 || (second != kNoSide && kept_.moved[second & ~kReversed] != 0);
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] EdgeRecord operator[](std::size_t record) const;
+  [[nodiscard]] std::uint64_t memory_bytes() const {
+    constexpr std::size_t kKept = sizeof(EdgeSide) + sizeof(mesh::Triangle) + 9;  // of each caster
+    return planes_.size() * kKept + pairs_.size() * sizeof(Pair) + kept_.places.size() * (sizeof(glm::vec3) + 4);
+  }
   [[nodiscard]] visibility::Bounds box(std::size_t record) const;
   /// One of its triangles: the scene's number.
-  [[nodiscard]] std::uint32_t triangle(std::size_t record) const {
-    return casters_->triangle[pairs_[record].sides[0] & ~kReversed];
-  }
+  [[nodiscard]] std::uint32_t triangle(std::size_t record) const { return triangle_of(pairs_[record].sides[0]); }
 
  private:
   static constexpr std::uint32_t kReversed = 0x80000000u;  // of casters' numbers: the winding runs from b to a
@@ -71,14 +93,28 @@ class EdgeRecords {
     std::uint32_t a, b;                  // positions
     std::array<std::uint32_t, 2> sides;  // casters
   };
+  [[nodiscard]] std::uint32_t triangle_of(std::uint32_t side) const { return casters_->triangle[side & ~kReversed]; }
   [[nodiscard]] EdgeSide side(std::uint32_t of) const;
   [[nodiscard]] bool is_flat(const Pair& pair) const;
-  void find_pairs(std::span<const mesh::Triangle> triangles);
+  void find_planes();
+  void find_pairs(std::span<const mesh::Triangle> triangles, Flat flat);
+  [[nodiscard]] bool follow(Pair& pair, std::span<const std::uint32_t> vertex) const;
+  void keep_places();
+  [[nodiscard]] bool find_moved();
 
   const visibility::SceneFloats* scene_;
   const EdgeCasters* casters_;
   std::vector<EdgeSide> planes_;  // of each caster (plane_of)
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_;       // the records, then what is flat and kept
+  std::size_t size_ = 0;          // records
+  /// With Flat::kept, as the last frame had it.
+  struct Kept {
+    std::vector<glm::vec3> places;
+    std::vector<std::uint32_t> vertex;            // mesh::merge_equal
+    std::vector<std::uint32_t> casters, largest;  // of each caster: its number, and plane_of's choice
+    std::vector<mesh::Triangle> corners;          // of each caster
+    std::vector<std::uint8_t> moved;              // of each caster: itself, or what its plane is that of
+  } kept_;
 };
 
 /// All of them at once.
@@ -94,12 +130,25 @@ struct LeafNormals {
   std::array<std::array<glm::vec3, 2>, visibility::TriangleTree::kWidth> n;
   std::size_t count = 0;
 };
+/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all.
+struct NormalCone {
+  glm::dvec3 axis{0};
+  double cosine = 1;
+
+  [[nodiscard]] bool is_all() const { return cosine <= 0; }
+};
+/// Of leaves; of a hierarchy that is refit, those that have not moved stay.
+struct LeafCones {
+  std::vector<NormalCone> cones;                    ///< empty: none is known
+  std::function<bool(std::size_t leaf)> has_moved;  ///< called on all cores
+};
 /// A child of a hierarchy's node as EdgeTexels has it.
 using EdgeChild = std::array<visibility::Texel, 3>;
 /// Gives all children of each node of a hierarchy at once to `take(node, children)`. Both are called on all cores.
 void for_each_edge_node(const visibility::TriangleTree& tree, float scale,
                         const std::function<LeafNormals(std::size_t leaf)>& normals_of,
-                        const std::function<void(std::size_t node, std::span<const EdgeChild> children)>& take);
+                        const std::function<void(std::size_t node, std::span<const EdgeChild> children)>& take,
+                        LeafCones* kept = nullptr);
 
 /// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
 /// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),

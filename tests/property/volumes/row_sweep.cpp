@@ -85,6 +85,25 @@ TEST(RowSweep, TheWayThatRowsRunDoesNotMatter) {
   EXPECT_GT(most, 0.99);
 }
 
+/// Hierarchies list edges in any order: no digit depends on it.
+TEST(RowSweep, TheOrderOfEdgesDoesNotMatter) {
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> place(0, 6);
+  for (int round = 0; round < 500; ++round) {
+    const auto corner = [&] { return kSide / 6 * glm::dvec2(place(random), place(random)); };
+    std::vector<Triangle> triangles(12);
+    for (Triangle& triangle : triangles) triangle = {corner(), corner(), corner()};
+    const Measured first = measure(triangles);
+    for (int order = 0; order < 4; ++order) {
+      std::ranges::shuffle(triangles, random);
+      const Measured other = measure(triangles);
+      EXPECT_EQ(other.area.visible, first.area.visible) << round;
+      EXPECT_EQ(other.area.disorder, first.area.disorder) << round;
+      EXPECT_EQ(other.of_parts, first.of_parts) << round;
+    }
+  }
+}
+
 TEST(RowSweep, OneTriangleLeavesTheRest) {
   const Triangle triangle{glm::dvec2(1, 1), glm::dvec2(7, 2), glm::dvec2(3, 6)};
   const std::vector<Triangle> one{triangle};

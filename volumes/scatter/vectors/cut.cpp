@@ -1,5 +1,6 @@
 #include "volumes/scatter/vectors/cut.hpp"
 
+#include "base/assert.hpp"
 #include "base/pages.hpp"
 #include "base/parallel.hpp"
 
@@ -70,14 +71,29 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
   for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
 }
 
+bool adds_nothing(const EdgeRecords& records, std::size_t record) {
+  return records.is_flat(record);
+}
+bool adds_nothing(const std::vector<EdgeRecord>&, std::size_t) {
+  return false;
+}
+
+/// Into `before`, if it has leaves, in their place.
 template <typename Records>
-vectors::WideEdgeTree wide_leaves(const visibility::TriangleTree& tree, const Records& records, float scale) {
+vectors::WideEdgeTree wide_leaves(const visibility::TriangleTree& tree, const Records& records, float scale,
+                                  WideEdgesBefore* before = nullptr) {
   vectors::WideEdgeTree wide;
-  resize_on_all_cores(wide.leaves, tree.leaves.size());
+  if (before != nullptr) wide = std::move(before->edges);
+  const bool again = !wide.leaves.empty();
+  if (!again) resize_on_all_cores(wide.leaves, tree.leaves.size());
+  PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(), tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
+    if (again && !before->cones.has_moved(number)) return;
     WideEdges& leaf = wide.leaves[number];
+    leaf.used = 0;
     const visibility::TriangleTree::Leaf& slots = tree.leaves[number];
     for (std::size_t lane = 0; lane < slots.size() && slots[lane] != visibility::TriangleTree::kNoTriangle; ++lane) {
+      if (adds_nothing(records, slots[lane])) continue;
       const EdgeRecord record = records[slots[lane]];
       store(leaf.a, lane, record.a * scale);
       store(leaf.b, lane, record.b * scale);
@@ -94,20 +110,27 @@ vectors::WideEdgeTree wide_leaves(const visibility::TriangleTree& tree, const Re
 }
 
 /// Above its leaves.
-void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree, float scale) {
+void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree, float scale,
+               LeafCones* kept = nullptr) {
   if (tree.nodes.empty()) return;
   wide.roots = {0};
   const auto normals_of = [&](std::size_t number) {
     const WideEdges& leaf = wide.leaves[number];
     LeafNormals normals;
-    for (; normals.count < vectors::kWide && (leaf.used >> normals.count & 1U) != 0; ++normals.count)
-      normals.n[normals.count] = {point(leaf.n[0], normals.count), point(leaf.n[1], normals.count)};
+    for (std::size_t lane = 0; lane < vectors::kWide; ++lane) {
+      if ((leaf.used >> lane & 1U) != 0) normals.n[normals.count++] = {point(leaf.n[0], lane), point(leaf.n[1], lane)};
+    }
     return normals;
   };
-  resize_on_all_cores(wide.nodes, tree.nodes.size());
-  for_each_edge_node(tree, scale, normals_of, [&](std::size_t node, std::span<const EdgeChild> children) {
-    for (std::size_t lane = 0; lane < children.size(); ++lane) vectors::store(wide.nodes[node], lane, children[lane]);
-  });
+  if (wide.nodes.empty()) resize_on_all_cores(wide.nodes, tree.nodes.size());
+  for_each_edge_node(
+      tree, scale, normals_of,
+      [&](std::size_t node, std::span<const EdgeChild> children) {
+        wide.nodes[node].used = 0;
+        for (std::size_t lane = 0; lane < children.size(); ++lane)
+          vectors::store(wide.nodes[node], lane, children[lane]);
+      },
+      kept);
 }
 
 }  // namespace
@@ -118,6 +141,13 @@ vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::Triangle
   // Half a gigabyte of ten million triangles, where most is in use.
   { const EdgeRecords done = std::move(records); }
   add_nodes(wide, tree, scale);
+  return wide;
+}
+
+vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& tree, float scale,
+                                 WideEdgesBefore before) {
+  vectors::WideEdgeTree wide = wide_leaves(tree, records, scale, &before);
+  add_nodes(wide, tree, scale, &before.cones);
   return wide;
 }
 
@@ -144,12 +174,20 @@ void CutEdges::restore() {
   is_cut_ = false;
 }
 
-void CutEdges::cut(const CutInput& input) {
+void CutEdges::leave_out(std::span<const EdgeSlot> slots) {
   restore();
   is_cut_ = true;
   roots_ = tree_.roots.size();
   nodes_count_ = tree_.nodes.size();
   leaves_count_ = tree_.leaves.size();
+  for (const auto& [leaf, lane] : slots) {
+    leaves_.push_back({leaf, tree_.leaves[leaf].used});
+    tree_.leaves[leaf].used &= ~(1U << lane);
+  }
+}
+
+void CutEdges::cut(const CutInput& input, std::span<const EdgeSlot> without) {
+  leave_out(without);
   if (input.exact_ends) ends_.emplace(input.side);
   const std::vector<std::uint32_t> across = triangles_across(input);
   for (const std::uint32_t triangle : across) {

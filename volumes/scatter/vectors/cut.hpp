@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,19 @@ namespace penumbra::volumes {
 /// Of all records of a scene, along the tree over its triangles; of any records.
 vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::TriangleTree& triangles, float scale);
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
+/// What there was for the frame before: leaves, if there are any, of which those that have not moved stay.
+struct WideEdgesBefore {
+  vectors::WideEdgeTree edges;
+  LeafCones& cones;
+};
+/// Of records in a tree that is theirs (edge_tree). Those that are flat are not in use.
+vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& tree, float scale,
+                                 WideEdgesBefore before);
+
+/// An edge in a WideEdgeTree.
+struct EdgeSlot {
+  std::uint32_t leaf, lane;
+};
 
 /// A hierarchy of edges that is cut at a light's plane, and restored for the next light. Only what the plane cuts is
 /// computed again: subtrees behind it are left out, the cut edges are a second tree beside the first.
@@ -30,8 +44,16 @@ class CutEdges {
   /// The number of the plane (SceneFloats::plane) that the light lies in, if triangles lie in it: they are not
   /// between any p and the light.
   [[nodiscard]] std::uint32_t plane_of_light() const { return plane_of_light_; }
-  void cut(const CutInput& input);
+  /// `without`: edges of what is not among the casters.
+  void cut(const CutInput& input, std::span<const EdgeSlot> without = {});
+  /// Leaves some out, until restore().
+  void leave_out(std::span<const EdgeSlot> slots);
   void restore();
+  /// Gives it away, as it was before anything was cut.
+  [[nodiscard]] vectors::WideEdgeTree take() {
+    restore();
+    return std::move(tree_);
+  }
 
  private:
   class Dropping;

@@ -177,8 +177,9 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
   in_ = input;
   area_ = {};
   next_edge_ = next_step_ = 0;
-  std::sort(in_.steps.begin(), in_.steps.end(), [](const RowStep& a, const RowStep& b) { return a.y < b.y; });
-  std::sort(in_.edges.begin(), in_.edges.end(), [](const RowEdge& a, const RowEdge& b) { return a.y0 < b.y0; });
+  // By all that they are: sums do not depend on the order in which a hierarchy listed them.
+  std::sort(in_.steps.begin(), in_.steps.end());
+  std::sort(in_.edges.begin(), in_.edges.end());
   ends_.clear();
   for (const RowEdge& edge : in_.edges) ends_.push_back(edge.y1);
   std::sort(ends_.begin(), ends_.end());

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 /// Depth zero, measured without light samples: the second half of rows=exact of edge scatter. Inside volumes/ only.
@@ -16,11 +17,19 @@ namespace penumbra::volumes {
 struct RowEdge {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   std::int32_t k = 0;
+
+  friend bool operator<(const RowEdge& a, const RowEdge& b) {
+    return std::tie(a.y0, a.x0, a.y1, a.x1, a.k) < std::tie(b.y0, b.x0, b.y1, b.x1, b.k);
+  }
 };
 /// The depth at the light's left side changes at y, going up.
 struct RowStep {
   double y = 0;
   std::int32_t change = 0;
+
+  friend bool operator<(const RowStep& a, const RowStep& b) {
+    return std::tie(a.y, a.change) < std::tie(b.y, b.change);
+  }
 };
 
 /// A row goes up the light (J. Bentley, T. Ottmann, "Algorithms for reporting and counting geometric intersections",

@@ -206,7 +206,9 @@ bool RowSum::cut_to_window(Ways& ways) {
     for (const double sign : {-1.0, 1.0}) {
       const double inside_a = window[axis] * a.to.z + sign * xa, inside_b = window[axis] * b.to.z + sign * xb;
       if (inside_a < 0 && inside_b < 0) {
-        is_open_ = is_open_ || inside_a > -error_inside(a, axis) || inside_b > -error_inside(b, axis);
+        // The window is larger than the light: what is wrongly taken to be outside passes p, or is not on the light.
+        const bool certain = inside_a <= -error_inside(a, axis) && inside_b <= -error_inside(b, axis);
+        is_open_ = is_open_ || (!certain && may_pass_p(ways));
         return false;
       }
       cut(inside_a, inside_b);
@@ -252,13 +254,19 @@ void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
   if (const std::optional<Placed> placed = place(leaf, lane, ends)) add(placed->edge, placed->error);
 }
 
-/// `error`: of where its ends appear.
+/// `error`: of where its ends appear. What is beside the light whatever rounding does says nothing of it, and counts
+/// nowhere, since not every hierarchy would have listed it; and errors are rounded up to multiples of 2⁻⁵², whose sums
+/// up to 2 are exact. So nothing depends on which edges a hierarchy listed, or in what order.
 void RowSum::add(RowEdge edge, double error) {
+  const auto beside = [&](double from, double to, double size) {
+    return std::max(from, to) < -2 * error || std::min(from, to) > size + 2 * error;
+  };
+  if (beside(edge.x0, edge.x1, grid_.columns) || beside(edge.y0, edge.y1, grid_.rows)) return;
   if (!(error < 0.5)) {
     is_open_ = true;
     return;
   }
-  error_ += error;
+  error_ += std::ceil(error * 0x1p52) * 0x1p-52;
   largest_error_ = std::max(largest_error_, error);
   if (passes_corner(edge, 2 * error)) corner_is_open_ = true;
   const double width = grid_.columns, height = grid_.rows;

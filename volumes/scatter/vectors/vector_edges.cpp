@@ -13,35 +13,46 @@ constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples
 
 }  // namespace
 
+void VectorEdges::expect_frames() {
+  MaskMethod::expect_frames();
+  whole_.expect_frames();
+}
+
 void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
   prepare_tree(scene);
   sides_.prepare_mesh(scene);
-  whole_ = CutEdges();  // of a scene before
-  whole_ = CutEdges(wide_edges(sides_.records(), tree(), scale()));
+  const SceneEdges::Made made = whole_.make({scene, tree(), sides_.casters(), scale()});
+  if (made == SceneEdges::Made::built) count_for_mesh("edgesBuilt");
+  count_for_mesh(made == SceneEdges::Made::refit ? "edgesRefit" : "edgeTreesBuilt");
   prepare_triangles();  // after edges, which take the most on their way: half a gigabyte of ten million triangles
   without_body_.reset();
-  front_ = &whole_;
+  front_ = &whole_.edges();
 }
 
 std::uint64_t VectorEdges::memory_bytes() const {
-  return MaskMethod::memory_bytes() + bytes_of(whole_.tree()) + bytes_of(back_.tree()) +
+  return MaskMethod::memory_bytes() + whole_.memory_bytes() + bytes_of(back_.tree()) +
          (without_body_ ? bytes_of(without_body_->edges.tree()) : 0);
 }
 
 bool VectorEdges::prepare_casters() {
   LightEdges edges = sides_.prepare_light(light(), device_light(), scale());
   front_->restore();
-  if (edges.has_body && !(without_body_ && without_body_->light == light().index)) {
+  const auto of_body = edges.has_body ? whole_.of_body(light().index) : std::span<const EdgeSlot>();
+  if (!of_body && !(without_body_ && without_body_->light == light().index)) {
     without_body_ = {light().index, CutEdges(wide_edges(sides_.records(), tree(), scale()))};
   }
-  front_ = edges.has_body ? &without_body_->edges : &whole_;
+  front_ = of_body ? &whole_.edges() : &without_body_->edges;
   back_ = edges.back ? CutEdges(front_->tree()) : CutEdges();
   const std::int32_t without = edges.has_body ? light().index : -1;
   for (auto* side : {&edges.front, &edges.back}) {
     if (*side) (*side)->window = window_;
   }
-  if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_});
-  if (edges.front) front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_});
+  const std::span<const EdgeSlot> left_out = of_body.value_or(std::span<const EdgeSlot>());
+  if (edges.back) back_.cut({scene(), tree(), sides_.casters(), without, *edges.back, exact_area_}, left_out);
+  if (edges.front)
+    front_->cut({scene(), tree(), sides_.casters(), without, *edges.front, exact_area_}, left_out);
+  else
+    front_->leave_out(left_out);
   touch_ = exact_area_ || !visibility::is_planar(light().kind) ? visibility::LightTouch()
                                                                : visibility::find_touch(scene(), tree(), light());
   return edges.front.has_value() && !exact_area_;  // whose edges stay whole

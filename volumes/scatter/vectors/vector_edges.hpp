@@ -4,6 +4,7 @@
 #include "volumes/edges/edge_sides.hpp"
 #include "volumes/scatter/vectors/cut.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/scatter/vectors/scene_edges.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -25,6 +26,7 @@ class VectorEdges : public vectors::MaskMethod {
   VectorEdges(visibility::MethodDescription given, std::string pass, bool exact_area)
       : MaskMethod(std::move(given), std::move(pass)), sides_(description().name), exact_area_(exact_area) {}
 
+  void expect_frames() override;
   void prepare_mesh(const visibility::SceneFloats& scene) override;
   [[nodiscard]] std::uint64_t memory_bytes() const override;
 
@@ -44,14 +46,15 @@ class VectorEdges : public vectors::MaskMethod {
 
   visibility::LightTouch touch_;
   EdgeSides sides_;
-  CutEdges whole_;
+  SceneEdges whole_;
   struct WithoutBody {
     std::int32_t light;
     CutEdges edges;
   };
-  std::optional<WithoutBody> without_body_;  // what casts shadow of the last light with a body
-  CutEdges* front_ = &whole_;                // one of these
-  CutEdges back_;                            // a copy, where the light's plane cuts and it emits to both sides
+  /// What casts shadow of the last light whose body is grown together with other casters.
+  std::optional<WithoutBody> without_body_;
+  CutEdges* front_ = &whole_.edges();  // one of these
+  CutEdges back_;                      // a copy, where the light's plane cuts and it emits to both sides
 
  protected:
   /// Where the walk for a cluster's edges begins: subtrees that hold all that may matter to it.
