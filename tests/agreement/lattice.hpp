@@ -72,10 +72,10 @@ class LatticeSoup {
     static constexpr std::pair<std::uint32_t, std::uint32_t> kLayouts[] = {{3, 3}, {5, 5}, {3, 5}, {1, 3}};
     const auto [rows, columns] = kLayouts[below(4)];
     request = {rows * columns, rows, columns, visibility::SamplePattern::grid, 0};
-    static const std::pair<glm::dvec3, glm::dvec3> kSteps[] = {
+    static const std::pair<glm::dvec3, glm::dvec3> steps[] = {
         {{1, 0, 0}, {0, 0, 1}}, {{0, 0, 1}, {1, 0, 0}},  {{1, 0, 0}, {0, 1, 0}}, {{0, 1, 0}, {1, 0, 0}},
         {{1, 1, 0}, {0, 0, 1}}, {{1, 0, 1}, {1, 0, -1}}, {{1, 1, 0}, {-1, 1, 1}}};
-    const auto [u, v] = kSteps[below(std::size(kSteps))];
+    const auto [u, v] = steps[below(std::size(steps))];
     glm::dvec3 center = point();
     if (below(2) == 0) center.y = range_ + 1.0 + below(3);
     scenes::AreaLight result = rectangle_light(center, 0.5 * columns * u, 0.5 * rows * v);

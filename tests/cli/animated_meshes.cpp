@@ -151,7 +151,8 @@ TEST_F(AnimatedMeshes, WithBones) {
   json& attributes = scene.gltf.at("/meshes/0/primitives/0/attributes");
   std::vector<float> joints, weights;
   for (int i = 0; i < 49; ++i) {
-    const float share = static_cast<float>(i / 7) / 6.0F;
+    const int row = i / 7;
+    const float share = static_cast<float>(row) / 6.0F;
     joints.insert(joints.end(), {0, 1, 0, 0});
     weights.insert(weights.end(), {1 - share, share, 0, 0});
   }
