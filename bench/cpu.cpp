@@ -6,6 +6,7 @@
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "volumes/edges/edge_set.hpp"
+#include "volumes/edges/edge_tree.hpp"
 #include "volumes/wedges/penumbra_wedge.hpp"
 
 #include <fmt/format.h>

@@ -13,6 +13,7 @@
 #include "visibility/tree/triangle_tree.hpp"
 #include "volumes/edges/edge_scatter.shared.h"
 #include "volumes/edges/edge_set.hpp"
+#include "volumes/edges/edge_tree.hpp"
 #include "volumes/edges/edge_sides.hpp"
 #include "volumes/edges/edge_upload.hpp"
 

@@ -3,7 +3,7 @@
 #include "render/buffer.hpp"
 #include "render/device.hpp"
 #include "volumes/edges/cut_walk.hpp"
-#include "volumes/edges/edge_set.hpp"
+#include "volumes/edges/edge_tree.hpp"
 
 #include <array>
 #include <cstddef>

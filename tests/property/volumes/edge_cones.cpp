@@ -1,7 +1,7 @@
 // Cones of normals in a hierarchy of edges: each holds the normals of every edge below it, up to sign. Where normals
 // lie in a plane angles add up, and a cone joined of others may be no narrower than their sum.
 
-#include "volumes/edges/edge_set.hpp"
+#include "volumes/edges/edge_tree.hpp"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include "engines/vectors/trees.hpp"
 #include "volumes/edges/cut_ends.hpp"
 #include "volumes/edges/cut_walk.hpp"
+#include "volumes/edges/edge_tree.hpp"
 
 #include <cstdint>
 #include <optional>

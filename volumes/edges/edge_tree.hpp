@@ -1,0 +1,64 @@
+#pragma once
+
+#include "visibility/tree/tree_texels.hpp"
+#include "visibility/tree/triangle_tree.hpp"
+#include "volumes/edges/edge_set.hpp"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+/// A hierarchy over edges' records that knows where k_e cannot be anything but 0: boxes, and cones of normals.
+namespace penumbra::volumes {
+
+/// A hierarchy over all records of a scene, along the tree over its triangles; its leaves hold numbers of records.
+visibility::TriangleTree edge_tree(const EdgeRecords& records, const visibility::TriangleTree& triangles);
+/// Over any records.
+visibility::TriangleTree edge_tree(std::span<const EdgeRecord> records);
+
+/// n of both sides of a leaf's records (EdgeRecord::sides).
+struct LeafNormals {
+  std::array<std::array<glm::vec3, 2>, visibility::TriangleTree::kWidth> n;
+  std::size_t count = 0;
+};
+/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all.
+struct NormalCone {
+  glm::dvec3 axis{0};
+  double cosine = 1;
+
+  [[nodiscard]] bool is_all() const { return cosine <= 0; }
+};
+/// Of leaves; of a hierarchy that is refit, those that have not moved stay.
+struct LeafCones {
+  std::vector<NormalCone> cones;                    ///< empty: none is known
+  std::function<bool(std::size_t leaf)> has_moved;  ///< called on all cores
+};
+/// A child of a hierarchy's node as EdgeTexels has it.
+using EdgeChild = std::array<visibility::Texel, 3>;
+/// Gives all children of each node of a hierarchy at once to `take(node, children)`. Both are called on all cores.
+void for_each_edge_node(const visibility::TriangleTree& tree, float scale,
+                        const std::function<LeafNormals(std::size_t leaf)>& normals_of,
+                        const std::function<void(std::size_t node, std::span<const EdgeChild> children)>& take,
+                        LeafCones* kept = nullptr);
+
+/// As texels: the hierarchy, three a child (visibility::node_texels' two, and the cone of normals: axis, cosine of its
+/// half-angle), and for each leaf slot one in each of six lists: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
+/// (anchor 2), the numbers of the last four 0 for an empty slot and else 1, of the very last 1 + EdgeRecord::cut.
+///
+/// A cone holds, up to sign, the two normals of each record below such that k_e(p) = 0 where p is in front of both, or
+/// behind both. Cosine 0: at least one record below that has none, or normals that point all over.
+struct EdgeTexels {
+  std::vector<visibility::Texel> nodes;
+  std::array<std::vector<visibility::Texel>, 6> slots;
+  std::uint32_t depth = 0;
+  std::uint32_t records = 0;
+};
+EdgeTexels edge_texels(const EdgeRecords& records, const visibility::TriangleTree& triangles, float scale);
+EdgeTexels edge_texels(std::span<const EdgeRecord> records, float scale);
+
+}  // namespace penumbra::volumes
