@@ -40,10 +40,10 @@ void insert_option(visibility::MethodOptions& options, std::string_view text) {
 visibility::SamplePattern parse_pattern(const std::string& text) {
   using visibility::SamplePattern;
   for (const SamplePattern pattern :
-       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered, SamplePattern::rgss}) {
     if (text == visibility::name_of(pattern)) return pattern;
   }
-  throw UsageError("--sample-pattern {}: expected rows, grid, sobol or jittered", text);
+  throw UsageError("--sample-pattern {}: expected rows, grid, sobol, jittered or rgss", text);
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       .add_option("--light-samples", options.light_samples,
                   "light samples: N or LxB, 1 to 4096 points (default: 256, or none where `render` gives exact areas)")
       ->type_name("N|LxB");
-  command.add_option("--sample-pattern", options.sample_pattern, "rows, grid, sobol or jittered (default: rows)")
+  command.add_option("--sample-pattern", options.sample_pattern, "rows, grid, sobol, jittered or rgss (default: rows)")
       ->type_name("NAME");
   command.add_option("--sample-seed", options.sample_seed, "seed of sobol and jittered")
       ->type_name("N")

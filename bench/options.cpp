@@ -24,7 +24,7 @@ const char* const kHelp =
   --light-half H       half size of each scene's first rectangle light instead of the scene's; may be given again
   --light KIND         turns each scene's first light, a rectangle, into a disk, an ellipse (one axis twice the other), a
                        polygon (a hexagon) with its area, a sphere or a sun as wide; may be given again
-  --sample-pattern P   rows, grid, sobol or jittered (default: rows); may be given again
+  --sample-pattern P   rows, grid, sobol, jittered or rgss (default: rows); may be given again
   --size N             pixels on a side (default 512); may be given again
   --light-samples N    1 to 4096 (default 256); may be given again
   --method NAME[:KEY=VALUE...]

@@ -84,10 +84,10 @@ visibility::LightKind parse_kind(const std::string& text) {
 
 visibility::SamplePattern parse_pattern(const std::string& text) {
   using enum visibility::SamplePattern;
-  for (const auto pattern : {rows, grid, sobol, jittered}) {
+  for (const auto pattern : {rows, grid, sobol, jittered, rgss}) {
     if (text == visibility::name_of(pattern)) return pattern;
   }
-  throw UsageError("--sample-pattern {}: expected rows, grid, sobol or jittered", text);
+  throw UsageError("--sample-pattern {}: expected rows, grid, sobol, jittered or rgss", text);
 }
 
 /// Of each subject as many as there are values; as it is if there are none. `set` gives a subject one of them.

@@ -311,6 +311,13 @@ Light make_part(const Part& part, const Shape& shape, const glm::dvec3& origin, 
                                    layout.rows, layout.columns, layout.count, name_of(request.pattern)));
     }
   }
+  if (request.pattern == SamplePattern::rgss && notes != nullptr) {
+    const std::uint32_t wanted = request.rows != 0 ? request.rows * request.columns : request.count;
+    if (layout.count != wanted) {
+      notes->push_back(fmt::format("light samples: {} rounded up to {} x {} squares of four = {} by pattern {}", wanted,
+                                   layout.rows, layout.columns, layout.count, name_of(request.pattern)));
+    }
+  }
   if (request.pattern == SamplePattern::rows) {
     for (std::uint32_t row = 0; row < layout.rows; ++row) light.row_shift.push_back(row_shift_of(row));
   }

@@ -21,7 +21,7 @@ bool is_round(LightKind kind);
 /// Has it a plane, which stored points span? (All but spheres and suns.)
 bool is_planar(LightKind kind);
 
-enum class SamplePattern { rows, grid, sobol, jittered };
+enum class SamplePattern { rows, grid, sobol, jittered, rgss };
 const char* name_of(SamplePattern pattern);
 
 /// How many light samples, and where. `rows` × `columns` is set only by LxB on the command line.

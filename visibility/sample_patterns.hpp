@@ -7,11 +7,11 @@
 
 namespace penumbra::visibility {
 
-/// How a request spreads over rows. Every pattern but sobol has rows; only rows and grid round the count.
+/// How a request spreads over rows. Every pattern but sobol has rows; rows, grid and rgss round the count.
 struct SampleLayout {
-  std::uint32_t count = 0;  ///< points the pattern will give
-  std::uint32_t rows = 0;
-  std::uint32_t columns = 0;  ///< rows and grid: points of every row
+  std::uint32_t count = 0;    ///< points the pattern will give
+  std::uint32_t rows = 0;     ///< rgss: of squares of four points
+  std::uint32_t columns = 0;  ///< rows and grid: points of every row; rgss: squares
 };
 
 /// Throws UsageError for a count outside 1 … kMaxLightSamples.

@@ -40,7 +40,7 @@ class OptionsTogether : public ProgramTest {
     Factor scene{"scene", {}};
     for (const LitScene& one : scenes_) scene.values.push_back(one.name);
     factors_.push_back(scene);
-    factors_.push_back({"pattern", {"rows", "grid", "sobol", "jittered"}});
+    factors_.push_back({"pattern", {"rows", "grid", "sobol", "jittered", "rgss"}});
     factors_.push_back({"light-samples", {"1", "16", "5x7"}});
     factors_.push_back({"seed", {"", "7"}});
     factors_.push_back({"size", {"12x8", "5x7"}});

@@ -55,7 +55,7 @@ class Patterns : public tests::DeviceTest, public testing::WithParamInterface<co
 
 TEST_P(Patterns, CountsOfEveryPattern) {
   for (const SamplePattern pattern :
-       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered, SamplePattern::rgss}) {
     for (const std::uint32_t count : {1U, 2U, 5U, 31U, 32U, 33U, 256U, 1000U, 4096U}) {
       check(count % 2 == 0 ? Shape::rectangle : Shape::tilted, {count, 0, 0, pattern, count});
     }
@@ -74,8 +74,8 @@ TEST_P(Patterns, RowsByColumns) {
 
 TEST_P(Patterns, DisksEllipsesAndPolygons) {
   for (const Shape shape : {Shape::disk, Shape::ellipse, Shape::polygon}) {
-    for (const SamplePattern pattern :
-         {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+    for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol,
+                                        SamplePattern::jittered, SamplePattern::rgss}) {
       for (const std::uint32_t count : {1U, 33U, 256U, 1000U}) check(shape, {count, 0, 0, pattern, 7});
     }
   }

@@ -98,8 +98,8 @@ TEST(VisibleLight, AllVisibleIsTheWholeToTheLastBit) {
   // The last point's horizon cuts the lights: there all samples above it, and no others, are visible.
   const glm::vec3 up(0, 1, 0), slanted = glm::normalize(glm::vec3(1, 0.02f, 0.1f));
   for (const char* kind : {"rectangle", "disk", "ellipse", "polygon", "sphere", "sun"}) {
-    for (const SamplePattern pattern :
-         {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+    for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol,
+                                        SamplePattern::jittered, SamplePattern::rgss}) {
       const Light light = light_of(shape(kind), {53, 0, 0, pattern, 1});
       const VisibleLight visible(light);
       for (const glm::vec3& n : {up, slanted}) {

@@ -65,8 +65,12 @@ TEST(Lights, RoundingTheCountIsSaid) {
   make_light(scene, 0, glm::dvec3(0), {35, 0, 0, SamplePattern::rows, 0}, &notes);
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0], "light samples: 35 rounded up to 6 rows of 6 = 36 by pattern rows");
+  make_light(scene, 0, glm::dvec3(0), {0, 5, 7, SamplePattern::rgss, 0}, &notes);
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[1], "light samples: 35 rounded up to 3 x 4 squares of four = 48 by pattern rgss");
   notes.clear();
   make_light(scene, 0, glm::dvec3(0), {35, 0, 0, SamplePattern::sobol, 0}, &notes);
+  make_light(scene, 0, glm::dvec3(0), {256, 0, 0, SamplePattern::rgss, 0}, &notes);
   make_light(scene, 0, glm::dvec3(0), {36, 0, 0, SamplePattern::grid, 0}, &notes);
   make_light(scene, 0, glm::dvec3(0), {0, 5, 7, SamplePattern::rows, 0}, &notes);
   EXPECT_TRUE(notes.empty());

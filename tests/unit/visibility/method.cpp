@@ -117,6 +117,7 @@ TEST(Method, EveryNameIsSaid) {
   EXPECT_STREQ(name_of(Output::mask), "mask");
   EXPECT_STREQ(name_of(LightKind::polygon), "polygon");
   EXPECT_STREQ(name_of(SamplePattern::jittered), "jittered");
+  EXPECT_STREQ(name_of(SamplePattern::rgss), "rgss");
 }
 
 }  // namespace

@@ -5,10 +5,13 @@
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace penumbra::visibility {
@@ -31,12 +34,17 @@ std::size_t cells_with_one(const std::vector<glm::dvec2>& points, std::uint32_t 
 
 TEST(SamplePatterns, EveryCountGivesItsNumberOfPointsInTheUnitSquare) {
   for (const SamplePattern pattern :
-       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered}) {
+       {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol, SamplePattern::jittered, SamplePattern::rgss}) {
     for (std::uint32_t count = 1; count <= kMaxLightSamples; count = count < 40 ? count + 1 : count * 2 - 7) {
       const auto points = samples(count, pattern, 3);
       const bool rounds = pattern == SamplePattern::rows || pattern == SamplePattern::grid;
       const auto rows = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));
-      EXPECT_EQ(points.size(), rounds ? rows * ((count + rows - 1) / rows) : count) << name_of(pattern) << ' ' << count;
+      const auto squares = (count + 3) / 4, of_squares = static_cast<std::uint32_t>(std::lround(std::sqrt(squares)));
+      const std::uint32_t expected = rounds ? rows * ((count + rows - 1) / rows)
+                                     : pattern == SamplePattern::rgss
+                                         ? 4 * of_squares * ((squares + of_squares - 1) / of_squares)
+                                         : count;
+      EXPECT_EQ(points.size(), expected) << name_of(pattern) << ' ' << count;
       for (const glm::dvec2& q : points) {
         EXPECT_TRUE(q.x >= 0 && q.x < 1 && q.y >= 0 && q.y < 1) << name_of(pattern) << ' ' << count;
       }
@@ -113,6 +121,29 @@ TEST(SamplePatterns, JitteredFillsItsStrata) {
     EXPECT_NEAR(across.at(i), 410, 5 * 19) << i;
     EXPECT_NEAR(along.at(i), 410, 5 * 19) << i;
   }
+}
+
+/// 8 x 8 squares: 32 columns and rows of eight points, one point in each of 16 x 16 cells, and the four of a square are
+/// the same four turned by a right angle.
+TEST(SamplePatterns, TurnedSquaresStandInThirtyTwoColumns) {
+  const auto points = samples(256, SamplePattern::rgss);
+  EXPECT_EQ(cells_with_one(points, 16, 16), 256u);
+  std::map<double, int> columns, rows;
+  for (const glm::dvec2& q : points) {
+    ++columns[q.x];
+    ++rows[q.y];
+  }
+  EXPECT_EQ(columns.size(), 32u);
+  EXPECT_EQ(rows.size(), 32u);
+  for (const auto& [x, count] : columns) EXPECT_EQ(count, 8) << x;
+  for (const auto& [y, count] : rows) EXPECT_EQ(count, 8) << y;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::dvec2 middle = (glm::floor(8.0 * points[i]) + 0.5) / 8.0, from = points[i] - middle,
+                     turned = middle + glm::dvec2(-from.y, from.x);
+    EXPECT_EQ(std::ranges::count(std::span(points).subspan(i / 4 * 4, 4), turned), 1) << i;
+  }
+  EXPECT_EQ(unit_square_samples({0, 3, 7, SamplePattern::rgss, 0}).size(), 4u * 2 * 4);
+  EXPECT_THROW(unit_square_samples({0, 1, 4096, SamplePattern::rgss, 0}), UsageError);
 }
 
 TEST(SamplePatterns, SeedsDecideAndRepeat) {

@@ -2,7 +2,6 @@
 
 #include "tests/analytic/maps/predicates.hpp"
 
-#include <array>
 #include <numbers>
 #include <set>
 
@@ -58,9 +57,9 @@ TEST_F(MapsPredicates, TrianglesLoseLessThanQuads) {
   }
 }
 
-// B2 (Eisemann et al. 2009, section 5.2.3.2): the notes' 256 light samples, 8 x 8 tiles of four on a turned square,
-// stand in 32 columns of eight: under an edge along these V has 33 levels, steps of 1/32. Where the edge is turned by
-// 20 degrees hardly two of them are passed at once. Ours in rows are 256 columns, and 16 rows.
+// B2 (Eisemann et al. 2009, section 5.2.3.2): the notes' 256 light samples, 8 x 8 tiles of four on a turned square
+// (rgss), stand in 32 columns of eight: under an edge along these V has 33 levels, steps of 1/32. Where the edge is
+// turned by 20 degrees hardly two of them are passed at once. Ours in rows are 256 columns, and 16 rows.
 TEST_F(MapsPredicates, TheNotesPatternHasThirtyThreeLevelsUnderAnAlignedEdge) {
   // The penumbra of an edge half way up is as wide as the light, 2: two levels are 1/128 apart.
   std::vector<double> places;
@@ -71,22 +70,9 @@ TEST_F(MapsPredicates, TheNotesPatternHasThirtyThreeLevelsUnderAnAlignedEdge) {
     const double angle = degrees * std::numbers::pi / 180;
     const glm::dvec3 along(-std::sin(angle), 0, std::cos(angle)), away(-std::cos(angle), 0, -std::sin(angle));
     add_quad(scene, glm::dvec3(0, 2.5, 0) + 3.0 * away, 3.0 * away, 9.0 * along).receives_shadow = false;
-    Stage stage = along_floor(scene, places, light_samples(256));
-    if (notes) {
-      visibility::Light& light = stage.light;
-      light.rows = light.columns = 0;
-      light.row_shift.clear();
-      for (std::size_t j = 0; j < 256; ++j) {
-        // One of each of a tile's 4 x 4 columns and rows.
-        constexpr std::array<std::array<int, 2>, 4> kTurned{{{1, 0}, {3, 1}, {0, 2}, {2, 3}}};
-        const std::size_t tile = j / 4, column = 4 * (tile % 8), row = 4 * (tile / 8);
-        const glm::dvec2 cell(static_cast<double>(column) + kTurned.at(j % 4)[0],
-                              static_cast<double>(row) + kTurned.at(j % 4)[1]);
-        light.coordinates[j] = (cell + 0.5) / 16.0 - 1.0;
-        const visibility::LightFrame frame = visibility::light_frame(light);
-        light.points[j] = frame.center + light.coordinates[j].x * frame.u + light.coordinates[j].y * frame.v;
-      }
-    }
+    visibility::SampleRequest request = light_samples(256);
+    if (notes) request.pattern = visibility::SamplePattern::rgss;
+    const Stage stage = along_floor(scene, places, request);
     const Masks found = run(maps::make_bitmask, stage, {{"size", "64"}, {"occluder", "patch"}});
     return std::set<float>(found.visibility.begin(), found.visibility.end()).size();
   };
