@@ -93,9 +93,11 @@ class Subsampled final : public visibility::Method {
  public:
   /// Without `widths` by a grid.
   Subsampled(std::unique_ptr<visibility::Method> method, std::unique_ptr<visibility::Method> widths, std::uint32_t step)
-      : method_(std::move(method)), widths_(std::move(widths)), step_(step) {}
+      : method_(std::move(method)), widths_(std::move(widths)), step_(step), description_(method_->description()) {
+    description_.output = visibility::Output::scalar;  // what is filled in has no bits
+  }
 
-  [[nodiscard]] const visibility::MethodDescription& description() const override { return method_->description(); }
+  [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }
   void prepare_mesh(const visibility::SceneFloats& scene) override {
     scene_ = &scene;
     method_->prepare_mesh(scene);
@@ -134,6 +136,7 @@ class Subsampled final : public visibility::Method {
 
   std::unique_ptr<visibility::Method> method_, widths_;
   std::uint32_t step_;
+  visibility::MethodDescription description_;
   const visibility::SceneFloats* scene_ = nullptr;
   const visibility::Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;

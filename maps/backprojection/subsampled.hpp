@@ -29,7 +29,7 @@ inline constexpr double kPixelsAcross = 4;
 /// and column, and of all pixels of objects of which that picture shows none; the others' V is filled in from pixels of
 /// the same object (fill_in). The step is kSubsample's, or each pixel's own: the largest power of two that is not above
 /// it, and leaves kPixelsAcross pixels across the narrowest penumbra there may be (penumbra_width.hpp); 1 where nothing
-/// can hide light, for the method sees that at once.
+/// can hide light, for the method sees that at once. What gives masks gives V alone then.
 std::unique_ptr<visibility::Method> subsampled(const render::Device& device, std::unique_ptr<visibility::Method> method,
                                                const visibility::ParsedOptions& parsed,
                                                const visibility::MethodOptions& options);

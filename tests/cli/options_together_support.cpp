@@ -165,6 +165,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            ((on_device || is("engine", "vulkan") || searches) && !all_planar) ||
            (searches && (on_device || is("engine", "vulkan")));
   }
+  if (method == "bitmask") return options.contains("subsample") && !is("subsample", "1") && !row["bits"].empty();
   if (method == "backproject") return is("form", "sphere") && scene.texture;
   if (method == "soft-shadow-map") return is("form", "scatter") && is("precision", "fp16");
   return false;

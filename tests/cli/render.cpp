@@ -214,6 +214,14 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
       run({"render", path("scene.json"), "-o", path("b.exr"), "--method", "pcss", "--bits", path("out.bits")});
   EXPECT_EQ(bits.code, 2);
   EXPECT_THAT(bits.err, HasSubstr("pcss"));
+  // Of few pixels there are no bits, and beauty is V times what is not shadowed.
+  const std::vector<std::string> few = {"render",  path("scene.json"), "-o",      path("few.exr"),   "--method",
+                                        "bitmask", "--method-option",  "size=64", "--method-option", "subsample=2"};
+  ASSERT_EQ(run(few).code, 0);
+  EXPECT_EQ(read_exr(path("few.exr")).attributes.at("penumbra.output"), "scalar");
+  std::vector<std::string> few_bits = few;
+  few_bits.insert(few_bits.end(), {"--bits", path("few.bits")});
+  EXPECT_EQ(run(few_bits).code, 2);
 }
 
 /// Picture and stats name what computed the shadow: the processor where its vector units did, else the Vulkan device.

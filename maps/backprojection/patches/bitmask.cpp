@@ -14,6 +14,7 @@
 #include "maps/host/map_method.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/backprojection/patches/repairs.hpp"
+#include "maps/backprojection/subsampled.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
 
@@ -47,7 +48,7 @@ visibility::MeshVerdict bitmask_verdict(const mesh::Diagnosis& mesh) {
 
 }  // namespace
 
-visibility::MethodDescription bitmask_description() {
+visibility::MethodDescription bitmask_description(const visibility::MethodOptions& options) {
   visibility::MethodDescription description{
       .name = "bitmask",
       .family = visibility::Family::image,
@@ -61,11 +62,12 @@ visibility::MethodDescription bitmask_description() {
       .options = compared_map_option_descriptions(),
       .verdict_on = bitmask_verdict,
       .repairs = bitmask_repairs};
-  for (const auto& option :
-       {kOccluder.description(), kBitmaskFill.description(), kJoinedLayers.description(), kLevel.description(),
-        kBudget.description(), kBlend.description(), kBitmaskSearch.description()}) {
+  for (const auto& option : {kOccluder.description(), kBitmaskFill.description(), kJoinedLayers.description(),
+                             kLevel.description(), kBudget.description(), kBlend.description(),
+                             kBitmaskSearch.description(), kSubsample.description(), kSubsampleBy.description()}) {
     description.options.push_back(option);
   }
+  if (visibility::parse_options(description, options)[kSubsample] > 1) description.output = visibility::Output::scalar;
   return description;
 }
 
@@ -94,7 +96,7 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
                                                         push.budget > 0 ? gpu::kCoarsestLevel : push.level));
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
-  return make_map_method(device, std::move(recipe), options);
+  return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);
 }
 
 }  // namespace penumbra::maps

@@ -11,7 +11,7 @@ namespace penumbra::maps {
 std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
                                                  const visibility::MethodOptions& options);
 
-/// What it is; needs no device.
-visibility::MethodDescription bitmask_description();
+/// What it is with these options, none by default; needs no device. Of few pixels (subsample) it gives V alone.
+visibility::MethodDescription bitmask_description(const visibility::MethodOptions& options = {});
 
 }  // namespace penumbra::maps

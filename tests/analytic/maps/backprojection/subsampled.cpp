@@ -36,7 +36,8 @@ TEST_F(MapsSubsampled, ComputedPixelsAreTheMethodsAndOthersLieBetweenThem) {
   const std::vector<std::pair<Factory, MethodOptions>> ways{{maps::make_contour, {{"size", "64"}}},
                                                             {maps::make_packet, {{"size", "64"}, {"sublights", "2"}}},
                                                             {maps::make_backproject, {{"size", "64"}}},
-                                                            {maps::make_backproject_peel, {{"size", "64"}}}};
+                                                            {maps::make_backproject_peel, {{"size", "64"}}},
+                                                            {maps::make_bitmask, {{"size", "64"}}}};
   for (const auto& [factory, options] : ways) {
     const Masks whole = run(factory, stage, options);
     EXPECT_EQ(run(factory, stage, with(options, 1)).visibility, whole.visibility);
