@@ -2,6 +2,7 @@
 
 #include "maps/host/map_fit.hpp"
 #include "maps/products/nearest_caster.hpp"
+#include "maps/products/nearest_ids.hpp"
 #include "maps/products/slices.hpp"
 #include "maps/products/summed_areas.hpp"
 #include "selftest/raster_twin.hpp"
@@ -77,6 +78,55 @@ Check check_nearest_caster(const render::Device& device, const Stage& stage, std
   for (std::size_t side = 0; side < 2; ++side) {
     check.same(found.at(side), expected.at(side),
                [&] { return fmt::format("side {}: {}, not {}", side, found.at(side), expected.at(side)); });
+  }
+  return check;
+}
+
+Check check_nearest_ids(const render::Device& device, const Stage& stage, std::uint32_t size,
+                        maps::Rasteriser rasteriser) {
+  const bool opengl = rasteriser == maps::Rasteriser::opengl;
+  Check check{.pass = fmt::format("nearest ids ({})", opengl ? "OpenGL" : "Vulkan"),
+              .against = "the triangles in double",
+              .rule = "a triangle that may be the nearest there"};
+  const std::uint32_t bits = opengl ? device.opengl().info().subpixel_bits : device.limits().subpixel_bits;
+  const CentreMaps maps(device, stage, size, {0, 0}, {.rasteriser = rasteriser});
+  maps::NearestIds product(device, rasteriser);
+  render::Commands commands(device);
+  product.record(commands, maps.set(stage));
+  commands.submit();
+  std::vector<std::uint32_t> found(maps.texel_count());
+  product.buffer().read<std::uint32_t>(found);
+  const std::vector<std::uint32_t> ranks = visibility::ranks(stage.floats);
+  std::vector<glm::vec3> corners;
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
+    if (stage.floats.casts_shadow[i] == 0 || stage.floats.emits[i] == stage.light.index) continue;
+    ids.push_back(ranks[i]);
+    for (const glm::vec3& corner : stage.floats.corners(i)) corners.push_back(corner);
+  }
+  const maps::gpu::LightView& view = maps.fitted.views.front();
+  std::vector<Surface> surfaces;
+  for (std::uint32_t face = 0; face < maps.fitted.faces; ++face) {
+    const RasterTwin twin(maps::face_push(view, maps.basis, face), size, std::ldexp(1.0, -static_cast<int>(bits)),
+                          corners);
+    for (std::uint32_t i = 0; i < size * size; ++i) {
+      twin.find(i % size, i / size, surfaces);
+      double limit = std::numeric_limits<double>::infinity();  // the nearest is no farther
+      for (const Surface& surface : surfaces) {
+        if (surface.sure) limit = std::min(limit, surface.high);
+      }
+      // One surface is what is within 2⁻²⁰; another rounding, of the product.
+      limit *= 1 + 0x1p-20 + 0x1p-22;
+      const std::uint32_t id = found[std::size_t{face} * size * size + i];
+      const auto may_be = [&](const Surface& s) { return s.low <= limit && ids[s.triangle] == id; };
+      const bool none = std::isinf(limit);
+      ++check.compared;
+      if (id == maps::gpu::kNoId ? none : std::ranges::any_of(surfaces, may_be)) continue;
+      ++check.differing;
+      check.fail([&] {
+        return fmt::format("face {}, texel {}, {}: {} of {} surfaces", face, i % size, i / size, id, surfaces.size());
+      });
+    }
   }
   return check;
 }

@@ -16,6 +16,10 @@ namespace penumbra::selftest {
 /// NearestCaster: the smallest height over the light's plane of each side's texels. Bit by bit.
 Check check_nearest_caster(const render::Device& device, const Stage& stage, std::uint32_t size);
 
+/// NearestIds: each texel has a triangle that may be its nearest surface (RasterTwin), and none where none may be.
+Check check_nearest_ids(const render::Device& device, const Stage& stage, std::uint32_t size,
+                        maps::Rasteriser rasteriser);
+
 /// SummedAreas of images of size² words, any number of them, modulo 2³² (Crow 1984). Bit by bit.
 Check check_summed_areas(const render::Device& device, std::span<const std::uint32_t> images, std::uint32_t size);
 /// Crow's sums of one image, modulo 2³².

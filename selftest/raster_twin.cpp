@@ -113,7 +113,8 @@ RasterTwin::RasterTwin(const maps::gpu::CasterPush& face, std::uint32_t size, do
 void RasterTwin::find(std::uint32_t x, std::uint32_t y, std::vector<Surface>& surfaces) const {
   surfaces.clear();
   const glm::dvec3 c(2 * (x + 0.5) / size_ - 1, 2 * (y + 0.5) / size_ - 1, 1), size = glm::abs(c);
-  for (const Triangle& t : triangles_) {
+  for (std::size_t number = 0; number < triangles_.size(); ++number) {
+    const Triangle& t = triangles_[number];
     if (t.boxed && (c.x < t.lower.x || c.y < t.lower.y || c.x > t.upper.x || c.y > t.upper.y)) continue;
     bool inside = !t.flat, outside = false;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -124,6 +125,7 @@ void RasterTwin::find(std::uint32_t x, std::uint32_t y, std::vector<Surface>& su
     if (outside) continue;
     Surface surface;
     surface.sure = inside;
+    surface.triangle = number;
     if (!t.flat) {
       const double q = glm::dot(t.plane, c) / t.volume;  // 1 / w
       const double slope = (std::abs(t.plane.x) + std::abs(t.plane.y)) / t.volume;

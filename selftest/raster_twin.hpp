@@ -17,6 +17,7 @@ struct Surface {
   double depth = 0;          ///< at the texel's centre, of the triangle as it is: w / far
   double low = 0, high = 1;  ///< what it can be of a triangle whose corners are off by what they may be
   bool sure = false;         ///< covered wherever in its step each corner lies; else: perhaps
+  std::size_t triangle = 0;  ///< which of the twin's
 };
 
 /// One face of a map drawn in double arithmetic: caster.vert, caster.frag and a rasteriser whose corners may be off by

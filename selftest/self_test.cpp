@@ -86,6 +86,9 @@ class SelfTest {
       checks.push_back(each_stage(fmt::format("slices ({})", name), [&](const Stage& stage) {
         return check_slices(device_, stage, kTexels, 5, rasteriser);
       }));
+      checks.push_back(each_stage(fmt::format("nearest ids ({})", name), [&](const Stage& stage) {
+        return check_nearest_ids(device_, stage, kTexels, rasteriser);
+      }));
     }
     checks.push_back(each_stage("depth maps, Vulkan's",
                                 [&](const Stage& stage) { return check_rasterisers_agree(device_, stage, kTexels); }));

@@ -8,9 +8,21 @@
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/filters/repairs.hpp"
 #include "maps/filters/shadow_map.comp.spv.hpp"
+#include "maps/filters/shadow_map_ids.comp.spv.hpp"
+#include "maps/products/nearest_ids.hpp"
+
+#include <memory>
+#include <utility>
 
 namespace penumbra::maps {
 namespace {
+
+constexpr visibility::ChoiceOption kHardTest{
+    "test",
+    {{"depth", false}, {"id", true}},
+    false,
+    "what of a texel says that the receiver is seen: its depth, or that it is of the receiver's plane, which needs no "
+    "bias"};
 
 visibility::MeshVerdict shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, its edges off by up to half a texel", mesh);
@@ -19,25 +31,32 @@ visibility::MeshVerdict shadow_map_verdict(const mesh::Diagnosis& mesh) {
 }  // namespace
 
 visibility::MethodDescription shadow_map_description() {
-  return {.name = "shadow-map",
-          .family = visibility::Family::image,
-          .paper = "Williams 1978",
-          .output = visibility::Output::scalar,
-          .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
-          .lights = planar_lights(),
-          .textures = false,
-          .options = compared_map_option_descriptions(),
-          .verdict_on = shadow_map_verdict,
-          .repairs = filter_repairs};
+  visibility::MethodDescription description{
+      .name = "shadow-map",
+      .family = visibility::Family::image,
+      .paper = "Williams 1978",
+      .output = visibility::Output::scalar,
+      .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
+      .lights = planar_lights(),
+      .textures = false,
+      .options = compared_map_option_descriptions(),
+      .verdict_on = shadow_map_verdict,
+      .repairs = filter_repairs};
+  description.options.push_back(kHardTest.description());
+  return description;
 }
 
 std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device,
                                                     const visibility::MethodOptions& options) {
-  return make_map_method(device,
-                         {.description = shadow_map_description(),
-                          .look_up_name = "shadow map look-up",
-                          .look_up = shaders::kShadowMapComp},
-                         options);
+  MapRecipe recipe{.description = shadow_map_description(),
+                   .look_up_name = "shadow map look-up",
+                   .look_up = shaders::kShadowMapComp};
+  const visibility::ParsedOptions parsed = visibility::parse_options(recipe.description, options);
+  if (parsed[kHardTest]) {
+    recipe.look_up = shaders::kShadowMapIdsComp;
+    recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser]));
+  }
+  return make_map_method(device, std::move(recipe), options);
 }
 
 }  // namespace penumbra::maps

@@ -29,6 +29,8 @@ layout(scalar, push_constant) uniform Push {
 
 #include "maps/host/taps.glsl"
 
+uint receiver_plane;  // scalar_main.glsl: the receiver's, as Receiver has it
+
 // The receiver of this invocation, or of this workgroup, counted from the part's first.
 uint this_receiver() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;

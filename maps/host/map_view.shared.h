@@ -44,6 +44,7 @@ struct LightBasis {
 // receivesShadow false.
 struct Receiver {
   vec3 p, n;
+  uint plane;  // the number of its triangle's plane (visibility::SceneFloats); all ones where it casts no shadow
 };
 
 // caster.vert, caster.frag: one face.

@@ -26,7 +26,10 @@ void Receivers::upload(const render::Device& device, const visibility::SceneFloa
     const std::size_t first = std::size_t{row} * width_;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
       if (!visibility::is_receiver(scene, light, samples, first + i)) continue;
-      if (!wanted_ || left_out_[first + i] == 0) receivers[i] = {samples.p[first + i], samples.n[first + i]};
+      if (wanted_ && left_out_[first + i] != 0) continue;
+      const auto triangle = static_cast<std::size_t>(samples.triangle[first + i]);
+      receivers[i] = {samples.p[first + i], samples.n[first + i],
+                      scene.casts_shadow[triangle] != 0 ? scene.plane[triangle] : visibility::SceneFloats::kNoPlane};
     }
     bands_.push_back({render::make_buffer<gpu::Receiver>(device, "map receivers", receivers), row, rows});
   }

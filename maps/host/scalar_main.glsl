@@ -6,6 +6,7 @@ void main() {
   float v = 1.0;
   if (receiver.n != vec3(0.0)) {
     const LightView view = views[0];
+    receiver_plane = receiver.plane;
     const vec3 d = to_basis(lookup.basis, receiver.p - view.point);
     v = on_emitting_side(d) ? visibility_of(view, d, -to_basis(lookup.basis, receiver.n)) : 0.0;
   }

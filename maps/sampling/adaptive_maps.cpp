@@ -123,7 +123,8 @@ ComparedReceivers AdaptiveMaps::centre_texels() {
         const glm::dvec3 direction = axes.direction(x, y, map_.size);
         found.push_back(
             {glm::vec3(glm::dvec3(view.point) + static_cast<double>(depth) * static_cast<double>(view.far) * direction),
-             glm::vec3(-glm::normalize(direction))});  // as if it faced the light
+             glm::vec3(-glm::normalize(direction)),  // as if it faced the light
+             visibility::SceneFloats::kNoPlane});
       }
     }
   }

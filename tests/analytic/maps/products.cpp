@@ -52,6 +52,13 @@ TEST_F(MapsProducts, NearestCasterIsItsTwinInWindowsAndHemicubesOnBothSides) {
   }
 }
 
+TEST_F(MapsProducts, NearestIdsAreOfTrianglesThatMayBeNearest) {
+  for (const auto& [two_sided, wall] : {std::tuple(false, 0.0), std::tuple(true, 6.0)}) {
+    const Stage stage(scene_around(two_sided, wall), 4, 4, light_samples(1));
+    expect_passed(selftest::check_nearest_ids(device(), stage, kMapTexels, maps::Rasteriser::vulkan));
+  }
+}
+
 // A receiver far smaller than the light: what shades it stands in none of its directions from the light's centre.
 TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
   scenes::Scene scene;

@@ -92,5 +92,53 @@ TEST_F(ReceiverPlane, OffWhatIsBelowTheHorizonHidesLight) {
   }
 }
 
+// Hourcade and Nicolas 1985: where a texel says who is nearest no bias is needed, and none can move a shadow. What they
+// pay with: where triangles of several planes share a texel all but one of them are dark.
+TEST_F(ReceiverPlane, IdsNeedNoBiasAndLoseWhatSharesATexel) {
+  for (const double tilt : {0.0, 30.0, 70.0}) {
+    const double angle = tilt * std::numbers::pi / 180;
+    const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), up(-std::sin(angle), std::cos(angle), 0);
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, 2.0 * along, {0, 0, -2});
+    // As near above the plane as floats allow: the bias that forgives a plane its slope would forgive this, too.
+    add_quad(scene, 1e-4 * up, 0.5 * along, {0, 0, -0.5}).receives_shadow = false;
+    scene.lights.push_back(ceiling_light(5, 0.25));
+    scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
+    const Stage stage(scene, 24, 24, light_samples(1), grid_samples(24, {0, 0, 0}, 1.5 * along, {0, 0, 1.5}, up));
+    const Masks ids = picture(stage, "shadow-map", {{"test", "id"}, {"size", "256"}});
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const auto step = [&](std::size_t k) { return std::abs((2.0 * static_cast<double>(k) + 1) / 24 - 1) * 1.5; };
+      const double s = step(i % 24), t = step(i / 24);
+      if (std::abs(s - 0.5) < 0.05 || std::abs(t - 0.5) < 0.05) continue;  // within texels of the board's edge
+      EXPECT_EQ(ids.visibility[i], s < 0.5 && t < 0.5 ? 0.0F : 1.0F) << tilt << " degrees, pixel " << i;
+    }
+    // From below the plane its own triangles stand before the light, and are the nearest.
+    const Stage below(scene, 8, 8, light_samples(1), grid_samples(8, {0, 0, 0}, 1.5 * along, {0, 0, 1.5}, -up));
+    for (const float v : picture(below, "shadow-map", {{"test", "id"}}).visibility) EXPECT_EQ(v, 0.0F) << tilt;
+  }
+  // A ball of planes as small as texels: by depth it is lit on its upper side, by ids only what a texel happens to
+  // name.
+  scenes::Scene scene;
+  add_quad(scene, {0, -2, 0}, {2, 0, 0}, {0, 0, -2});
+  add_object(scene, "ball", sphere({0, 0, 0}, 1, 40));
+  scene.lights.push_back(ceiling_light(5, 0.25));
+  scene.cameras.push_back(camera({0, 3, 0.1}, {0, 0, 0}, 30));
+  const Stage stage(scene, 24, 24, light_samples(1));
+  const auto lit = [&](const char* test) {
+    const Masks found = picture(stage, "shadow-map", {{"test", test}, {"size", "32"}});
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+      const std::int32_t triangle = stage.samples.triangle[i];
+      if (triangle >= 2 && stage.samples.n[i].y > 0.5F) count += found.visibility[i] == 1 ? 1 : 0;
+    }
+    return count;
+  };
+  const std::size_t by_depth = lit("depth"), by_id = lit("id");
+  fmt::print("a ball of small planes: {} pixels lit by depth, {} by ids\n", by_depth, by_id);
+  EXPECT_GT(by_depth, 100U);
+  EXPECT_LT(by_id, by_depth / 2);
+  EXPECT_GT(by_id, 0U);
+}
+
 }  // namespace
 }  // namespace penumbra::tests

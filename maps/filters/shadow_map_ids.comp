@@ -1,0 +1,24 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+#include "maps/products/nearest_ids.shared.h"
+#include "maps/host/look_up.glsl"
+
+layout(scalar, binding = 4) readonly buffer Ids { uint ids[]; };
+layout(scalar, binding = 5) readonly buffer Planes { uint plane_of[]; };
+
+// Hourcade and Nicolas 1985: lit is what the map has there, whatever its depth. Here it is compared by planes, so that the
+// triangles of one polygon are one; and what casts no shadow is in no map: its depth is compared.
+float visibility_of(LightView view, vec3 d, vec3 m) {
+  if (receiver_plane == kNoId) return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0;
+  if (!(dot(m, d) > 0.0)) return 0.0;
+  const SideView side = view.side[d.z < 0.0 ? 1 : 0];
+  const FaceHit hit = face_hit(view, d);
+  const MapFace face = face_of(side, 0, lookup.size, hit.face);
+  const vec2 cell = floor((hit.f.xy / hit.f.z - face.lower) / face.texel);
+  const uvec2 at = uvec2(clamp(cell, vec2(0.0), vec2(float(lookup.size - 1))));
+  const uint id = ids[(face.map * lookup.size + at.y) * lookup.size + at.x];
+  return id == kNoId || plane_of[id] == receiver_plane ? 1.0 : 0.0;
+}
+
+#include "maps/host/scalar_main.glsl"

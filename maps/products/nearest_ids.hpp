@@ -1,0 +1,48 @@
+#pragma once
+
+#include "maps/host/map_method.hpp"
+#include "maps/products/nearest_ids.shared.h"
+#include "render/opengl/raster_pass.hpp"
+#include "render/raster_pass.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace penumbra::maps {
+
+/// Which caster a texel of the maps of a light's centre has: for each texel of the nearest layer the triangle's rank
+/// (visibility::ranks), gpu::kNoId where nothing is. Of surfaces at one place (within 2⁻²⁰, as layers have it) the
+/// smallest rank. Behind it, what a look-up compares: of each rank the number of its plane.
+class NearestIds final : public MapProduct {
+ public:
+  explicit NearestIds(const render::Device& device, Rasteriser rasteriser = Rasteriser::vulkan);
+  void record(render::Commands& commands, const MapSet& maps) override;
+  [[nodiscard]] const render::Buffer& buffer() const override { return *ids_; }
+  [[nodiscard]] std::vector<render::BufferReference> buffers() const override { return {*ids_, *planes_}; }
+  [[nodiscard]] std::uint64_t memory_bytes() const override;
+
+ private:
+  /// Triangles that fit into one storage buffer of the rasteriser.
+  struct Casters {
+    std::vector<glm::vec3> corners;
+    std::vector<std::uint32_t> ids;
+  };
+  void draw(render::Commands& commands, const MapSet& maps, const std::vector<gpu::IdsPush>& faces,
+            const std::vector<Casters>& casters);
+  void draw_by_opengl(const MapSet& maps, const std::vector<gpu::IdsPush>& faces,
+                      const std::vector<Casters>& casters) const;
+
+  struct Uploaded {
+    render::Buffer corners, ids;
+    std::uint32_t vertices;
+  };
+  const render::Device* device_;
+  std::optional<render::RasterPass> pass_;                 // either this
+  std::optional<render::opengl::RasterPass> opengl_pass_;  // or that
+  std::vector<Uploaded> uploaded_;
+  std::unique_ptr<render::Buffer> ids_, planes_;
+};
+
+}  // namespace penumbra::maps
