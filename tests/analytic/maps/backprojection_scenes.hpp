@@ -101,8 +101,8 @@ inline scenes::Scene plates_with_gap(bool gap) {
 }
 
 /// An upright box, `aside` of the light.
-inline scenes::Scene box_over_floor(double aside = 0) {
-  scenes::Scene scene = bare_floor(0.5);
+inline scenes::Scene box_over_floor(double aside = 0, double light_half = 0.5) {
+  scenes::Scene scene = bare_floor(light_half);
   const auto side = [&](const glm::dvec3& at, const glm::dvec3& u, const glm::dvec3& v) {
     add_quad(scene, glm::dvec3(aside, 1.5, 0) + at, u, v).receives_shadow = false;
   };

@@ -152,25 +152,32 @@ TEST(LightPattern, IsSpreadEvenly) {
 }
 
 /// A receiver and a board parallel to it that rises above it by as much, in depth, as the bias forgives somewhere:
-/// blocked where rise / (m · c) > bias · t · w · (1 + slope), c the texel's centre, m the plane's normal. By the
-/// receiver's own depth w (receiverPlane=off) where w − (h − rise) / (m · c) > bias · t · w.
+/// blocked where rise / (m · c) > bias · t · w · (1 + slope), c the texel's centre, m the plane's normal; slopes above
+/// 8 are taken to be 8. By the receiver's own depth w (receiverPlane=off) where w − (h − rise) / (m · c) > bias · t ·
+/// w.
 class Bias : public MapsTest {
  protected:
-  static constexpr std::uint32_t kSize = 256;
-  static constexpr double kBias = 24, kLight = 5;
+  static constexpr double kLight = 5, kSteepest = 8;
+  struct Setting {
+    std::uint32_t size = 256;
+    double bias = 24;
+    double reach = 2;         ///< view samples lie so far about the floor's middle, along its slope
+    bool own_depth = false;   ///< of shadow-map alone
+    bool hard_alone = false;  ///< no method of lists
+  };
 
   /// The floor tilted by `tilt` about z; the board above it, twice as large.
-  static void expect_forgiven(double tilt, double share, bool own_depth = false) {
+  static void expect_forgiven(double tilt, double share, const Setting& setting) {
     const glm::dvec3 along(std::cos(tilt), std::sin(tilt), 0), up(-std::sin(tilt), std::cos(tilt), 0);
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, 2.0 * along, {0, 0, -2});
     scene.lights.push_back(ceiling_light(kLight, 0.5));
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
     const Bounds window = window_of(along);
-    const double texel = window.widest() / (kSize - 2);
+    const double texel = window.widest() / (setting.size - 2);
     // At the middle of the floor the board is where the bias ends: rise / (m · c) there is bias t w (1 + slope).
     const glm::dvec3 middle(0, -kLight, 0);
-    const double rise = share * forgiven(middle, up, texel, own_depth) * cosine(middle, up);
+    const double rise = share * forgiven(middle, up, texel, setting) * cosine(middle, up);
     add_quad(scene, rise * up, 4.0 * along, {0, 0, -4}).receives_shadow = false;
     // View samples by hand: the board hides the floor from any camera above it.
     const auto grid = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
@@ -178,7 +185,7 @@ class Bias : public MapsTest {
       samples.width = samples.height = kSide;
       for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
         const double s = (i % kSide + 0.5) / kSide, t = (i / kSide + 0.5) / kSide;
-        const glm::dvec3 p = (4 * s - 2) * along + glm::dvec3(0, 0, 4 * t - 2) - floats.origin;
+        const glm::dvec3 p = setting.reach * (2 * s - 1) * along + glm::dvec3(0, 0, 4 * t - 2) - floats.origin;
         samples.triangle.push_back(0);
         samples.p.emplace_back(p);
         samples.n.emplace_back(up);
@@ -188,12 +195,11 @@ class Bias : public MapsTest {
       return samples;
     };
     const Stage stage(scene, kSide, kSide, light_samples(1), grid);
-    visibility::MethodOptions options{{"size", fmt::format("{}", kSize)}, {"bias", fmt::format("{}", kBias)}};
+    visibility::MethodOptions options{{"size", fmt::format("{}", setting.size)},
+                                      {"bias", fmt::format("{}", setting.bias)}};
     std::vector<Factory> factories{maps::make_shadow_map, maps::make_accumulate, maps::make_deep_penumbra};
-    if (own_depth) {
-      options["receiverPlane"] = "off";
-      factories = {maps::make_shadow_map};
-    }
+    if (setting.own_depth) options["receiverPlane"] = "off";
+    if (setting.own_depth || setting.hard_alone) factories = {maps::make_shadow_map};
     for (const Factory& factory : factories) {
       const Masks found = run(factory, stage, options);
       std::size_t lit = 0, dark = 0, near = 0;
@@ -204,10 +210,10 @@ class Bias : public MapsTest {
         for (const double a : {-0.5, 0.5}) {
           for (const double b : {-0.5, 0.5}) {
             const glm::dvec3 c = d / -d.y + texel * glm::dvec3(a, 0, b);
-            const double beyond = own_depth ? -d.y - glm::dot(-up, d) / cosine(c, up) : 0.0;
+            const double beyond = setting.own_depth ? -d.y - glm::dot(-up, d) / cosine(c, up) : 0.0;
             least = std::min(least, beyond + rise / cosine(c, up));
             most = std::max(most, beyond + rise / cosine(c, up));
-            const double forgives = kBias * texel * -d.y * (own_depth ? 1.0 : 1 + slope(c, up));
+            const double forgives = setting.bias * texel * -d.y * (setting.own_depth ? 1.0 : 1 + slope(c, up));
             allowed_least = std::min(allowed_least, forgives);
             allowed_most = std::max(allowed_most, forgives);
           }
@@ -221,8 +227,8 @@ class Bias : public MapsTest {
       }
       fmt::print("tilt {}, board at {} of the bias: {} lit, {} dark, {} of all within 2 %\n", tilt, share, lit, dark,
                  near);
-      // (By its own depth a tilted receiver is forgiven the same share everywhere.)
-      if (tilt == 0 || own_depth) {
+      // (By its own depth a tilted receiver is forgiven the same share everywhere; beyond the steepest slope, too.)
+      if (tilt == 0 || setting.own_depth || setting.hard_alone) {
         EXPECT_EQ(share < 1 ? lit : dark, stage.samples.size());
         EXPECT_EQ(near, stage.samples.size());
       } else {
@@ -254,28 +260,37 @@ class Bias : public MapsTest {
   static double cosine(const glm::dvec3& c, const glm::dvec3& up) { return glm::dot(-up, c / -c.y); }
   /// How fast the plane's depth changes across the map.
   static double slope(const glm::dvec3& c, const glm::dvec3& up) {
-    return (std::abs(up.x) + std::abs(up.z)) / cosine(c, up);
+    return std::min((std::abs(up.x) + std::abs(up.z)) / cosine(c, up), kSteepest);
   }
-  static double forgiven(const glm::dvec3& d, const glm::dvec3& up, double texel, bool own_depth) {
-    return kBias * texel * -d.y * (own_depth ? 1.0 : 1 + slope(d, up));
+  static double forgiven(const glm::dvec3& d, const glm::dvec3& up, double texel, const Setting& setting) {
+    return setting.bias * texel * -d.y * (setting.own_depth ? 1.0 : 1 + slope(d, up));
   }
 };
 
 TEST_F(Bias, ForgivesWhatItSaysOverALevelFloor) {
-  expect_forgiven(0, 0.985);
-  expect_forgiven(0, 1.015);
+  expect_forgiven(0, 0.985, {});
+  expect_forgiven(0, 1.015, {});
 }
 
 TEST_F(Bias, GrowsWithTheSlope) {
-  expect_forgiven(0.5, 1);
-  expect_forgiven(-0.8, 1);
+  expect_forgiven(0.5, 1, {});
+  expect_forgiven(-0.8, 1, {});
+}
+
+// At 86 degrees slopes are 9 to 20 on the whole floor, and count as 8. Texels are small enough that the plane's depth
+// is known to a quarter of a percent within one.
+TEST_F(Bias, GrowsNoMoreBeyondTheSteepestSlope) {
+  for (const double share : {0.985, 1.015}) {
+    expect_forgiven(1.5, share, {.size = 4096, .bias = 2, .reach = 0.2, .hard_alone = true});
+  }
 }
 
 TEST_F(Bias, OfAReceiversOwnDepthDoesNot) {
-  expect_forgiven(0, 0.985, true);
-  expect_forgiven(0, 1.015, true);
-  expect_forgiven(0.3, 0.98, true);
-  expect_forgiven(0.3, 1.02, true);
+  for (const double tilt : {0.0, 0.3}) {
+    const double off = tilt == 0 ? 0.015 : 0.02;
+    expect_forgiven(tilt, 1 - off, {.own_depth = true});
+    expect_forgiven(tilt, 1 + off, {.own_depth = true});
+  }
 }
 
 }  // namespace

@@ -16,29 +16,29 @@ using visibility::MethodOptions;
 
 class MapsMethod : public MapsTest {
  protected:
-  /// On small maps, unless the test says how large: a kernel has many texels.
+  /// On small maps, unless the test says how large: what is asked of all of them does not depend on it.
   static Factory small(const Factory& make) {
     return [make](const render::Device& device, MethodOptions options) {
       options.try_emplace("size", "64");
       return make(device, options);
     };
   }
-  const std::vector<Factory> all_{maps::make_shadow_map,
-                                  maps::make_pcf,
-                                  maps::make_pcss,
-                                  maps::make_vssm,
-                                  maps::make_occlusion_textures,
-                                  maps::make_convolution,
-                                  maps::make_accumulate,
+  const std::vector<Factory> all_{small(maps::make_shadow_map),
+                                  small(maps::make_pcf),
+                                  small(maps::make_pcss),
+                                  small(maps::make_vssm),
+                                  small(maps::make_occlusion_textures),
+                                  small(maps::make_convolution),
+                                  small(maps::make_accumulate),
                                   small(maps::make_bitmask),
                                   small(maps::make_backproject),
                                   small(maps::make_contour),
                                   small(maps::make_packet),
                                   small(maps::make_backproject_peel),
                                   small(maps::make_soft_shadow_map),
-                                  maps::make_adaptive_light,
-                                  maps::make_deep_penumbra,
-                                  maps::make_layered_attenuation};
+                                  small(maps::make_adaptive_light),
+                                  small(maps::make_deep_penumbra),
+                                  small(maps::make_layered_attenuation)};
 };
 
 TEST_F(MapsMethod, ASphereIsRefusedWithWhatCanBeDone) {

@@ -74,7 +74,7 @@ TEST_F(SoftShadowMap, TheErrorStopsFallingWithResolutionAndGrowsTowardTheLight) 
   double last = 0;
   for (const double height : {1.2, 2.0, 2.8, 3.4}) {
     const Stage near(ball(0.5, height), 64, 64, light_samples(1));
-    const double found = measure(near, soft(near, few_receivers()).picture, exact(near)).error;
+    const double found = measure(near, soft(near, few_receivers({{"size", "64"}})).picture, exact(near)).error;
     fmt::print("sphere at {}: error {:.4f}\n", height, found);
     EXPECT_GT(found, 0.9 * last);
     last = found;
