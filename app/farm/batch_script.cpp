@@ -86,8 +86,8 @@ std::string text_of(const BatchJob& job) {
   text += ")\n";
   text += "frames=${tasks[$SLURM_ARRAY_TASK_ID]:?}\n";
   text += "printf 'frames %s on %s, %(%F %T)T\\n' \"$frames\" \"${SLURMD_NODENAME-$HOSTNAME}\" -1\n";
-  text += fmt::format("exec \"$penumbra\" \"${{submit[@]}}\" {} --jobs=1 \"--frames=$frames\"\n",
-                      shell_word("--exposure=" + job.exposure));
+  text += fmt::format("exec \"$penumbra\" \"${{submit[@]}}\" {} {} --jobs=1 \"--frames=$frames\"\n",
+                      shell_word("--exposure=" + job.exposure), shell_word("--logs=" + job.folder.string()));
   return text;
 }
 

@@ -56,6 +56,8 @@ class SubmitCommand : public Command {
         ->type_name("N")
         ->check(CLI::Range(1, 101))
         ->capture_default_str();
+    cli_.add_option("--logs", logs_, "folder for a log of each frame; tasks of the array write theirs beside their own")
+        ->type_name("DIR");
     add("--sbatch", sbatch_, "option for sbatch: partition=NAME, time=HOURS:MM:SS, mem=8G …; may be given again")
         ->type_name("KEY[=VALUE]")
         ->allow_extra_args(false);
@@ -72,6 +74,8 @@ class SubmitCommand : public Command {
     check_png_name(options_);
     words_ = words_for_all(global);
     folder_ = folder_of(absolute(options_.run.out));
+    if (std::error_code error; !logs_.empty() && !std::filesystem::create_directories(logs_, error) && error)
+      throw ResourceError("--logs {}: {}", logs_.string(), error.message());
     if (jobs_ > 0) return render_here();
     if (folder_.string().find('\\') != std::string::npos) {
       // Slurm takes it as a sign that no %A of the name is to be replaced.
@@ -100,8 +104,8 @@ class SubmitCommand : public Command {
 
   /// All of render's options that were given, but those that tasks get each its own of; paths are absolute.
   [[nodiscard]] std::vector<std::string> words_for_all(const GlobalOptions& global) const {
-    const std::vector<std::string> own = {"--frames", "--exposure", "--skip-existing", "--dry-run", "--jobs",
-                                          "--chunk",  "--rounds",   "--round",         "--sbatch",  "--help"};
+    const std::vector<std::string> own = {"--frames", "--exposure", "--skip-existing", "--dry-run", "--jobs", "--chunk",
+                                          "--rounds", "--round",    "--sbatch",        "--logs",    "--help"};
     const std::vector<std::string> files = {"SCENE", "--output", "--stats", "--png", "--bits"};
     const auto is_one_of = [](const std::vector<std::string>& names, const CLI::Option* option) {
       return std::ranges::any_of(names, [&](const std::string& name) { return option->check_name(name); });
@@ -141,14 +145,14 @@ class SubmitCommand : public Command {
 
   // What is there.
 
-  [[nodiscard]] bool has(std::int64_t frame) const { return is_there(options_, frame, cameras_); }
+  [[nodiscard]] bool has(std::int64_t frame) const { return is_there(options_, static_cast<double>(frame), cameras_); }
   [[nodiscard]] std::vector<std::int64_t> missing() const {
     std::vector<std::int64_t> frames = frames_;
     std::erase_if(frames, [this](std::int64_t frame) { return has(frame); });
     return frames;
   }
   [[nodiscard]] std::filesystem::path picture(std::int64_t frame) const {
-    return files_of(options_, frame, cameras_.front()).picture;
+    return files_of(options_, static_cast<double>(frame), cameras_.front()).picture;
   }
 
   // Rendering here.
@@ -157,7 +161,7 @@ class SubmitCommand : public Command {
     std::vector<std::string> command = {own_program(), "render"};
     command.insert(command.end(), words_.begin(), words_.end());
     command.insert(command.end(), {"--exposure=" + exposure, "--skip-existing"});
-    return {std::move(command), range_.step, at_once, [this](std::int64_t frame) { return has(frame); }};
+    return {std::move(command), range_.step, at_once, [this](std::int64_t frame) { return has(frame); }, logs_};
   }
 
   /// How the frames are exposed, as --exposure takes it. The first frame decides where none was asked for: it is
@@ -216,11 +220,12 @@ class SubmitCommand : public Command {
   FrameCost measure(std::int64_t frame, const std::string& exposure) {
     PictureOptions named = options_;
     Workers here = workers(exposure, 1);
+    here.logs = folder_;
     if (named.stats.empty()) {
       named.stats = folder_ / "first-frame.json";
       here.command.push_back("--stats=" + named.stats.string());
     }
-    here.is_there = [&](std::int64_t one) { return is_there(named, one, cameras_); };
+    here.is_there = [&](std::int64_t one) { return is_there(named, static_cast<double>(one), cameras_); };
     spdlog::info("frame {} is rendered here, to see how many frames a task can do", frame);
     const std::vector<FailedFrame> failed = render_frames(here, {frame});
     if (!failed.empty()) {
@@ -229,7 +234,8 @@ class SubmitCommand : public Command {
     }
     FrameCost cost;
     for (const std::string& camera : cameras_) {
-      const auto seconds = nlohmann::json::parse(text_of_file(files_of(named, frame, camera).stats)).at("seconds");
+      const auto seconds =
+          nlohmann::json::parse(text_of_file(files_of(named, static_cast<double>(frame), camera).stats)).at("seconds");
       const double total = seconds.at("total").get<double>();
       double own = 0;
       for (const char* phase : {"view", "light", "evaluate", "beauty", "write"}) own += seconds.value(phase, 0.0);
@@ -342,6 +348,7 @@ class SubmitCommand : public Command {
   std::optional<int> chunk_;
   int rounds_ = 2, round_ = 1;
   std::vector<std::string> sbatch_;
+  std::filesystem::path logs_;
 
   // What they come to:
   PictureRequest request_;

@@ -1,5 +1,6 @@
 #include "app/farm/workers.hpp"
 
+#include "app/farm/frame_logs.hpp"
 #include "app/farm/tasks.hpp"
 #include "app/process/child_program.hpp"
 #include "app/process/interrupt.hpp"
@@ -28,7 +29,8 @@ struct Run {
 /// A run, and the process that does it.
 class Worker {
  public:
-  Worker(const Workers& workers, Run run) : run_(std::move(run)), program_(command(workers, run_)) {}
+  Worker(const Workers& workers, Run run)
+      : run_(std::move(run)), logs_(workers, run_.frames), program_(command(workers, run_)) {}
 
   void ask_to_end() const { program_.ask_to_end(); }
   bool has_ended() {
@@ -62,6 +64,7 @@ class Worker {
       if (errors_.empty() || (end == std::string::npos && !all)) return;
       const std::string line = errors_.substr(0, end);
       errors_.erase(0, end == std::string::npos ? end : end + 1);
+      logs_.add(line);
       if (reason_.empty() && !line.starts_with(kError))
         say(line + "\n");
       else
@@ -70,6 +73,7 @@ class Worker {
   }
 
   Run run_;
+  FrameLogs logs_;
   ChildProgram program_;
   std::string errors_, reason_;  // not passed on yet; kept
 };

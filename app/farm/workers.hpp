@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct Workers {
   std::int64_t step = 1;             ///< of the sequence
   std::size_t at_once = 1;
   std::function<bool(std::int64_t)> is_there;  ///< are all of the frame's files there?
+  std::filesystem::path logs = {};             ///< folder of a log a frame (see FrameLogs); empty: none are kept
 };
 
 /// Renders frames (ascending) that are missing, and leaves out what is there, so that nothing is rendered twice. Where

@@ -182,10 +182,15 @@ TEST_F(Farm, AnArrayIsRenderedAndItsSummarySubmitsWhatWasLost) {
   expect_pictures("farm");
   std::string logs = outcome.err;
   for (const std::string& file : files()) {
-    if (file.ends_with(".log")) logs += read(file);
+    if (file.ends_with(".log") && file.find("/frame-") == std::string::npos) logs += read(file);
   }
-  for (const char* frame : {"0000", "0002", "0004", "0006", "0008", "0010"})
+  for (const char* frame : {"0000", "0002", "0004", "0006", "0008", "0010"}) {
     EXPECT_EQ(count_of(logs, "s." + std::string(frame) + ".exr: "), 1u) << frame << " is rendered once";
+    const std::string own = read("farm/s.farm/frame-" + std::string(frame) + ".log");
+    EXPECT_EQ(count_of(own, "s." + std::string(frame) + ".exr: "), 1u) << own;
+    EXPECT_EQ(count_of(own, ".exr: "), 1u) << "and no other: " << own;
+    EXPECT_THAT(own, testing::StartsWith("frame " + std::to_string(std::stoi(frame)) + " on "));
+  }
   EXPECT_THAT(submit("farm", {}, environment).err, HasSubstr("all 6 frames are there"));
 }
 
@@ -196,6 +201,9 @@ TEST_F(Farm, WhatFailsInEveryRoundIsReported) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("frames a task")) << "the first frame was measured";
   EXPECT_THAT(read("bin/7.0.log"), HasSubstr("error: frame 8: "));
+  const std::string own = read("farm/s.farm/frame-0008.log");
+  EXPECT_EQ(count_of(own, "frame 8 on "), 4u) << "twice in each of two rounds: " << own;
+  EXPECT_EQ(count_of(own, "penumbra: error: "), 4u) << own;
   EXPECT_THAT(read("bin/summary.10"), AllOf(HasSubstr("1 of 6 frames are missing: 8\n"), HasSubstr("\n1\n")));
   EXPECT_THAT(read("bin/sbatch.10"), HasSubstr("--partition=slow\n"));
   write("bin/queue", "9_0 slow penumbra\n");

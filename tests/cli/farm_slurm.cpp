@@ -169,11 +169,15 @@ SchedulerParameters=sched_interval=2,bf_interval=2
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  /// All logs of a farm's folder.
+  /// Is it the log of a task or summary? Frames have their own.
+  static bool is_log(const std::filesystem::path& path) {
+    return path.extension() == ".log" && !path.filename().string().starts_with("frame-");
+  }
+  /// All of these of a farm's folder.
   std::string logs(const std::string& folder) const {
     std::string all;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      if (entry.path().extension() == ".log") all += file_text(entry.path());
+      if (is_log(entry.path())) all += file_text(entry.path());
     }
     return all;
   }
@@ -218,7 +222,7 @@ TEST_F(FarmSlurmFull, NothingIsLostWithANodeAndNothingRenderedTwice) {
   std::string victim;
   ASSERT_TRUE(eventually(120, [&] {
     for (const auto& entry : std::filesystem::directory_iterator(farm)) {
-      const std::string text = entry.path().extension() == ".log" ? file_text(entry.path()) : "";
+      const std::string text = is_log(entry.path()) ? file_text(entry.path()) : "";
       const auto frames = static_cast<int>(std::ranges::count(text, '\n')) - 1;
       if (text.find(".exr: ") == std::string::npos || frames > 2) continue;
       victim = text.find(" on n1,") != std::string::npos ? "n1" : "n2";
@@ -257,6 +261,9 @@ TEST_F(FarmSlurmFull, NothingIsLostWithANodeAndNothingRenderedTwice) {
     const auto first = said.find(made);
     EXPECT_EQ(first == std::string::npos ? first : said.find(made, first + 1), std::string::npos)
         << frame << " was rendered twice";
+    const std::string own = file_text(farm + fmt::format("/frame-{:04}.log", frame));
+    EXPECT_THAT(own, HasSubstr(made));
+    EXPECT_EQ(own.find(".exr: "), own.rfind(".exr: ")) << own;
   }
   EXPECT_GE(before.size(), 4u) << "the first frame, and one of the task";
   RecordProperty("picturesBeforeTheKill", static_cast<int>(before.size()));
