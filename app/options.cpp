@@ -105,6 +105,11 @@ void add_lamp_options(CLI::App& command, LampSizes& lamps) {
       .add_option("--sun-angle", lamps.sun_angle,
                   "glTF: apparent diameter in degrees of sun lamps whose file gives none (default: 0.53)")
       ->type_name("DEGREES");
+  command
+      .add_option("--lumens-per-watt", lamps.lumens_per_watt,
+                  "glTF: by what lamps' intensities are divided (default: 683 in files of Blender's exporter, which "
+                  "multiplies by that, else 1)")
+      ->type_name("N");
 }
 
 scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside) {
@@ -114,10 +119,14 @@ scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside) {
   if (lamps.sun_angle && !(*lamps.sun_angle >= 0 && *lamps.sun_angle < 180)) {
     throw UsageError("--sun-angle {}: expected degrees from 0 to less than 180", *lamps.sun_angle);
   }
+  if (lamps.lumens_per_watt && !(*lamps.lumens_per_watt > 0 && *lamps.lumens_per_watt <= 1e6)) {
+    throw UsageError("--lumens-per-watt {}: expected a number above 0, such as 683", *lamps.lumens_per_watt);
+  }
   scenes::ReadOptions read;
   read.allow_outside = allow_outside;
   read.lamp_radius = lamps.radius;
   read.sun_angle = lamps.sun_angle;
+  read.lumens_per_watt = lamps.lumens_per_watt;
   return read;
 }
 

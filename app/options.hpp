@@ -18,9 +18,9 @@ class App;
 
 namespace penumbra::app {
 
-/// Of glTF lamps whose file gives none.
+/// Of glTF lamps: sizes where the file gives none, and what its intensities are in.
 struct LampSizes {
-  std::optional<double> radius, sun_angle;
+  std::optional<double> radius, sun_angle, lumens_per_watt;
 };
 
 /// What `render` and `compare` have in common, as the user gave it.
@@ -39,7 +39,7 @@ struct RunOptions {
   LampSizes lamps;
 };
 
-/// Adds --lamp-radius and --sun-angle.
+/// Adds --lamp-radius, --sun-angle and --lumens-per-watt.
 void add_lamp_options(CLI::App& command, LampSizes& lamps);
 /// Adds the options of RunOptions that mean the same in `render` and in `compare`.
 void add_run_options(CLI::App& command, RunOptions& options);

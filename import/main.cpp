@@ -70,6 +70,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     const std::string_view flag = argv[i];
     if (parse_number(flag, "--lamp-radius=", arguments.options.lamp_radius) ||
         parse_number(flag, "--sun-angle=", arguments.options.sun_angle) ||
+        parse_number(flag, "--lumens-per-watt=", arguments.options.lumens_per_watt) ||
         parse_number(flag, "--time=", arguments.options.time)) {
       continue;
     }

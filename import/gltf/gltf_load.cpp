@@ -130,6 +130,10 @@ void forgive_default_binds(std::string& error) {
 
 }  // namespace
 
+bool is_from_blender(const tinygltf::Model& model) {
+  return model.asset.generator.starts_with("Khronos glTF Blender I/O");
+}
+
 void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model) {
   const std::string name = input.name.string();
   const std::string bytes = mesh::read_content(input.content.get(), name);

@@ -12,4 +12,7 @@ namespace penumbra::scenes {
 /// from the file's folder and below, or from anywhere if `allow_outside`. Throws InputError.
 void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model);
 
+/// Did Blender's exporter write it? It means some things in its own way.
+bool is_from_blender(const tinygltf::Model& model);
+
 }  // namespace penumbra::scenes

@@ -8,6 +8,7 @@
 #include "base/jpeg.hpp"
 #include "base/png.hpp"
 #include "import/gltf/gltf_accessor.hpp"
+#include "import/gltf/gltf_load.hpp"
 
 #include <tiny_gltf.h>
 
@@ -104,6 +105,14 @@ TextureTransform transform_of(const tinygltf::TextureInfo& info) {
   return transform;
 }
 
+/// Does the material say nothing of its surface? What is left out is 1 in glTF.
+bool has_no_surface(const tinygltf::Material& material) {
+  const auto& surface = material.pbrMetallicRoughness;
+  return surface.baseColorFactor == std::vector<double>(4, 1.0) && surface.metallicFactor == 1 &&
+         surface.roughnessFactor == 1 && surface.baseColorTexture.index < 0 &&
+         surface.metallicRoughnessTexture.index < 0;
+}
+
 /// An attribute's numbers, one group a vertex; nothing if the primitive has none.
 std::optional<Numbers> attribute_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                     const std::string& name, std::initializer_list<int> types, std::size_t vertices,
@@ -186,7 +195,10 @@ void SurfaceReader::read_material(const tinygltf::Primitive& primitive, const st
                    object);
   if (number_of(material.extensions, "KHR_materials_transmission", "transmissionFactor", 0, here) > 0)
     losses_.refuse("lets light through (transmission), which is not supported: it would be opaque", object);
-  if (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0)
+  if (look.radiance == glm::dvec3(0) && is_from_blender(model_) && has_no_surface(material))
+    losses_.mention("has no base colour in the file and is white: Blender exports that of Principled BSDF alone",
+                    object);
+  else if (look.color != glm::dvec3(0) && (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0))
     losses_.mention("has a metallic material; every surface is diffuse here", object);
   if (material.normalTexture.index >= 0) losses_.mention("has a normal map, which is left out", object);
 }

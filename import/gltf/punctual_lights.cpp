@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "import/gltf/gltf_load.hpp"
 
 #include <tiny_gltf.h>
 
@@ -19,6 +20,7 @@ namespace penumbra::scenes {
 namespace {
 
 constexpr const char* kExtension = "KHR_lights_punctual";
+constexpr double kBlendersLumensPerWatt = 683;  // its "Standard" lighting mode
 
 /// A number of the extras, of the lamp or of its node.
 std::optional<double> extra(const tinygltf::Value& extras, const char* key, const std::string& place) {
@@ -34,14 +36,21 @@ double checked(double value, double least, const std::string& place) {
   return value;
 }
 
-Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, const std::string& place) {
-  const double smooth = extra(lamp.extras, "smooth", place).value_or(0);
+Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, const std::string& place) {
+  const auto own_smooth = extra(lamp.extras, "smooth", place);
+  const double smooth = own_smooth.value_or(0);
   if (smooth != 0 && smooth != 1) throw InputError("{}/extras/smooth: {}; expected 0 or 1", place, smooth);
   const double inner = lamp.spot.innerConeAngle, outer = lamp.spot.outerConeAngle;
   // Half a turn over four in single precision may be a hair more.
   if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2 * (1 + 1e-6))) {
     throw InputError("{}/spot: innerConeAngle {} and outerConeAngle {}; expected 0 <= inner < outer <= pi / 2", place,
                      inner, outer);
+  }
+  if (from_blender && !own_smooth) {
+    // The file has (1 − blend) of the outer angle; Blender's lamps fall over `blend` of the cosines, at least 0.001.
+    const double full = std::cos(outer), blend = 1 - inner / outer;
+    const double edge = std::acos(std::min(full + std::max((1 - full) * blend, 0.001), 1.0));
+    return {direction, glm::degrees(edge), std::min(glm::degrees(outer), 90.0), true};
   }
   return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0), smooth == 1};
 }
@@ -74,7 +83,10 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
   glm::dvec3 color(1);
   if (lamp.color.size() >= 3) color = {lamp.color[0], lamp.color[1], lamp.color[2]};
   for (glm::length_t i = 0; i < 3; ++i) checked(color[i], 0, place + "/color");
-  const double intensity = checked(lamp.intensity, 0, place + "/intensity");
+  const bool from_blender = is_from_blender(model_);
+  const double per_watt = options_.lumens_per_watt.value_or(from_blender ? kBlendersLumensPerWatt : 1.0);
+  if (from_blender && !options_.lumens_per_watt) ++in_lumens_;
+  const double intensity = checked(lamp.intensity, 0, place + "/intensity") / per_watt;
 
   AreaLight light;
   if (lamp.type == "directional") {
@@ -94,7 +106,7 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
   Sphere sphere{glm::dvec3(placed.to_world[3]), size("radius", options_.lamp_radius, kLampRadius, without_radius_), {}};
   if (lamp.type == "spot") {
     if (!(glm::length(along) > 0)) throw InputError("{}: its transform leaves the lamp no direction", node_place);
-    sphere.cone = cone_of(lamp, glm::normalize(along), place);
+    sphere.cone = cone_of(lamp, glm::normalize(along), from_blender, place);
   }
   if (!(sphere.radius > 0) || !std::isfinite(sphere.radius)) {
     throw InputError("{}: the lamp's radius is {}; expected a length above 0", node_place, sphere.radius);
@@ -105,6 +117,12 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
 }
 
 void PunctualLights::add_warnings(std::vector<std::string>& warnings) const {
+  if (in_lumens_ > 0) {
+    warnings.push_back(
+        fmt::format("{} lamps are in lumens, {} to a watt, as Blender's exporter writes them; of one exported with "
+                    "Lighting Mode Unitless say --lumens-per-watt 1",
+                    in_lumens_, kBlendersLumensPerWatt));
+  }
   if (without_radius_ > 0) {
     warnings.push_back(
         fmt::format("{} point or spot lamps have no size in the file (extras \"radius\"); taken as spheres of "

@@ -19,7 +19,9 @@ namespace penumbra::scenes {
 /// with a cone. They have no size in that extension; `extras` of the lamp, or else of its node, may say `radius` or
 /// `angle` (degrees), else ReadOptions does; and `smooth` 1 that a cone falls as Blender's do. Intensities are the
 /// extension's: lux of what faces a sun, candela of a sphere seen from afar, so a radiance of lux / π sin²(angle / 2),
-/// of candela / π radius².
+/// of candela / π radius². Blender's exporter multiplies watts by 683 lumens, and has emission in watts: there they are
+/// divided by that again (or by ReadOptions::lumens_per_watt); and it writes cones as angles whose ways to fall off
+/// only it means.
 class PunctualLights {
  public:
   PunctualLights(const tinygltf::Model& model, const ReadOptions& options) : model_(model), options_(options) {}
@@ -34,7 +36,7 @@ class PunctualLights {
  private:
   const tinygltf::Model& model_;
   ReadOptions options_;
-  std::uint64_t without_radius_ = 0, without_angle_ = 0, ranges_ = 0;
+  std::uint64_t without_radius_ = 0, without_angle_ = 0, ranges_ = 0, in_lumens_ = 0;
 };
 
 }  // namespace penumbra::scenes

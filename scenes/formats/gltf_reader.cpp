@@ -18,6 +18,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   // {} gives the shortest text that is this very number again.
   if (options.lamp_radius) job.flags.push_back(fmt::format("--lamp-radius={}", *options.lamp_radius));
   if (options.sun_angle) job.flags.push_back(fmt::format("--sun-angle={}", *options.sun_angle));
+  if (options.lumens_per_watt) job.flags.push_back(fmt::format("--lumens-per-watt={}", *options.lumens_per_watt));
   if (options.time) job.flags.push_back(fmt::format("--time={}", *options.time));
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {

@@ -16,6 +16,8 @@ struct ReadOptions {
   bool needs_light = true;                 ///< glTF: is a scene without a light an error?
   std::optional<double> lamp_radius = {};  ///< glTF: of point and spot lamps whose file says none; above 0
   std::optional<double> sun_angle = {};    ///< glTF: of sun lamps whose file says none, degrees; 0 ≤ angle < 180
+  /// glTF: by what lamps' intensities are divided; above 0. Nothing: 683 in files of Blender's exporter, else 1.
+  std::optional<double> lumens_per_watt = {};
   bool lenient = false;             ///< glTF: leave out what cannot be done and would change shadows, with a warning
   std::optional<double> time = {};  ///< glTF: when, in seconds, its animations are looked at; nothing: at rest
 };

@@ -22,6 +22,7 @@ using ::testing::HasSubstr;
 /// A lamp of KHR_lights_punctual at node 0, which stays a mesh, too.
 Gltf with_lamp(const json& lamp) {
   Gltf gltf;
+  gltf.at("/asset/generator") = "somebody else";
   gltf.at("/scenes/0/nodes") = {0, 2};
   gltf.document["extensions"] = {{"KHR_lights_punctual", {{"lights", {lamp}}}}};
   gltf.document["extensionsUsed"].push_back("KHR_lights_punctual");
@@ -67,6 +68,40 @@ TEST_F(GltfReader, LampsBecomeSunsAndSpheres) {
   EXPECT_NEAR(round.cone->inner, 0.25 * 180 / M_PI, 1e-12);
   EXPECT_NEAR(round.cone->outer, 0.5 * 180 / M_PI, 1e-12);
   EXPECT_THAT(shown.warnings, Contains(HasSubstr("range of 1 lamps ignored")));
+}
+
+/// Blender's exporter has 683 lumens for a watt of its lamps, but none for emission, and angles for its cones' cosines.
+TEST_F(GltfReader, LampsOfBlenderAreAsInBlender) {
+  const auto from_blender = [](Gltf gltf) {
+    gltf.at("/asset/generator") = "Khronos glTF Blender I/O v3.4.50";
+    return gltf;
+  };
+  const json extras = {{"radius", 0.5}};
+  Gltf point = from_blender(with_lamp({{"type", "point"}, {"intensity", 683 * 40}, {"extras", extras}}));
+  const Scene lit = read(point);
+  EXPECT_NEAR(lit.lights.at(0).radiance.x, 40 / (M_PI * 0.25), 1e-12);
+  EXPECT_THAT(lit.warnings, Contains(HasSubstr("--lumens-per-watt 1")));
+  const auto path = write("lamp.glb", point.glb());
+  const Scene chosen = read_gltf(path, {.lumens_per_watt = 2});
+  EXPECT_NEAR(chosen.lights.at(0).radiance.x, 683 * 20 / (M_PI * 0.25), 1e-9);
+  EXPECT_THAT(chosen.warnings, ::testing::IsEmpty());
+
+  const double outer = M_PI / 3;
+  const auto cone = [&](double inner, const json& more = json::object()) {
+    json all = extras;
+    all.update(more);
+    Gltf spot = with_lamp(
+        {{"type", "spot"}, {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}, {"extras", all}});
+    spot = from_blender(spot);
+    return *std::get<Sphere>(read(spot).lights.at(0).shape).cone;
+  };
+  const Cone half = cone(outer / 2);  // a blend of 0.5: from cos 60° = 0.5 on to 0.75
+  EXPECT_TRUE(half.smooth);
+  EXPECT_NEAR(std::cos(half.inner * M_PI / 180), 0.75, 1e-12);
+  EXPECT_NEAR(half.outer, 60, 1e-12);
+  EXPECT_NEAR(std::cos(cone(0).inner * M_PI / 180), 1, 1e-12);
+  EXPECT_NEAR(std::cos(cone(outer * (1 - 1e-9)).inner * M_PI / 180), 0.501, 1e-12) << "its edge is never sharp";
+  EXPECT_FALSE(cone(outer / 2, {{"smooth", 0}}).smooth) << "whoever says it means it";
 }
 
 TEST_F(GltfReader, LampsWithoutASizeTakeTheUsersOrAWarning) {

@@ -91,6 +91,19 @@ TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
 }
 
 /// What stops all light is plain geometry, what stops none is not there; what lies between keeps its alpha.
+/// Of those that Blender's exporter does not know it writes nothing; of an Emission alone, that it reflects nothing.
+TEST_F(GltfSurfaces, OfBlendersOtherShaders) {
+  Gltf gltf;
+  gltf.at("/materials/0").erase("pbrMetallicRoughness");
+  gltf.at("/materials/1/pbrMetallicRoughness") = {{"baseColorFactor", {0, 0, 0, 1}}};
+  const Scene scene = read(gltf);
+  EXPECT_EQ(scene.objects.at(0).color, glm::dvec3(1));
+  EXPECT_THAT(scene.warnings,
+              ::testing::ElementsAre(AllOf(HasSubstr("Body"), HasSubstr("no base colour in the file"))));
+  gltf.at("/asset/generator") = "somebody else";
+  EXPECT_THAT(read(gltf).warnings, ::testing::ElementsAre(AllOf(HasSubstr("Body"), HasSubstr("metallic"))));
+}
+
 TEST_F(GltfSurfaces, LetLightThrough) {
   Gltf gltf;
   auto& material = gltf.at("/materials/0");

@@ -53,6 +53,15 @@ TEST(SphereLight, HasTheAreaOfItsMesh) {
   }
 }
 
+/// Blender's own spheres have corners from sines and cosines in single precision: up to 2e-6 of the radius off.
+TEST(SphereLight, IsWhatSinglePrecisionMakesOfIt) {
+  const Ball ball = uv_sphere(48, 24);
+  Welded mesh = weld(ball.points, ball.triangles);
+  std::size_t number = 0;
+  for (glm::dvec3& p : mesh.points) p *= 1 + (++number % 2 == 0 ? 2e-6 : -2e-6);
+  EXPECT_TRUE(recognise_sphere(mesh, 1.2e-7));
+}
+
 TEST(SphereLight, IsNothingElse) {
   const auto is_sphere = [](const Ball& ball) {
     return recognise_sphere(weld(ball.points, ball.triangles), 1e-6).has_value();
