@@ -56,7 +56,8 @@ compare::LightStats light_stats(const LabelledLights& all, const WholeLight& who
           .options = label.options,
           .area = samples_of(all, whole) == 0,
           .light_samples = samples_of(all, whole),
-          .sample_pattern = pattern_of(all, whole).value_or("")};
+          .sample_pattern = pattern_of(all, whole).value_or(""),
+          .in_part = label.in_part};
 }
 
 BeautyAccumulator::BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights)
@@ -228,7 +229,8 @@ std::string summary(const compare::Stats& stats) {
     const bool exact = describe_method(light.method, light.options).gives_area();
     add(questions, exact        ? "exact areas"
                    : light.area ? "an estimate of V"
-                                : fmt::format("{} light samples ({})", light.light_samples, light.sample_pattern));
+                                : fmt::format("{} light samples ({}){}", light.light_samples, light.sample_pattern,
+                                              light.in_part ? " beside exact areas" : ""));
   }
   return fmt::format("{}: {}x{}, {} triangles, {}; shadow {:.3f} s on {}", fmt::join(methods, " + "), stats.width,
                      stats.height, stats.triangles, fmt::join(questions, " + "), stats.seconds.shadow().value_or(0),

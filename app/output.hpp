@@ -70,7 +70,8 @@ class BitsOutput {
 struct MethodLabel {
   const visibility::MethodDescription& description;
   const visibility::MethodOptions& options;
-  std::string device;  ///< where it ran
+  std::string device;    ///< where it ran
+  bool in_part = false;  ///< only where something may let light through; elsewhere another gave exact areas
 };
 
 /// What a method runs on with these options, for this light: the Vulkan device, or the processor's name.

@@ -39,6 +39,7 @@ struct LightStats {
   bool area = false;                ///< V is the visible area, exactly or about: there are no light samples
   std::uint32_t light_samples = 0;  ///< 0 of areas
   std::string sample_pattern = {};  ///< empty of areas
+  bool in_part = false;             ///< samples only where something may let light through, exact areas elsewhere
   std::optional<double> light = {}, evaluate = {};  ///< seconds
 };
 

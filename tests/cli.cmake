@@ -21,6 +21,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/options.cpp
   cli/options_together.cpp
   cli/options_together_support.cpp
+  cli/pixel_filters.cpp
   cli/program.cpp
   cli/render.cpp
   cli/shifted_lens.cpp

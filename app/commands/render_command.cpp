@@ -29,8 +29,10 @@ class RenderCommand : public Command {
  public:
   explicit RenderCommand(CLI::App& app) : Command(app, "render", "render one image, or a sequence, with one method") {
     add_picture_options(cli_, options_);
-    cli_.add_option("--frame", options_.frame,
-                    "one frame of the scene's animation; files are numbered where their names say so alone")
+    cli_.add_option(
+            "--frame", options_.frame,
+            "one frame of the scene's animation, or a moment between two, such as 12.5; files are numbered where "
+            "their names say so alone")
         ->type_name("F")
         ->excludes(cli_.get_option("--frames"));
   }
@@ -39,7 +41,7 @@ class RenderCommand : public Command {
     request_ = parse_request(options_);
     Exposure exposure = request_.exposure;
     const bool all_cameras = options_.run.camera == "all";
-    const std::vector<std::optional<std::int64_t>>& frames = request_.frames;
+    const std::vector<std::optional<double>>& frames = request_.frames;
     // Cameras' names are in the scene; everything else is refused before it is read.
     std::vector<std::string> cameras = {options_.run.camera};
     OutputFiles outputs;
@@ -94,8 +96,9 @@ class RenderCommand : public Command {
       for (const std::string& camera : cameras) {
         const FrameFiles files = files_of(options_, frames[at], camera);
         if (options_.skip_existing && files.all_there()) continue;
-        renderer.render(now.scene, {frames[at], camera, request_.pixel_side, moments_of(frames[at], moves)}, files.bits,
-                        now.seconds);
+        renderer.render(now.scene,
+                        {frames[at], camera, request_.pixel_side, request_.filter, moments_of(frames[at], moves)},
+                        files.bits, now.seconds);
         now.seconds = 0;  // once
         const std::string made = summary(renderer.write(files, exposure));
         spdlog::info("{}{}", frames[at] ? files.picture.filename().string() + ": " : "", made);
@@ -109,22 +112,21 @@ class RenderCommand : public Command {
 
  private:
   /// The middle of each of so many equal parts of the time that the shutter is open; none if one is enough.
-  [[nodiscard]] std::vector<std::function<scenes::Scene()>> moments_of(std::optional<std::int64_t> frame,
-                                                                       bool moves) const {
+  [[nodiscard]] std::vector<std::function<scenes::Scene()>> moments_of(std::optional<double> frame, bool moves) const {
     std::vector<std::function<scenes::Scene()>> all;
     if (!frame || !moves || request_.moments == 1) return all;
     for (std::uint32_t i = 0; i < request_.moments; ++i) {
       const double offset = request_.shutter_frames * ((i + 0.5) / request_.moments - 0.5);
-      const double time = (static_cast<double>(*frame) + offset) * request_.seconds_per_frame;
+      const double time = (*frame + offset) * request_.seconds_per_frame;
       all.emplace_back([this, time] { return read_session_scene(options_.run, time); });
     }
     return all;
   }
 
-  [[nodiscard]] ReadScene read(std::optional<std::int64_t> frame) const {
+  [[nodiscard]] ReadScene read(std::optional<double> frame) const {
     const Stopwatch watch;
     std::optional<double> time;
-    if (frame) time = static_cast<double>(*frame) * request_.seconds_per_frame;
+    if (frame) time = *frame * request_.seconds_per_frame;
     ReadScene read;
     read.scene = read_session_scene(options_.run, time);
     read.seconds = watch.seconds();

@@ -98,9 +98,7 @@ class CompareCommand : public Command {
                     "take the error over N judged pixels, all, or these: x,y;x,y; exact evaluates no others")
         ->type_name("N|all|x,y;...")
         ->capture_default_str();
-    cli_.add_option("--max-rmse", max_rmse_, "exit with 1 if the error of a method exceeds this")
-        ->type_name("X")
-        ->check(CLI::NonNegativeNumber);
+    cli_.add_option("--max-rmse", max_rmse_text_, "exit with 1 if the error of a method exceeds this")->type_name("X");
     cli_.add_option("--runs", options_.runs, "timed runs of each method, after a discarded one; their median counts")
         ->type_name("N")
         ->check(CLI::Range(1, 1000))
@@ -111,7 +109,8 @@ class CompareCommand : public Command {
                   "without all of them");
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: the beauty for eyes");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
-    cli_.add_option("--frame", frame_, "frame of the scene's animation")->type_name("F");
+    cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")
+        ->type_name("F");
     cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
     cli_.add_option("--exposure", exposure_,
                     "of the pictures for eyes: auto and first (the reference's lit surfaces fill them) or stops "
@@ -124,10 +123,15 @@ class CompareCommand : public Command {
     options_.methods = parse_methods(methods_);
     options_.method_options = parse_method_options(run_.method_options);
     refuse_means();
+    if (!max_rmse_text_.empty()) {
+      max_rmse_ = parse_number(max_rmse_text_);
+      if (!max_rmse_ || *max_rmse_ < 0)
+        throw UsageError("--max-rmse {}: expected a number of 0 or more, such as 0.01", max_rmse_text_);
+    }
     const Exposure exposure = parse_exposure(exposure_);
     if (exposure.kind == Exposure::Kind::fixed) options_.exposure = exposure.stops;
     const double fps = parse_fps(fps_);
-    if (frame_) options_.time = static_cast<double>(*frame_) * (1 / fps);  // as `render` has it
+    if (frame_) options_.time = parse_frame(*frame_) * (1 / fps);  // as `render` has it
     if (run_.camera == "all")
       throw UsageError("--camera all: errors are of one camera's pixels; name one, and compare once for each");
     Progress progress(!global.quiet);
@@ -147,6 +151,9 @@ class CompareCommand : public Command {
   /// Options of `render` that would make another question of it. They are known here, so that it can be said why.
   void add_refused_options() {
     cli_.add_option("--pixel-samples", pixel_samples_, "1 alone: errors are of pixels' centres")->type_name("1");
+    cli_.add_option("--pixel-filter", pixel_filter_, "box alone: of one view sample there is nothing to weigh")
+        ->type_name("box");
+    cli_.add_option("--filter-width", filter_width_, "of --pixel-filter; not here")->type_name("PIXELS");
     cli_.add_option("--motion-samples", motion_samples_, "1 alone: errors are of one moment")->type_name("1");
     cli_.add_option("--shutter", shutter_, "of --motion-samples; not here")->type_name("FRAMES");
     cli_.add_option("--frames", frames_, "not here: errors are of one frame (--frame)")->type_name("A-B[xN]");
@@ -157,6 +164,11 @@ class CompareCommand : public Command {
     if (parse_integer<std::uint32_t>(pixel_samples_) != 1u) {
       throw UsageError("--pixel-samples {}: methods are compared at pixels' centres, one view sample each; expected 1",
                        pixel_samples_);
+    }
+    if (pixel_filter_ != "box" || !filter_width_.empty()) {
+      throw UsageError(
+          "--pixel-filter {}: methods are compared at pixels' centres, which no filter weighs; expected box",
+          pixel_filter_);
     }
     if (parse_integer<std::uint32_t>(motion_samples_) != 1u)
       throw UsageError("--motion-samples {}: methods are compared at one moment; expected 1", motion_samples_);
@@ -186,8 +198,9 @@ class CompareCommand : public Command {
   ComparisonOptions options_;
   std::string methods_ = "default";
   std::optional<double> max_rmse_;
-  std::optional<std::int64_t> frame_;
-  std::string fps_, exposure_, pixel_samples_ = "1", motion_samples_ = "1", shutter_, frames_;
+  std::optional<std::string> frame_;
+  std::string max_rmse_text_, fps_, exposure_, shutter_, frames_;
+  std::string pixel_samples_ = "1", motion_samples_ = "1", pixel_filter_ = "box", filter_width_;
   bool skip_existing_ = false;
 };
 

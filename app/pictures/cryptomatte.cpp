@@ -1,8 +1,11 @@
 #include "app/pictures/cryptomatte.hpp"
 
+#include "app/pictures/surfaces.hpp"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <utility>
@@ -41,11 +44,7 @@ float cryptomatte_id(std::string_view name) {
   return std::bit_cast<float>(id_bits(name));
 }
 
-Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, std::span<const std::uint32_t> of_pixel)
-    : layer_(std::move(layer)),
-      ids_(of_pixel.size(), 0.0f),
-      coverage_(of_pixel.size(), 0.0f),
-      nothing_(of_pixel.size(), 0.0f) {
+std::vector<float> Cryptomatte::take_names(std::span<const std::string> names) {
   nlohmann::json manifest = nlohmann::json::object();
   std::vector<float> numbers;
   for (const std::string& name : names) {
@@ -53,17 +52,41 @@ Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, 
     manifest[name] = fmt::format("{:08x}", id_bits(name));
   }
   manifest_ = manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return numbers;
+}
+
+Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, std::span<const std::uint32_t> of_pixel)
+    : layer_(std::move(layer)), ranks_(2), nothing_(of_pixel.size(), 0.0f) {
+  const std::vector<float> numbers = take_names(names);
+  ranks_[0] = {nothing_, nothing_};
   for (std::size_t i = 0; i < of_pixel.size(); ++i) {
-    if (of_pixel[i] == kNothing) continue;
-    ids_[i] = numbers[of_pixel[i]];
-    coverage_[i] = 1;
+    if (of_pixel[i] == Surfaces::kNothing) continue;
+    ranks_[0].ids[i] = numbers[of_pixel[i]];
+    ranks_[0].coverage[i] = 1;
+  }
+}
+
+Cryptomatte::Cryptomatte(std::string layer, const MatteShares& shares)
+    : layer_(std::move(layer)), ranks_(kRanks), nothing_(shares.pixel_count(), 0.0f) {
+  const std::vector<float> numbers = take_names(shares.names());
+  for (std::size_t i = 0; i < shares.pixel_count(); ++i) {
+    const std::vector<MatteShares::Share> here = shares.of_pixel(i);
+    for (std::size_t rank = 0; rank < std::min(here.size(), kRanks); ++rank) {
+      if (ranks_[rank].ids.empty()) ranks_[rank] = {nothing_, nothing_};
+      ranks_[rank].ids[i] = numbers[here[rank].name];
+      ranks_[rank].coverage[i] = here[rank].part;
+    }
   }
 }
 
 void Cryptomatte::add_to(ExrImage& image) const {
-  const std::vector<float>* const values[] = {&ids_, &coverage_, &nothing_, &nothing_};
-  for (std::size_t c = 0; c < 4; ++c)
-    image.channels.push_back({fmt::format("{}00.{}", layer_, "RGBA"[c]), std::span<const float>(*values[c]), 1});
+  for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+    const auto& [ids, coverage] = ranks_[rank];
+    const char* const letters = rank % 2 == 0 ? "RG" : "BA";
+    const std::string group = fmt::format("{}{:02}.", layer_, rank / 2);
+    image.channels.push_back({group + letters[0], std::span<const float>(ids.empty() ? nothing_ : ids), 1});
+    image.channels.push_back({group + letters[1], std::span<const float>(ids.empty() ? nothing_ : coverage), 1});
+  }
   const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", murmur3(layer_)));
   image.attributes[key + "name"] = layer_;
   image.attributes[key + "hash"] = "MurmurHash3_32";

@@ -68,7 +68,8 @@ void FrameRenderer::label_lights() {
   labels_.clear();
   for (const visibility::Light& light : lights) {
     const auto& [description, options, note] = done_.at(light.name);
-    labels_.push_back({description, options, device_of(description.name, options, light, devices_)});
+    labels_.push_back(
+        {description, options, device_of(description.name, options, light, devices_), in_part_.contains(light.name)});
   }
 }
 
@@ -149,6 +150,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     all.counters["viewSamplesCounted"] +=
         static_cast<std::uint64_t>(std::ranges::count(lit().filtered[i], std::uint8_t{1}));
     if (!lights_[i].filtered_by.empty()) continue;  // no areas
+    in_part_.insert(lights_[i].name);
     in_part.push_back(i);
     with.push_back(*counting_[i]);
   }

@@ -2,7 +2,7 @@
 
 #include "app/methods.hpp"
 #include "app/parse.hpp"
-#include "app/pictures/picture_file.hpp"
+#include "app/pictures/surfaces.hpp"
 #include "app/process/process.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
@@ -213,9 +213,11 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   make_seconds_ = view_seconds_ = beauty_seconds_ = bits_seconds_ = 0;
   bits_.reset();
   mean_.reset();
+  mattes_.reset();
   lamps_.clear();
   for (Kept& kept : kept_) kept.used = false;
   done_.clear();
+  in_part_.clear();
   notes_.clear();
   run_ = {};
   if (frame.moments.empty() && frame.pixel_side == 1) {
@@ -245,9 +247,16 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
     show(side > 1 ? *fine_ : maker_, std::move(moment));
     MethodRun before = std::exchange(run_, {});
     run_methods({});
-    if (!mean_) mean_.emplace(lit().width / side, lit().height / side);
-    const std::vector<std::string> names = whole_names(lit().lights);
     const Stopwatch watch;
+    if (!mean_) {
+      const std::uint32_t width = lit().width / side, height = lit().height / side;
+      mean_.emplace(width, height, frame_.filter);
+      mattes_ = Mattes{MatteShares(width, height, frame_.filter), MatteShares(width, height, frame_.filter)};
+    }
+    const Surfaces surfaces = surfaces_of(lit());
+    mattes_->objects.add(surfaces.objects, surfaces.object, side);
+    mattes_->materials.add(surfaces.materials, surfaces.material, side);
+    const std::vector<std::string> names = whole_names(lit().lights);
     mean_->add(alpha_, names, run_.visibility, beauty_, side);
     beauty_seconds_ += watch.seconds();
     for (std::size_t light = 0; light < names.size(); ++light) {
@@ -313,7 +322,8 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
       return encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops)));
     });
   }
-  write_picture(picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes)});
+  write_picture(picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes),
+                          mattes_ ? &*mattes_ : nullptr});
   picture.settle();
   if (png) {
     png->write(packed.get());

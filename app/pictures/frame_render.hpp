@@ -3,6 +3,7 @@
 #include "app/light_methods.hpp"
 #include "app/output.hpp"
 #include "app/pictures/exposure.hpp"
+#include "app/pictures/picture_file.hpp"
 #include "app/pictures/picture_mean.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
@@ -15,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,9 +34,10 @@ struct FrameFiles {
 
 /// What one picture shows, besides what is the same for all.
 struct Frame {
-  std::optional<std::int64_t> number;  ///< none was asked for
-  std::string camera;                  ///< empty: the first
-  std::uint32_t pixel_side = 1;        ///< view samples a pixel along each axis
+  std::optional<double> number;  ///< none was asked for
+  std::string camera;            ///< empty: the first
+  std::uint32_t pixel_side = 1;  ///< view samples a pixel along each axis
+  PixelFilter filter = {};       ///< of these
   /// Scenes at other moments, whose mean the picture is; empty: it is that of the one moment. Each is asked for once.
   std::vector<std::function<scenes::Scene()>> moments = {};
 };
@@ -111,6 +114,7 @@ class FrameRenderer {
   std::vector<std::optional<LightMethod>> counting_;
   std::vector<visibility::Light> lights_;    // as those chosen know them: of areas, without filtered_by
   std::map<std::string, LightMethod> done_;  // by name: what counted where anything did, else what gave areas
+  std::set<std::string> in_part_;            // names of lights that both did
   std::vector<MethodLabel> labels_;
   std::vector<std::string> notes_;
   MethodRun run_;
@@ -119,6 +123,7 @@ class FrameRenderer {
   std::vector<std::uint8_t> lights_something_;  // of each whole light: a view sample is before it
   std::vector<std::uint8_t> lamps_;             // of each pixel: a translucent body of a light is seen; empty: none is
   std::optional<PictureMean> mean_;             // nothing: the picture is that of one moment and of pixels' centres
+  std::optional<Mattes> mattes_;                // there when that is
   std::optional<BitsOutput> bits_;
   // `make`: the device and methods. `beauty`: all that is done with what methods answer, writing bits included.
   double load_seconds_ = 0, make_seconds_ = 0, view_seconds_ = 0, beauty_seconds_ = 0, bits_seconds_ = 0;

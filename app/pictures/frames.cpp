@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -65,6 +66,15 @@ FrameRange parse_frames(std::string_view text) {
       "--frames {}: expected A-B or A-BxN (every N-th) with A not above B and at most {} frames, such as "
       "1-24 or 1-240x10",
       text, kMostFrames);
+}
+
+double parse_frame(const std::string& text) {
+  const auto frame = parse_number(text);
+  constexpr double kFar = 1e9;
+  if (!frame || std::abs(*frame) > kFar)
+    throw UsageError("--frame {}: expected a frame's number, such as 12, or 12.5 for the moment halfway to the next",
+                     text);
+  return *frame + 0.0;  // no −0
 }
 
 double parse_fps(const std::string& text) {

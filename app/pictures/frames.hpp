@@ -16,6 +16,9 @@ struct FrameRange {
 /// --fps: frames a second; 24 if nobody asked for any. Throws UsageError.
 double parse_fps(const std::string& text);
 
+/// --frame: a number, between frames too. Throws UsageError.
+double parse_frame(const std::string& text);
+
 /// "A-B" or "A-BxN", A ≤ B, 1 ≤ N. Throws UsageError that says what would be right.
 FrameRange parse_frames(std::string_view text);
 std::vector<std::int64_t> numbers_of(const FrameRange& range);

@@ -1,6 +1,7 @@
 #include "app/pictures/picture_file.hpp"
 
 #include "app/pictures/cryptomatte.hpp"
+#include "app/pictures/surfaces.hpp"
 #include "base/exr.hpp"
 
 #include <glm/mat4x4.hpp>
@@ -17,7 +18,17 @@ namespace {
 constexpr float kFar = 1e10f;  // Z of the background, as Blender has it
 
 /// What the picture has beside lights.
-constexpr std::array kOwnLayers = {"P", "Prel", "N", "object", "material", "CryptoObject00", "CryptoMaterial00"};
+constexpr std::array kOwnLayers = {"P",
+                                   "Prel",
+                                   "N",
+                                   "object",
+                                   "material",
+                                   "CryptoObject00",
+                                   "CryptoObject01",
+                                   "CryptoObject02",
+                                   "CryptoMaterial00",
+                                   "CryptoMaterial01",
+                                   "CryptoMaterial02"};
 
 std::string options_text(const visibility::MethodOptions& options) {
   std::string text;
@@ -68,36 +79,12 @@ void add_components(ExrImage& image, const std::string& prefix, std::span<const 
   }
 }
 
-/// Which object, and which material, each pixel shows.
-struct Surfaces {
-  std::vector<std::string> objects, materials;        ///< names
-  std::vector<std::uint32_t> object, material;        ///< of each pixel, or Cryptomatte::kNothing
-  std::vector<float> object_number, material_number;  ///< from 1; 0: nothing
-};
-
-Surfaces surfaces_of(const Session& session) {
-  Surfaces all;
-  std::vector<std::uint32_t> material_of;
-  for (const scenes::Object& object : session.scene.objects) {
-    all.objects.push_back(object.name);
-    material_of.push_back(Cryptomatte::kNothing);
-    if (object.material.empty()) continue;
-    const auto known = std::ranges::find(all.materials, object.material);
-    material_of.back() = static_cast<std::uint32_t>(known - all.materials.begin());
-    if (known == all.materials.end()) all.materials.push_back(object.material);
-  }
-  const auto number = [](std::uint32_t index) {
-    return index == Cryptomatte::kNothing ? 0.0f : static_cast<float>(index) + 1;
-  };
-  for (const std::int32_t triangle : session.samples.triangle) {
-    const bool background = triangle == visibility::ViewSamples::kBackground;
-    all.object.push_back(background ? Cryptomatte::kNothing
-                                    : session.floats.object[static_cast<std::size_t>(triangle)]);
-    all.material.push_back(background ? Cryptomatte::kNothing : material_of[all.object.back()]);
-    all.object_number.push_back(number(all.object.back()));
-    all.material_number.push_back(number(all.material.back()));
-  }
-  return all;
+/// The number that the picture has of a name: from 1; 0: nothing.
+std::vector<float> picture_numbers(std::span<const std::uint32_t> indices) {
+  std::vector<float> numbers;
+  for (const std::uint32_t index : indices)
+    numbers.push_back(index == Surfaces::kNothing ? 0.0f : static_cast<float>(index) + 1);
+  return numbers;
 }
 
 /// World space to the camera's (X right, Y up, looking along −Z), and on to [−1, 1] over the picture.
@@ -191,8 +178,9 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   image.channels.push_back({"Z", std::span<const float>(depth), 1});
   image.channels.push_back({"id", std::span<const std::uint32_t>(id), 1});
   const Surfaces surfaces = surfaces_of(session);
-  image.channels.push_back({"object.X", std::span<const float>(surfaces.object_number), 1});
-  image.channels.push_back({"material.X", std::span<const float>(surfaces.material_number), 1});
+  const std::vector<float> object = picture_numbers(surfaces.object), material = picture_numbers(surfaces.material);
+  image.channels.push_back({"object.X", std::span<const float>(object), 1});
+  image.channels.push_back({"material.X", std::span<const float>(material), 1});
 
   const CameraMatrices matrices = matrices_of(session);
   image.attributes = {{"penumbra.method", label.description.name},
@@ -212,8 +200,12 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   image.attributes.insert(content.more_attributes.begin(), content.more_attributes.end());
   image.vectors = {{"penumbra.origin", session.floats.origin}};
   image.matrices = {{"worldToCamera", matrices.to_camera}, {"worldToNDC", matrices.to_picture}};
-  const Cryptomatte objects("CryptoObject", surfaces.objects, surfaces.object);
-  const Cryptomatte materials("CryptoMaterial", surfaces.materials, surfaces.material);
+  const Mattes* const mattes = content.mattes;
+  const Cryptomatte objects = mattes != nullptr ? Cryptomatte("CryptoObject", mattes->objects)
+                                                : Cryptomatte("CryptoObject", surfaces.objects, surfaces.object);
+  const Cryptomatte materials = mattes != nullptr
+                                    ? Cryptomatte("CryptoMaterial", mattes->materials)
+                                    : Cryptomatte("CryptoMaterial", surfaces.materials, surfaces.material);
   objects.add_to(image);
   materials.add_to(image);
   write_exr(file, image);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/output.hpp"
+#include "app/pictures/matte_shares.hpp"
 #include "base/atomic_file.hpp"
 
 #include <glm/vec3.hpp>
@@ -17,6 +18,11 @@ namespace penumbra::app {
 /// Where this makes two equal, or one that the picture has for something else, the later one gets "_2", "_3" and so on.
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
+/// Objects and materials, where a pixel has several view samples.
+struct Mattes {
+  MatteShares objects, materials;
+};
+
 /// What goes into OUT.exr. V and beauty of each whole light, each pixel; beauty is empty where none came.
 struct PictureContent {
   const Session& session;
@@ -26,6 +32,7 @@ struct PictureContent {
   std::span<const glm::vec3> sum;     ///< of all lights' beauty
   std::span<const float> alpha = {};  ///< empty: 1 where the pixel's centre shows a surface, else 0
   std::map<std::string, std::string> more_attributes = {};  ///< by full name
+  const Mattes* mattes = nullptr;                           ///< none: those of the pixels' centres
 };
 
 /// OUT.exr: all channels (README, "What comes out") and header attributes.

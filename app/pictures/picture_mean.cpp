@@ -2,12 +2,18 @@
 
 #include "base/assert.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace penumbra::app {
 
-PictureMean::PictureMean(std::uint32_t width, std::uint32_t height)
-    : width_(width), height_(height), alpha_(std::size_t{width} * height, 0) {}
+PictureMean::PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter)
+    : width_(width),
+      height_(height),
+      filter_(filter),
+      shares_(std::size_t{width} * height, 0),
+      alpha_(std::size_t{width} * height, 0) {}
 
 std::size_t PictureMean::number_of(const std::string& light) {
   const auto known = std::ranges::find(lights_, light);
@@ -27,15 +33,25 @@ void PictureMean::add(std::span<const float> alpha, const std::vector<std::strin
                   height_, side, lights.size());
   std::vector<std::size_t> numbers;
   for (const std::string& light : lights) numbers.push_back(number_of(light));
-  for (std::size_t i = 0; i < alpha.size(); ++i) {
-    const std::size_t x = i % width / side, y = i / width / side, pixel = y * width_ + x;
-    alpha_[pixel] += double{alpha[i]};
-    for (std::size_t light = 0; light < visibility.size(); ++light) {
-      visibility_[numbers[light]][pixel] += double{visibility[light][i]};
-      if (!beauty[light].empty()) beauty_[numbers[light]][pixel] += glm::dvec3(beauty[light][i]);
+  const std::vector<FilterTaps> across = filter_taps(filter_, width_, side), down = filter_taps(filter_, height_, side);
+  tbb::parallel_for(std::size_t{0}, std::size_t{height_}, [&](std::size_t y) {
+    for (std::size_t x = 0; x < width_; ++x) {
+      const std::size_t pixel = y * width_ + x;
+      for (std::size_t row = 0; row < down[y].shares.size(); ++row) {
+        const std::size_t first = (down[y].first + row) * width + across[x].first;
+        for (std::size_t column = 0; column < across[x].shares.size(); ++column) {
+          const double share = down[y].shares[row] * across[x].shares[column];
+          const std::size_t from = first + column;
+          shares_[pixel] += share;
+          alpha_[pixel] += share * double{alpha[from]};
+          for (std::size_t light = 0; light < visibility.size(); ++light) {
+            visibility_[numbers[light]][pixel] += share * double{visibility[light][from]};
+            if (!beauty[light].empty()) beauty_[numbers[light]][pixel] += share * glm::dvec3(beauty[light][from]);
+          }
+        }
+      }
     }
-  }
-  blocks_ += static_cast<double>(side) * side;
+  });
 }
 
 std::vector<std::vector<float>> PictureMean::visibility(std::span<const std::string> lights) const {
@@ -43,7 +59,7 @@ std::vector<std::vector<float>> PictureMean::visibility(std::span<const std::str
   for (std::size_t light = 0; light < lights.size(); ++light) {
     const auto number = static_cast<std::size_t>(std::ranges::find(lights_, lights[light]) - lights_.begin());
     for (std::size_t i = 0; number < lights_.size() && i < alpha_.size(); ++i)
-      means[light][i] = static_cast<float>(visibility_[number][i] / blocks_);
+      means[light][i] = static_cast<float>(visibility_[number][i] / shares_[i]);
   }
   return means;
 }
@@ -53,14 +69,14 @@ std::vector<std::vector<glm::vec3>> PictureMean::beauty(std::span<const std::str
   for (std::size_t light = 0; light < lights.size(); ++light) {
     const auto number = static_cast<std::size_t>(std::ranges::find(lights_, lights[light]) - lights_.begin());
     for (std::size_t i = 0; number < lights_.size() && i < alpha_.size(); ++i)
-      means[light][i] = glm::vec3(beauty_[number][i] / blocks_);
+      means[light][i] = glm::vec3(beauty_[number][i] / shares_[i]);
   }
   return means;
 }
 
 std::vector<float> PictureMean::alpha() const {
   std::vector<float> mean;
-  for (const double sum : alpha_) mean.push_back(static_cast<float>(sum / blocks_));
+  for (std::size_t i = 0; i < alpha_.size(); ++i) mean.push_back(static_cast<float>(alpha_[i] / shares_[i]));
   return mean;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "app/pictures/pixel_filter.hpp"
+
 #include <glm/vec3.hpp>
 
 #include <cstddef>
@@ -10,12 +12,12 @@
 
 namespace penumbra::app {
 
-/// The mean of several pictures, or of blocks of pixels of larger ones.
+/// The mean of several pictures, or of larger ones whose view samples a filter weighs.
 class PictureMean {
  public:
   /// Of so many pixels.
-  PictureMean(std::uint32_t width, std::uint32_t height);
-  /// A picture of `side` times the width and height: each block counts as much as any other block of any picture.
+  PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter = {});
+  /// A picture of `side` times the width and height, the same for all.
   /// Lights are who their names say, whatever their places; where one is missing, it counts as 0.
   void add(std::span<const float> alpha, const std::vector<std::string>& lights,
            std::span<const std::vector<float>> visibility, std::span<const std::vector<glm::vec3>> beauty,
@@ -32,9 +34,11 @@ class PictureMean {
   std::size_t number_of(const std::string& light);
 
   std::uint32_t width_, height_;
-  double blocks_ = 0;  // that were added, in view samples of a pixel
+  PixelFilter filter_;
   std::vector<std::string> lights_;
-  std::vector<std::vector<double>> visibility_;  // sums, in double: order matters to no digit that is kept
+  // Of each pixel: sums, in double, row by row of its view samples, so that cores do not matter; of shares, first.
+  std::vector<double> shares_;
+  std::vector<std::vector<double>> visibility_;
   std::vector<std::vector<glm::dvec3>> beauty_;
   std::vector<double> alpha_;
 };

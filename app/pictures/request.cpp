@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace penumbra::app {
@@ -26,6 +27,9 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
   while (request.pixel_side * request.pixel_side < samples) ++request.pixel_side;
   if (request.pixel_side * request.pixel_side != samples)
     throw UsageError("--pixel-samples {}: expected {}", options.pixel_samples, squares);
+  request.filter = parse_filter(options.pixel_filter, options.filter_width);
+  if (request.filter.kind != PixelFilter::Kind::box && samples == 1)
+    throw UsageError("--pixel-filter {}: of which view samples? --pixel-samples says how many", options.pixel_filter);
   request.moments = parse_count(options.motion_samples, "--motion-samples", 256, "a number from 1 to 256");
   const auto shutter = parse_number(options.shutter.empty() ? "0.5" : options.shutter);
   if (!shutter || !(*shutter >= 0 && *shutter <= 100))
@@ -36,6 +40,18 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
         "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples and --motion-samples");
   if (request.moments > 1 && options.frames.empty() && !options.frame)
     throw UsageError("--motion-samples {}: of which frame? --frame or --frames says", options.motion_samples);
+}
+
+/// A moment between frames has no number that a file's name could have.
+void refuse_numbered_moments(const PictureOptions& options, const PictureRequest& request) {
+  const auto& frame = request.frames.front();
+  if (!frame || *frame == std::floor(*frame)) return;
+  for (const auto& file : {options.run.out, options.stats, options.png, options.bits}) {
+    if (has_frame_number(file))
+      throw UsageError(
+          "{}: frame {} is none of a sequence, whose numbers are whole; name the file without a number's place",
+          file.string(), *frame);
+  }
 }
 
 }  // namespace
@@ -75,6 +91,15 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
                   "(default: 1, the pixel's centre)")
       ->type_name("S");
   command
+      .add_option(
+          "--pixel-filter", options.pixel_filter,
+          "how they are weighed: box (the mean of the pixel's own, the default) or blackman-harris, which takes "
+          "in neighbours, as Blender does")
+      ->type_name("NAME");
+  command
+      .add_option("--filter-width", options.filter_width, "of blackman-harris, in pixels (default: 1.5, as Blender's)")
+      ->type_name("PIXELS");
+  command
       .add_option("--motion-samples", options.motion_samples,
                   "moments of an open shutter, of which R G B A and V are the mean: 1 to 256 (default: 1, the frame's)")
       ->type_name("N");
@@ -101,24 +126,27 @@ PictureRequest parse_request(const PictureOptions& options) {
                      options.run.out.string());
   }
   if (options.frames.empty()) {
-    request.frames = {options.frame};
+    request.frames.emplace_back();
+    if (options.frame) request.frames.front() = parse_frame(*options.frame);
+    refuse_numbered_moments(options, request);
   } else {
-    for (const std::int64_t frame : numbers_of(parse_frames(options.frames))) request.frames.emplace_back(frame);
+    for (const std::int64_t frame : numbers_of(parse_frames(options.frames)))
+      request.frames.emplace_back(static_cast<double>(frame));
   }
   return request;
 }
 
-FrameFiles files_of(const PictureOptions& options, std::optional<std::int64_t> frame, const std::string& camera) {
+FrameFiles files_of(const PictureOptions& options, std::optional<double> frame, const std::string& camera) {
   const auto named = [&](std::filesystem::path path) {
     if (path.empty()) return path;
     if (options.run.camera == "all") path = camera_path(path, camera);
-    return frame && (!options.frames.empty() || has_frame_number(path)) ? frame_path(path, *frame) : path;
+    const bool numbered = frame && (!options.frames.empty() || has_frame_number(path));
+    return numbered ? frame_path(path, static_cast<std::int64_t>(*frame)) : path;
   };
   return {named(options.run.out), named(options.stats), named(options.png), named(options.bits)};
 }
 
-bool is_there(const PictureOptions& options, std::optional<std::int64_t> frame,
-              const std::vector<std::string>& cameras) {
+bool is_there(const PictureOptions& options, std::optional<double> frame, const std::vector<std::string>& cameras) {
   return std::ranges::all_of(cameras, [&](const auto& camera) { return files_of(options, frame, camera).all_there(); });
 }
 
@@ -127,7 +155,7 @@ void check_png_name(const PictureOptions& options) {
     throw UsageError("--png {}: expected a name that ends in .png", options.png.string());
 }
 
-OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<std::int64_t>>& frames,
+OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<double>>& frames,
                        const std::vector<std::string>& cameras) {
   OutputFiles outputs;
   for (const auto& frame : frames) {

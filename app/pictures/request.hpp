@@ -20,8 +20,8 @@ namespace penumbra::app {
 /// What `render` and `submit` are asked for, as the user gave it; what is empty was not said.
 struct PictureOptions {
   RunOptions run;
-  std::string method, exposure, frames, fps, pixel_samples, motion_samples, shutter;
-  std::optional<std::int64_t> frame;  ///< of `render` alone
+  std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, motion_samples, shutter;
+  std::optional<std::string> frame;  ///< of `render` alone
   bool skip_existing = false;
   std::filesystem::path stats, png, bits;
 };
@@ -35,8 +35,10 @@ struct PictureRequest {
   Exposure exposure;
   double seconds_per_frame = 0;
   std::uint32_t pixel_side = 1, moments = 1;
+  PixelFilter filter;
   double shutter_frames = 0.5;
-  std::vector<std::optional<std::int64_t>> frames;  ///< one entry without a number if no frame was asked for
+  /// One entry without a number if no frame was asked for; a sequence's are whole.
+  std::vector<std::optional<double>> frames;
 };
 
 /// Throws UsageError; InputError for a picture that --exposure names and that does not say how it was exposed.
@@ -46,12 +48,11 @@ PictureRequest parse_request(const PictureOptions& options);
 void check_png_name(const PictureOptions& options);
 
 /// Where the picture of a frame goes: named after camera and frame, where there are several.
-FrameFiles files_of(const PictureOptions& options, std::optional<std::int64_t> frame, const std::string& camera);
+FrameFiles files_of(const PictureOptions& options, std::optional<double> frame, const std::string& camera);
 /// Are the frame's files there, of all cameras?
-bool is_there(const PictureOptions& options, std::optional<std::int64_t> frame,
-              const std::vector<std::string>& cameras);
+bool is_there(const PictureOptions& options, std::optional<double> frame, const std::vector<std::string>& cameras);
 /// All files of these frames and cameras. UsageError if two are one, or one is the scene.
-OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<std::int64_t>>& frames,
+OutputFiles outputs_of(const PictureOptions& options, const std::vector<std::optional<double>>& frames,
                        const std::vector<std::string>& cameras);
 
 }  // namespace penumbra::app

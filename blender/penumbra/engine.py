@@ -90,10 +90,10 @@ class PenumbraEngine(bpy.types.RenderEngine):
         for wanted, name in ((renderlayer.use_pass_position, "Position"), (renderlayer.use_pass_normal, "Normal")):
             if wanted:
                 self.register_pass(scene, renderlayer, name, 3, "XYZ", "VECTOR")
-        for wanted, name in ((renderlayer.use_pass_cryptomatte_object, "CryptoObject00"),
-                             (renderlayer.use_pass_cryptomatte_material, "CryptoMaterial00")):
-            if wanted:
-                self.register_pass(scene, renderlayer, name, 4, "RGBA", "COLOR")
+        for wanted, name in ((renderlayer.use_pass_cryptomatte_object, "CryptoObject"),
+                             (renderlayer.use_pass_cryptomatte_material, "CryptoMaterial")):
+            for group in passes.matte_groups(name, scene.penumbra.pixel_samples) if wanted else ():
+                self.register_pass(scene, renderlayer, group, 4, "RGBA", "COLOR")
         if scene.penumbra.light_passes:
             for name, letters, kind in passes.own_passes(likely_lights(scene)):
                 self.register_pass(scene, renderlayer, name, len(letters), letters, kind)

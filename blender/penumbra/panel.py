@@ -1,7 +1,7 @@
 """Settings of a scene, and where they are shown."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from . import program
 
@@ -26,6 +26,10 @@ class PenumbraSettings(bpy.types.PropertyGroup):
                            "for each light the best")
     pixel_samples: EnumProperty(name="Pixel samples", default="1", description="View samples a pixel", items=[
         (str(n * n), str(n * n), "") for n in range(1, 9)])
+    pixel_filter: EnumProperty(name="Pixel filter", default=program.BOX, items=[
+        (program.BOX, "Box", "The mean of a pixel's own view samples"),
+        (program.BLACKMAN_HARRIS, "Blackman-Harris", "As Cycles has it, neighbours' view samples included")])
+    filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Of the filter, in pixels")
     shading_normals: BoolProperty(name="Smooth normals", description="Cosines of smooth shading; shadows are always those "
                                   "of the triangles")
     lenient: BoolProperty(name="Lenient", description="Leave out what would change shadows and cannot be done, with a "
@@ -55,7 +59,13 @@ class PENUMBRA_PT_shadows(Panel, bpy.types.Panel):
         layout.prop(settings, "exactness")
         if settings.exactness == program.SAMPLES:
             layout.prop(settings, "light_samples")
-        for name in ("method", "pixel_samples", "shading_normals", "lenient", "light_passes", "device"):
+        for name in ("method", "pixel_samples"):
+            layout.prop(settings, name)
+        if settings.pixel_samples != "1":
+            layout.prop(settings, "pixel_filter")
+            if settings.pixel_filter == program.BLACKMAN_HARRIS:
+                layout.prop(settings, "filter_width")
+        for name in ("shading_normals", "lenient", "light_passes", "device"):
             layout.prop(settings, name)
 
 

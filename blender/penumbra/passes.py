@@ -27,6 +27,11 @@ def own_passes(lights):
     return passes
 
 
+def matte_groups(name, pixel_samples):
+    """A matte's passes: of one view sample a pixel there is one that covers it, of more there may be six."""
+    return [f"{name}{group:02}" for group in range(1 if int(pixel_samples) == 1 else 3)]
+
+
 def _short(name):
     """Blender cuts longer ones."""
     return name.encode()[:63].decode("utf-8", "ignore")

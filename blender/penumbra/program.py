@@ -5,6 +5,7 @@ import shutil
 import subprocess
 
 EXACT, SAMPLES = "EXACT", "SAMPLES"
+BOX, BLACKMAN_HARRIS = "BOX", "BLACKMAN_HARRIS"
 
 
 def find(wanted):
@@ -19,7 +20,8 @@ def find(wanted):
 
 
 def arguments(program, scene, picture, size, settings):
-    """The command. `settings`: exactness, light_samples, method, pixel_samples, shading_normals, lenient, device."""
+    """The command. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter, filter_width,
+    shading_normals, lenient, device."""
     command = [program, "render", scene, "-o", picture, "--size", f"{size[0]}x{size[1]}"]
     if settings.method:
         command += ["--method", settings.method]
@@ -27,6 +29,8 @@ def arguments(program, scene, picture, size, settings):
         command += ["--light-samples", str(settings.light_samples)]
     if int(settings.pixel_samples) > 1:
         command += ["--pixel-samples", str(settings.pixel_samples)]
+        if settings.pixel_filter == BLACKMAN_HARRIS:
+            command += ["--pixel-filter", "blackman-harris", "--filter-width", f"{settings.filter_width:.6g}"]
     if settings.shading_normals:
         command += ["--normals", "shading"]
     if settings.lenient:

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "mesh/import_wire.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -62,7 +63,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
       throw InputError("{}: the number {} is beyond the range of double precision", place_under(open_.size()).str(),
                        token);
     }
-    throw InputError("{}: {}", file_, without_library_prefix(error.what()));
+    throw InputError("{}: {}", file_, mesh::printable(without_library_prefix(error.what())));
   }
 
  private:
@@ -152,6 +153,8 @@ std::string Place::str() const {
 }
 
 json parse_json(std::string_view text, const std::string& file) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError("{}: this is UTF-16; save it as UTF-8", file);
   json document;
   DocumentBuilder builder(document, file);
   json::sax_parse(text.begin(), text.end(), &builder);

@@ -193,8 +193,8 @@ class Pictures(unittest.TestCase):
         scene, picture = (os.path.join(cls.folder.name, name) for name in ("scene.glb", "picture.exr"))
         with open(scene, "wb") as out:
             out.write(file.encoded())
-        settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, shading_normals=False, lenient=False,
-                       device="")
+        settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, pixel_filter=program.BOX, filter_width=1.5,
+                       shading_normals=False, lenient=False, device="")
         command = program.arguments(PENUMBRA, scene, picture, (40, 20), settings)
         code, cls.printed = program.run(command, lambda: False)
         assert code == 0, cls.printed
@@ -271,8 +271,8 @@ class Pictures(unittest.TestCase):
 
 class Programs(unittest.TestCase):
     def settings(self, **values):
-        defaults = dict(method="", exactness=program.EXACT, light_samples=64, pixel_samples="1", shading_normals=False,
-                        lenient=False, device="")
+        defaults = dict(method="", exactness=program.EXACT, light_samples=64, pixel_samples="1", pixel_filter=program.BOX,
+                        filter_width=1.5, shading_normals=False, lenient=False, device="")
         return box(**{**defaults, **values})
 
     def test_arguments(self):
@@ -282,6 +282,13 @@ class Programs(unittest.TestCase):
             method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
         self.assertEqual(much[7:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
                                     "shading", "--lenient", "--device", "cpu"])
+        filtered = program.arguments("p", "s", "o", (3, 2), self.settings(
+            pixel_samples="4", pixel_filter=program.BLACKMAN_HARRIS, filter_width=1.6000000238))
+        self.assertEqual(filtered[7:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6"])
+
+    def test_matte_groups(self):
+        self.assertEqual(passes.matte_groups("CryptoObject", "1"), ["CryptoObject00"])
+        self.assertEqual(passes.matte_groups("CryptoObject", "4"), ["CryptoObject00", "CryptoObject01", "CryptoObject02"])
 
     def test_messages(self):
         text = "penumbra: warning: a: b\npenumbra: something\npenumbra: error: c\n"

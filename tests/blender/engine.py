@@ -125,7 +125,15 @@ class Engine(unittest.TestCase):
         self.assertLessEqual(set(numpy.unique(counted).tolist()), {0, 0.25, 0.5, 0.75, 1})
         self.assertGreater(len(numpy.unique(exact)), 20)
         scene.penumbra.pixel_samples = "4"
-        self.assertGreater(len(numpy.unique(inside.channels(scene, out("smooth.exr"))["Combined.A"])), 2)
+        scene.view_layers[0].use_pass_cryptomatte_object = True
+        smooth = inside.channels(scene, out("smooth.exr"))
+        self.assertGreater(len(numpy.unique(smooth["Combined.A"])), 2)
+        covered = sum(smooth[f"CryptoObject{group:02}.{letter}"] for group in range(3) for letter in "GA")
+        numpy.testing.assert_allclose(covered, smooth["Combined.A"], atol=1e-6)
+        self.assertGreater(len(numpy.unique(smooth["CryptoObject00.G"])), 3)
+        scene.penumbra.pixel_filter = "BLACKMAN_HARRIS"
+        filtered = inside.channels(scene, out("filtered.exr"))
+        self.assertFalse(numpy.array_equal(filtered["Combined.A"], smooth["Combined.A"]))
 
 
 if __name__ == "__main__":

@@ -39,6 +39,8 @@ std::string truncated_stl() {
 std::vector<BadScene> bad_scenes() {
   return {
       {"NoJson", "{ \"format\": ", {"scene.json"}},
+      {"Utf16", std::string("\xFF\xFE{\0\"\0", 6), {"scene.json: this is UTF-16; save it as UTF-8"}},
+      {"StrayByte", "{ \"format\": \xC0", {"scene.json: line 1", "?'"}},
       {"WrongFormat", scene_text_with("/format", "\"other/1\""), {"/format", "penumbra-scene/1"}},
       {"WrongType", scene_text_with("/camera/eye", "\"here\""), {"/camera/eye"}},
       {"WrongTypeInList", scene_text_with("/meshes/0/color/1", "\"red\""), {"/meshes/0/color/1"}},

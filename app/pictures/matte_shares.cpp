@@ -1,0 +1,82 @@
+#include "app/pictures/matte_shares.hpp"
+
+#include "app/pictures/surfaces.hpp"
+#include "base/assert.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace penumbra::app {
+namespace {
+
+using Share = MatteShares::Share;
+
+void add_share(std::vector<Share>& shares, std::size_t first, std::uint32_t name, double part) {
+  for (std::size_t i = first; i < shares.size(); ++i) {
+    if (shares[i].name != name) continue;
+    shares[i].part += static_cast<float>(part);
+    return;
+  }
+  shares.push_back({name, static_cast<float>(part)});
+}
+
+}  // namespace
+
+MatteShares::MatteShares(std::uint32_t width, std::uint32_t height, const PixelFilter& filter)
+    : width_(width), filter_(filter), rows_(height) {
+  for (Row& row : rows_) row.ends.resize(width, 0);
+}
+
+void MatteShares::add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample,
+                      std::uint32_t side) {
+  PENUMBRA_ASSERT(of_sample.size() == pixel_count() * side * side, "{} view samples for {} pixels of {} squared",
+                  of_sample.size(), pixel_count(), side);
+  std::vector<std::uint32_t> known;
+  for (const std::string& name : names) {
+    const auto [number, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) names_.push_back(name);
+    known.push_back(number->second);
+  }
+  std::vector<std::uint32_t> numbered;
+  numbered.reserve(of_sample.size());
+  for (const std::uint32_t name : of_sample) numbered.push_back(name == Surfaces::kNothing ? name : known[name]);
+  const std::vector<FilterTaps> across = filter_taps(filter_, width_, side),
+                                down = filter_taps(filter_, rows_.size(), side);
+  tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t y) { add_row(y, numbered, side, down[y], across); });
+}
+
+void MatteShares::add_row(std::size_t y, std::span<const std::uint32_t> of_sample, std::uint32_t side,
+                          const FilterTaps& down, std::span<const FilterTaps> across) {
+  const Row before = std::exchange(rows_[y], Row{});
+  Row& row = rows_[y];
+  std::size_t begin = 0;
+  for (std::size_t x = 0; x < width_; ++x) {
+    const std::size_t first = row.shares.size();
+    row.shares.insert(row.shares.end(), before.shares.begin() + static_cast<std::ptrdiff_t>(begin),
+                      before.shares.begin() + before.ends[x]);
+    begin = before.ends[x];
+    for (std::size_t i = 0; i < down.shares.size(); ++i) {
+      const std::size_t from = (down.first + i) * width_ * side + across[x].first;
+      for (std::size_t k = 0; k < across[x].shares.size(); ++k)
+        add_share(row.shares, first, of_sample[from + k], down.shares[i] * across[x].shares[k]);
+    }
+    row.ends.push_back(static_cast<std::uint32_t>(row.shares.size()));
+  }
+}
+
+std::vector<Share> MatteShares::of_pixel(std::size_t pixel) const {
+  const Row& row = rows_[pixel / width_];
+  const std::size_t x = pixel % width_;
+  std::vector<Share> shares(row.shares.begin() + (x == 0 ? 0 : row.ends[x - 1]), row.shares.begin() + row.ends[x]);
+  float all = 0;
+  for (const Share& share : shares) all += share.part;
+  std::erase_if(shares, [](const Share& share) { return share.name == Surfaces::kNothing; });
+  std::ranges::stable_sort(
+      shares, [](const Share& a, const Share& b) { return a.part != b.part ? a.part > b.part : a.name < b.name; });
+  for (Share& share : shares) share.part /= all;
+  return shares;
+}
+
+}  // namespace penumbra::app

@@ -1,0 +1,170 @@
+// Several view samples a pixel: what a filter makes of them, and whose share of a pixel a matte is.
+#include "tests/cli/program.hpp"
+
+#include "app/pictures/cryptomatte.hpp"
+#include "app/pictures/pixel_filter.hpp"
+#include "app/pictures/surfaces.hpp"
+#include "base/exr.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace penumbra::tests {
+namespace {
+
+using app::PixelFilter;
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// Where Harris's four cosines are 1, 0 or −1.
+TEST(PixelFilters, AreTheirFormula) {
+  const PixelFilter wide{PixelFilter::Kind::blackman_harris, 1.5};
+  EXPECT_NEAR(wide.share(0), 1, 1e-15);
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_NEAR(wide.share(side * 0.375), 0.35875 - 0.14128, 1e-15);
+    EXPECT_NEAR(wide.share(side * 0.25), 0.35875 + 0.48829 / 2 - 0.14128 / 2 - 0.01168, 1e-15);
+    EXPECT_NEAR(wide.share(side * std::nextafter(0.75, 0)), 6e-5, 1e-15);
+    EXPECT_EQ(wide.share(side * 0.75), 0);
+  }
+  const PixelFilter box;
+  EXPECT_EQ(box.share(0.49), 1);
+  EXPECT_EQ(box.share(0.5), 0);
+  // A box takes a pixel's own view samples; a wider filter as many on both sides, but beyond the ends of the line.
+  for (const app::FilterTaps& taps : app::filter_taps(box, 3, 2)) EXPECT_EQ(taps.shares, (std::vector<double>{1, 1}));
+  const auto taps = app::filter_taps(wide, 3, 4);
+  EXPECT_EQ(taps[1].first, 3u);
+  ASSERT_EQ(taps[1].shares.size(), 6u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(taps[1].shares[i], taps[1].shares[5 - i]);
+  EXPECT_EQ(taps[0].first, 0u);
+  EXPECT_EQ(taps[0].shares, std::vector<double>(taps[1].shares.begin() + 1, taps[1].shares.end()));
+}
+
+class FilteredPictures : public ProgramTest {
+ protected:
+  static constexpr std::size_t kSide = 3, kWidth = 24, kHeight = 16;
+
+  FilteredPictures() { (void)moving_scene(); }
+  Outcome render(const std::string& size, const std::string& out, std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"render", path("scene.glb"), "--size", size, "--frame",
+                                          "7",      "--fps",           "10",     "-o", path(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  [[nodiscard]] ExrFile picture(const std::string& size, std::vector<std::string> more = {}) const {
+    const Outcome outcome = render(size, "out.exr", std::move(more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read_exr(path("out.exr"));
+  }
+};
+
+/// The same by another way: every view sample of a large picture, each with what the formula says of it in degrees.
+TEST_F(FilteredPictures, AreWeighedMeans) {
+  const ExrFile filtered = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "blackman-harris"});
+  const ExrFile box = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "box"});
+  const ExrFile large = picture("72x48"), one = picture("24x16");
+  const auto share = [](double at, double pixel) {
+    const double degrees = 180 + 360 * (at - pixel) / 1.5;
+    if (std::abs(at - pixel) >= 0.75) return 0.0;
+    const auto cosine = [&](double times) { return std::cos(times * degrees * std::numbers::pi / 180); };
+    return 0.35875 - 0.48829 * cosine(1) + 0.14128 * cosine(2) - 0.01168 * cosine(3);
+  };
+  std::size_t different = 0;
+  for (const char* name : {"R", "G", "B", "A", "V", "Lamp.V", "Lamp.R"}) {
+    const std::vector<float>& values = large.floats.at(name);
+    for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
+      double sum = 0, shares = 0;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const double x = (static_cast<double>(k % (kSide * kWidth)) + 0.5) / kSide,
+                     y = (static_cast<double>(k / (kSide * kWidth)) + 0.5) / kSide;
+        const double here =
+            share(x, static_cast<double>(i % kWidth) + 0.5) * share(y, static_cast<double>(i / kWidth) + 0.5);
+        sum += here * double{values[k]};
+        shares += here;
+      }
+      // Double sums of some tens of terms, rounded once.
+      ASSERT_FLOAT_EQ(filtered.floats.at(name)[i], static_cast<float>(sum / shares)) << name << " " << i;
+      different += filtered.floats.at(name)[i] != box.floats.at(name)[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(different, 100u);
+  for (const char* name : {"Z", "N.X", "P.X", "object.X"}) EXPECT_EQ(filtered.floats.at(name), one.floats.at(name));
+  EXPECT_EQ(filtered.integers.at("id"), one.integers.at("id"));
+}
+
+/// Cryptomatte's coverage is each name's share of the view samples; ranks are in its order.
+TEST_F(FilteredPictures, MattesAreShares) {
+  const ExrFile box = picture("24x16", {"--pixel-samples", "9"}), large = picture("72x48");
+  const json names = json::parse(large.attributes.at("penumbra.objects"));
+  const std::vector<float>& object = large.floats.at("object.X");
+  std::size_t mixed = 0;
+  for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
+    std::map<float, std::size_t> counts;  // by the name's number in Cryptomatte
+    for (std::size_t k = 0; k < kSide * kSide; ++k) {
+      const std::size_t from = (i / kWidth * kSide + k / kSide) * kWidth * kSide + i % kWidth * kSide + k % kSide;
+      if (object[from] == 0) continue;
+      const std::string name = names.at(static_cast<std::size_t>(object[from]) - 1).get<std::string>();
+      ++counts[app::cryptomatte_id(name)];
+    }
+    float before = 1;
+    for (std::size_t rank = 0; rank < app::Cryptomatte::kRanks; ++rank) {
+      const std::string group = fmt::format("CryptoObject{:02}.", rank / 2);
+      const float id = box.floats.at(group + "RB"[rank % 2])[i], part = box.floats.at(group + "GA"[rank % 2])[i];
+      if (rank >= counts.size()) {
+        ASSERT_EQ(part, 0) << i;
+        ASSERT_EQ(id, 0) << i;
+        continue;
+      }
+      ASSERT_TRUE(counts.contains(id)) << i;
+      ASSERT_EQ(part, static_cast<float>(counts.at(id)) / 9.0f) << i;
+      ASSERT_LE(part, before) << i;
+      before = part;
+    }
+    mixed += counts.size() > 1 ? 1 : 0;
+  }
+  EXPECT_GT(mixed, 5u);
+  const ExrFile filtered = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "blackman-harris"});
+  for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
+    float sum = 0;
+    for (const char* group : {"CryptoObject00.", "CryptoObject01.", "CryptoObject02."})
+      sum += filtered.floats.at(group + std::string("G"))[i] + filtered.floats.at(group + std::string("A"))[i];
+    ASSERT_NEAR(sum, filtered.floats.at("A")[i], 25 * 0x1p-24) << i << ": 25 shares, each rounded to a float";
+  }
+}
+
+TEST(MatteShares, KnowNamesOfAllPictures) {
+  const std::uint32_t nothing = app::Surfaces::kNothing;
+  app::MatteShares shares(1, 1, {});
+  shares.add(std::vector<std::string>{"a", "b", "a"}, std::vector<std::uint32_t>{0, 1, 2, 1}, 2);
+  shares.add(std::vector<std::string>{"b", "c"}, std::vector<std::uint32_t>{0, 0, 1, nothing}, 2);
+  EXPECT_THAT(shares.names(), testing::ElementsAre("a", "b", "c"));
+  const auto here = shares.of_pixel(0);
+  ASSERT_EQ(here.size(), 3u);
+  EXPECT_EQ(here[0].name, 1u);
+  EXPECT_FLOAT_EQ(here[0].part, 4.0f / 8);
+  EXPECT_EQ(here[1].name, 0u);
+  EXPECT_FLOAT_EQ(here[1].part, 2.0f / 8);
+  EXPECT_FLOAT_EQ(here[2].part, 1.0f / 8);
+}
+
+TEST_F(FilteredPictures, AreRefusedWhereThereIsNothingToWeigh) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{"--pixel-filter", "blackman-harris"}, "--pixel-samples says how many"},
+      {{"--pixel-samples", "4", "--pixel-filter", "gauss"}, "box or blackman-harris"},
+      {{"--pixel-samples", "4", "--filter-width", "2"}, "a box is one pixel wide"},
+      {{"--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "0.5"}, "from 1 to 10"},
+  };
+  for (const auto& [options, why] : refused) {
+    const Outcome outcome = render("24x16", "no.exr", options);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(why));
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::tests
