@@ -5,7 +5,7 @@ add_test(NAME blender.addon
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/addon.py ${PROJECT_SOURCE_DIR}/blender ${addon}
                  $<TARGET_FILE:penumbra>)
 set_tests_properties(blender.addon PROPERTIES LABELS quick)
-foreach(script engine cycles compositor)
+foreach(script engine cycles exported compositor)
   add_test(NAME blender.${script}
            COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh ${script}.py ${addon} $<TARGET_FILE:penumbra>
                    ${PROJECT_BINARY_DIR}/blender_${script})

@@ -30,6 +30,10 @@ constexpr std::array kOwnLayers = {"P",
                                    "CryptoMaterial01",
                                    "CryptoMaterial02"};
 
+/// A light's layers: of all that it has, and each of its two parts for Blender's compositor, which has room for one
+/// kind of channels in a layer: of R, G, B and V it takes V for R.
+constexpr std::array kEndings = {"", "_V", "_light"};
+
 std::string options_text(const visibility::MethodOptions& options) {
   std::string text;
   for (const auto& [key, value] : options) text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, value);
@@ -129,7 +133,11 @@ std::vector<std::string> layer_names(std::span<const visibility::Light> lights) 
     std::ranges::replace_if(
         plain, [](char c) { return c == '.' || c == '/'; }, '_');
     std::string name = plain;
-    for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+    const auto is_taken = [&] {
+      return std::ranges::any_of(kEndings, [&](const char* end) { return taken.contains(name + end); });
+    };
+    for (int number = 2; is_taken(); ++number) name = fmt::format("{}_{}", plain, number);
+    for (const char* const end : kEndings) taken.insert(name + end);
     names.push_back(name);
   }
   return names;
@@ -169,8 +177,9 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   image.channels.push_back({"V", std::span<const float>(content.visibility.front()), 1});
   const std::vector<std::string> layers = layer_names(all.lights);
   for (std::size_t light = 0; light < layers.size(); ++light) {
-    image.channels.push_back({layers[light] + ".V", std::span<const float>(content.visibility[light]), 1});
-    add_components(image, layers[light] + ".", content.beauty[light]);
+    for (const char* const end : {".V", "_V.V"})
+      image.channels.push_back({layers[light] + end, std::span<const float>(content.visibility[light]), 1});
+    for (const char* const end : {".", "_light."}) add_components(image, layers[light] + end, content.beauty[light]);
   }
   add_vector_channels(image, "P", world);
   add_vector_channels(image, "Prel", samples.p);

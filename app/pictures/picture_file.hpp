@@ -15,7 +15,8 @@
 namespace penumbra::app {
 
 /// The names of whole lights' layers: the light's own, with dots and slashes, which make layers in layers, as "_".
-/// Where this makes two equal, or one that the picture has for something else, the later one gets "_2", "_3" and so on.
+/// Where this makes two equal, or one that the picture has for something else, the later one gets "_2", "_3" and so on;
+/// each light has its layer's name with "_V" and "_light", too.
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
 /// Objects and materials, where a pixel has several view samples.

@@ -57,10 +57,10 @@ class Layers : public ProgramTest {
 };
 
 TEST_F(Layers, EachLightHasItsOwn) {
-  scene_with({"Plane.001", "a/b", "a_b", "N"});
+  scene_with({"Plane.001", "a/b", "a_b", "N", "N_2_V"});
   const ExrFile all = render();
   const json lights = json::parse(all.attributes.at("penumbra.lights"));
-  const std::vector<std::string> layers = {"Plane_001", "a_b", "a_b_2", "N_2"};
+  const std::vector<std::string> layers = {"Plane_001", "a_b", "a_b_2", "N_2", "N_2_V_2"};
   ASSERT_EQ(lights.size(), layers.size());
   for (const std::string& name : all.channel_names) {
     EXPECT_LE(std::ranges::count(name, '.'), 1) << name << ": Blender drops it";
@@ -72,8 +72,11 @@ TEST_F(Layers, EachLightHasItsOwn) {
     EXPECT_EQ(lights[light]["radiance"], json::array({10 - 2.0 * static_cast<double>(light), 9.0, 8.0}));
     const ExrFile alone = render({"--light", lights[light]["name"]});
     EXPECT_EQ(alone.floats.at("V"), all.floats.at(layers[light] + ".V"));
-    for (const char* channel : {"R", "G", "B"})
+    for (const char* channel : {"R", "G", "B"}) {
       EXPECT_EQ(alone.floats.at(channel), all.floats.at(layers[light] + "." + channel)) << layers[light];
+      EXPECT_EQ(alone.floats.at(channel), all.floats.at(layers[light] + "_light." + channel)) << layers[light];
+    }
+    EXPECT_EQ(alone.floats.at("V"), all.floats.at(layers[light] + "_V.V"));
     EXPECT_EQ(json::parse(alone.attributes.at("penumbra.lights")).size(), 1u);
   }
   for (std::size_t i = 0; i < all.floats.at("R").size(); ++i) {
