@@ -10,19 +10,33 @@
 namespace penumbra {
 namespace {
 
-/// Levenshtein's distance: how many letters must be changed, added or left out to make one of the other.
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+/// Levenshtein's distance with Damerau's step: how many letters must be changed, added, left out, or exchanged with the
+/// next to make one of the other; large and small ones are the same.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1), before(b.size() + 1), next(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
+    next[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+      const auto same = [&](std::size_t k, std::size_t l) { return lower(a[k]) == lower(b[l]); };
+      next[j + 1] = std::min({row[j] + (same(i, j) ? 0 : 1), next[j] + 1, row[j + 1] + 1});
+      if (i > 0 && j > 0 && same(i, j - 1) && same(i - 1, j)) next[j + 1] = std::min(next[j + 1], before[j - 1] + 1);
     }
+    std::swap(before, row);
+    std::swap(row, next);
   }
   return row.back();
+}
+
+/// Of --light-samples and samples or --samples: is what was written its last words?
+bool ends_with_words(std::string_view name, std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of('-'), text.size()));
+  return text.size() > 3 && name.size() > text.size() && name.ends_with(text) &&
+         name[name.size() - text.size() - 1] == '-';
 }
 
 }  // namespace
@@ -30,6 +44,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string did_you_mean(std::string_view text, const std::vector<std::string>& names) {
   const auto distance = [&](const std::string& name) { return edit_distance(text, name); };
   const auto nearest = std::ranges::min_element(names, {}, distance);
+  const auto longer = std::ranges::find_if(names, [&](const auto& name) { return ends_with_words(name, text); });
+  if (longer != names.end() && distance(*nearest) > 1) return fmt::format("; did you mean {}?", *longer);
   if (nearest == names.end() || 3 * distance(*nearest) > nearest->size()) return {};
   return fmt::format("; did you mean {}?", *nearest);
 }

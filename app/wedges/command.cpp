@@ -8,6 +8,7 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/reader.hpp"
+#include "scenes/picture_size.hpp"
 #include "volumes/wedges/wedge_export.hpp"
 #include "volumes/wedges/wedge_faults.hpp"
 
@@ -20,6 +21,9 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace penumbra::app {
 namespace {
@@ -45,14 +49,24 @@ volumes::SilhouettesFrom parse_from(const std::string& text) {
   throw UsageError("--from {}: expected centre or anywhere", text);
 }
 
-std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
+/// The number of what has this name; of an empty one the first.
+template <typename Named>
+std::uint32_t find_named(const std::vector<Named>& all, const char* option, const std::string& name,
+                         const scenes::Scene& scene) {
   if (name.empty()) return 0;
-  const auto found = std::ranges::find(scene.lights, name, &scenes::AreaLight::name);
-  if (found != scene.lights.end()) return static_cast<std::uint32_t>(found - scene.lights.begin());
+  const auto found = std::ranges::find(all, name, &Named::name);
+  if (found != all.end()) return static_cast<std::uint32_t>(found - all.begin());
   std::vector<std::string> names;
-  for (const scenes::AreaLight& light : scene.lights) names.push_back(light.name);
-  throw UsageError("--light {}: {} has no such name; it has: {}{}", name, scene.name, fmt::join(names, ", "),
+  for (const Named& one : all) names.push_back(one.name);
+  throw UsageError("{} {}: {} has no such name; it has: {}{}", option, name, scene.name, fmt::join(names, ", "),
                    did_you_mean(name, names));
+}
+
+/// Whose pixels are explained: the scene's first camera and size become those that `render` would take.
+void look_through(scenes::Scene& scene, const std::string& camera, const std::string& size) {
+  std::swap(scene.cameras.front(), scene.cameras[find_named(scene.cameras, "--camera", camera, scene)]);
+  std::tie(scene.width, scene.height) =
+      size.empty() ? scenes::picture_size(scene, scene.cameras.front()) : parse_size(size);
 }
 
 /// What the light itself is, where its hull is larger: points of a disk's or ellipse's rim. A sphere's outline changes
@@ -89,10 +103,13 @@ class WedgesCommand : public Command {
     cli_.add_option("--export", export_, "wedges cut by the scene's box, edges, light, offending points")
         ->type_name("FILE.glb|.obj|.ply");
     cli_.add_option("--json", json_, "edges, planes, violations")->type_name("FILE");
-    cli_.add_option("--explain", explain_,
-                    "for this pixel of the first camera's image: the wedges that contain what it sees, what each takes "
-                    "from the light or gives back, their sum, and the exact area")
+    cli_.add_option(
+            "--explain", explain_,
+            "for this pixel of the picture that `render` makes: the wedges that contain what it sees, what each takes "
+            "from the light or gives back, their sum, and the exact area")
         ->type_name("X,Y");
+    cli_.add_option("--size", size_, "of that picture (default: as `render` has it)")->type_name("WxH");
+    cli_.add_option("--camera", camera_, "that it is seen by (default: the scene's first)")->type_name("NAME");
     cli_.add_option("--svg", svg_,
                     "the light as seen from there, with projected edges (default: beside --export's file, or in the "
                     "working folder: <name>-X-Y.svg)")
@@ -109,11 +126,13 @@ class WedgesCommand : public Command {
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
     std::optional<MayExitAtOnce> at_once(std::in_place);  // until files are written
-    const scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_, .lenient = lenient_});
+    scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_, .lenient = lenient_});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
+    look_through(scene, camera_, size_);
     visibility::SceneFloats floats = visibility::make_scene_floats(scene);
-    const visibility::Light light = visibility::make_light(scene, find_light(scene, light_), floats.origin, {});
+    const visibility::Light light =
+        visibility::make_light(scene, find_named(scene.lights, "--light", light_, scene), floats.origin, {});
     if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
     if (!light.filtered_by.empty())
       spdlog::warn("\"{}\" lets light through (alphaMode MASK or BLEND): wedges are of what stops all light",
@@ -186,7 +205,7 @@ class WedgesCommand : public Command {
   }
 
   std::filesystem::path scene_, export_, json_, svg_;
-  std::string light_, construction_ = "original", from_ = "centre", explain_;
+  std::string camera_, size_, light_, construction_ = "original", from_ = "centre", explain_;
   bool validate_ = false, allow_outside_ = false, lenient_ = false;
 };
 

@@ -22,6 +22,9 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   } else {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) throw InputError("{}: no such file", file.string());
+    if (extension == ".blend")
+      throw InputError("{}: a file of Blender's own; export it as glTF 2.0 (.glb), or render it by Blender's add-on",
+                       file.string());
     throw InputError(
         "{}: a scene is a .json (penumbra-scene/1), .gltf or .glb file; a mesh becomes a scene when a "
         ".json names it as \"file\"",

@@ -98,6 +98,13 @@ TEST_F(BadInput, MissingSceneFile) {
   EXPECT_THAT(outcome.err, HasSubstr("nowhere.json"));
 }
 
+TEST_F(BadInput, BlendersOwnFiles) {
+  write("a.blend", "BLENDER-v304");
+  const Outcome outcome = run({"render", path("a.blend"), "-o", path("out.exr")});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("export it as glTF"));
+}
+
 TEST_F(BadInput, TruncatedGltf) {
   write("a.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes")");
   write("b.glb", std::string("glTF\x02\0\0\0\xff\0\0\0", 12) + "abc");

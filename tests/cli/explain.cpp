@@ -61,6 +61,25 @@ TEST_F(ExplainCommand, NamesEveryWedgeAndAddsUpToTheExactArea) {
                                    HasSubstr("exact V = 0.750000"), Not(HasSubstr("nan")), Not(HasSubstr("inf"))));
 }
 
+/// Coordinates are those of the picture that `render` makes with the same options.
+TEST_F(ExplainCommand, LooksAtThePictureThatIsRendered) {
+  json scene = json::parse(scene_with(kSquare));
+  scene["size"] = {4, 4};
+  const std::string file = write("scene.json", scene.dump()).string();
+  const auto explain = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"wedges", file, "--svg", path("w.svg"), "--json", path("w.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Outcome outcome = explain({"--size", "8x8", "--explain", "4,4"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NEAR(json::parse(read("w.json")).at("explain").at("exactV").get<double>(), 0.75, 1e-12);
+  EXPECT_THAT(explain({"--explain", "4,4"}).err, HasSubstr("outside the image of 4x4"));
+  const Outcome nobody = explain({"--camera", "nobody", "--explain", "1,1"});
+  EXPECT_EQ(nobody.code, 2);
+  EXPECT_THAT(nobody.err, HasSubstr("--camera nobody: scene.json has no such name"));
+}
+
 TEST_F(ExplainCommand, ExplainsDisksAndPolygons) {
   for (const char* light : {R"({"name": "key", "disk": {"center": [0, 2, 0], "normal": [0, -1, 0], "radius": 1}})",
                             R"({"name": "key", "polygon": [[-1, 2, -1], [1, 2, -1], [1.5, 2, 0], [0, 2, 1.5]]})"}) {

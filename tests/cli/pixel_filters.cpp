@@ -63,27 +63,32 @@ class FilteredPictures : public ProgramTest {
   }
 };
 
-/// The same by another way: every view sample of a large picture, each with what the formula says of it in degrees.
+/// What view sample k of the large picture counts for pixel i, by the formula in degrees.
+double share_of(std::size_t k, std::size_t i) {
+  constexpr std::size_t kSide = 3, kWidth = 24;
+  const auto along = [](std::size_t sample, std::size_t pixel) {
+    const double off = (static_cast<double>(sample) + 0.5) / kSide - (static_cast<double>(pixel) + 0.5);
+    if (std::abs(off) >= 0.75) return 0.0;
+    const auto cosine = [&](double times) {
+      return std::cos(times * (180 + 360 * off / 1.5) * std::numbers::pi / 180);
+    };
+    return 0.35875 - 0.48829 * cosine(1) + 0.14128 * cosine(2) - 0.01168 * cosine(3);
+  };
+  return along(k % (kSide * kWidth), i % kWidth) * along(k / (kSide * kWidth), i / kWidth);
+}
+
+/// The same by another way: every view sample of a large picture, each with its share.
 TEST_F(FilteredPictures, AreWeighedMeans) {
   const ExrFile filtered = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "blackman-harris"});
   const ExrFile box = picture("24x16", {"--pixel-samples", "9", "--pixel-filter", "box"});
   const ExrFile large = picture("72x48"), one = picture("24x16");
-  const auto share = [](double at, double pixel) {
-    const double degrees = 180 + 360 * (at - pixel) / 1.5;
-    if (std::abs(at - pixel) >= 0.75) return 0.0;
-    const auto cosine = [&](double times) { return std::cos(times * degrees * std::numbers::pi / 180); };
-    return 0.35875 - 0.48829 * cosine(1) + 0.14128 * cosine(2) - 0.01168 * cosine(3);
-  };
   std::size_t different = 0;
   for (const char* name : {"R", "G", "B", "A", "V", "Lamp.V", "Lamp.R"}) {
     const std::vector<float>& values = large.floats.at(name);
     for (std::size_t i = 0; i < kWidth * kHeight; ++i) {
       double sum = 0, shares = 0;
       for (std::size_t k = 0; k < values.size(); ++k) {
-        const double x = (static_cast<double>(k % (kSide * kWidth)) + 0.5) / kSide,
-                     y = (static_cast<double>(k / (kSide * kWidth)) + 0.5) / kSide;
-        const double here =
-            share(x, static_cast<double>(i % kWidth) + 0.5) * share(y, static_cast<double>(i / kWidth) + 0.5);
+        const double here = share_of(k, i);
         sum += here * double{values[k]};
         shares += here;
       }
@@ -134,6 +139,16 @@ TEST_F(FilteredPictures, MattesAreShares) {
     for (const char* group : {"CryptoObject00.", "CryptoObject01.", "CryptoObject02."})
       sum += filtered.floats.at(group + std::string("G"))[i] + filtered.floats.at(group + std::string("A"))[i];
     ASSERT_NEAR(sum, filtered.floats.at("A")[i], 25 * 0x1p-24) << i << ": 25 shares, each rounded to a float";
+    const float first = filtered.floats.at("CryptoObject00.R")[i];  // who has most of it
+    double part = 0, shares = 0;
+    for (std::size_t k = 0; k < object.size(); ++k) {
+      const double share = share_of(k, i);
+      shares += share;
+      if (object[k] != 0 &&
+          app::cryptomatte_id(names.at(static_cast<std::size_t>(object[k]) - 1).get<std::string>()) == first)
+        part += share;
+    }
+    ASSERT_NEAR(filtered.floats.at("CryptoObject00.G")[i], part / shares, 25 * 0x1p-24) << i;
   }
 }
 
