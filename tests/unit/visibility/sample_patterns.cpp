@@ -39,7 +39,8 @@ TEST(SamplePatterns, EveryCountGivesItsNumberOfPointsInTheUnitSquare) {
       const auto points = samples(count, pattern, 3);
       const bool rounds = pattern == SamplePattern::rows || pattern == SamplePattern::grid;
       const auto rows = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));
-      const auto squares = (count + 3) / 4, of_squares = static_cast<std::uint32_t>(std::lround(std::sqrt(squares)));
+      const auto squares = (count + 3) / 4,
+                 of_squares = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(squares))));
       const std::uint32_t expected = rounds ? rows * ((count + rows - 1) / rows)
                                      : pattern == SamplePattern::rgss
                                          ? 4 * of_squares * ((squares + of_squares - 1) / of_squares)
@@ -56,8 +57,9 @@ TEST(SamplePatterns, GridIsCellCentredAndRowMajor) {
   const auto points = samples(6, SamplePattern::grid);  // round(√6) = 2 rows of 3
   ASSERT_EQ(points.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_DOUBLE_EQ(points[i].x, (static_cast<double>(i % 3) + 0.5) / 3);
-    EXPECT_DOUBLE_EQ(points[i].y, (static_cast<double>(i / 3) + 0.5) / 2);
+    const std::size_t column = i % 3, row = i / 3;
+    EXPECT_DOUBLE_EQ(points[i].x, (static_cast<double>(column) + 0.5) / 3);
+    EXPECT_DOUBLE_EQ(points[i].y, (static_cast<double>(row) + 0.5) / 2);
   }
 }
 
