@@ -285,61 +285,77 @@ def scattered_samples(count):
     return points
 
 
+def change_in_tiles(edge, q, corner, left=-1.0):
+    """What an edge changes on the way to q: up the left side, along its row's way to its tile's left side, up, and right."""
+    (x0, y0), (x1, y1), jump = edge
+
+    def passed(at, side):
+        is_right = y0 <= at[1] < y1 and (at[0] - x0) * (y1 - y0) > (at[1] - y0) * (x1 - x0)
+        return is_right + (at[1] >= y1 and x1 < side) - (at[1] >= y0 and x0 < side)
+
+    return jump * (passed(corner, left) + passed(q, corner[0]) - passed(corner, corner[0]))
+
+
 def tiles_figure():
     """Light samples of a disk in rows of tiles, and what one edge changes there."""
-    tile, rows, count = 16, 6, 192
-    a, b = (-0.46, -0.83), (0.17, 0.72)     # an edge that runs upward
+    tile, rows, count = 16, 4, 256
     by_height = sorted(scattered_samples(count), key=lambda q: (q[1], q[0]))
     of_row = count // rows
+    tiles = []                              # ((its light samples, from left to right), its lower left corner)
+    for r in range(rows):
+        row = sorted(by_height[r * of_row:(r + 1) * of_row])
+        way = min(q[1] for q in row)
+        tiles += [(row[i:i + tile], (row[i][0], way)) for i in range(0, of_row, tile)]
+    corners = [(-0.3, -0.72), (0.93, 0.1), (0.02, 0.42)]
+    edges = [upward(corners[i], corners[(i + 1) % 3], 1) for i in range(3)]
+    for its, corner in tiles:
+        for q in its:
+            found = sum(change_in_tiles(edge, q, corner) for edge in edges)
+            assert found == inside(q, counter_clockwise(corners)), "closed outlines add up to the depth"
 
-    def line_at(y):
-        return a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-
+    a, b, jump = edges[2]                   # the triangle's left side
     d = Drawing(760, 420, "Light samples of a disk in tiles of sixteen, and an edge among them")
-    d.text((20, 26), "Sixteen light samples are a tile; an edge is tested against few tiles",
+    d.text((20, 26), "Sixteen light samples are a tile; an edge is tested against the few tiles that it passes",
            14, bold=True)
     view = View(d, (20, 42, 356, 356), (-1.05, 1.05), (-1.05, 1.05))
     view.polygon([(cos(i * pi / 60), sin(i * pi / 60)) for i in range(120)], "#fffdf5", LIGHT, 2)
-    tested = whole = 0
-    seen_right, expected = set(), set()
-    for r in range(rows):
-        row = sorted(by_height[r * of_row:(r + 1) * of_row])
-        low, high = min(q[1] for q in row), max(q[1] for q in row)
-        has_some = a[1] <= high and low < b[1]
-        has_all = a[1] <= low and high < b[1]
-        bottom, top = max(low, a[1]), min(high, b[1])
-        left, right = sorted((line_at(bottom), line_at(top)))
-        for first in range(0, of_row, tile):
-            its = row[first:first + tile]
-            box = (min(q[0] for q in its), max(q[0] for q in its))
-            kind = "none"
-            if has_some and box[1] >= left:
-                kind = "whole" if has_all and box[0] > right else "tested"
-            fill = {"none": None, "tested": GREEN, "whole": RED}[kind]
-            corners = [(box[0] - .02, low - .015), (box[1] + .02, low - .015), (box[1] + .02, high + .015),
-                       (box[0] - .02, high + .015)]
-            view.polygon(corners, fill, FAINT, 0.9, opacity=0.2 if fill else 1)
-            tested += kind == "tested"
-            whole += kind == "whole"
-            for q in its:
-                is_right = a[1] <= q[1] < b[1] and q[0] > line_at(q[1])
-                if is_right:
-                    expected.add(q)
-                if kind == "whole" or (kind == "tested" and is_right):
-                    seen_right.add(q)
-                view.dot(q, 2.6, RED if is_right else LIGHT, stroke=INK, width=0.5)
-    assert seen_right == expected and tested and whole, "tiles change as their light samples do"
+    view.line((-1, -1), (-1, 1), FAINT, 1.2)
+    tested, whole, ends = 0, 0, {}
+    for its, corner in tiles:
+        low, high = min(q[1] for q in its), max(q[1] for q in its)
+        bottom, top = max(corner[1], a[1]), min(high, b[1])
+        left, right = sorted(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) for y in (bottom, top))
+        passes = bottom <= top and its[0][0] <= right and its[-1][0] >= left
+        changes = [change_in_tiles((a, b, jump), q, corner) for q in its]
+        assert passes or len(set(changes)) == 1, "a tile that an edge does not pass changes as a whole"
+        kind = "tested" if passes else "whole" if changes[0] else "none"
+        fill = {"none": None, "tested": GREEN, "whole": RED}[kind]
+        view.polygon([(its[0][0] - .02, low - .015), (its[-1][0] + .02, low - .015), (its[-1][0] + .02, high + .015),
+                      (its[0][0] - .02, high + .015)], fill, FAINT, 0.9, opacity=0.2 if fill else 1)
+        tested += kind == "tested"
+        whole += kind == "whole"
+        for q, change in zip(its, changes):
+            view.dot(q, 2.4, RED if change else LIGHT, stroke=INK, width=0.5)
+        if kind == "whole":
+            ends["whole"] = (its[5], corner)
+        elif passes and any(changes) and not all(changes):
+            ends["tested"] = (next(q for q, change in zip(its, changes) if change), corner)
+    assert tested and whole and len(ends) == 2
+    for (q, corner), color in ((ends["tested"], BLUE), (ends["whole"], DARK)):
+        for x, y in (((-1, -1), (-1, corner[1])), ((-1, corner[1]), corner), (corner, (corner[0], q[1])), ((corner[0], q[1]), q)):
+            view.line(x, y, color, 1.8)
     view.line(a, b, INK, 2.2)
-    middle = mix(a, b, 0.5)
-    view.arrow(sub(middle, mul(0.02, sub(b, a))), add(middle, mul(0.02, sub(b, a))), INK, 1, 9)
-    d.legend((410, 84), [("line", INK, "an edge, *k* > 0"), ("dot", RED, "changes by −*k*: right of it, at its height"),
-                         ("dot", LIGHT, "does not change"), ("box", "#d3e6d4", f"{tested} tiles are tested, sample by sample"),
-                         ("box", "#f4d6d2", f"{whole} tiles change as a whole: one number")], step=24)
-    d.text((410, 226), "A tile left of the edge, or above or below it, is not", 12.5)
-    d.text((410, 243), "touched. Of a row that has all of the edge's heights", 12.5)
-    d.text((410, 260), "between, all tiles to the right change by one number;", 12.5)
-    d.text((410, 277), "where an end of the edge is in the row, they are", 12.5)
-    d.text((410, 294), "tested: which of their samples are at its height?", 12.5)
+    d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "changes by its multiplicity"), ("dot", LIGHT, "does not change"),
+                         ("box", "#d3e6d4", f"{tested} tiles are tested, sample by sample"),
+                         ("box", "#f4d6d2", f"{whole} tiles change as a whole: one number each"),
+                         ("line", BLUE, "the way to a light sample of a tested tile"), ("line", DARK, "and of one that changes as a whole")],
+             step=24)
+    d.text((410, 274), "A row's way goes along its lowest light sample, and", 12.5)
+    d.text((410, 291), "from there up and to the right within a tile. So what", 12.5)
+    d.text((410, 308), "an edge changes in a tile that it does not pass is", 12.5)
+    d.text((410, 325), "the same for all of its light samples, whether or not", 12.5)
+    d.text((410, 342), "they are at its height: the edges that go on from its", 12.5)
+    d.text((410, 359), "ends see to the rest.", 12.5)
     return d.finish()
 
 

@@ -8,18 +8,15 @@
 namespace penumbra::vectors {
 namespace {
 
-constexpr float kNowhere = 0x1p24F;  // more than layers
-
 std::uint32_t divided_up(std::uint32_t x, std::uint32_t by) {
   return (x + by - 1) / by;
 }
 
-/// Rows about as high as the square root of light samples: most edges are short, are in one row or two, and are tested
-/// against all tiles to the right of them.
+/// As many as there are tiles in each, so that edges pass few; or of one tile, where finding out which would take
+/// longer than testing.
 std::uint32_t rows_for(std::uint32_t tiles) {
-  const double samples = static_cast<double>(tiles) * LightTiles::kWide;
-  const auto tiles_of_a_row = static_cast<std::uint32_t>(std::lround(std::sqrt(samples) / LightTiles::kWide));
-  return divided_up(tiles, std::max(1U, tiles_of_a_row));
+  constexpr std::uint32_t kFew = 16;
+  return tiles <= kFew ? tiles : static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(tiles))));
 }
 
 void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std::uint32_t> samples) {
@@ -36,11 +33,11 @@ void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std
     tiles.used.push_back(static_cast<std::uint16_t>((1U << its.size()) - 1));
     for (std::size_t lane = 0; lane < LightTiles::kWide; ++lane) {
       const bool is_sample = lane < its.size();
-      if (is_sample) tiles.slot_of[its[lane]] = static_cast<std::uint32_t>(tiles.sample_of.size());
-      tiles.start.push_back(is_sample ? 0 : kNowhere);
+      const std::size_t slot = tiles.sample_of.size();
+      if (is_sample) tiles.slot_of[its[lane]] = static_cast<std::uint32_t>(slot);
       tiles.sample_of.push_back(is_sample ? its[lane] : LightTiles::kNone);
-      tiles.x.push_back(is_sample ? places[its[lane]].x : std::numeric_limits<float>::quiet_NaN());
-      tiles.y.push_back(is_sample ? places[its[lane]].y : std::numeric_limits<float>::quiet_NaN());
+      tiles.x[slot] = is_sample ? places[its[lane]].x : std::numeric_limits<float>::quiet_NaN();
+      tiles.y[slot] = is_sample ? places[its[lane]].y : std::numeric_limits<float>::quiet_NaN();
     }
   }
 }
@@ -55,13 +52,19 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
   std::ranges::sort(by_y, {}, [&](std::uint32_t j) { return std::pair(places[j].y, j); });
   const std::uint32_t count = divided_up(static_cast<std::uint32_t>(places.size()), LightTiles::kWide),
                       rows = rows_for(count);
+  tiles.x.resize(count);
+  tiles.y.resize(count);
   for (std::uint32_t row = 0; row < rows; ++row) {
     const std::size_t begin = std::size_t{count} * row / rows * LightTiles::kWide,
                       end = std::min(std::size_t{count} * (row + 1) / rows * LightTiles::kWide, places.size());
     add_row(tiles, places, std::span(by_y).subspan(begin, end - begin));
   }
   tiles.most_sum = -std::numeric_limits<float>::infinity();
-  tiles.most_difference = 0;  // the corner is left of what is beyond
+  tiles.most_difference = 0;                     // the corner is left of what is beyond
+  for (const LightTiles::Row& one : tiles.rows)  // a row's last tile begins farthest to the right
+    tiles.most_difference = std::max(tiles.most_difference, tiles.tile_low[one.first + one.count - 1] - one.low);
+  tiles.tile_low.resize(count + LightTiles::kWide);
+  tiles.tile_high.resize(count + LightTiles::kWide);
   for (const glm::vec2& place : places) {
     tiles.most_sum = std::max(tiles.most_sum, place.x + place.y);
     tiles.most_difference = std::max(tiles.most_difference, place.x - place.y);

@@ -2,6 +2,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,11 +11,27 @@
 /// Light samples that form no rows of a rectangle.
 namespace penumbra::vectors {
 
-/// Light samples anywhere on a light: sixteen neighbours are a tile, tiles that lie side by side a row of tiles. So a
-/// straight edge has few tiles on both of its sides, and of all others of a row that it crosses one number says how
-/// they change. A light sample's slot is its place in this order; a tile's sixteen bits are a word of masks.
+/// A float of each slot, of whole tiles: each tile's on a cache line of its own.
+class SlotFloats {
+ public:
+  static constexpr std::size_t kWide = 16;
+
+  void resize(std::size_t tiles) { tiles_.resize(tiles); }
+  float& operator[](std::size_t slot) { return tiles_[slot / kWide].of[slot % kWide]; }
+  const float& operator[](std::size_t slot) const { return tiles_[slot / kWide].of[slot % kWide]; }
+
+ private:
+  struct alignas(64) Tile {
+    std::array<float, kWide> of{};
+  };
+  std::vector<Tile> tiles_;
+};
+
+/// Light samples anywhere on a light: sixteen neighbours are a tile, tiles that lie side by side a row of tiles. Tiles
+/// are about as high as they are wide, so that a straight edge has few of them on both of its sides. A light sample's
+/// slot is its place in this order; a tile's sixteen bits are a word of masks.
 struct LightTiles {
-  static constexpr std::uint32_t kWide = 16;  ///< light samples of a tile
+  static constexpr std::uint32_t kWide = SlotFloats::kWide;  ///< light samples of a tile
   static constexpr std::uint32_t kNone = 0xffffffffU;
   static constexpr float kStepsPerCell = 4;  ///< of row_from
 
@@ -24,14 +41,14 @@ struct LightTiles {
   };
   std::vector<Row> rows;               ///< from low to high: their heights have no more than an end in common
   std::vector<std::int32_t> row_from;  ///< of each step upward from Y = −½: no row below this one reaches so high
-  std::vector<float> x, y;             ///< of each slot, in cells; NaN where there is no sample
-  std::vector<float> tile_low, tile_high;  ///< the least and the largest X of each tile
-  std::vector<std::uint16_t> used;         ///< of each tile: a bit a slot with a sample
-  std::vector<float> start;  ///< of each slot: 0, and where there is no sample what no depth adds up to 0 with
+  SlotFloats x, y;                     ///< of each slot, in cells; NaN where there is no sample
+  /// The least and the largest X of each tile; kWide more, so that vectors may read on.
+  std::vector<float> tile_low, tile_high;
+  std::vector<std::uint16_t> used;       ///< of each tile: a bit a slot with a sample
   std::vector<std::uint32_t> sample_of;  ///< of each slot; kNone
   std::vector<std::uint32_t> slot_of;    ///< of each light sample
   float most_sum = 0;                    ///< of X + Y of all samples
-  float most_difference = 0;             ///< of X − Y, and of the light's corner
+  float most_difference = 0;             ///< of X − Y, also of tiles' lower left corners and of the light's corner
 
   [[nodiscard]] std::size_t tile_count() const { return used.size(); }
 };

@@ -23,6 +23,11 @@ TEST(LightTiles, HoldEachSampleOnce) {
       ASSERT_EQ(tiles.tile_count(), (count + 15) / 16);
       std::vector<int> met(count, 0);
       std::uint32_t next = 0;
+      const auto rows = static_cast<std::uint32_t>(tiles.rows.size());
+      ASSERT_LE(rows, count <= 256 ? 16 : tiles.rows.front().count + 2);
+      ASSERT_LE(tiles.rows.front().count, count <= 256 ? 1 : rows + 2);
+      ASSERT_GE(tiles.tile_low.size(), tiles.tile_count() + LightTiles::kWide);
+      ASSERT_GE(tiles.tile_high.size(), tiles.tile_count() + LightTiles::kWide);
       for (std::size_t i = 0; i < tiles.rows.size(); ++i) {
         const LightTiles::Row& row = tiles.rows[i];
         ASSERT_EQ(row.first, next);
@@ -30,6 +35,7 @@ TEST(LightTiles, HoldEachSampleOnce) {
         next += row.count;
         ASSERT_TRUE(i == 0 || row.low >= tiles.rows[i - 1].high);
         for (std::uint32_t tile = row.first; tile < next; ++tile) {
+          ASSERT_LE(tiles.tile_low[tile] - row.low, tiles.most_difference);
           ASSERT_TRUE(tile == row.first || tiles.tile_low[tile] >= tiles.tile_high[tile - 1]);
           for (std::uint32_t lane = 0; lane < LightTiles::kWide; ++lane) {
             const std::uint32_t slot = tile * LightTiles::kWide + lane, sample = tiles.sample_of[slot];
@@ -41,6 +47,8 @@ TEST(LightTiles, HoldEachSampleOnce) {
             ++met[sample];
             ASSERT_EQ(tiles.slot_of[sample], slot);
             ASSERT_EQ(glm::vec2(tiles.x[slot], tiles.y[slot]), places[sample]);
+            ASSERT_LE(tiles.x[slot] + tiles.y[slot], tiles.most_sum);
+            ASSERT_LE(tiles.x[slot] - tiles.y[slot], tiles.most_difference);
             ASSERT_TRUE(row.low <= tiles.y[slot] && tiles.y[slot] <= row.high);
             ASSERT_TRUE(tiles.tile_low[tile] <= tiles.x[slot] && tiles.x[slot] <= tiles.tile_high[tile]);
           }

@@ -3,12 +3,44 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace penumbra::volumes {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Sorts, mostly in linear time, what is in order of heights between 0 and `height`: as many buckets as items.
+template <typename Item, typename HeightOf>
+void sort_in_buckets(std::span<Item> items, double height, std::vector<Item>& by_bucket,
+                     std::vector<std::uint32_t>& buckets, HeightOf height_of) {
+  constexpr std::size_t kFew = 16;
+  const std::size_t last = items.size() - std::min<std::size_t>(items.size(), 1);
+  const double per_height = static_cast<double>(items.size()) / height;
+  const auto bucket_of = [&](const Item& item) {
+    return std::min(static_cast<std::size_t>(height_of(item) * per_height), last);
+  };
+  buckets.assign(items.size() + 1, 0);
+  for (const Item& item : items) ++buckets[bucket_of(item) + 1];
+  std::partial_sum(buckets.begin(), buckets.end(), buckets.begin());
+  by_bucket.resize(items.size());
+  for (const Item& item : items) by_bucket[buckets[bucket_of(item)]++] = item;
+  std::size_t begin = 0;  // of a bucket, whose end its number is now
+  for (std::size_t bucket = 0; bucket < items.size(); ++bucket) {
+    const std::size_t end = buckets[bucket];
+    for (std::size_t i = begin; i < end; ++i) {
+      std::size_t place = i;
+      if (end - begin <= kFew) {
+        for (; place > begin && by_bucket[i] < items[place - 1]; --place) items[place] = items[place - 1];
+      }
+      items[place] = by_bucket[i];
+    }
+    const auto first = items.begin() + static_cast<std::ptrdiff_t>(begin);
+    if (end - begin > kFew) std::sort(first, items.begin() + static_cast<std::ptrdiff_t>(end));
+    begin = end;
+  }
+}
 
 }  // namespace
 
@@ -27,7 +59,7 @@ double RowSweep::next_row() {
 
 /// The gap whose sides cross before all others do, the leftmost of several. Looked for only where the last one found is
 /// gone. Four minima side by side do not wait for one another.
-std::size_t RowSweep::first_crossing() {
+void RowSweep::find_first_crossing() {
   std::array<double, 4> least{kNever, kNever, kNever, kNever};
   std::size_t i = 0;
   for (; i + least.size() <= crossings_.size(); i += least.size()) {
@@ -35,20 +67,20 @@ std::size_t RowSweep::first_crossing() {
   }
   for (; i < crossings_.size(); ++i) least[0] = std::min(least[0], crossings_[i]);
   soonest_ = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
-  soonest_is_known_ = true;
-  return static_cast<std::size_t>(std::find(crossings_.begin(), crossings_.end(), soonest_) - crossings_.begin());
+  first_ = static_cast<std::size_t>(std::find(crossings_.begin(), crossings_.end(), soonest_) - crossings_.begin());
 }
 
+/// Gaps from here on get other numbers, or this one's crossing is gone.
 void RowSweep::forget(std::size_t gap) {
-  if (crossings_[gap] <= soonest_) soonest_is_known_ = false;
+  if (crossings_[gap] <= soonest_) first_ = kUnknown;
 }
 
 void RowSweep::end_gap(std::size_t number, double y) {
   Gap& gap = gaps_[number];
   const double since = std::exchange(gap.since, y), high = y - since;
-  if (!(high > 0)) return;
-  const Line &left = lines_[number - 1], &right = lines_[number];
-  const double low_left = left.at(since), low_right = right.at(since), high_left = left.at(y), high_right = right.at(y);
+  if (!(high > 0) || (gap.depth > 0 && gap.is_apart)) return;
+  const double low_left = gap.left, low_right = gap.right, high_left = lines_[number - 1].at(y),
+               high_right = lines_[number].at(y);
   const double first = low_right - low_left, last = high_right - high_left, narrowest = std::min(first, last);
   if (narrowest < 0) area_.disorder -= narrowest * high;
   if (gap.depth > 0) return;
@@ -63,33 +95,43 @@ void RowSweep::end_gap(std::size_t number, double y) {
   if (in_.parts != nullptr && area > 0) in_.parts->push_back(part);
 }
 
-void RowSweep::look_ahead(std::size_t number, double y) {
+/// Its sides are new, or it is of another depth than before: where are they here, and where do they cross?
+void RowSweep::begin_gap(std::size_t number, double y) {
   const Line &left = lines_[number - 1], &right = lines_[number];
+  Gap& gap = gaps_[number];
+  gap.left = left.at(y);
+  gap.right = right.at(y);
+  const double end = std::min(std::min(left.end, right.end), in_.height);
+  const double apart = gap.right - gap.left, last = right.at(end) - left.at(end);
+  gap.is_apart = std::min(apart, last) > rounding_;
   double& crossing = crossings_[number];
   forget(number);
   crossing = kNever;
-  if (number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
-  const double end = std::min(left.end, right.end);
-  if (left.at(end) <= right.at(end)) return;
-  const double apart = right.at(y) - left.at(y);
+  if (last >= 0 || number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
   crossing = apart > 0 ? std::min(y + apart / (left.slope - right.slope), end) : y;
-  soonest_ = std::min(soonest_, crossing);
+  if (crossing < soonest_) {
+    soonest_ = crossing;
+    first_ = number;
+  } else if (crossing == soonest_ && first_ != kUnknown) {
+    first_ = std::min(first_, number);
+  }
 }
 
 void RowSweep::change_places(std::size_t number, double y) {
   for (std::size_t gap = number - 1; gap <= number + 1; ++gap) end_gap(gap, y);
   std::swap(lines_[number - 1], lines_[number]);
   gaps_[number].depth = gaps_[number - 1].depth - lines_[number - 1].k;
-  for (std::size_t gap = number - 1; gap <= number + 1; ++gap) look_ahead(gap, y);
+  for (std::size_t gap = number - 1; gap <= number + 1; ++gap) begin_gap(gap, y);
 }
 
 /// Edges that begin where another ends take its place, so that outlines stay in order. False: depths change, or there
 /// are others that begin or end.
-bool RowSweep::hand_over(double y) {
+bool RowSweep::hand_over(std::size_t ended, double y) {
   bool all = true;
-  for (std::size_t i = 1; i + 1 < lines_.size(); ++i) {
+  for (std::size_t i = 1; ended > 0 && i + 1 < lines_.size(); ++i) {
     Line& line = lines_[i];
     if (line.end > y) continue;
+    --ended;
     const auto heir =
         std::find_if(begin_.begin(), begin_.end(), [&](const RowEdge& edge) { return edge.x0 == line.last_x; });
     if (heir == begin_.end()) {
@@ -102,8 +144,8 @@ bool RowSweep::hand_over(double y) {
     line = line_of(*heir);
     *heir = begin_.back();
     begin_.pop_back();
-    look_ahead(i, y);
-    look_ahead(i + 1, y);
+    begin_gap(i, y);
+    begin_gap(i + 1, y);
   }
   return all && begin_.empty();
 }
@@ -113,6 +155,7 @@ void RowSweep::remove(std::size_t line, double y) {
   end_gap(line, y);
   end_gap(line + 1, y);
   forget(line);
+  if (first_ != kUnknown && first_ > line) --first_;
   crossings_.erase(crossings_.begin() + static_cast<std::ptrdiff_t>(line));
   lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(line));
   gaps_.erase(gaps_.begin() + static_cast<std::ptrdiff_t>(line));
@@ -131,9 +174,10 @@ void RowSweep::insert(const RowEdge& edge, double y) {
   const auto gap = static_cast<std::size_t>(place - lines_.begin());
   if (!gaps_[gap].is_new) end_gap(gap, y);
   lines_.insert(place, line);
-  gaps_.insert(gaps_.begin() + static_cast<std::ptrdiff_t>(gap), Gap{y, 0, true});
+  gaps_.insert(gaps_.begin() + static_cast<std::ptrdiff_t>(gap), Gap{.since = y, .is_new = true});
   crossings_.insert(crossings_.begin() + static_cast<std::ptrdiff_t>(gap), kNever);
   gaps_[gap + 1].is_new = true;
+  if (first_ != kUnknown && first_ >= gap) ++first_;
 }
 
 /// Depths from left to right; what gaps with new sides or another depth were ends here.
@@ -144,9 +188,11 @@ void RowSweep::renew_gaps(double y) {
     if (gap.is_new) {
       gap.since = y;
       gap.is_new = false;
-      look_ahead(i, y);
+      begin_gap(i, y);
     } else if (gap.depth != depth) {
       end_gap(i, y);
+      gap.left = lines_[i - 1].at(y);
+      gap.right = lines_[i].at(y);
     }
     gap.depth = depth;
     depth -= lines_[i].k;
@@ -160,11 +206,12 @@ void RowSweep::change_lines(double y) {
   std::int32_t change = 0;
   for (; next_step_ < in_.steps.size() && in_.steps[next_step_].y <= y; ++next_step_)
     change += in_.steps[next_step_].change;
-  const bool some_end = next_end_ < ends_.size() && ends_[next_end_] <= y;
+  const std::size_t first_end = next_end_;
   while (next_end_ < ends_.size() && ends_[next_end_] <= y) ++next_end_;
-  if (some_end && hand_over(y) && change == 0) return;
+  const std::size_t ended = next_end_ - first_end;
+  if (ended > 0 && hand_over(ended, y) && change == 0) return;
   in_.depth += change;
-  if (some_end) {
+  if (ended > 0) {
     for (std::size_t i = lines_.size() - 2; i > 0; --i) {
       if (lines_[i].end <= y) remove(i, y);
     }
@@ -179,21 +226,23 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
   next_edge_ = next_step_ = 0;
   // By all that they are: sums do not depend on the order in which a hierarchy listed them.
   std::sort(in_.steps.begin(), in_.steps.end());
-  std::sort(in_.edges.begin(), in_.edges.end());
+  sort_in_buckets(in_.edges, in_.height, edges_by_bucket_, buckets_, [](const RowEdge& edge) { return edge.y0; });
   ends_.clear();
   for (const RowEdge& edge : in_.edges) ends_.push_back(edge.y1);
-  std::sort(ends_.begin(), ends_.end());
+  sort_in_buckets(std::span(ends_), in_.height, ends_by_bucket_, buckets_, [](double end) { return end; });
   next_end_ = 0;
+  rounding_ = 0x1p-48 * in_.width;
   soonest_ = kNever;
-  soonest_is_known_ = true;
+  first_ = kUnknown;
   lines_ = {{0, 0, 0, kNever, 0, 0}, {in_.width, 0, 0, kNever, in_.width, 0}};
-  gaps_ = {{}, {0, in_.depth}};
+  gaps_ = {{}, {.depth = in_.depth}};
   crossings_ = {kNever, kNever};
+  begin_gap(1, 0);
   for (;;) {
     const double next = next_row();
-    const std::size_t gap = soonest_ <= next ? first_crossing() : 0;
+    if (first_ == kUnknown && soonest_ <= next) find_first_crossing();
     if (soonest_ <= next) {
-      change_places(gap, soonest_);
+      change_places(first_, soonest_);
     } else if (next < in_.height) {
       change_lines(next);
     } else {

@@ -67,18 +67,20 @@ class RowSweep {
   };
   /// To the left of the line of the same number, since a row.
   struct Gap {
-    double since = 0;
+    double since = 0, left = 0, right = 0;  // and its sides there
     std::int32_t depth = 0;
-    bool is_new = false;  // its sides have become neighbours: neither crossing nor depth is known
+    bool is_apart = false;  // by more than rounding: its sides are in order as long as both last
+    bool is_new = false;    // its sides have become neighbours: neither crossing nor depth is known
   };
   static Line line_of(const RowEdge& edge);
+  static constexpr std::size_t kUnknown = ~std::size_t{0};
   [[nodiscard]] double next_row();
-  [[nodiscard]] std::size_t first_crossing();
+  void find_first_crossing();
   void end_gap(std::size_t gap, double y);
-  void look_ahead(std::size_t gap, double y);
+  void begin_gap(std::size_t gap, double y);
   void change_places(std::size_t gap, double y);
   void change_lines(double y);
-  [[nodiscard]] bool hand_over(double y);
+  [[nodiscard]] bool hand_over(std::size_t ended, double y);
   void remove(std::size_t line, double y);
   void insert(const RowEdge& edge, double y);
   void renew_gaps(double y);
@@ -91,9 +93,13 @@ class RowSweep {
   std::vector<double> crossings_;  // where a gap's two sides cross
   std::vector<RowEdge> begin_;
   std::vector<double> ends_;  // of all edges, ascending
+  std::vector<RowEdge> edges_by_bucket_;
+  std::vector<double> ends_by_bucket_;
+  std::vector<std::uint32_t> buckets_;
   std::size_t next_edge_ = 0, next_step_ = 0, next_end_ = 0;
-  double soonest_ = 0;             // no gap's sides cross before
-  bool soonest_is_known_ = false;  // one's do there
+  double rounding_ = 0;    // of the distance of two lines
+  double soonest_ = 0;     // no gap's sides cross before
+  std::size_t first_ = 0;  // the leftmost gap whose sides do there; kUnknown
 };
 
 }  // namespace penumbra::volumes
