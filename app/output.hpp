@@ -90,7 +90,7 @@ struct LabelledLights {
 std::uint32_t samples_of(const LabelledLights& all, const WholeLight& whole);
 /// Nothing if V is an area.
 std::optional<std::string> pattern_of(const LabelledLights& all, const WholeLight& whole);
-/// What stats.json says of it, but for its seconds.
+/// What stats.json says of it, except its seconds.
 compare::LightStats light_stats(const LabelledLights& all, const WholeLight& whole);
 
 /// `run`: of whole lights.

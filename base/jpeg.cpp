@@ -43,7 +43,7 @@ void jpeg_failed(j_common_ptr jpeg) {
   std::longjmp(decoder.escape, 1);
 }
 
-/// Warnings are of damaged data, behind which libjpeg would invent the rest; but for bytes that nobody needs between
+/// Warnings are of damaged data, behind which libjpeg would invent the rest; except for bytes that nobody needs between
 /// two parts of the file, which some cameras leave.
 void jpeg_warned(j_common_ptr jpeg, int level) {
   if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) jpeg_failed(jpeg);

@@ -133,7 +133,7 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
 }
 
 std::uint64_t peak_resident_bytes() {
-  // Of this program alone: what getrusage says begins with the size of whoever started it.
+  // Of this program alone: what getrusage says begins with the size of the process that started it.
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
     if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10U;  // in KiB

@@ -6,9 +6,9 @@
 
 namespace penumbra::engines {
 
-/// View samples by whoever is faster, with the same bits: the device's visibility buffer, or, where the Vulkan device
-/// is the processor itself, scan conversion on its vector units. Neither knows holes or orthographic cameras: those are
-/// walked along a tree of boxes.
+/// View samples by the faster of two ways, with the same bits: the device's visibility buffer, or, where the Vulkan
+/// device is the processor itself, scan conversion on its vector units. Neither knows holes or orthographic cameras:
+/// those are walked along a tree of boxes.
 class ViewSampler {
  public:
   /// Uploads the scene, which must stay, if the device is to draw it.

@@ -44,7 +44,7 @@ struct ErrorRepairs {
   std::vector<ErrorRepair> alone;  ///< one a cause, in the order of kErrorCauses
   /// All that can be combined, the most thorough first: the first that runs counts.
   std::vector<RepairRun> together;
-  std::vector<RepairRun> one_view = {};  ///< likewise, but for the view; none where `view` cannot be separated
+  std::vector<RepairRun> one_view = {};  ///< likewise, of the view; none where `view` cannot be separated
 };
 
 }  // namespace penumbra::visibility

@@ -15,7 +15,7 @@ def layers(picture):
 
 
 def layer_of(name):
-    """A light's layer, but for a second of that name."""
+    """A light's layer; a second light of that name gets another."""
     return name.replace(".", "_").replace("/", "_")
 
 

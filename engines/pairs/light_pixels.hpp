@@ -50,7 +50,7 @@ class LightPixels {
   [[nodiscard]] std::uint32_t rows() const { return rows_; }
   [[nodiscard]] const glm::dvec2& lower() const { return lower_; }
   [[nodiscard]] const glm::dvec2& upper() const { return upper_; }
-  /// Numbers of places in a pixel. May be put into another order by whoever works on the pixel.
+  /// Numbers of places in a pixel. May be put into another order by the code that works on the pixel.
   [[nodiscard]] std::span<std::uint32_t> list(std::uint32_t row, std::uint32_t column) {
     const std::size_t pixel = std::size_t{row} * columns_ + column;
     return std::span(numbers_).subspan(begin_[pixel], begin_[pixel + 1] - begin_[pixel]);

@@ -78,8 +78,8 @@ struct LightGrid {
     float deviation = 0;            ///< a stored light point from its place, as LightCone::u
     float lowest_end = 0;           ///< nothing higher over the grid's plane is behind the light
     double reach = 0;               ///< of scene and light, whatever the grid's rectangle
-    /// Casters that may meet the disks of a few view samples, if the method cuts them there; else whoever has such
-    /// casters is left to exact predicates.
+    /// Casters that may meet the disks of a few view samples, if the method cuts them there; else a view sample that
+    /// has such casters is left to exact predicates.
     const NearCasters* near = nullptr;
   };
   std::optional<Cones> cones = {};

@@ -7,8 +7,8 @@
 // Rounding moves each s by at most E = 8 · 2⁻⁵³ |d| R², R the largest |corner| (sums of absolute components
 // throughout): a pixel that is covered although it lies m pixels beside the box of the projection has at least one
 // weight below zero, none below −E R / |D|, and so m ≤ 3 E R extent / |D|. If |D| is large enough (`is_certain`), a
-// margin of 1/32 pixel is therefore safe, and t is between the corners' depths but for a part in 2⁸. Triangles seen as
-// good as edge-on get the margin of one pixel that proposals of the visibility buffer have
+// margin of 1/32 pixel is therefore safe, and t is between the corners' depths except for a part in 2⁸. Triangles seen
+// as good as edge-on get the margin of one pixel that proposals of the visibility buffer have
 // (render/visibility_buffer.vert), and are never left out as hidden.
 
 #include "engines/vectors/scan_conversion.hpp"
@@ -39,7 +39,7 @@ constexpr double kMargin = 1.0 / 32;                         // pixels, beside a
 constexpr double kNoise = 0x1p-38;                           // of |D| in units of |d| R³: see above, and t's 2⁻⁸
 constexpr std::size_t kBatch = std::size_t{1} << 16U;        // triangles between two looks at what is hidden
 constexpr std::size_t kChunk = std::size_t{1} << 11U;        // of them, what one core sorts at a time
-constexpr std::size_t kMostEntries = std::size_t{1} << 16U;  // of a chunk's lists, but for those of its last triangle
+constexpr std::size_t kMostEntries = std::size_t{1} << 16U;  // of a chunk's lists, except those of its last triangle
 constexpr std::uint32_t kFewTiles = 4;                       // up to here a triangle's box is its tiles
 
 /// Pixel centres that a triangle may cover, both ends included, and what no t of it is below (0: nothing known).

@@ -237,7 +237,7 @@ void Subsampled::choose_pixels() {
 void Subsampled::evaluate(const visibility::Tile& tile) {
   PENUMBRA_ASSERT(samples_ != nullptr, "{}: evaluate before prepare_view", description().name);
   tile_ = tile;
-  // Pixels are filled in from all of the picture: whoever begins a picture anew gets it whole.
+  // Pixels are filled in from all of the picture: a call that begins a picture anew gets it whole.
   if (!whole_.empty() && tile.first_row > 0) return;
   if (widths_) choose_pixels();
   const std::vector<float> few = answers(*method_, few_);

@@ -1,6 +1,6 @@
 // What a rectangle of texels can do to the receivers of a group. How near to the light what a map has must be to shade them:
 // nearer than x it shades all of them, at y or farther none; and whether they see it beside the light. Bounds of what blocks_light (taps.glsl) asks of a single texel, with
-// room for its rounding, so that whoever decides by them and whoever asks each texel decide alike (Yang et al. 2009,
+// room for its rounding, so that a decision by them and one that asks each texel agree (Yang et al. 2009,
 // equation 3, here with each texel's own depth of the receiver's plane).
 
 // The receivers of a group, as a face has them.

@@ -26,7 +26,7 @@ struct PlacedEnds {
   std::array<glm::vec2, 2> at{};
   std::array<float, 2> error{};
 };
-/// A light sample of a row: in column `column` but for the row's shift.
+/// A light sample of a row: in column `column` before the row's shift.
 struct CellOfRow {
   float row = 0, column = 0, shift = 0;
 };

@@ -186,7 +186,7 @@ class Pictures(unittest.TestCase):
         lamps.write_lamp(box(**lamp, **spot), "Spot", at(0, 0, 2), file, lost)
         lamps.write_lamp(box(**{**lamp, "energy": 2.0}, type="SUN", angle=0.0), "Sun", at(0, 0, 2), file, lost)
         lamps.write_lamp(box(**{**lamp, "energy": 0.0}, type="SUN", angle=0.0), "Off", at(0, 0, 2), file, lost)
-        # Straight down on to the floor, x from −2 to 2 and y from −1 to 1 but for the shift: half a unit right, a tenth up.
+        # Straight down on to the floor, x from −2 to 2 and y from −1 to 1, before the shift: half a unit right, a tenth up.
         file.camera("Shot", at(0, 0, 0.5), 2, (0.25, 0.05), height=2)
         assert not lost.refused and not lost.mentioned
         cls.folder = tempfile.TemporaryDirectory()

@@ -90,7 +90,7 @@ TEST_F(ErrorBudget, WhereTexelsAreLargeItIsResolution) {
   const json result = explain(scene_with(plate("0.03, 2.5, 0.02", "0.4, 0, 0", "0, 0, -0.4")), "backproject:size=16");
   EXPECT_LT(number(result, "resolution"), -0.5 * rmse(result));
   for (const char* cause : {"layers", "gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
-  // Bits of 1024 light samples say the same but for their own error.
+  // Bits of 1024 light samples say the same except for their own error.
   EXPECT_NEAR(number(result, "fusion"), 0, 0.01);
 }
 

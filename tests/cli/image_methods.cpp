@@ -175,7 +175,7 @@ TEST_F(ImageMethods, OptionsOfFiltersListsAndManyMapsDoWhatTheySay) {
   }
 }
 
-// Pixels on what casts shadows see their light above the horizon alone, which is the paper's limit: whoever renders
+// Pixels on what casts shadows see their light above the horizon alone, which is the paper's limit: a user who renders
 // with it is told, in words and in numbers, unless another method answers there.
 TEST_F(ImageMethods, SoftShadowMapSaysWhereItHasNoShadows) {
   const std::string scene = write("scene.json", kScene).string();

@@ -6,7 +6,7 @@
 #include <functional>
 
 /// A hierarchy for the next frame: who hangs below whom stays, boxes are made anew. It holds what a new one holds, so
-/// that whoever walks it finds the same; how fast depends on how well the old grouping fits.
+/// that a walk over it finds the same; how fast depends on how well the old grouping fits.
 namespace penumbra::visibility {
 
 /// A refit hierarchy is given up where its cost has grown by this factor since it was built: chosen, so that walks take

@@ -1,7 +1,7 @@
 #pragma once
 
-// Scenes made for one bound at a time: a small light somewhere in a scene of reach 1, an occluder aimed by whoever uses
-// this, and view samples close together around p on a floor that casts no shadow.
+// Scenes made for one bound at a time: a small light somewhere in a scene of reach 1, an occluder aimed by the test
+// that uses this, and view samples close together around p on a floor that casts no shadow.
 
 #include "tests/agreement/support.hpp"
 

@@ -185,7 +185,7 @@ TEST(CoverageTable, NoPlaceIsFartherFromItsPointThanIsSaid) {
 }
 
 TEST(CoverageTable, ALoopLeavesItsAreaOut) {
-  // What lies beyond the three sides is the light but for the triangle, and the whole light counts 0 in a closed loop.
+  // What lies beyond the three sides is the light without the triangle, and the whole light counts 0 in a closed loop.
   for (const TablePoints& points : {kRectanglePoints, kDiskPoints}) {
     const std::vector<double> table = coverage_table(points.outline, nullptr);
     std::mt19937 random(5);

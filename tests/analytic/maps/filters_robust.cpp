@@ -269,7 +269,7 @@ scenes::Scene board_under(std::optional<scenes::Texture> texture) {
   return scene;
 }
 
-// A constant texture leaves every byte; under one that is black but for a half of the light V is that half's. (What
+// A constant texture leaves every byte; under one that is black except on a half of the light V is that half's. (What
 // single taps weigh: PcssFormulas.TexturesWeighTaps.)
 TEST_F(Filters, PcssWeighsTapsByTheTexture) {
   constexpr std::uint32_t kSize = 512;

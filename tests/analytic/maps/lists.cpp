@@ -332,7 +332,7 @@ TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact
   EXPECT_GT(shares(contact, "0.06").leak, 0.5);
 }
 
-// Of a surface parallel to the light all depths are the same but for rounding, which no epsilon leaves out.
+// Of a surface parallel to the light all depths are the same except for rounding, which no epsilon leaves out.
 TEST_F(LayeredAttenuation, WithoutEpsilonOrBiasAParallelFloorIsFound) {
   const Stage stage(parallel_square(), 32, 32, light_samples(16));
   const auto visibility = [&](const char* epsilon) {

@@ -218,7 +218,7 @@ TEST_F(Vssm, TheWorstLeakUnderTwoSheetsIsTheClosedForm) {
   }
 }
 
-// S4 4.2.3: with a bias beyond the step's first maximum the series is the count but for its swings, of up to 0.0486
+// S4 4.2.3: with a bias beyond the step's first maximum the series is the count except for its swings, of up to 0.0486
 // (see below). Whether more terms come closer depends on where between two swings heights lie.
 TEST_F(Vssm, TheSeriesIsTheCountButForItsSwings) {
   constexpr std::uint32_t kTexels = 64;

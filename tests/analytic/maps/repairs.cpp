@@ -1,4 +1,4 @@
-// What the error budget leans on: methods that are to differ in one thing alone do.
+// What the error budget relies on: methods that are to differ in one thing alone do.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"

@@ -181,7 +181,7 @@ TEST_P(Predicates, CoplanarIsAllThreeOnThePlane) {
   EXPECT_GT(yes, 10);
 }
 
-/// The last product takes away what the others add up to, but for rounding.
+/// The last product takes away what the others add up to, except for rounding.
 TEST_P(Predicates, SumsOfProductsThatNearlyCancel) {
   std::mt19937 random(GetParam());
   std::uniform_real_distribution<double> real(-1, 1);

@@ -121,7 +121,7 @@ TEST_F(GltfAnimation, MorphTargetsAreAddedByWeight) {
   EXPECT_THAT(read(gltf, 0.5).warnings, IsEmpty());
 }
 
-/// Two joints: node 3 stands still, node 4 turns; the body's corners hang on one, the other, and both.
+/// Two joints: node 3 stands still, node 4 turns; the body's corners follow one, the other, and both.
 Gltf skinned(const std::vector<float>& weights) {
   Gltf gltf;
   gltf.at("/nodes").push_back({{"name", "Hip"}});
@@ -139,7 +139,7 @@ Gltf skinned(const std::vector<float>& weights) {
 }
 
 TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
-  // The second corner hangs on the knee; the third halfway, by weights that do not add up to 1.
+  // The second corner follows the knee; the third halfway, by weights that do not add up to 1.
   Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0.25f, 0.25f, 0, 0});
   gltf.at("/nodes/0")["translation"] = {50, 60, 70};  // the mesh's own place is none of a skin's business
   EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0)) << "bound where it is modelled";

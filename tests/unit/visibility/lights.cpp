@@ -259,7 +259,7 @@ TEST(Lights, InsideASphereNothingShines) {
     light_points_for(light, p, points.data());
     for (const glm::vec3& l : points) EXPECT_EQ(l, light.center);
   }
-  // 0.3² + 0.4² is 0.25 but for what rounds 0.3 and 0.4 to floats: exactly on neither side is certain in double.
+  // 0.3² + 0.4² is 0.25 except for what rounds 0.3 and 0.4 to floats: exactly on neither side is certain in double.
   EXPECT_TRUE(in_front_of_light(light, {1.0f + 0x1.333334p-2f, 2.0f + 0x1.99999ap-2f, 3}));
   EXPECT_TRUE(in_front_of_light(light, {std::nextafter(1.5f, 2.0f), 2, 3}));
   EXPECT_FALSE(in_front_of_light(light, {std::nextafter(1.5f, 1.0f), 2, 3}));

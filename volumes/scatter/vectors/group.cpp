@@ -194,7 +194,7 @@ class GroupFilter {
     const V w_low = hn::Sub(set(g_.in_grid.low.z), below), w_high = hn::Sub(set(g_.in_grid.high.z), below);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.grid.reach)));
     if (in_.grid.cones) {
-      // Whoever sees the light from aside has a height of its own.
+      // A group that sees the light from aside has a height of its own.
       const auto aside = [&](std::size_t axis) {
         const auto j = static_cast<glm::length_t>(axis);
         const V at = column(first + axis, i);

@@ -142,7 +142,7 @@ TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
     for (const char* search : {"hsm", "mssm", "ysm"}) {
       const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}, {"search", search}}, 48));
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        // What all texels hide is nearly dark without the search, but for the gaps between them.
+        // What all texels hide is nearly dark without the search, except for the gaps between them.
         EXPECT_TRUE(found.visibility[i] == plain.visibility[i] ||
                     (found.visibility[i] == 0 && plain.visibility[i] < 0.5F))
             << search << ", pixel " << i << ": " << found.visibility[i] << " for " << plain.visibility[i];

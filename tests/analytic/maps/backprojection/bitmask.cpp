@@ -33,7 +33,7 @@ class MapsBitmask : public MapsTest {
     return testing::AssertionFailure() << wrong << " words";
   }
 
-  /// Every bit must be what the polygons say, but for samples within `margin` of one's border.
+  /// Every bit must be what the polygons say, except for samples within `margin` of one's border.
   static void expect_bits(const scenes::Scene& scene, const visibility::SampleRequest& request, Occluder kind,
                           const char* name, bool by_hand = true) {
     constexpr double kMargin = 2e-5;

@@ -76,8 +76,8 @@ TEST_F(MapsContourClaims, PartsAreAddedAsIfTheyNeverOverlapped) {
     const double sum = std::max(0.0, static_cast<double>(a.visibility[i]) + static_cast<double>(b.visibility[i]) - 1);
     if (truth.visibility[i] < sum + 0.05) continue;  // they do not overlap here
     ++overlap;
-    // The slivers leave the window as it is, but for 1e-6: a texel's row or column in one map and not in the other, of
-    // a window 2 wide, is 1/127 · 20 / 2 of the light through the lower plate, which f = 20 enlarges.
+    // The slivers leave the window as it is, except for 1e-6: a texel's row or column in one map and not in the other,
+    // of a window 2 wide, is 1/127 · 20 / 2 of the light through the lower plate, which f = 20 enlarges.
     added += std::abs(static_cast<double>(whole.visibility[i]) - sum) < 0.08 ? 1 : 0;
   }
   record("C2 pixels with overlap", static_cast<double>(overlap));
@@ -178,8 +178,8 @@ TEST_F(MapsContourClaims, PacketsAreMoreCoherentUnderLargerLights) {
   EXPECT_GT(coherent.back(), coherent.front() + 0.05);
 }
 
-// Yang 2009, equations 7 to 9: sub-lights look at as many texels together as one light does, but for a texel of padding
-// on every side.
+// Yang 2009, equations 7 to 9: sub-lights look at as many texels together as one light does, except for a texel of
+// padding on every side.
 TEST_F(MapsContourClaims, SubLightsLookAtAsManyTexels) {
   const Stage stage(ball_over_floor(1), 40, 40, light_samples(1));
   const Counted one = counted(maps::make_packet, stage, {{"size", "128"}});
