@@ -16,8 +16,6 @@
 #include <cmath>
 #include <limits>
 
-#include <stdlib.h>
-
 namespace penumbra::bench {
 namespace {
 

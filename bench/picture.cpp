@@ -213,8 +213,9 @@ std::string svg_picture(const std::vector<Entry>& entries) {
   if (picture.left_out > 0) svg += text(kLeft, 40, fmt::format("{} points not shown: error 0", picture.left_out));
   svg += draw_legend(picture);
   for (std::size_t i = 0; i < picture.panels.size(); ++i) {
-    svg += fmt::format("<g transform=\"translate({:g} {:g})\">\n", static_cast<double>(i % columns) * kWidth,
-                       head + static_cast<double>(i / columns) * kHeight);
+    const std::size_t row = i / columns, column = i % columns;
+    svg += fmt::format("<g transform=\"translate({:g} {:g})\">\n", static_cast<double>(column) * kWidth,
+                       head + static_cast<double>(row) * kHeight);
     svg += draw_panel(picture, picture.panels[i]) + "</g>\n";
   }
   return svg + "</svg>\n";

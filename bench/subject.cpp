@@ -34,7 +34,7 @@ double parse_half(const std::string& text) {
 
 std::filesystem::path find_scene(const std::string& name) {
   if (std::filesystem::is_regular_file(name)) return name;
-  const std::filesystem::path shipped = std::filesystem::path(PENUMBRA_SCENES) / (name + ".json");
+  std::filesystem::path shipped = std::filesystem::path(PENUMBRA_SCENES) / (name + ".json");
   if (std::filesystem::is_regular_file(shipped)) return shipped;
   throw UsageError("--scene {}: neither a file, nor a scene of {}, nor knot:TRIANGLES or sphere:TRIANGLES", name,
                    PENUMBRA_SCENES);

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <ranges>
 #include <set>
 
 namespace penumbra::tests {
@@ -163,8 +164,8 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   std::size_t defects = 0;
   for_each_defect([&](const std::string& defect, const FlawedStage& stage) {
     std::vector<float> areas;
-    for (auto method = methods.rbegin(); method != methods.rend(); ++method) {  // `exact` comes first
-      const visibility::MethodDescription& description = (*method)->description();
+    for (const auto& method : std::views::reverse(methods)) {  // `exact` comes first
+      const visibility::MethodDescription& description = method->description();
       const std::string what = description.name + " of " + defect;
       const Verdict verdict = description.verdict_on(stage.diagnosis).verdict;
       ASSERT_TRUE(verdict == Verdict::exact || verdict == Verdict::approximate) << what;

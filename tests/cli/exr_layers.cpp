@@ -118,8 +118,9 @@ TEST_F(Layers, MatricesLeadFromTheWorldToThePicture) {
     // Coordinates and matrices are rounded to float32: a dozen units of 2^-24 of numbers up to ten.
     constexpr double kRounding = 12 * 0x1p-24 * 10;
     EXPECT_NEAR(-camera.z, image.floats.at("Z")[i], kRounding);
-    EXPECT_NEAR(picture.x / picture.w, 2 * (static_cast<double>(i % 48) + 0.5) / 48 - 1, kRounding);
-    EXPECT_NEAR(picture.y / picture.w, 1 - 2 * (static_cast<double>(i / 48) + 0.5) / 32, kRounding);
+    const std::size_t x = i % 48, y = i / 48;
+    EXPECT_NEAR(picture.x / picture.w, 2 * (static_cast<double>(x) + 0.5) / 48 - 1, kRounding);
+    EXPECT_NEAR(picture.y / picture.w, 1 - 2 * (static_cast<double>(y) + 0.5) / 32, kRounding);
   }
   EXPECT_GT(seen, 100u);
   EXPECT_THAT(image.attributes.at("penumbra.axes"), HasSubstr("Y up"));

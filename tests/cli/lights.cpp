@@ -102,12 +102,13 @@ TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
 
 /// The shipped scene of seven kinds: each light by itself, its area without being asked for.
 TEST_F(LightKinds, ShippedLightsHaveExactAreas) {
-  const json scene = json::parse(std::ifstream(PENUMBRA_SCENES "/lights.json"));
+  const std::string file = PENUMBRA_SCENES "/lights.json";
+  const json scene = json::parse(std::ifstream(file));
   std::vector<std::string> kinds;
   for (const json& light : scene.at("lights")) {
     const auto name = light.at("name").get<std::string>();
-    const Outcome outcome = run({"render", PENUMBRA_SCENES "/lights.json", "-o", path("out.exr"), "--size", "24x24",
-                                 "--light", name, "--stats", path("stats.json")});
+    const Outcome outcome =
+        run({"render", file, "-o", path("out.exr"), "--size", "24x24", "--light", name, "--stats", path("stats.json")});
     ASSERT_EQ(outcome.code, 0) << name << outcome.err;
     const json stats = json::parse(read("stats.json"));
     EXPECT_EQ(stats.at("lights").at(0).at("quantity"), "area") << name;

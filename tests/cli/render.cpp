@@ -227,13 +227,13 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
 /// Picture and stats name what computed the shadow: the processor where its vector units did, else the Vulkan device.
 TEST_F(RenderOnce, SaysWhatItRanOn) {
   tiny_scene();
-  const auto ran_on = [&](const std::string& method, std::vector<std::string> options) {
+  const auto ran_on = [&](const std::string& method, const std::vector<std::string>& options) {
     std::vector<std::string> arguments = {"render", path("scene.json"), "-o", path("out.exr"), "--method",
                                           method,   "--light-samples",  "16", "--stats",       path("stats.json")};
     for (const std::string& option : options) arguments.insert(arguments.end(), {"--method-option", option});
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const auto device = json::parse(read("stats.json")).at("device").get<std::string>();
+    auto device = json::parse(read("stats.json")).at("device").get<std::string>();
     EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.device"), device);
     return device;
   };

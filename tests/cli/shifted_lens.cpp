@@ -49,7 +49,7 @@ TEST_F(ProgramTest, AShiftedLensShowsPartOfALargerPicture) {
     for (std::uint32_t y = 0; y < kHeight; ++y) {
       for (std::uint32_t x = 0; x < kWidth; ++x) {
         const std::size_t here = std::size_t{y} * kWidth + x,
-                          there = std::size_t{y + 2 * kDown} * kWide + x + 2 * kRight;
+                          there = (std::size_t{y} + 2 * kDown) * kWide + x + 2 * kRight;
         // Two roundings of the tangent apart.
         EXPECT_NEAR(part.floats.at("P.X")[here], whole.floats.at("P.X")[there], 1e-5f);
         EXPECT_NEAR(part.floats.at("Z")[here], whole.floats.at("Z")[there], 1e-5f);

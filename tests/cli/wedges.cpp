@@ -56,7 +56,8 @@ TEST_F(WedgesCommand, ValidatesItself) {
 
 /// Areas are those of the light itself, whatever its picture weighs.
 TEST_F(WedgesCommand, ValidatesUnderATexturedLight) {
-  const Outcome outcome = run({"wedges", PENUMBRA_SCENES "/textured-light.json", "--light", "window", "--validate"});
+  const std::string scene = PENUMBRA_SCENES "/textured-light.json";
+  const Outcome outcome = run({"wedges", scene, "--light", "window", "--validate"});
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("have a single layer"));
 }

@@ -9,7 +9,7 @@
 # took 11 CPU s as one, fourteen of other rooms 140 each alone.)
 set -euo pipefail
 source=$(cd -- "$1" && pwd) build=$(cd -- "$2" && pwd) what=${3:-all}
-most=12  # of the changed sources: what a test can take that runs beside others
+most=6  # of the changed sources: what a test can take that runs beside others
 tidy=$(command -v clang-tidy-14 || command -v clang-tidy || true)
 [[ $tidy ]] || { echo 'style: clang-tidy is not installed (packages.txt)' >&2; exit 1; }
 
