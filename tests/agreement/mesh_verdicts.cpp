@@ -171,13 +171,13 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
       ASSERT_TRUE(verdict == Verdict::exact || verdict == Verdict::approximate) << what;
       if (verdict == Verdict::exact) exact.insert(description.name);
       if (verdict == Verdict::exact && description.output != Output::mask) {
-        const std::vector<float> v = visibility_of(**method, stage);
+        const std::vector<float> v = visibility_of(*method, stage);
         expect_exact_area(what, stage, v);
         if (description.name == "exact") areas = v;
       } else if (verdict == Verdict::exact) {
-        expect_exact(what, stage, run(**method, stage.floats, stage.light, stage.samples));
+        expect_exact(what, stage, run(*method, stage.floats, stage.light, stage.samples));
       } else if (defects % 6 == 0) {
-        most[description.name] = std::max(most[description.name], error_of(**method, stage, areas));
+        most[description.name] = std::max(most[description.name], error_of(*method, stage, areas));
       }
     }
     ++defects;

@@ -108,7 +108,9 @@ Brute brute_force(const AreaStage& stage, const std::vector<tests::Corners>& tri
                                           v = glm::dvec3(stage.light.center_v) - c;
   const auto at = [&](int i) { return 2.0 * i / size - 1; };
   std::vector<char> sees(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-  const auto index = [&](int x, int y) { return static_cast<std::size_t>(y * size + x); };
+  const auto index = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x);
+  };
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const glm::dvec3 l = c + (at(x) + 1.0 / size) * u + (at(y) + 1.0 / size) * v;

@@ -16,7 +16,7 @@ class MemoryFaults : public FaultTest {
  protected:
   /// A scene whose light has a picture of so many channels.
   [[nodiscard]] std::string scene_with_picture(int channels) const {
-    const std::vector<float> values(512 * 512, 1.0f);
+    const std::vector<float> values(std::size_t{512} * 512, 1.0f);
     ExrImage picture;
     picture.width = picture.height = 512;
     for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, std::span<const float>(values), 1});
@@ -48,7 +48,7 @@ TEST_F(MemoryFaults, APicturesOtherChannelsTakeNone) {
   ASSERT_EQ(few.code, 0) << few.err;
   ASSERT_EQ(many.code, 0) << many.err;
   // All channels together are 200 MiB. OpenEXR unpacks 16 of the 512 lines at a time, each with all channels.
-  constexpr std::uint64_t kLines = 200u * 512 * 16 * 4;
+  constexpr std::uint64_t kLines = std::uint64_t{200} * 512 * 16 * 4;
   EXPECT_LT(many.peak_bytes, few.peak_bytes + 8 * kLines);
 }
 

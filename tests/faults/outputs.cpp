@@ -33,14 +33,14 @@ const std::vector<Alias>& aliases() {
        [](const auto& file) { return (file.parent_path() / "linked" / file.filename()).string(); }},
       {"symbolic link",
        [](const auto& file) {
-         const std::string link = beside(file, "symbolic");
+         std::string link = beside(file, "symbolic");
          std::filesystem::remove(link);
          std::filesystem::create_symlink(file, link);
          return link;
        }},
       {"hard link",
        [](const auto& file) {
-         const std::string link = beside(file, "hard");
+         std::string link = beside(file, "hard");
          std::filesystem::remove(link);
          std::filesystem::create_hard_link(file, link);
          return link;

@@ -95,8 +95,8 @@ TEST(Pairs, APixelInEithersPenumbraCounts) {
   masks.method[7] ^= 2;            // sample 33 of pixel 3
   masks.reference[2] = 5;          // samples 0 and 2 of pixel 1
   masks.method[1] |= 0xfffffff0u;  // beyond the last sample: nothing
-  EXPECT_EQ(count_pairs(masks.pair(), masks.pixels), (PairCounts{4 * 34, 4 * 34, 4}));
-  EXPECT_EQ(count_pairs(masks.pair(), std::vector<std::uint32_t>{0, 2}), (PairCounts{2 * 34, 2 * 34, 1}));
+  EXPECT_EQ(count_pairs(masks.pair(), masks.pixels), (PairCounts{4UL * 34, 4UL * 34, 4}));
+  EXPECT_EQ(count_pairs(masks.pair(), std::vector<std::uint32_t>{0, 2}), (PairCounts{2UL * 34, 2UL * 34, 1}));
 
   std::vector<std::tuple<std::uint32_t, std::uint32_t, bool>> found;
   for_each_differing_pair(masks.pair(), masks.pixels, [&](std::uint32_t pixel, std::uint32_t sample, bool seen) {

@@ -67,7 +67,7 @@ inline ReportInput input_with(std::size_t method_count) {
 
 /// The first tag that is not closed where it should be; "" if all are.
 inline std::string unbalanced_tag(const std::string& html) {
-  const std::vector<std::string> kVoid{"meta", "img", "input", "br", "!DOCTYPE"};
+  const std::vector<std::string> never_closed{"meta", "img", "input", "br", "!DOCTYPE"};
   std::vector<std::string> open;
   bool in_script = false;  // whose text is no markup until it ends
   std::size_t at = 0;
@@ -82,7 +82,8 @@ inline std::string unbalanced_tag(const std::string& html) {
     const std::size_t first = at + (closing ? 2 : 1);
     const std::string name = html.substr(first, html.find_first_of(" />\n", first) - first);
     in_script = !closing && name == "script";
-    const bool alone = html[end - 1] == '/' || std::find(kVoid.begin(), kVoid.end(), name) != kVoid.end();
+    const bool alone =
+        html[end - 1] == '/' || std::find(never_closed.begin(), never_closed.end(), name) != never_closed.end();
     if (closing) {
       if (open.empty() || open.back() != name) return "/" + name;
       open.pop_back();
