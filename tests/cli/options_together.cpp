@@ -1,8 +1,8 @@
 // Options together: a covering array of all options of `render` and `compare`, and of all methods with their own
 // options. Other tests try each option alone; here any two (quick) or three (full) of them meet. Of the quick ones two
-// options of one method meet in `compare`, and each with what all methods have in `render` as well; options of two
-// methods meet in the full ones. The program itself is asked what there is, so a new method or option is tried without
-// a change here.
+// options of one method, or one of them and one of the command, meet in `compare`; `render` tries each method with each
+// option of the command, and each value of a method's options once. Options of two methods meet in the full ones. The
+// program itself is asked what there is, so a new method or option is tried without a change here.
 
 #include "tests/cli/options_together.hpp"
 
@@ -116,6 +116,9 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
   void run_rows(std::size_t strength, bool many) {
     scenes_ = write_lit_scenes(folder_, many);
     add_common_factors();
+    if (strength == 2) {
+      for (Factor& factor : factors_) factor.group = "command";  // met by methods, not by methods' options
+    }
     Factor method{"method", {""}};
     for (const json& one : table_.all()) method.values.push_back(one.at("name"));
     factors_.push_back(method);

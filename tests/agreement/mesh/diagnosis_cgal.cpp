@@ -87,10 +87,10 @@ typename K::Triangle_3 corners(const Soup& soup, const Polygon& t) {
 struct Visitor : pmp::Default_orientation_visitor {
   std::set<std::pair<std::size_t, std::size_t>>* edges = nullptr;
   std::set<std::size_t>* vertices = nullptr;
-  void non_manifold_edge(std::size_t a, std::size_t b, std::size_t) {
+  void non_manifold_edge(std::size_t a, std::size_t b, std::size_t) const {
     if (edges != nullptr) edges->insert(std::minmax(a, b));
   }
-  void non_manifold_vertex(std::size_t v, std::size_t) {
+  void non_manifold_vertex(std::size_t v, std::size_t) const {
     if (vertices != nullptr) vertices->insert(v);
   }
 };

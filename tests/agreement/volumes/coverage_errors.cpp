@@ -141,7 +141,8 @@ TEST(CoverageErrors, OfTheCentreAreWhatIsSeenFromOneSideByBoth) {
       if (disk) scene.lights[0].shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 0.75};
       const CoverageStage stage(scene);
       for (int i = 0; i < 400; ++i) {
-        const glm::vec3 p(0.2F * static_cast<float>(i % 20) - 1.9F, 0, 0.2F * static_cast<float>(i / 20) - 1.9F);
+        const int column = i % 20, row = i / 20;
+        const glm::vec3 p(0.2F * static_cast<float>(column) - 1.9F, 0, 0.2F * static_cast<float>(row) - 1.9F);
         const double error = stage.receiver(p).blocked - stage.center(p).blocked;
         ASSERT_NEAR(error, predicted_error(stage, p, times), 1e-9);
         wrong += error > 0.001 ? 1 : 0;

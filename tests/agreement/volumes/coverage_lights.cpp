@@ -111,7 +111,8 @@ TEST(CoverageLights, ASpheresReferencePointMoves) {
 scenes::Scene boards_apart() {
   std::vector<tests::Corners> boards;
   for (int i = 0; i < 9; ++i) {
-    const glm::dvec3 at((i % 3 - 1) * 2.5, 0.5 + i / 16.0, (i / 3 - 1) * 2.5);
+    const int column = i % 3, row = i / 3;
+    const glm::dvec3 at((column - 1) * 2.5, 0.5 + i / 16.0, (row - 1) * 2.5);
     const glm::dvec3 a = at + glm::dvec3(-0.5, 0, -0.25), b = at + glm::dvec3(0.5, 0, -0.375),
                      c = at + glm::dvec3(0.25, 0, 0.5), d = at + glm::dvec3(-0.375, 0, 0.375);
     boards.push_back({a, b, c});

@@ -53,7 +53,7 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
   EXPECT_TRUE(edges.find(commands, push, {view, triangles, stage.samples.width, whole, whole, 1}));
   const std::uint32_t across = (stage.samples.width + kBlock - 1) / kBlock,
                       clusters = kClusters * across * ((stage.samples.height + kBlock - 1) / kBlock);
-  std::vector<std::uint32_t> heads(2 * clusters + stage.samples.size()), memory(kHead + edges.words());
+  std::vector<std::uint32_t> heads(2 * std::size_t{clusters} + stage.samples.size()), memory(kHead + edges.words());
   edges.heads().read(std::span(heads));
   edges.lists().read(std::span(memory));
   std::vector<ClusterList> lists(clusters);
@@ -61,12 +61,12 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
   for (std::uint32_t pixel = 0; pixel < stage.samples.size(); ++pixel) {
     if (classes[pixel] != visibility::PixelClass::judged) continue;
     const std::uint32_t block = pixel / stage.samples.width / kBlock * across + pixel % stage.samples.width / kBlock;
-    lists[block * kClusters + heads[2 * clusters + pixel]].pixels.push_back(pixel);
+    lists[block * kClusters + heads[2 * std::size_t{clusters} + pixel]].pixels.push_back(pixel);
   }
   for (std::uint32_t cluster = 0; cluster < clusters; ++cluster) {
     std::vector<std::uint32_t>& slots = lists[cluster].slots;
     if (lists[cluster].pixels.empty()) continue;
-    for (std::uint32_t piece = heads[2 * cluster]; piece != kNone; piece = memory[kHead + piece]) {
+    for (std::uint32_t piece = heads[2 * std::size_t{cluster}]; piece != kNone; piece = memory[kHead + piece]) {
       const auto first = memory.begin() + kHead + piece + 2;
       slots.insert(slots.end(), first, first + memory[kHead + piece + 1]);
     }

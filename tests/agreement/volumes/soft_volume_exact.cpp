@@ -27,7 +27,8 @@ TEST_F(SoftVolumeExact, PlanarConvexOccludersThatDoNotOverlap) {
       return std::uniform_real_distribution<double>(low, high)(random);
     };
     for (int i = 0; i < 9; ++i) {
-      const glm::dvec3 center((i % 3 - 1) * 1.2, draw(0.3, 0.9), (i / 3 - 1) * 1.2);
+      const int column = i % 3, row = i / 3;
+      const glm::dvec3 center((column - 1) * 1.2, draw(0.3, 0.9), (row - 1) * 1.2);
       const double reach = draw(0.15, 0.35), turn = draw(0, 3);
       const glm::dvec3 u = reach * glm::dvec3(std::cos(turn), draw(-0.3, 0.3), std::sin(turn));
       const glm::dvec3 v = reach * glm::dvec3(-std::sin(turn), draw(-0.3, 0.3), std::cos(turn));

@@ -127,7 +127,8 @@ TEST_F(SoftVolumeMeasures, TheShippedTexturedLight) {
 TEST_F(SoftVolumeMeasures, TexturedLightsAgreeWithTheExactArea) {
   scenes::Scene scene = tests::floor_and_light(0.4);
   for (int i = 0; i < 9; ++i) {
-    const glm::dvec3 center((i % 3 - 1) * 1.2, 0.3 + 0.06 * i, (i / 3 - 1) * 1.2);
+    const int column = i % 3, row = i / 3;
+    const glm::dvec3 center((column - 1) * 1.2, 0.3 + 0.06 * i, (row - 1) * 1.2);
     tests::add_object(scene, "board", tests::quad(center, {0.25, 0.03, 0.1 * (i % 4)}, {-0.1 * (i % 4), 0.05, 0.2}));
   }
   scene.lights[0].texture = checkered(5, 4);
@@ -162,8 +163,9 @@ const TablePoints kRectanglePoints{{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4}, []
                                      return glm::dvec2(2 * (index % 32) - 31, 2 * (index / 32) - 31) / 31.0;
                                    }};
 const TablePoints kDiskPoints{{{}, std::numbers::pi}, [](int index) {
+                                const int ring = index / 64;
                                 const double angle = (index % 64 + 0.5) * std::numbers::pi / 32;
-                                return (2 * (index / 64) + 1) / 31.0 * glm::dvec2(std::cos(angle), std::sin(angle));
+                                return (2 * ring + 1) / 31.0 * glm::dvec2(std::cos(angle), std::sin(angle));
                               }};
 
 TEST(CoverageTable, NoPlaceIsFartherFromItsPointThanIsSaid) {

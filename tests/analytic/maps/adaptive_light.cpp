@@ -224,12 +224,13 @@ TEST_F(AdaptiveLight, TexturesWeighPointsByTheLightOfTheirCells) {
     double whole = 0;
     for (int y = 0; y < rows; ++y) {
       for (int x = 0; x < columns; ++x) {
-        const double light = found.luminance[static_cast<std::size_t>((4 - y * 5 / rows) * 3 + x * 3 / columns)];
+        const int texel = (4 - y * 5 / rows) * 3 + x * 3 / columns;
+        const double light = found.luminance[static_cast<std::size_t>(texel)];
         whole += light;
         const int row = y * (down - 1) / rows, column = line ? 0 : x * 4 / columns;
         for (int k = 0; k < (line ? 2 : 4); ++k) {
-          weights[static_cast<std::size_t>((row + (line ? k : k / 2)) * across + (line ? 0 : column + k % 2))] +=
-              light / (line ? 2 : 4);
+          const int point = (row + (line ? k : k / 2)) * across + (line ? 0 : column + k % 2);
+          weights[static_cast<std::size_t>(point)] += light / (line ? 2 : 4);
         }
       }
     }

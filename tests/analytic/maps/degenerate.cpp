@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace penumbra::tests {
 namespace {
@@ -212,7 +213,7 @@ TEST_F(MapsDegenerate, NoMapIsSmallerThanEightTexels) {
                             "backproject", "backproject-peel", "bitmask", "contour", "packet", "accumulate",
                             "adaptive-light", "layered-attenuation", "deep-penumbra"}) {
     for (const char* size : {"0", "1", "7", "-8", "8.5", "1000000"}) {
-      EXPECT_THROW(Way(words).with({{"size", size}}).make(device()), UsageError) << words << " " << size;
+      EXPECT_THROW(std::ignore = Way(words).with({{"size", size}}).make(device()), UsageError) << words << " " << size;
     }
   }
 }

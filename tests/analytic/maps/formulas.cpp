@@ -184,7 +184,8 @@ class Bias : public MapsTest {
       visibility::ViewSamples samples;
       samples.width = samples.height = kSide;
       for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-        const double s = (i % kSide + 0.5) / kSide, t = (i / kSide + 0.5) / kSide;
+        const std::uint32_t column = i % kSide, row = i / kSide;
+        const double s = (column + 0.5) / kSide, t = (row + 0.5) / kSide;
         const glm::dvec3 p = setting.reach * (2 * s - 1) * along + glm::dvec3(0, 0, 4 * t - 2) - floats.origin;
         samples.triangle.push_back(0);
         samples.p.emplace_back(p);

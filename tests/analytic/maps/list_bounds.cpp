@@ -66,7 +66,8 @@ TEST_F(MapListBounds, WhatIsJustBehindTheNearestCasterIsInItsShadow) {
     samples.width = samples.height = 8;
     for (std::uint32_t i = 0; i < 64; ++i) {
       samples.triangle.push_back(4);
-      samples.p.emplace_back(glm::dvec3(0.1 * (i % 8) - 0.35, 1.97, 0.1 * (i / 8) - 0.35) - floats.origin);
+      const std::uint32_t column = i % 8, row = i / 8;
+      samples.p.emplace_back(glm::dvec3(0.1 * column - 0.35, 1.97, 0.1 * row - 0.35) - floats.origin);
       samples.n.emplace_back(0, 1, 0);
       samples.depth.push_back(1);
       samples.facing.push_back(1);

@@ -151,9 +151,9 @@ TEST_F(MapsMethod, TheBodyOfTheLightItselfDoesNotShadeAndIsLit) {
   scenes::Scene with_body = bare;
   add_quad(with_body, {0, 4.99, 0}, {1, 0, 0}, {0, 0, 1}).emits = 0;  // just below the light: hides all of it otherwise
   add_quad(with_body, {1.5, 0.5, 1}, {0.2, 0, 0}, {0, 0.3, 0.1}).emits = 0;
-  with_body.soup.positions.push_back({0, -4.99, 0});  // keeps the bounding box's centre, and with it all floats
-  bare.soup.positions.push_back({0, -4.99, 0});
-  bare.soup.positions.push_back({0, 4.99, 0});
+  with_body.soup.positions.emplace_back(0, -4.99, 0);  // keeps the bounding box's centre, and with it all floats
+  bare.soup.positions.emplace_back(0, -4.99, 0);
+  bare.soup.positions.emplace_back(0, 4.99, 0);
   const Stage without(bare, 48, 48, light_samples(16)), with(with_body, 48, 48, light_samples(16));
   ASSERT_EQ(without.floats.origin, with.floats.origin);
   for (const Factory& factory : all_) {

@@ -55,7 +55,8 @@ TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
         if (first.empty()) first = found.visibility;
         EXPECT_EQ(found.visibility, first) << "light " << half_light;
         // Texels of the window of ±1 in x/z, a little wider for what is beside it, on the floor at distance 2.
-        const CentreMaps maps(device(), stage, kSize, glm::dvec2(8.0 * (n / 2) / kSize));
+        const int reach = n / 2;
+        const CentreMaps maps(device(), stage, kSize, glm::dvec2(8.0 * reach / kSize));
         const auto& side = maps.fitted.views.front().side[0];
         const double texel = 2.0 * static_cast<double>(side.upper.x - side.lower.x) / kSize;
         const auto place_of = [&](double share) {  // V falls along x

@@ -93,7 +93,7 @@ std::vector<std::size_t> fans_at(const std::vector<Corners>& soup, const Point& 
 std::uint64_t count_boundary_loops(const std::vector<Corners>& soup, const Around& around) {
   std::vector<std::pair<Segment, std::size_t>> boundary;  // and its triangle
   for (const auto& [e, triangles] : around) {
-    if (triangles.size() == 1) boundary.push_back({e, triangles[0]});
+    if (triangles.size() == 1) boundary.emplace_back(e, triangles[0]);
   }
   return count_sets(boundary.size(), [&](std::size_t i, std::size_t j) {
     const auto& [e, t] = boundary[i];

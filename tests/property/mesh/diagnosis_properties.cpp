@@ -32,7 +32,10 @@ Diagnosis diagnosed(const TriangleSoup& soup) {
 class Soups : public testing::TestWithParam<std::uint32_t> {
  protected:
   int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
-  Point lattice_point(int cells) { return {8 / cells * below(cells + 1), 8 / cells * below(cells + 1), 2 * below(3)}; }
+  Point lattice_point(int cells) {
+    const std::int64_t step = 8 / cells;
+    return {step * below(cells + 1), step * below(cells + 1), std::int64_t{2} * below(3)};
+  }
 
   std::vector<Corners> random_soup(int triangles, int cells) {
     std::vector<Corners> soup;

@@ -42,9 +42,9 @@ struct Tally {
   int back = 0, on = 0, front = 0, collinear = 0;
 };
 
-using Point = std::function<glm::dvec3()>;
+using PointSource = std::function<glm::dvec3()>;
 
-void expect_exact(const Point& point, int rounds, Tally& tally) {
+void expect_exact(const PointSource& point, int rounds, Tally& tally) {
   for (int round = 0; round < rounds; ++round) {
     const glm::dvec3 a = point(), b = point(), c = point(), p = point();
     const Side side = exact_side(a, b, c, p);

@@ -137,7 +137,8 @@ TEST(AlphaReaches, WhateverALightSampleMeets) {
   for (const Outline& light : outlines()) {
     Floor floor(light.shape);
     std::vector<glm::vec3> points;
-    for (int i = 0; i < 50 * 40; ++i) points.emplace_back(0.1 * (i % 50) - 2.45, 0, 0.1 * (i / 50) - 1.95);
+    for (int row = 0; row < 40; ++row)
+      for (int column = 0; column < 50; ++column) points.emplace_back(0.1 * column - 2.45, 0, 0.1 * row - 1.95);
     floor.look_at(points, 50);
     std::size_t met = 0, foreseen = 0;
     for (int round = 0; round < 24; ++round) {

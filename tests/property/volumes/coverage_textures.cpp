@@ -73,7 +73,8 @@ double weight_by_texels(const visibility::LightTexture& texture, const Polygon& 
   const glm::dvec2 size(2.0 / texture.width, 2.0 / texture.height);
   double sum = 0;
   for (std::uint32_t i = 0; i < texture.width * texture.height; ++i) {
-    const glm::dvec2 low(-1 + i % texture.width * size.x, 1 - (i / texture.width + 1) * size.y), high = low + size;
+    const std::uint32_t column = i % texture.width, row = i / texture.width;
+    const glm::dvec2 low(-1 + column * size.x, 1 - (row + 1) * size.y), high = low + size;
     Polygon part = cut(polygon, low, {high.x, low.y});
     part = cut(part, {high.x, low.y}, high);
     part = cut(part, high, {low.x, high.y});

@@ -71,7 +71,10 @@ void duplicate_vertices(mesh::TriangleSoup& soup, std::mt19937& random) {
 }
 void duplicate_faces(mesh::TriangleSoup& soup, std::mt19937& random) {
   for (std::size_t i = soup.triangles.size(); i-- > 0;) {
-    for (auto copies = random() % 3; copies > 0; --copies) soup.triangles.push_back(mesh::Triangle(soup.triangles[i]));
+    for (auto copies = random() % 3; copies > 0; --copies) {
+      const mesh::Triangle copied = soup.triangles[i];
+      soup.triangles.push_back(copied);
+    }
   }
 }
 

@@ -18,7 +18,7 @@ class GltfReader : public test::FileTest {
   Scene read(test::Gltf& gltf) const { return read_gltf(write("scene.glb", gltf.glb())); }
   std::string refusal(test::Gltf& gltf) const {
     const auto path = write("scene.glb", gltf.glb());
-    const std::string message = test::input_error([&] { read_gltf(path); });
+    std::string message = test::input_error([&] { read_gltf(path); });
     EXPECT_THAT(message, ::testing::HasSubstr(path.string()));
     return message;
   }

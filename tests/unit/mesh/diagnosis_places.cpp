@@ -115,15 +115,14 @@ TEST(Diagnosis, SelfIntersections) {
 
 TEST(Diagnosis, ManyTrianglesInOnePlaceAreCountedAsOneSurface) {
   // n times one triangle and m times one that crosses it, alternating: 60,000 triangles have too many pairs to visit.
-  constexpr std::uint32_t n = 40'000, m = 20'000;
+  const std::uint64_t n = 40'000, m = 20'000;
   TriangleSoup heap = soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 0}}, {});
-  for (std::uint32_t i = 0; i < n; ++i) {
+  for (std::uint64_t i = 0; i < n; ++i) {
     heap.triangles.push_back(i % 3 == 0 ? Triangle{1, 0, 2} : Triangle{2, 0, 1});
     if (i % 2 == 0) heap.triangles.push_back({3, 4, 5});
   }
   const Diagnosis d = diagnosis_of(heap, {.list_limit = 7});
-  EXPECT_EQ(d.self_intersections->count,
-            std::uint64_t{n} * m + std::uint64_t{n} * (n - 1) / 2 + std::uint64_t{m} * (m - 1) / 2);
+  EXPECT_EQ(d.self_intersections->count, n * m + n * (n - 1) / 2 + m * (m - 1) / 2);
   ASSERT_EQ(d.self_intersections->first.size(), 7u);
   for (std::uint32_t i = 0; i < 7; ++i) EXPECT_THAT(d.self_intersections->first[i].triangles, ElementsAre(0, i + 1));
 }

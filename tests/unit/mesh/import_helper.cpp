@@ -6,11 +6,11 @@
 #include "mesh/import_wire.hpp"
 
 #include <gmock/gmock.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 
 namespace penumbra::mesh {
 namespace {

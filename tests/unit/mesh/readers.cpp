@@ -8,6 +8,7 @@
 namespace penumbra::mesh {
 namespace {
 
+using namespace std::string_literals;
 using penumbra::test::bytes_of;
 using penumbra::test::corner;
 using ::testing::Contains;
@@ -111,7 +112,7 @@ TEST_F(MeshReaders, StlFacetsThatAreNone) {
   expect_refused("twice.stl", "solid a\nfacet\nfacet\n", {"line 3", "that of line 2 has no end"});
   expect_refused("loose.stl", "solid a\nvertex 0 0 0\n", {"line 2", "outside of a facet"});
   expect_refused("word.stl", "solid a\nfacet\nvertex 0 zero 0\n", {"line 3", "'zero'"});
-  expect_refused("zero.stl", std::string("solid a\nfacet\0endfacet\n", 24), {"no triangles"});
+  expect_refused("zero.stl", "solid a\nfacet\0endfacet\n"s, {"no triangles"});
   expect_refused("nothing.stl", "solid a\nendsolid a\n", {"no triangles"});
 }
 

@@ -25,7 +25,7 @@ class XmlReaders : public penumbra::test::FileTest {
   /// A zip archive of the given entries.
   [[nodiscard]] std::filesystem::path write_zip(const std::string& name,
                                                 const std::map<std::string, std::string>& entries) const {
-    const auto path = folder_ / name;
+    auto path = folder_ / name;
     const zipFile archive = zipOpen64(path.c_str(), APPEND_STATUS_CREATE);
     for (const auto& [entry, content] : entries) {
       const zip_fileinfo info{};

@@ -106,9 +106,7 @@ void expect_kept_promises(const TriangleSoup& soup, const Repaired& repaired, co
 }
 
 Repaired repair_and_check(const TriangleSoup& soup, const RepairOptions& options = {}) {
-  const TriangleSoup before = soup;
   Repaired repaired = repair(soup, options);
-  EXPECT_TRUE(same(soup, before)) << "the input changed";
   expect_kept_promises(soup, repaired, options);
   return repaired;
 }

@@ -59,8 +59,9 @@ TEST(SoupPly, TheBytesAreThoseOfTheFormat) {
       "element edge 1\nproperty int vertex1\nproperty int vertex2\n"
       "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
   ASSERT_EQ(bytes.substr(0, header.size()), header);
-  ASSERT_EQ(bytes.size(), header.size() + 9 * 8 + (1 + 3 * 4 + 3) + (2 * 4 + 3));
-  EXPECT_EQ(bytes.substr(header.size() + 8 * 8 - 8, 8), std::string("\x9a\x99\x99\x99\x99\x99\xb9\x3f"));  // 0.1
+  ASSERT_EQ(bytes.size(), header.size() + std::size_t{9} * 8 + (1 + 3 * 4 + 3) + (2 * 4 + 3));
+  EXPECT_EQ(bytes.substr(header.size() + std::size_t{7} * 8, 8),
+            std::string("\x9a\x99\x99\x99\x99\x99\xb9\x3f"));  // 0.1
   EXPECT_EQ(bytes.substr(bytes.size() - 3), "\x04\x05\x06");
 }
 

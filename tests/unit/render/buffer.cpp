@@ -36,10 +36,10 @@ TEST_F(BufferTest, WritesAndReadsAtOffsets) {
   std::vector<std::uint32_t> values = numbers(100, 0);
   Buffer buffer = make_buffer<std::uint32_t>(device(), "numbers", values);
   const std::vector<std::uint32_t> patch{900, 901, 902};
-  buffer.write(std::span<const std::uint32_t>(patch), 50 * 4);
+  buffer.write(std::span<const std::uint32_t>(patch), 50 * sizeof(std::uint32_t));
   std::copy(patch.begin(), patch.end(), values.begin() + 50);
   std::vector<std::uint32_t> back(60);
-  buffer.read(std::span(back), 40 * 4);
+  buffer.read(std::span(back), 40 * sizeof(std::uint32_t));
   EXPECT_TRUE(std::equal(back.begin(), back.end(), values.begin() + 40));
 }
 

@@ -22,8 +22,8 @@ struct BadScene {
   std::string message;  ///< follows "<file>: "
 };
 
-void PrintTo(const BadScene& bad, std::ostream* stream) {
-  *stream << bad.name;
+std::ostream& operator<<(std::ostream& stream, const BadScene& bad) {
+  return stream << bad.name;
 }
 
 class JsonErrors : public testing::TestWithParam<BadScene> {};
