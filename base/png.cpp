@@ -20,15 +20,13 @@ struct PngImage {
   png_image image{};
 };
 
-}  // namespace
-
-std::vector<std::byte> encode_png(const Image8& image) {
+template <typename Picture>
+std::vector<std::byte> encode(const Picture& image, png_uint_32 format) {
   if (image.pixels.empty()) throw ResourceError("cannot make a PNG of a picture without pixels");
-  static_assert(sizeof(Color8) == 3, "rows are handed to libpng as they lie");
   PngImage png;
   png.image.width = image.width;
   png.image.height = image.height;
-  png.image.format = PNG_FORMAT_RGB;
+  png.image.format = format;
   std::vector<std::byte> bytes(PNG_IMAGE_PNG_SIZE_MAX(png.image));
   png_alloc_size_t size = bytes.size();
   if (png_image_write_to_memory(&png.image, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr) == 0) {
@@ -36,6 +34,18 @@ std::vector<std::byte> encode_png(const Image8& image) {
   }
   bytes.resize(size);
   return bytes;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_png(const Image8& image) {
+  static_assert(sizeof(Color8) == 3, "rows are handed to libpng as they lie");
+  return encode(image, PNG_FORMAT_RGB);
+}
+
+std::vector<std::byte> encode_rgba_png(const RgbaImage& image) {
+  static_assert(sizeof(image.pixels[0]) == 4, "rows are handed to libpng as they lie");
+  return encode(image, PNG_FORMAT_RGBA);
 }
 
 void write_png(const std::filesystem::path& path, const Image8& image) {

@@ -23,7 +23,8 @@ class ConvertCommand : public Command {
       : Command(app, "convert", "write the scene as the program understood it, in world space") {
     cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb")->required();
     cli_.add_option("-o,--output", out_,
-                    "FILE.json (textures of lights go beside it: FILE-light0.exr), FILE.glb or FILE.obj")
+                    "FILE.json (textures of lights go beside it: FILE-light0.exr; no alpha, no pictures), FILE.glb "
+                    "(no textures of lights) or FILE.obj (geometry alone)")
         ->required()
         ->type_name("FILE");
     add_allow_outside(cli_, allow_outside_);
@@ -51,7 +52,7 @@ class ConvertCommand : public Command {
     scene.sources.push_back(scene_);
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
-    for (const std::string& loss : scenes::write_scene(scene, out_)) spdlog::warn("{}", loss);
+    for (const std::string& loss : scenes::write_scene(scene, out_, {.lenient = lenient_})) spdlog::warn("{}", loss);
     spdlog::info("{}: {} triangles, {} lights", out_.string(), scene.soup.triangles.size(), scene.lights.size());
     return 0;
   }

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,11 +23,11 @@ std::uint32_t parse_count(const std::string& text, const char* option, std::uint
 
 /// --pixel-samples, --motion-samples and --shutter.
 void parse_means(const PictureOptions& options, PictureRequest& request) {
-  const char* const squares = "a square number from 1 to 64, such as 4, 9 or 16";
-  const std::uint32_t samples = parse_count(options.pixel_samples, "--pixel-samples", 64, squares);
+  const std::uint32_t samples =
+      parse_count(options.pixel_samples, "--pixel-samples", 64, "a number from 1 to 64, such as 4, 9 or 16");
   while (request.pixel_side * request.pixel_side < samples) ++request.pixel_side;
-  if (request.pixel_side * request.pixel_side != samples)
-    throw UsageError("--pixel-samples {}: expected {}", options.pixel_samples, squares);
+  if (const std::uint32_t square = request.pixel_side * request.pixel_side; square != samples)
+    spdlog::warn("--pixel-samples {}: {}, the next square number, for they lie on a square grid", samples, square);
   request.filter = parse_filter(options.pixel_filter, options.filter_width);
   if (request.filter.kind != PixelFilter::Kind::box && samples == 1)
     throw UsageError("--pixel-filter {}: of which view samples? --pixel-samples says how many", options.pixel_filter);
@@ -87,8 +88,8 @@ void add_picture_options(CLI::App& command, PictureOptions& options) {
       ->type_name("N");
   command
       .add_option("--pixel-samples", options.pixel_samples,
-                  "view samples a pixel on a square grid, of which R G B A and V are the mean: 1, 4, 9 … 64 "
-                  "(default: 1, the pixel's centre)")
+                  "view samples a pixel on a square grid, of which R G B A and V are the mean: 1, 4, 9 … 64; others "
+                  "become the next of these (default: 1, the pixel's centre)")
       ->type_name("S");
   command
       .add_option(

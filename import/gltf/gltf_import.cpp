@@ -9,7 +9,6 @@
 #include "import/gltf/gltf_extras.hpp"
 #include "import/gltf/gltf_hidden.hpp"
 #include "import/gltf/gltf_load.hpp"
-#include "import/gltf/gltf_losses.hpp"
 #include "import/gltf/gltf_nodes.hpp"
 #include "import/gltf/gltf_primitive.hpp"
 #include "import/gltf/gltf_surface.hpp"

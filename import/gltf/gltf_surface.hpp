@@ -1,6 +1,6 @@
 #pragma once
 
-#include "import/gltf/gltf_losses.hpp"
+#include "scenes/losses.hpp"
 #include "scenes/scene.hpp"
 
 #include <glm/vec3.hpp>

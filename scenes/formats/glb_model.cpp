@@ -55,17 +55,49 @@ int GlbModel::add_mesh_node(tinygltf::Mesh mesh) {
   return add_node(std::move(node));
 }
 
+template <typename Vector>
+int GlbModel::add_vectors(const std::vector<Vector>& values, int type) {
+  return add_accessor(values.data(), values.size(), sizeof(Vector), TINYGLTF_COMPONENT_TYPE_FLOAT, type,
+                      TINYGLTF_TARGET_ARRAY_BUFFER);
+}
+
 int GlbModel::add_positions(const std::vector<glm::vec3>& positions) {
   glm::vec3 low = positions.front(), high = low;
   for (const glm::vec3& position : positions) {
     low = glm::min(low, position);
     high = glm::max(high, position);
   }
-  const int accessor = add_accessor(positions.data(), positions.size(), sizeof(glm::vec3),
-                                    TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
+  const int accessor = add_vectors(positions, TINYGLTF_TYPE_VEC3);
   model_.accessors.back().minValues = {low.x, low.y, low.z};
   model_.accessors.back().maxValues = {high.x, high.y, high.z};
   return accessor;
+}
+
+int GlbModel::add_attribute(const std::vector<glm::vec2>& values) {
+  return add_vectors(values, TINYGLTF_TYPE_VEC2);
+}
+
+int GlbModel::add_attribute(const std::vector<glm::vec3>& values) {
+  return add_vectors(values, TINYGLTF_TYPE_VEC3);
+}
+
+int GlbModel::add_attribute(const std::vector<glm::vec4>& values) {
+  return add_vectors(values, TINYGLTF_TYPE_VEC4);
+}
+
+int GlbModel::add_png(const std::string& name, std::span<const std::byte> bytes) {
+  tinygltf::Image image;
+  image.name = name;
+  image.mimeType = "image/png";
+  image.bufferView = add_view(bytes.data(), bytes.size(), 0);
+  return push(model_.images, std::move(image));
+}
+
+int GlbModel::add_texture(int image, tinygltf::Sampler sampler) {
+  tinygltf::Texture texture;
+  texture.source = image;
+  texture.sampler = push(model_.samplers, std::move(sampler));
+  return push(model_.textures, std::move(texture));
 }
 
 tinygltf::Primitive GlbModel::primitive(int mode, int positions, const std::vector<std::uint32_t>& indices,
@@ -88,22 +120,26 @@ std::string GlbModel::encoded() {
   return std::move(stream).str();
 }
 
-int GlbModel::add_accessor(const void* data, std::size_t count, std::size_t stride, int component_type, int type,
-                           int target) {
+int GlbModel::add_view(const void* data, std::size_t length, int target) {
   std::vector<unsigned char>& bytes = model_.buffers[0].data;
-  const std::size_t offset = bytes.size(), length = count * stride;  // every element is a multiple of 4 bytes
-  if (offset + length > std::numeric_limits<std::uint32_t>::max() - (std::uint32_t{1} << 24)) {
+  const std::size_t offset = bytes.size(), padded = (length + 3) / 4 * 4;
+  if (offset + padded > std::numeric_limits<std::uint32_t>::max() - (std::uint32_t{1} << 24)) {
     throw InputError("the scene does not fit into a GLB, which holds at most 4 GiB; write .json or .obj");
   }
-  bytes.resize(offset + length);
+  bytes.resize(offset + padded);
   std::memcpy(bytes.data() + offset, data, length);
   tinygltf::BufferView view;
   view.buffer = 0;
   view.byteOffset = offset;
   view.byteLength = length;
   view.target = target;
+  return push(model_.bufferViews, std::move(view));
+}
+
+int GlbModel::add_accessor(const void* data, std::size_t count, std::size_t stride, int component_type, int type,
+                           int target) {
   tinygltf::Accessor accessor;
-  accessor.bufferView = push(model_.bufferViews, std::move(view));
+  accessor.bufferView = add_view(data, count * stride, target);
   accessor.componentType = component_type;
   accessor.count = count;
   accessor.type = type;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <tiny_gltf.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,13 @@ class GlbModel {
   int add_camera(tinygltf::Camera camera);
   /// An accessor with its bounds, as POSITION wants it. InputError where the buffer would grow beyond a GLB's 4 GiB.
   int add_positions(const std::vector<glm::vec3>& positions);
+  /// An accessor of any other attribute of vertices.
+  int add_attribute(const std::vector<glm::vec2>& values);
+  int add_attribute(const std::vector<glm::vec3>& values);
+  int add_attribute(const std::vector<glm::vec4>& values);
+  /// An image in the file, of a PNG's bytes.
+  int add_png(const std::string& name, std::span<const std::byte> bytes);
+  int add_texture(int image, tinygltf::Sampler sampler);
   /// `mode`: TINYGLTF_MODE_…; indices into the accessor `positions`.
   tinygltf::Primitive primitive(int mode, int positions, const std::vector<std::uint32_t>& indices, int material);
   /// The mesh, and a node of its name that shows it.
@@ -34,7 +44,10 @@ class GlbModel {
   [[nodiscard]] std::string encoded();
 
  private:
+  int add_view(const void* data, std::size_t length, int target);
   int add_accessor(const void* data, std::size_t count, std::size_t stride, int component_type, int type, int target);
+  template <typename Vector>
+  int add_vectors(const std::vector<Vector>& values, int type);
 
   tinygltf::Model model_;
 };

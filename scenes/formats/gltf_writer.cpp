@@ -5,6 +5,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/png.hpp"
 #include "mesh/shapes/shapes.hpp"
 
 #include <glm/geometric.hpp>
@@ -13,8 +14,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <variant>
 
 namespace penumbra::scenes {
@@ -23,36 +27,59 @@ namespace {
 constexpr const char* kEmissiveStrength = "KHR_materials_emissive_strength";
 constexpr unsigned kDiskSides = 64;
 
+int wrap_of(PictureUse::Wrap wrap) {
+  if (wrap == PictureUse::Wrap::clamp) return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+  return wrap == PictureUse::Wrap::mirror ? TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT : TINYGLTF_TEXTURE_WRAP_REPEAT;
+}
+
+/// What glTF has lamps for.
+bool is_lamp(const AreaLight& light) {
+  return std::holds_alternative<Sun>(light.shape) || std::holds_alternative<Sphere>(light.shape);
+}
+
+/// Does nothing cast a shadow of the light?
+bool is_shadeless(const Scene& scene, const AreaLight& light) {
+  return !light.unshaded_by.empty() && light.unshaded_by.size() == scene.objects.size();
+}
+
+/// What vertices of a mesh have.
+struct GlbVertices {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals = {};  // these: none, or one each
+  std::vector<glm::vec4> colors = {};
+  std::vector<glm::vec2> places = {};
+};
+
 class GlbBuilder {
  public:
   int add_material(const std::string& name, const glm::dvec3& color, const AreaLight* light) {
-    tinygltf::Material material;
-    material.name = name;
-    material.pbrMetallicRoughness.baseColorFactor = {color.x, color.y, color.z, 1};
-    material.pbrMetallicRoughness.metallicFactor = 0;
-    material.pbrMetallicRoughness.roughnessFactor = 1;
-    if (light != nullptr) {
-      // The factor is at most 1; the strength carries the rest.
-      const glm::dvec3 radiance = light->radiance * (light->texture ? mean_color(*light->texture) : glm::dvec3(1));
-      const double strength = std::max({radiance.x, radiance.y, radiance.z});
-      const glm::dvec3 factor = strength > 0 ? radiance / strength : glm::dvec3(0);
-      material.emissiveFactor = {factor.x, factor.y, factor.z};
-      material.extensions[kEmissiveStrength] =
-          tinygltf::Value(tinygltf::Value::Object{{"emissiveStrength", tinygltf::Value(strength)}});
-      material.doubleSided = light->two_sided;
-      uses_emissive_strength_ = true;
-    }
+    return glb_.add_material(material_of(name, color, light));
+  }
+
+  int add_material(const Scene& scene, const Object& object) {
+    const AreaLight* light = object.emits ? &scene.lights[*object.emits] : nullptr;
+    tinygltf::Material material =
+        material_of(object.material.empty() ? object.name : object.material, object.color, light);
+    material.pbrMetallicRoughness.baseColorFactor[3] = object.alpha.factor;
+    if (object.alpha.mode != Alpha::Mode::opaque)
+      material.alphaMode = object.alpha.mode == Alpha::Mode::mask ? "MASK" : "BLEND";
+    material.alphaCutoff = object.alpha.cutoff;
+    if (object.picture) material.pbrMetallicRoughness.baseColorTexture.index = texture_of(scene, *object.picture);
     return glb_.add_material(std::move(material));
   }
 
   /// A node with a mesh of its own; `extras` as import/gltf/gltf_extras.hpp reads them.
-  void add_mesh(const std::string& name, const std::vector<glm::vec3>& positions,
-                const std::vector<std::uint32_t>& indices, int material, tinygltf::Value::Object extras = {}) {
-    PENUMBRA_ASSERT(!positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
+  void add_mesh(const std::string& name, const GlbVertices& vertices, const std::vector<std::uint32_t>& indices,
+                int material, tinygltf::Value::Object extras = {}) {
+    PENUMBRA_ASSERT(!vertices.positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
     tinygltf::Mesh mesh;
     mesh.name = name;
-    mesh.primitives.push_back(
-        glb_.primitive(TINYGLTF_MODE_TRIANGLES, glb_.add_positions(positions), indices, material));
+    auto primitive = glb_.primitive(TINYGLTF_MODE_TRIANGLES, glb_.add_positions(vertices.positions), indices, material);
+    const auto add = [&](const char* attribute, const auto& values) {
+      if (!values.empty()) primitive.attributes[attribute] = glb_.add_attribute(values);
+    };
+    add("NORMAL", vertices.normals), add("COLOR_0", vertices.colors), add("TEXCOORD_0", vertices.places);
+    mesh.primitives.push_back(std::move(primitive));
     if (!extras.empty()) mesh.extras = tinygltf::Value(std::move(extras));
     glb_.add_root(glb_.add_mesh_node(std::move(mesh)));
   }
@@ -90,7 +117,7 @@ class GlbBuilder {
   }
 
   /// A sun, or a sphere with or without a cone; its size goes into the extras.
-  void add_lamp(const AreaLight& light) {
+  void add_lamp(const AreaLight& light, bool casts_shadows) {
     tinygltf::Light lamp;
     lamp.name = light.name;
     glm::dvec3 way(0, 0, -1), at(0), intensity = light.radiance;
@@ -125,6 +152,7 @@ class GlbBuilder {
     tinygltf::Node node;
     node.name = light.name;
     node.matrix = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, at.x, at.y, at.z, 1};
+    if (!casts_shadows) node.extras = tinygltf::Value(tinygltf::Value::Object{{"castsShadow", tinygltf::Value(false)}});
     node.extensions["KHR_lights_punctual"] =
         tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(glb_.add_lamp(std::move(lamp)))}});
     glb_.add_root(glb_.add_node(std::move(node)));
@@ -136,28 +164,80 @@ class GlbBuilder {
   }
 
  private:
+  tinygltf::Material material_of(const std::string& name, const glm::dvec3& color, const AreaLight* light) {
+    tinygltf::Material material;
+    material.name = name;
+    material.pbrMetallicRoughness.baseColorFactor = {color.x, color.y, color.z, 1};
+    material.pbrMetallicRoughness.metallicFactor = 0;
+    material.pbrMetallicRoughness.roughnessFactor = 1;
+    if (light != nullptr) {
+      // The factor is at most 1; the strength carries the rest.
+      const glm::dvec3 radiance = light->radiance * (light->texture ? mean_color(*light->texture) : glm::dvec3(1));
+      const double strength = std::max({radiance.x, radiance.y, radiance.z});
+      const glm::dvec3 factor = strength > 0 ? radiance / strength : glm::dvec3(0);
+      material.emissiveFactor = {factor.x, factor.y, factor.z};
+      material.extensions[kEmissiveStrength] =
+          tinygltf::Value(tinygltf::Value::Object{{"emissiveStrength", tinygltf::Value(strength)}});
+      material.doubleSided = light->two_sided;
+      uses_emissive_strength_ = true;
+    }
+    return material;
+  }
+
+  int texture_of(const Scene& scene, const PictureUse& use) {
+    const auto [image, is_new_image] = images_.try_emplace(use.picture);
+    if (is_new_image) {
+      const Picture& picture = scene.pictures[use.picture];
+      image->second =
+          glb_.add_png(picture.file, encode_rgba_png(RgbaImage{picture.width, picture.height, picture.texels}));
+    }
+    const auto [texture, is_new] = textures_.try_emplace({use.picture, use.wrap_s, use.wrap_t, use.nearest});
+    if (is_new) {
+      tinygltf::Sampler sampler;
+      sampler.wrapS = wrap_of(use.wrap_s);
+      sampler.wrapT = wrap_of(use.wrap_t);
+      sampler.magFilter = use.nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
+      texture->second = glb_.add_texture(image->second, std::move(sampler));
+    }
+    return texture->second;
+  }
+
   GlbModel glb_;
+  std::map<std::uint32_t, int> images_;  // of the scene's pictures
+  std::map<std::tuple<std::uint32_t, PictureUse::Wrap, PictureUse::Wrap, bool>, int> textures_;
   bool uses_emissive_strength_ = false;
 };
 
 void add_object(const Scene& scene, const ObjectRange& range, GlbBuilder& glb) {
   const Object& object = scene.objects[range.object];
-  std::vector<glm::vec3> positions;
+  GlbVertices vertices;
   std::vector<std::uint32_t> indices;
   std::unordered_map<std::uint32_t, std::uint32_t> local;  // the scene's vertex → this mesh's
+  const auto add = [](auto& to, const auto& from, std::uint32_t vertex) {
+    if (!from.empty()) to.emplace_back(from[vertex]);
+  };
   for (std::size_t i = range.first; i < range.first + range.count; ++i) {
     for (const std::uint32_t vertex : scene.soup.triangles[i]) {
-      const auto [entry, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(positions.size()));
-      if (is_new) positions.emplace_back(scene.soup.positions[vertex]);
+      const auto [entry, is_new] = local.try_emplace(vertex, static_cast<std::uint32_t>(vertices.positions.size()));
       indices.push_back(entry->second);
+      if (!is_new) continue;
+      vertices.positions.emplace_back(scene.soup.positions[vertex]);
+      add(vertices.normals, scene.looks.normals, vertex);
+      add(vertices.colors, scene.looks.colors, vertex);
+      if (object.picture) add(vertices.places, scene.looks.places, vertex);
     }
   }
+  const auto drop_plain = [](auto& values, const auto& plain) {
+    if (std::ranges::all_of(values, [&](const auto& value) { return value == plain; })) values.clear();
+  };
+  drop_plain(vertices.normals, glm::vec3(0));
+  drop_plain(vertices.colors, glm::vec4(1));
   const AreaLight* light = object.emits ? &scene.lights[*object.emits] : nullptr;
   tinygltf::Value::Object extras;
   if (!object.casts_shadow) extras["castsShadow"] = tinygltf::Value(false);
   if (!object.receives_shadow) extras["receivesShadow"] = tinygltf::Value(false);
   if (light != nullptr && light->name != object.name) extras["lightName"] = tinygltf::Value(light->name);
-  glb.add_mesh(object.name, positions, indices, glb.add_material(object.name, object.color, light), std::move(extras));
+  glb.add_mesh(object.name, vertices, indices, glb.add_material(scene, object), std::move(extras));
 }
 
 /// The light's outline, counter-clockwise seen from where it emits to; empty for a sphere or sun.
@@ -217,28 +297,27 @@ void add_pieces(const AreaLight& light, const Pieces& shape, GlbBuilder& glb, No
   if (round)
     notes.push_back(fmt::format("light \"{}\": its spheres are written with {} flat sides", light.name,
                                 mesh::icosphere_size(kSubdivisions).triangles));
-  glb.add_mesh(light.name, positions, indices, glb.add_material(light.name, glm::dvec3(0.8), &light),
-               {{"body", tinygltf::Value(false)}});
+  glb.add_mesh(light.name, {.positions = std::move(positions)}, indices,
+               glb.add_material(light.name, glm::dvec3(0.8), &light), {{"body", tinygltf::Value(false)}});
 }
 
-void add_light(const AreaLight& light, GlbBuilder& glb, Notes& notes) {
+void add_light(const Scene& scene, const AreaLight& light, GlbBuilder& glb, Notes& notes) {
   if (const auto* pieces = std::get_if<Pieces>(&light.shape)) return add_pieces(light, *pieces, glb, notes);
+  if (is_lamp(light)) return glb.add_lamp(light, !is_shadeless(scene, light));
   const std::vector<glm::dvec3> points = outline(light);
-  if (points.empty()) return glb.add_lamp(light);
   if (std::holds_alternative<Disk>(light.shape) || std::holds_alternative<Ellipse>(light.shape)) {
     notes.push_back(
         fmt::format("light \"{}\": glTF has no round lights; written with {} sides", light.name, kDiskSides));
   }
-  const std::vector<glm::vec3> positions(points.begin(), points.end());
   std::vector<std::uint32_t> fan;
   for (std::uint32_t i = 1; i + 1 < points.size(); ++i) fan.insert(fan.end(), {0, i, i + 1});
-  glb.add_mesh(light.name, positions, fan, glb.add_material(light.name, glm::dvec3(0.8), &light),
-               {{"body", tinygltf::Value(false)}});
+  glb.add_mesh(light.name, {.positions = {points.begin(), points.end()}}, fan,
+               glb.add_material(light.name, glm::dvec3(0.8), &light), {{"body", tinygltf::Value(false)}});
 }
 
 }  // namespace
 
-void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
+void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes) {
   GlbBuilder glb;
   std::vector<int> bodies(scene.lights.size());
   for (const ObjectRange& range : object_ranges(scene.soup)) {
@@ -253,7 +332,7 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
     if (scene.lights[i].radiance == glm::dvec3(0))  // its outline would come back as a surface that casts shadow
       notes.push_back(fmt::format("light \"{}\" is dark: glTF has no such lights; left out", scene.lights[i].name));
     else
-      add_light(scene.lights[i], glb, notes);
+      add_light(scene, scene.lights[i], glb, notes);
   }
   for (const AreaLight& light : scene.lights) {
     if (!light.texture) continue;
@@ -264,12 +343,12 @@ void write_glb(const Scene& scene, AtomicFile& file, Notes& notes) {
     glb.add_camera(camera, camera.aspect.value_or(static_cast<double>(scene.width) / scene.height));
   }
   for (const Object& object : scene.objects) {
-    if (object.lit_by)
-      notes.push_back(fmt::format("mesh \"{}\": glTF cannot say which lights light it; left out", object.name));
+    if (object.lit_by) losses.refuse("is lit by some lights alone, which glTF cannot say", object.name);
   }
-  for (const AreaLight& light : scene.lights) {
-    if (light.unshaded_by.empty()) continue;
-    notes.push_back(fmt::format("light \"{}\": glTF cannot say what casts its shadows; left out", light.name));
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const AreaLight& light = scene.lights[i];
+    if (!light.unshaded_by.empty() && !(bodies[i] == 0 && is_lamp(light) && is_shadeless(scene, light)))
+      losses.refuse("has shadows of some meshes alone, which glTF cannot say", light.name);
   }
   file.write(glb.finish());
 }

@@ -131,7 +131,7 @@ void write_mesh(const Scene& scene, const ObjectRange& range, TextStream& text) 
 
 }  // namespace
 
-void write_json(const Scene& scene, AtomicFile& file, Notes& notes) {
+void write_json(const Scene& scene, AtomicFile& file, Losses&, Notes& notes) {
   TextStream text(file);
   const auto size = picture_size(scene, scene.cameras.front());
   for (const Camera& camera : scene.cameras) {

@@ -2,7 +2,7 @@
 
 namespace penumbra::scenes {
 
-void write_obj(const Scene& scene, AtomicFile& file, Notes& notes) {
+void write_obj(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes) {
   TextStream text(file);
   text.print("# {}: {} triangles, world space, Y up\n", scene.name, scene.soup.triangles.size());
   for (const glm::dvec3& position : scene.soup.positions) text.print("v ").numbers(position, " ").print("\n");
@@ -14,6 +14,10 @@ void write_obj(const Scene& scene, AtomicFile& file, Notes& notes) {
     }
   }
   text.flush();
+  for (const Object& object : scene.objects) {
+    if (!object.casts_shadow || !object.receives_shadow || object.lit_by)
+      losses.mention("casts, receives or is lit otherwise than all else, of which OBJ says nothing", object.name);
+  }
   notes.push_back(
       fmt::format("OBJ holds no lights and cameras; left out: {} and {}", scene.lights.size(), scene.cameras.size()));
 }

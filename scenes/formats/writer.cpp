@@ -4,8 +4,6 @@
 #include "scenes/light_texture.hpp"
 #include "scenes/formats/writers.hpp"
 
-#include <fmt/ranges.h>
-
 #include <cmath>
 
 namespace penumbra::scenes {
@@ -62,31 +60,49 @@ void TextStream::flush() {
   buffer_.clear();
 }
 
-/// What no format that is written here has a place for.
-void note_looks(const Scene& scene, Notes& notes) {
-  std::vector<std::string> filled, pictured;
-  for (const Object& object : scene.objects) {
-    if (object.alpha.mode != Alpha::Mode::opaque) filled.push_back(fmt::format("\"{}\"", object.name));
-    if (object.picture) pictured.push_back(fmt::format("\"{}\"", object.name));
+/// Is there a value beside `plain` in this list of vertices' looks, by objects?
+template <typename Vector>
+std::vector<bool> objects_with(const Scene& scene, const std::vector<Vector>& looks, const Vector& plain) {
+  std::vector<bool> with(scene.objects.size());
+  for (std::size_t i = 0; !looks.empty() && i < scene.soup.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : scene.soup.triangles[i]) {
+      if (looks[vertex] != plain) with[scene.soup.object[i]] = true;
+    }
   }
-  if (!filled.empty())
-    notes.push_back(
-        fmt::format("alpha is left out: {} will be solid, and cast whole shadows", fmt::join(filled, ", ")));
-  if (!pictured.empty()) notes.push_back(fmt::format("pictures are left out: {}", fmt::join(pictured, ", ")));
-  if (!scene.looks.colors.empty()) notes.emplace_back("colours of vertices are left out");
+  return with;
 }
 
-std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file) {
+/// What a format without surfaces has no place for.
+void lose_looks(const Scene& scene, const std::string& extension, Losses& losses) {
+  const std::vector<bool> colored = objects_with(scene, scene.looks.colors, glm::vec4(1));
+  const std::vector<bool> smooth = objects_with(scene, scene.looks.normals, glm::vec3(0));
+  const std::string solid =
+      fmt::format("lets light through, for which {} has no place (.glb has): it would be solid", extension);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (object.alpha.mode != Alpha::Mode::opaque) losses.refuse(solid, object.name);
+    if (object.picture) losses.mention("has a picture, which is left out", object.name);
+    if (colored[i]) losses.mention("has colours of vertices, which are left out", object.name);
+    if (smooth[i])
+      losses.mention("has normals of vertices, which are left out: its shading will be by facets", object.name);
+  }
+}
+
+std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file,
+                                     const WriteOptions& options) {
   const std::string extension = file.extension().string();
-  void (*write)(const Scene&, AtomicFile&, Notes&) = extension == ".json"  ? write_json
-                                                     : extension == ".glb" ? write_glb
-                                                     : extension == ".obj" ? write_obj
-                                                                           : nullptr;
+  void (*write)(const Scene&, AtomicFile&, Losses&, Notes&) = extension == ".json"  ? write_json
+                                                              : extension == ".glb" ? write_glb
+                                                              : extension == ".obj" ? write_obj
+                                                                                    : nullptr;
   if (write == nullptr) throw UsageError("{}: a scene is written as .json, .glb or .obj", file.string());
   AtomicFile output(file);
+  Losses losses;
   Notes notes;
-  write(scene, output, notes);
-  note_looks(scene, notes);
+  if (extension != ".glb") lose_looks(scene, extension, losses);
+  if (!options.lenient) losses.throw_refused("writes");  // before much is written
+  write(scene, output, losses, notes);
+  if (!options.lenient) losses.throw_refused("writes");
   // The scene comes last: where it is, what it names is.
   for (std::size_t i = 0; extension == ".json" && i < scene.lights.size(); ++i) {
     if (scene.lights[i].texture) write_texture(*scene.lights[i].texture, texture_file(file, i));
@@ -94,8 +110,8 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
   if (scene.motion)
     notes.push_back(fmt::format("its animation from {} s to {} s is left out; it is written as it rests",
                                 scene.motion->first, scene.motion->last));
-  if (!scene.looks.normals.empty()) notes.emplace_back("normals of vertices are left out: shading will be by facets");
   output.commit();
+  losses.warn(notes);
   return notes;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/atomic_file.hpp"
+#include "scenes/losses.hpp"
 #include "scenes/scene.hpp"
 
 #include <fmt/format.h>
@@ -18,9 +19,10 @@ namespace penumbra::scenes {
 
 using Notes = std::vector<std::string>;
 
-void write_json(const Scene& scene, AtomicFile& file, Notes& notes);
-void write_glb(const Scene& scene, AtomicFile& file, Notes& notes);
-void write_obj(const Scene& scene, AtomicFile& file, Notes& notes);
+/// What each format cannot hold: of objects and lights as losses, of all else in words.
+void write_json(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
+void write_glb(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
+void write_obj(const Scene& scene, AtomicFile& file, Losses& losses, Notes& notes);
 
 /// Where write_scene puts the texture of a light of the scene in `file`: "room.json" → "room-light0.exr".
 std::filesystem::path texture_file(const std::filesystem::path& file, std::size_t light);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 namespace penumbra::tests {
 namespace {
@@ -351,12 +352,42 @@ TEST_F(AlphaSurfaces, InspectListsWhatTheSceneHas) {
   EXPECT_EQ(scene.at("animation").at("last"), 2);
 }
 
-TEST_F(AlphaSurfaces, ConversionSaysWhatItFills) {
+/// A card with holes and a pane that only its vertices make translucent, of another colour in each corner.
+TEST_F(AlphaSurfaces, ConversionKeepsAlphaOrRefuses) {
   half_a_card();
-  write("scene.glb", gltf.glb());
-  const Outcome outcome = run({"convert", path("scene.glb"), "-o", path("copy.json")});
-  EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("alpha is left out: \"Card\""), HasSubstr("pictures are left out")));
+  gltf.document["textures"][0]["sampler"] = 0;
+  gltf.document["samplers"] = {{{"magFilter", 9728}, {"wrapS", 33071}, {"wrapT", 33648}}};
+  json pane = gltf.at("/meshes/3");
+  pane["primitives"][0]["material"] = 3;
+  pane["primitives"][0]["attributes"]["COLOR_0"] =
+      gltf.add_floats("VEC4", {1, 0.5, 0, 0.25, 0, 1, 0, 0.5, 0, 0.25, 1, 0.75, 1, 1, 1, 1});
+  gltf.at("/meshes").push_back(pane);
+  gltf.at("/materials")
+      .push_back({{"name", "Glass"}, {"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+  gltf.at("/nodes").push_back({{"name", "Pane"}, {"mesh", 4}, {"translation", {0.5, 1, 0.5}}});
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+  const std::vector<std::string> few = {"--light-samples", "16"};
+  ASSERT_EQ(render(few).code, 0);
+  const Outcome kept = run({"convert", path("scene.glb"), "-o", path("copy.glb")});
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(kept.err, AllOf(Not(HasSubstr("Card")), Not(HasSubstr("Pane"))));
+  ASSERT_EQ(run({"render", path("copy.glb"), "-o", path("copy.exr"), "--size", "33x21", "--light-samples", "16"}).code,
+            0);
+  const ExrFile seen = picture(), copy = picture("copy.exr");
+  for (const char* channel : {"R", "G", "B", "A", "V", "Z"})
+    EXPECT_EQ(copy.floats.at(channel), seen.floats.at(channel)) << channel;
+
+  for (const char* name : {"copy.json", "copy.obj"}) {
+    const Outcome refused = run({"convert", path("scene.glb"), "-o", path(name)});
+    EXPECT_EQ(refused.code, 3);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("'Card', 'Pane' lets light through"), HasSubstr("--lenient writes")));
+    EXPECT_FALSE(std::filesystem::exists(path(name)));
+    const Outcome lenient = run({"convert", path("scene.glb"), "--lenient", "-o", path(name)});
+    EXPECT_EQ(lenient.code, 0);
+    EXPECT_THAT(lenient.err, AllOf(HasSubstr("'Card', 'Pane' lets light through"), HasSubstr("'Card' has a picture"),
+                                   HasSubstr("'Pane' has colours of vertices")));
+    EXPECT_TRUE(std::filesystem::exists(path(name)));
+  }
 }
 
 }  // namespace

@@ -247,11 +247,16 @@ TEST_F(Frames, MeansAreOfWholeSquaresAndOfNoBits) {
     more.insert(more.end(), {"-o", path("x.exr")});
     return render(more).code;
   };
-  for (const char* wrong : {"0", "3", "65", "x"}) EXPECT_EQ(code({"--pixel-samples", wrong}), 2) << wrong;
+  for (const char* wrong : {"0", "-4", "65", "x"}) EXPECT_EQ(code({"--pixel-samples", wrong}), 2) << wrong;
   EXPECT_EQ(code({"--pixel-samples", "4", "--bits", path("x.bits")}), 2);
   EXPECT_EQ(code({"--motion-samples", "4"}), 2) << "of no frame";
   EXPECT_EQ(code({"--frame", "1", "--motion-samples", "0"}), 2);
   EXPECT_EQ(code({"--frame", "1", "--motion-samples", "2", "--shutter", "-1"}), 2);
+  const Outcome rounded = render({"--pixel-samples", "3", "-o", path("three.exr")});
+  EXPECT_EQ(rounded.code, 0);
+  EXPECT_THAT(rounded.err, HasSubstr("--pixel-samples 3: 4, the next square number"));
+  EXPECT_THAT(render({"--pixel-samples", "4", "-o", path("four.exr")}).err, Not(HasSubstr("square")));
+  EXPECT_EQ(read_exr(path("three.exr")).floats, read_exr(path("four.exr")).floats);
 }
 
 TEST_F(Frames, OfAllCameras) {

@@ -164,8 +164,9 @@ TEST(ObjWriter, TrianglesInOrderUnderTheirObjects) {
   const TemporaryFolder folder;
   const Scene scene = read_text(kEverything);
   const auto notes = write_scene(scene, folder / "scene.obj");
-  ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("OBJ holds no lights and cameras; left out: 8 and 2"), std::string::npos);
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_NE(notes[0].find("of which OBJ says nothing"), std::string::npos);
+  EXPECT_NE(notes[1].find("OBJ holds no lights and cameras; left out: 8 and 2"), std::string::npos);
   std::istringstream lines(read_file(folder / "scene.obj"));
   std::vector<glm::dvec3> positions;
   std::vector<std::string> objects;
@@ -232,12 +233,17 @@ TEST(GlbWriter, ReadsBackInSinglePrecision) {
 
 TEST(GlbWriter, SaysWhatGltfCannotHold) {
   const TemporaryFolder folder;
-  const auto notes = write_scene(read_text(kEverything), folder / "scene.glb");
+  const char* const linked = "is lit by some lights alone, which glTF cannot say";
+  const char* const shading = "'bulb' has shadows of some meshes alone, which glTF cannot say";
+  for (const char* message : {linked, shading, "--lenient writes all the same"})
+    expect_error(ExitCode::input, message, [&] { write_scene(read_text(kEverything), folder / "scene.glb"); });
+  EXPECT_TRUE(folder.names().empty());
+  const auto notes = write_scene(read_text(kEverything), folder / "scene.glb", {.lenient = true});
   ASSERT_EQ(notes.size(), 4u);
-  EXPECT_NE(notes[0].find("light \"rim\": glTF has no round lights; written with 64 sides"), std::string::npos);
-  EXPECT_NE(notes[1].find("light \"oval\": glTF has no round lights; written with 64 sides"), std::string::npos);
-  EXPECT_NE(notes[2].find("glTF cannot say which lights light it"), std::string::npos);
-  EXPECT_NE(notes[3].find("light \"bulb\": glTF cannot say what casts its shadows"), std::string::npos);
+  EXPECT_NE(notes[0].find(linked), std::string::npos);
+  EXPECT_NE(notes[1].find(shading), std::string::npos);
+  EXPECT_NE(notes[2].find("light \"rim\": glTF has no round lights; written with 64 sides"), std::string::npos);
+  EXPECT_NE(notes[3].find("light \"oval\": glTF has no round lights; written with 64 sides"), std::string::npos);
   const Scene again = read_scene(folder / "scene.glb");
   for (const scenes::Object& object : read_text(kEverything).objects) {
     const auto same = std::ranges::find(again.objects, object.name, &scenes::Object::name);
@@ -284,7 +290,7 @@ TEST(GlbWriter, DarkLightsLeaveNoGeometry) {
       scene.lights, [](const auto& light) { return std::holds_alternative<scenes::Rectangle>(light.shape); });
   ASSERT_NE(dark, scene.lights.end());
   dark->radiance = glm::dvec3(0);
-  const auto notes = write_scene(scene, folder / "scene.glb");
+  const auto notes = write_scene(scene, folder / "scene.glb", {.lenient = true});
   EXPECT_TRUE(std::ranges::any_of(notes, [](const auto& note) { return note.find("is dark") != note.npos; }));
   const Scene again = read_scene(folder / "scene.glb");
   EXPECT_EQ(again.lights.size(), scene.lights.size() - 1);
@@ -294,8 +300,10 @@ TEST(GlbWriter, DarkLightsLeaveNoGeometry) {
 /// Suns, spheres and spots are lamps of KHR_lights_punctual, with their sizes as extras.
 TEST(GlbWriter, LampsReadBack) {
   const TemporaryFolder folder;
-  const Scene scene = read_text(kEverything);
-  write_scene(scene, folder / "scene.glb");
+  Scene scene = read_text(kEverything);
+  const auto spot = std::ranges::find(scene.lights, "spot", &scenes::AreaLight::name);
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) spot->unshaded_by.push_back(i);
+  write_scene(scene, folder / "scene.glb", {.lenient = true});
   const Scene again = read_scene(folder / "scene.glb");
   int lamps = 0;
   for (const auto& light : scene.lights) {
@@ -325,7 +333,59 @@ TEST(GlbWriter, LampsReadBack) {
     EXPECT_LT(glm::distance(same->radiance, light.radiance), 1e-12 * glm::length(light.radiance)) << light.name;
   }
   EXPECT_EQ(lamps, 4);
+  for (const auto& light : again.lights)
+    EXPECT_EQ(light.unshaded_by.size(), light.name == "spot" ? 4 : 0) << light.name;
   EXPECT_EQ(again.cameras.at(1).shift, scene.cameras.at(1).shift);
+}
+
+/// Pictures, alpha, colours and normals, to the last bit where they are float32.
+TEST(GlbWriter, SurfacesReadBack) {
+  const TemporaryFolder folder;
+  Scene scene = read_text(kEverything);
+  std::erase_if(scene.lights, [](const auto& light) { return !light.unshaded_by.empty(); });
+  for (scenes::Object& object : scene.objects) object.lit_by.reset();
+  using Wrap = scenes::PictureUse::Wrap;
+  scene.pictures = {{"leaf", 2, 3, {}}, {"wall", 1, 1, {{1, 2, 3, 200}}}};
+  for (std::uint8_t i = 0; i < 6; ++i)
+    scene.pictures[0].texels.push_back({i, static_cast<std::uint8_t>(40 * i), 255, static_cast<std::uint8_t>(50 * i)});
+  scene.objects[0].picture = {0, Wrap::mirror, Wrap::clamp, true};
+  scene.objects[0].alpha = {scenes::Alpha::Mode::mask, 0.9, 0.3};
+  scene.objects[1].picture = {1, Wrap::repeat, Wrap::mirror, false};
+  scene.objects[1].alpha = {scenes::Alpha::Mode::blend, 0.7, 0.5};
+  scene.objects[2].picture = {0, Wrap::repeat, Wrap::repeat, false};
+  scene.objects[2].material = "Boards";
+  const std::size_t count = scene.soup.positions.size();
+  scene.looks.normals.assign(count, glm::vec3(0));
+  scene.looks.colors.assign(count, glm::vec4(1));
+  scene.looks.places.assign(count, glm::dvec2(0));
+  for (std::size_t i = 0; i < scene.soup.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : scene.soup.triangles[i]) {
+      const float number = static_cast<float>(vertex % 64) / 64;
+      if (scene.soup.object[i] == 0) scene.looks.normals[vertex] = {0, 0.6F, -0.8F};
+      if (scene.soup.object[i] == 1) scene.looks.colors[vertex] = {number, 1 - number, 0.5F, 1 - number / 2};
+      if (scene.soup.object[i] < 3) scene.looks.places[vertex] = {3 * number - 1, -number};
+    }
+  }
+  EXPECT_EQ(write_scene(scene, folder / "scene.glb").size(), 2u) << "lights with 64 sides";
+  const Scene again = read_scene(folder / "scene.glb");
+  EXPECT_EQ(again.pictures, scene.pictures);
+  ASSERT_EQ(again.objects.size(), scene.objects.size());
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    EXPECT_EQ(again.objects[i].picture, scene.objects[i].picture) << i;
+    EXPECT_EQ(again.objects[i].alpha, scene.objects[i].alpha) << i;
+  }
+  EXPECT_EQ(again.objects[2].material, "Boards");
+  ASSERT_EQ(again.soup.triangles.size(), scene.soup.triangles.size());
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < scene.soup.triangles.size(); ++i) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t a = scene.soup.triangles[i][corner], b = again.soup.triangles[i][corner];
+      differing += scene.looks.colors[a] != again.looks.colors[b];
+      differing += scene.looks.places[a] != again.looks.places[b];
+      differing += glm::distance(scene.looks.normals[a], again.looks.normals[b]) > 1e-6F;
+    }
+  }
+  EXPECT_EQ(differing, 0u);
 }
 
 TEST(Writer, KeepsCamerasShapesAndSaysWhatIsLost) {
@@ -348,10 +408,10 @@ TEST(Writer, KeepsCamerasShapesAndSaysWhatIsLost) {
   scene.looks.normals.assign(scene.soup.positions.size(), glm::vec3(0, 1, 0));
   const auto notes = write_scene(scene, folder / "scene.json");
   ASSERT_EQ(notes.size(), 3u);
-  EXPECT_NE(notes[0].find("camera \"upright\""), std::string::npos);
-  EXPECT_NE(notes[0].find("256x512"), std::string::npos);
-  EXPECT_NE(notes[1].find("animation from 1 s to 3 s"), std::string::npos);
-  EXPECT_NE(notes[2].find("normals of vertices"), std::string::npos);
+  EXPECT_NE(notes[0].find("normals of vertices"), std::string::npos);
+  EXPECT_NE(notes[1].find("camera \"upright\""), std::string::npos);
+  EXPECT_NE(notes[1].find("256x512"), std::string::npos);
+  EXPECT_NE(notes[2].find("animation from 1 s to 3 s"), std::string::npos);
 }
 
 TEST(Writer, RefusesOtherFormatsAndLeavesNothingBehind) {

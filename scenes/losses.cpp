@@ -1,4 +1,4 @@
-#include "import/gltf/gltf_losses.hpp"
+#include "scenes/losses.hpp"
 
 #include "base/error.hpp"
 
@@ -25,11 +25,11 @@ void Losses::warn_of_refused(std::vector<std::string>& warnings) const {
   for (const Loss& loss : refused_) warnings.push_back(text_of(loss));
 }
 
-void Losses::throw_refused() const {
+void Losses::throw_refused(const char* lenient) const {
   if (refused_.empty()) return;
   std::string all;
   for (const Loss& loss : refused_) all += (all.empty() ? "" : "; ") + text_of(loss);
-  throw InputError("{}. Shadows would be wrong: --lenient renders all the same, and warns", all);
+  throw InputError("{}. Shadows would be wrong: --lenient {} all the same, and warns", all, lenient);
 }
 
 void Losses::warn(std::vector<std::string>& warnings) const {

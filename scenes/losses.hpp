@@ -6,7 +6,7 @@
 
 namespace penumbra::scenes {
 
-/// What a file has and the scene will not, with the names of the objects that it is about.
+/// What a file has and the scene will not, or the other way round, with the names of the objects that it is about.
 class Losses {
  public:
   /// It changes a shadow, or takes one away: refused unless the user is lenient. `what` follows the names.
@@ -17,8 +17,9 @@ class Losses {
   /// Warnings of what is refused elsewhere, alone: how a surface looks is nobody's concern here.
   void warn_of_refused(std::vector<std::string>& warnings) const;
 
-  /// Throws InputError with all that is refused, if anything is.
-  void throw_refused() const;
+  /// Throws InputError with all that is refused, if anything is. `lenient`: what the command does all the same if
+  /// asked.
+  void throw_refused(const char* lenient = "renders") const;
   /// Warnings of everything, before those that are there. What matters more comes first.
   void warn(std::vector<std::string>& warnings) const;
 
