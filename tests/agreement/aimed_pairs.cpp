@@ -17,14 +17,15 @@ using tests::Aim;
 
 class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<std::tuple<Aim, tests::MaskMethod>> {
  protected:
-  static void look(std::uint32_t first, std::uint32_t count) {
+  static void look(std::uint32_t first, std::uint32_t count,
+                   const visibility::SampleRequest& request = tests::AimedScene::kInRows) {
     const auto& [aim, under_test] = GetParam();
     const auto method = under_test.make(device(), {});
     tests::PairCounts counts;
     std::uint64_t open = 0;
     double used = 0;
     for (std::uint32_t seed = first; seed < first + count && !HasFailure(); ++seed) {
-      const tests::AimedScene scene(aim, seed);
+      const tests::AimedScene scene(aim, seed, request);
       used = std::max(used, scene.used);
       const visibility::Light light = under_test.no_rows ? tests::scattered(scene.light, false) : scene.light;
       const tests::Masks masks = tests::run(*method, scene.floats, light, scene.samples);
@@ -59,6 +60,15 @@ TEST_P(AimedPairs, EveryPairIsTheExactDecision) {
 TEST_P(AimedPairs, ThousandsFull) {
   for (std::uint32_t first = 1000; first < 4000 && !HasFailure(); first += 500) look(first, 500);
 }
+/// Light samples above one another, at the sides of tiles, where rows have several tiles each.
+using AimedTiles = AimedPairs;
+TEST_P(AimedTiles, EveryPairIsTheExactDecision) {
+  look(0, 12, {400, 20, 20, visibility::SamplePattern::grid, 0});
+}
+TEST_P(AimedTiles, ThousandsFull) {
+  for (std::uint32_t first = 1000; first < 2000 && !HasFailure(); first += 100)
+    look(first, 100, {1024, 32, 32, visibility::SamplePattern::grid, 0});
+}
 std::string name_of_aim(const testing::TestParamInfo<std::tuple<Aim, tests::MaskMethod>>& info) {
   return fmt::format("{}_{}", std::get<1>(info.param).name, name_of(std::get<0>(info.param)));
 }
@@ -68,6 +78,12 @@ INSTANTIATE_TEST_SUITE_P(At, AimedPairs,
 INSTANTIATE_TEST_SUITE_P(Searched, AimedPairs,
                          testing::Combine(testing::Values(Aim::beside),
                                           testing::Values(tests::kEdgeScatter, tests::kEdgeScatterPoints)),
+                         name_of_aim);
+
+INSTANTIATE_TEST_SUITE_P(At, AimedTiles,
+                         testing::Combine(testing::Values(Aim::edge, Aim::aligned, Aim::corner, Aim::left, Aim::vertex,
+                                                          Aim::row, Aim::sliver, Aim::grazing),
+                                          testing::Values(tests::kEdgeScatterPoints, tests::kNativeEdgeScatterPoints)),
                          name_of_aim);
 
 }  // namespace

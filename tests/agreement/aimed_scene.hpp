@@ -26,6 +26,7 @@ namespace penumbra::tests {
 /// What of a triangle passes a pair's segment, or what else the segment comes near.
 enum class Aim : std::uint8_t {
   edge,     ///< an edge through the light sample, as seen from p
+  aligned,  ///< the same, along one of the light's sides
   corner,   ///< an edge through the light's corner, where rows and columns begin
   left,     ///< an edge through the light's left side, at the height of a light sample
   vertex,   ///< a vertex on the light sample
@@ -48,15 +49,18 @@ inline double planted_cut(Aim aim) {
   return aim == Aim::det ? 1.0 / 256 : 0.01;
 }
 inline std::string name_of(Aim aim) {
-  static constexpr std::array kNames{"edge",    "corner",  "left", "vertex", "row",    "sliver",
-                                     "grazing", "horizon", "side", "det",    "needle", "beside"};
+  static constexpr std::array kNames{"edge",    "aligned", "corner", "left", "vertex", "row",   "sliver",
+                                     "grazing", "horizon", "side",   "det",  "needle", "beside"};
   return kNames.at(static_cast<std::size_t>(aim));
 }
 
 class AimedScene {
  public:
-  /// 64 view samples, as many light samples in rows.
-  AimedScene(Aim aim, std::uint32_t seed) : aim_(aim), random_(seed) {
+  static constexpr visibility::SampleRequest kInRows{64, 8, 8, visibility::SamplePattern::rows, 0};
+
+  /// 64 view samples; as many light samples in rows, or those that are asked for.
+  AimedScene(Aim aim, std::uint32_t seed, const visibility::SampleRequest& request = kInRows)
+      : aim_(aim), random_(seed) {
     scenes::Scene scene;
     // Keeps the origin of scene floats at zero, whatever is added.
     add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}}).casts_shadow = false;
@@ -74,7 +78,6 @@ class AimedScene {
                      light_v = glm::normalize(glm::dvec3(beside(0.5), beside(0.5), 1));
     scene.lights.push_back(rectangle_light(middle + over, size * light_u, size * light_v));
     std::vector<Corners> floor = quad(middle, u, v);
-    const visibility::SampleRequest request{64, 8, 8, visibility::SamplePattern::rows, 0};
     light = visibility::make_light(scene, 0, visibility::make_scene_floats(scene).origin, request);
     frame_ = visibility::make_device_light(light, 1);
 
@@ -150,7 +153,9 @@ class AimedScene {
     double size = share * light_size * (random_() % 8 == 0 ? 4 : std::exp2(-0.5 - 2.5 * positive()));
     // An edge that passes the corner matters most if no light row crosses it: half a cell is an eighth of the light.
     if (aim_ == Aim::corner && random_() % 2 == 0) size /= 16;
-    const glm::dvec3 at = p + share * way, e = glm::normalize(vector()), f = glm::normalize(vector());
+    const glm::dvec3 at = p + share * way,
+                     e = aim_ == Aim::aligned ? glm::normalize(random_() % 2 == 0 ? u : v) : glm::normalize(vector()),
+                     f = glm::normalize(vector());
     switch (aim_) {
       case Aim::vertex:
       case Aim::row:

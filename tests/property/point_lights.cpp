@@ -13,7 +13,9 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -157,6 +159,42 @@ TEST_P(PointCounts, AnyNumberOfLightSamples) {
     EXPECT_EQ(masks.words, again.words) << count;
     EXPECT_EQ(masks.visibility, again.visibility) << count;
   }
+}
+/// Outlines of edges shorter than a tile, as dense meshes have, of which some are beside all light samples: in a corner
+/// of the rectangle around a disk, where ways to tiles come by. Against another method that promises every bit.
+TEST_P(PointCounts, ShortEdges) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> real(-1, 1);
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}));
+  std::vector<tests::Corners> soup;
+  for (int fan = 0; fan < 8; ++fan) {
+    constexpr int kEdges = 200;
+    const glm::dvec3 middle(0.8 * real(random), 1 + 0.5 * real(random), 0.8 * real(random));
+    const auto rim = [&](int i) {
+      const double angle = 2 * std::numbers::pi * i / kEdges, radius = 0.25 + 0.05 * std::cos(7 * angle + fan);
+      return middle + radius * glm::dvec3(std::cos(angle), 0.2 * std::sin(angle), std::sin(angle));
+    };
+    for (int i = 0; i < kEdges; ++i) soup.push_back({middle, rim(i), rim(i + 1)});
+  }
+  tests::add_object(scene, "fans", soup);
+  scene.lights.push_back(tests::rectangle_light({0.2, 3, 0.1}, {1, 0.2, 0}, {0, -0.1, 0.8}));
+  scene.cameras.push_back(tests::camera({0, 2.5, 4}, {0, 0, 0}));
+  const auto& [kind, engine] = GetParam();
+  visibility::SampleRequest request;
+  tests::reshape(scene.lights[0], kind, request, random, 1);
+  request.count = std::max(request.count, 4096U);
+  const tests::Stage stage(scene, 64, 48, request);
+  const tests::Masks masks = tests::run(*engine.make(device(), {}), stage),
+                     others = tests::run(*tests::kNativeViewSample.make(device(), {}), stage);
+  std::size_t partly = 0, differing = 0;
+  for (std::size_t i = 0; i < stage.samples.size(); ++i) {
+    const std::uint32_t count = masks.visible_count(i);
+    partly += count > 0 && count < stage.light.sample_count() ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < masks.words.size(); ++i) differing += masks.words[i] != others.words[i] ? 1 : 0;
+  EXPECT_EQ(differing, 0U) << "words of masks";
+  EXPECT_GT(partly, 500U);
 }
 INSTANTIATE_TEST_SUITE_P(Under, PointCounts,
                          testing::Combine(testing::ValuesIn(tests::kPointLights), testing::ValuesIn(kEngines)),

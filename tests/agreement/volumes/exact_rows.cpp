@@ -64,6 +64,41 @@ TEST_F(ExactRows, LatticeSoups) {
   EXPECT_GT(found.partly, found.pixels / 20);
 }
 
+/// An edge through the origin, and view samples so near to it that double, too, has the edge pass through them: on
+/// which side it passes, and whether before the light, exact predicates alone know.
+TEST_F(ExactRows, EdgesThroughP) {
+  Found found;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> real(-1, 1);
+    const auto vector = [&] { return glm::dvec3(glm::vec3(real(random), real(random), real(random))); };
+    const auto scale = [&](std::uint32_t most) { return std::ldexp(1.0, -static_cast<int>(random() % most)); };
+    scenes::Scene scene;
+    // Keeps the origin of scene floats at zero, whatever is added.
+    scenes::Object& anchor =
+        tests::add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}});
+    anchor.casts_shadow = anchor.receives_shadow = false;
+    const glm::dvec3 u(1, 0.2 * real(random), 0.2 * real(random)), v(0.2 * real(random), 0.2 * real(random), -1);
+    tests::add_object(scene, "floor", tests::quad({0, 0, 0}, u, v));
+    const glm::dvec3 along = vector();
+    tests::add_object(scene, "caster", {{scale(6) * along, -scale(6) * along, vector()}});
+    scene.lights.push_back(tests::rectangle_light(glm::dvec3(0, 3, 0) + vector(), {1, 0, 0.1}, {-0.1, 0.2, 1}));
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    ASSERT_EQ(floats.origin, glm::dvec3(0));
+    ViewSamples samples = tests::samples_on_triangles(floats, 4, 4, random, 1U);
+    for (glm::vec3& p : samples.p) p = glm::vec3(0x1p-50 * scale(20) * vector());
+    const Light light = visibility::make_light(scene, 0, floats.origin, {});
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    compare(floats, light, samples, kTolerance, found);
+  }
+  fmt::print("{} view samples, {} partly lit, {} unproven, off by {:.1e} at most\n", found.pixels, found.partly,
+             found.unproven, found.largest);
+  EXPECT_EQ(found.wrong, 0U);
+  EXPECT_EQ(found.wrong_form_factors, 0U);
+  EXPECT_GT(found.partly, found.pixels / 20);
+  EXPECT_GT(found.unproven, found.pixels / 20);
+}
+
 /// Lamps for which the answer was once wrong: black where the light is visible, or off by a few millionths.
 class ExactRowsOfLamps : public ExactRows, public testing::WithParamInterface<const char*> {};
 
