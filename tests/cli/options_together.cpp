@@ -50,12 +50,13 @@ class OptionsTogether : public ProgramTest {
     for (const char* flag : {"bits", "png", "stats", "verbose"}) factors_.push_back({flag, {"", kOn}});
   }
 
-  /// `group_of` says in which group a factor of this name is (Factor::group).
+  /// `group_of` says in which group a factor of this name is (Factor::group), `default_by_name` what values_to_try
+  /// does.
   void add_options_of(const json& method, std::optional<std::pair<std::size_t, std::size_t>> only_if,
-                      const std::function<std::string(const std::string& factor)>& group_of) {
+                      const std::function<std::string(const std::string& factor)>& group_of, bool default_by_name) {
     for (const json& option : method.at("options")) {
       const std::string factor = method.at("name").get<std::string>() + "." + option.at("name").get<std::string>();
-      factors_.push_back({factor, values_to_try(option), only_if, group_of(factor)});
+      factors_.push_back({factor, values_to_try(option, default_by_name), only_if, group_of(factor)});
     }
   }
 
@@ -125,7 +126,7 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
     const std::size_t of_method = factors_.size() - 1;
     const auto group_of = [&](const std::string& factor) { return strength == 2 ? factor : std::string(); };
     for (std::size_t i = 0; i < table_.all().size(); ++i) {
-      add_options_of(table_.all()[i], {{of_method, i + 1}}, group_of);
+      add_options_of(table_.all()[i], {{of_method, i + 1}}, group_of, true);
     }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
     const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
@@ -199,7 +200,8 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
       const std::string name = method.at("name");
       std::string group = strength == 2 ? name : "";
       if (!group.empty()) factors_.push_back({name, {kOn}, {}, group});
-      add_options_of(method, {}, [&](const std::string& /*factor*/) -> const std::string& { return group; });
+      add_options_of(
+          method, {}, [&](const std::string& /*factor*/) -> const std::string& { return group; }, strength > 2);
     }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
     const std::vector<Choices> rows = covering_array(factors_, strength, allowed);

@@ -46,8 +46,9 @@ class Row {
   std::map<std::string, std::string> values_;
 };
 
-/// The values that are tried for an option of a method, from its description.
-std::vector<std::string> values_to_try(const nlohmann::json& option);
+/// The values that are tried for an option of a method, from its description; "" stands for an option not given. The
+/// default is given by its name, too, if `default_by_name`.
+std::vector<std::string> values_to_try(const nlohmann::json& option, bool default_by_name);
 
 /// Do these options of a method exclude one another, or the other choices? Only as far as its page says so.
 bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,

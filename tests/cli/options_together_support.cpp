@@ -127,9 +127,10 @@ const std::string& Row::operator[](const std::string& factor) const {
   return found == values_.end() ? none : found->second;
 }
 
-std::vector<std::string> values_to_try(const json& option) {
+std::vector<std::string> values_to_try(const json& option, bool default_by_name) {
   if (option.contains("choices")) {
     std::vector<std::string> values = option.at("choices");
+    if (!default_by_name) std::erase(values, option.at("default").get<std::string>());
     values.insert(values.begin(), "");  // not given
     return values;
   }
