@@ -16,7 +16,6 @@ namespace penumbra::mesh {
 namespace {
 
 using testing::ElementsAre;
-using testing::IsEmpty;
 
 /// A tetrahedron over (0,0,0), (4,0,0), (0,4,0) whose base is cut in two at `cut` on the edge of y = 0; its side is
 /// not.
