@@ -8,6 +8,7 @@
 #include "visibility/receivers.hpp"
 
 #include <CGAL/MP_Float.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -55,9 +56,29 @@ bool sphere_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, c
   return facing * glm::dot(normal, glm::dvec3(light.center) - a) > light.radius * glm::length(normal);
 }
 
+/// n · d, n = (b − a) × (c − a), and a bound of what it is off by: two differences, their products, the differences of
+/// those, three products more and two sums are off by no more than 8 · 2⁻⁵³ of all terms without their signs; twice
+/// that.
+struct Height {
+  double value, error;
+};
+Height height_along(const std::array<glm::vec3, 3>& carrier, const glm::vec3& d) {
+  const glm::dvec3 a = carrier[0], b = glm::dvec3(carrier[1]) - a, c = glm::dvec3(carrier[2]) - a;
+  const glm::dvec3 wide_b = glm::abs(b), wide_c = glm::abs(c), wide_d = glm::abs(glm::dvec3(d));
+  const glm::dvec3 terms(wide_b.y * wide_c.z + wide_b.z * wide_c.y, wide_b.z * wide_c.x + wide_b.x * wide_c.z,
+                         wide_b.x * wide_c.y + wide_b.y * wide_c.x);
+  return {glm::dot(glm::cross(b, c), glm::dvec3(d)), 16 * 0x1p-53 * glm::dot(terms, wide_d)};
+}
+
 /// The cone of a sun as a whole strictly above the carrier's plane: n · c > tan |(n · u, n · v)|, exactly, for what is
 /// stored.
 bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, const Light& light) {
+  const Height over = height_along(carrier, light.center), to_u = height_along(carrier, light.sun->axis_u),
+               to_v = height_along(carrier, light.sun->axis_v);
+  const double far = light.sun->tangent * std::hypot(to_u.value, to_v.value), above = facing * over.value - far;
+  const double error =
+      over.error + light.sun->tangent * (to_u.error + to_v.error) + 8 * 0x1p-53 * (std::abs(over.value) + far);
+  if (std::abs(above) > error) return above > 0;
   using Number = CGAL::MP_Float;
   const auto along = [&](const glm::vec3& d) {  // det(b − a, c − a, d)
     const auto edge = [&](std::size_t corner, int axis) {

@@ -5,11 +5,14 @@
 #include "visibility/lights/horizon.hpp"
 #include "visibility/pair_truth.hpp"
 
+#include <CGAL/MP_Float.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <random>
 
 namespace penumbra::visibility {
@@ -160,6 +163,51 @@ TEST(Classify, AllOfASunsConeIsAboveOrNot) {
   EXPECT_EQ(class_under(20, 0), PixelClass::judged);
   EXPECT_EQ(class_under(-20, 0), PixelClass::horizon);
   EXPECT_EQ(class_under(0, 0), PixelClass::horizon) << "along the plane is not strictly above it";
+}
+
+/// Suns that touch the carrier's plane within some units in the last place of their width: double knows of few of them.
+TEST(Classify, ASunsConeWithinRoundingOfThePlane) {
+  using Number = CGAL::MP_Float;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> real(-1, 1);
+  const auto vector = [&] { return glm::vec3(real(random), real(random), real(random)); };
+  std::size_t above = 0, not_above = 0;
+  for (int round = 0; round < 300; ++round) {
+    scenes::Scene scene;
+    tests::add_object(scene, "triangle", {{glm::dvec3(vector()), glm::dvec3(vector()), glm::dvec3(vector())}});
+    scene.lights.emplace_back().shape = scenes::Sun{glm::dvec3(vector()), 30};
+    const SceneFloats floats = make_scene_floats(scene);
+    Light light = make_light(scene, 0, floats.origin, {});
+    const auto corners = floats.corners(0);
+    const auto height = [&](const glm::vec3& d) {
+      std::array<Number, 3> e, f;
+      for (int i = 0; i < 3; ++i) {
+        e[static_cast<std::size_t>(i)] = Number(corners[1][i]) - Number(corners[0][i]);
+        f[static_cast<std::size_t>(i)] = Number(corners[2][i]) - Number(corners[0][i]);
+      }
+      return (e[1] * f[2] - e[2] * f[1]) * Number(d.x) + (e[2] * f[0] - e[0] * f[2]) * Number(d.y) +
+             (e[0] * f[1] - e[1] * f[0]) * Number(d.z);
+    };
+    const Number m = height(light.center), u = height(light.sun->axis_u), v = height(light.sun->axis_v);
+    ViewSamples samples;
+    samples.width = samples.height = 1;
+    samples.triangle = {0};
+    samples.p = {corners[0]};
+    samples.n = {glm::vec3(0, 1, 0)};
+    samples.depth = {1};
+    samples.facing = {static_cast<std::int8_t>(CGAL::sign(m) == CGAL::POSITIVE ? 1 : -1)};
+    const double touching = std::abs(CGAL::to_double(m)) / std::hypot(CGAL::to_double(u), CGAL::to_double(v));
+    for (int units = -20; units <= 20; ++units) {
+      light.sun->tangent = touching * (1 + units * 0x1p-52);
+      const Number t(light.sun->tangent);
+      const bool exact = CGAL::sign(m * m - t * t * (u * u + v * v)) == CGAL::POSITIVE;
+      ++(exact ? above : not_above);
+      EXPECT_EQ(classify_pixels(floats, samples, light)[0], exact ? PixelClass::judged : PixelClass::horizon)
+          << "round " << round << ", " << units << " units";
+    }
+  }
+  EXPECT_GT(above, 5000U);
+  EXPECT_GT(not_above, 5000U);
 }
 
 TEST(Horizon, BulkAnswersAreTheExactOnes) {
