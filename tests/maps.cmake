@@ -11,6 +11,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/identities.cpp
   analytic/maps/layers.cpp
   analytic/maps/left_out.cpp
+  analytic/maps/light_identities.cpp
   analytic/maps/light_tree.cpp
   analytic/maps/list_bounds.cpp
   analytic/maps/lists.cpp

@@ -21,6 +21,33 @@ std::vector<std::string> light_names(const MethodDescription& method) {
   return names;
 }
 
+/// What one option makes of a method, where that is not what it is by default.
+struct Variant {
+  std::string option, value;
+  MethodDescription method;
+};
+
+/// Each option by itself, at all of its choices; of a number the first that matters of the least two and the most.
+std::vector<Variant> variants_of(const MethodDescription& method) {
+  std::vector<Variant> variants;
+  for (const OptionDescription& option : method.options) {
+    std::vector<std::string> values = option.choices;
+    if (values.empty() && option.whole) {
+      for (const double value : {option.least, option.least + 1, option.most})
+        values.push_back(fmt::format("{}", value));
+    }
+    for (const std::string& value : values) {
+      MethodDescription with = describe_method(method.name, {{option.name, value}});
+      if (with.lights == method.lights && with.textures == method.textures && with.output == method.output &&
+          with.any_pattern == method.any_pattern)
+        continue;
+      variants.push_back({option.name, value, std::move(with)});
+      if (option.choices.empty()) break;
+    }
+  }
+  return variants;
+}
+
 void print_table(const std::vector<const MethodDescription*>& methods) {
   fmt::print("{:<18} {:<10} {:<8} {:<32} {}\n", "method", "family", "output", "lights", "paper");
   for (const MethodDescription* method : methods) {
@@ -31,6 +58,11 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
     for (const OptionDescription& option : method->options) {
       fmt::print("{:<18} {}={} (default {}): {}\n", "", option.name, option.values(), option.default_value,
                  option.help);
+    }
+    for (const auto& [option, value, with] : variants_of(*method)) {
+      fmt::print("{:<18} with {}={}: {}; {}{}{}\n", "", option, value, visibility::name_of(with.output),
+                 fmt::join(light_names(with), ", "), with.textures ? "" : "; no textures",
+                 with.any_pattern ? "" : "; light samples in rows alone");
     }
   }
 }
@@ -43,6 +75,18 @@ nlohmann::ordered_json exact_area_json(const MethodDescription& method) {
   for (const LightKind kind : method.exact_area->lights) lights.push_back(visibility::name_of(kind));
   for (const auto& [key, value] : method.exact_area->options) options[key] = value;
   return {{"lights", lights}, {"textures", with.textures}, {"options", options}};
+}
+
+nlohmann::ordered_json variants_json(const MethodDescription& method) {
+  auto variants = nlohmann::ordered_json::array();
+  for (const auto& [option, value, with] : variants_of(method)) {
+    variants.push_back({{"options", {{option, value}}},
+                        {"output", visibility::name_of(with.output)},
+                        {"lights", light_names(with)},
+                        {"textures", with.textures},
+                        {"anyPattern", with.any_pattern}});
+  }
+  return variants;
 }
 
 void print_json(const std::vector<const MethodDescription*>& methods) {
@@ -69,6 +113,7 @@ void print_json(const std::vector<const MethodDescription*>& methods) {
                     {"anyPattern", method->any_pattern},
                     {"onRequest", method->on_request},
                     {"exactArea", exact_area_json(*method)},
+                    {"variants", variants_json(*method)},
                     {"options", options}});
   }
   fmt::print("{}\n", nlohmann::ordered_json{{"methods", rows}}.dump(2));

@@ -5,15 +5,20 @@
 //   Kernel next_kernel(MapFace face, uint turn)               a kernel to look at after the first, on turns 1, 2 …; empty: none
 //   uint light_sample_count(), vec2 light_sample(uint j)      the samples, in the light's basis
 //   void clear_squares(), void mark_sample(uint j)            which of them are looked for: all invocations call these
+//   uint occluders_of_a_texel()                               how many hide() asks
+//   void add_work(uint occluders)                             called once a receiver: how many were asked in all
 const uint kMaskWords = 128;  // 4096 light samples
 shared uint hidden_bits[kMaskWords];
 shared uint hidden_count;
+shared uint looked_at_count;
 
 void hide_sample(uint j) {
   if (!is_mine(j)) return;
   const uint bit = 1u << (j & 31);
   if ((hidden_bits[j / 32] & bit) == 0 && (atomicOr(hidden_bits[j / 32], bit) & bit) == 0) atomicAdd(hidden_count, 1);
 }
+
+uint looked_at = 0;  // texels, by this invocation
 
 bool all_samples_hidden() { return hidden_count >= light_sample_count(); }
 
@@ -25,7 +30,9 @@ void before_tiles() {
   }
 }
 
+// Counted whether or not the last sample is hidden meanwhile, which invocations find at times of their own.
 void look_at(MapFace face, uvec2 cell) {
+  ++looked_at;
   if (!all_samples_hidden()) hide(face, cell);
 }
 
@@ -37,7 +44,7 @@ void main() {
   const Receiver receiver = receivers[lookup.first_receiver + i];
   const uint lane = gl_LocalInvocationIndex;
   for (uint word = lane; word < kMaskWords; word += gl_WorkGroupSize.x) hidden_bits[word] = 0;
-  if (lane == 0) hidden_count = 0;
+  if (lane == 0) hidden_count = looked_at_count = 0;
   barrier();
 
   const bool receives = receiver.n != vec3(0.0);
@@ -53,7 +60,9 @@ void main() {
       }
     }
   }
+  atomicAdd(looked_at_count, looked_at);
   barrier();
+  if (lane == 0 && looked_at_count > 0) add_work(looked_at_count * occluders_of_a_texel());
 
   const uint samples = light_sample_count();
   for (uint word = lane; word < lookup.words_per_pixel; word += gl_WorkGroupSize.x) {

@@ -55,6 +55,35 @@ TEST_F(Tables, MethodsSayWhatTheyAre) {
   }
 }
 
+// An option may add what a method can do, or take it away.
+TEST_F(Tables, MethodsSayWhatAnOptionMakesOfThem) {
+  const json methods = json::parse(run({"methods", "--json"}).out).at("methods");
+  const auto variant = [&](const std::string& name, const json& options) {
+    for (const json& method : methods) {
+      if (method.at("name") != name) continue;
+      for (const json& one : method.at("variants")) {
+        if (one.at("options") == options) return one;
+      }
+    }
+    return json();
+  };
+  const json spheres = variant("backproject", json::object({{"form", "sphere"}}));
+  ASSERT_FALSE(spheres.is_null());
+  EXPECT_THAT(spheres.at("lights").get<std::vector<std::string>>(), testing::Contains("sphere"));
+  EXPECT_FALSE(spheres.at("textures").get<bool>());
+  const json parts = variant("packet", json::object({{"sublights", "2"}}));
+  ASSERT_FALSE(parts.is_null());
+  EXPECT_TRUE(parts.at("textures").get<bool>());
+  const json sparse = variant("bitmask", json::object({{"subsample", "2"}}));
+  ASSERT_FALSE(sparse.is_null());
+  EXPECT_EQ(sparse.at("output"), "scalar");
+  EXPECT_TRUE(variant("contour", json::object({{"subsample", "2"}})).is_null()) << "it is scalar anyway";
+  EXPECT_THAT(
+      run({"methods"}).out,
+      testing::AllOf(HasSubstr("with form=sphere: scalar; rectangle, disk, ellipse, polygon, sphere; no textures"),
+                     HasSubstr("with sublights=2: scalar; rectangle, disk, ellipse, polygon\n")));
+}
+
 TEST_F(Tables, DevicesSayWhatTheyCan) {
   EXPECT_EQ(run({"devices"}).code, 0);
   const json devices = json::parse(run({"devices", "--json"}).out).at("devices");

@@ -37,7 +37,7 @@ struct ContourLight {
   float inverse_area;  // of a polygon
 };
 
-// WorkCounts' numbers, two words each.
+// What is counted of the work, and in this order by WorkCounts.
 struct WorkNumbers {
   uint nodes, cells, edges, shared_packets, parted, diverged, trivial, kernel_cells;
 };

@@ -67,20 +67,4 @@ void ContourLightProduct::record(render::Commands& /*commands*/, const MapSet& m
   if (!data.corners.empty()) light_->write<glm::vec3>(data.corners, sizeof(data.head));
 }
 
-WorkCounts::WorkCounts(const render::Device& device) : counts_(device, "contour work", 2 * sizeof(gpu::WorkNumbers)) {}
-
-void WorkCounts::make(const MapSource& /*source*/) {
-  counts_.write<std::uint32_t>(std::array<std::uint32_t, std::size_t{2} * gpu::kWorkCounts>{});
-}
-
-void WorkCounts::record(render::Commands& /*commands*/, const MapSet& /*maps*/) {}
-
-void WorkCounts::add_counters(std::map<std::string, std::uint64_t>& counters) const {
-  static constexpr std::array<const char*, gpu::kWorkCounts> kNames{
-      "nodes", "cells", "edges", "packetsShared", "packetsParted", "packetsDiverged", "packetsTrivial", "kernelCells"};
-  std::array<std::uint64_t, gpu::kWorkCounts> counts{};
-  counts_.read<std::uint64_t>(counts);
-  for (std::size_t i = 0; i < kNames.size(); ++i) counters[kNames[i]] = counts[i];
-}
-
 }  // namespace penumbra::maps

@@ -5,10 +5,6 @@
 
 #include <glm/vec3.hpp>
 
-#include <array>
-#include <cstdint>
-#include <map>
-#include <string>
 #include <vector>
 
 namespace penumbra::maps {
@@ -43,19 +39,6 @@ class SameProduct final : public MapProduct {
 
  private:
   const MapProduct* other_;
-};
-
-/// What contour.comp counts of its work: gpu::WorkNumbers.
-class WorkCounts final : public MapProduct {
- public:
-  explicit WorkCounts(const render::Device& device);
-  void make(const MapSource& source) override;
-  void record(render::Commands& commands, const MapSet& maps) override;
-  [[nodiscard]] const render::Buffer& buffer() const override { return counts_; }
-  void add_counters(std::map<std::string, std::uint64_t>& counters) const override;
-
- private:
-  render::Buffer counts_;
 };
 
 }  // namespace penumbra::maps

@@ -6,8 +6,11 @@
 #include "maps/host/error_repairs.hpp"
 #include "maps/host/mesh_verdict.hpp"
 #include "maps/products/nearest_caster.hpp"
+#include "maps/products/work_counts.hpp"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace penumbra::maps {
 namespace {
@@ -69,7 +72,10 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   } else {
     add_pyramid(pyramid_of(walked));
   }
-  recipe.products.push_back(std::make_unique<WorkCounts>(device));
+  // gpu::WorkNumbers
+  recipe.products.push_back(std::make_unique<WorkCounts>(
+      device, std::vector<std::string>{"nodes", "cells", "edges", "packetsShared", "packetsParted", "packetsDiverged",
+                                       "packetsTrivial", "kernelCells"}));
 
   gpu::ContourPush push{};
   push.packet_width = choices.packet_width;

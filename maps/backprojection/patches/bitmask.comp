@@ -20,6 +20,7 @@
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 8) readonly buffer Levels { uvec2 levels[]; };  // level_maps.comp's
+layout(scalar, binding = 9) buffer Work { uint work[2]; };               // occluders asked, the lower word first
 
 // A pipeline has the code of its own options alone: drivers for processors run both sides of a branch.
 layout(constant_id = 0) const uint kOccluder = kOccluderQuad;  // kOccluderPatch ...
@@ -194,6 +195,11 @@ void hide(MapFace fine, uvec2 cell) {
       hide_patch(face, layer, cell, tap);
     }
   }
+}
+
+uint occluders_of_a_texel() { return own.layers; }
+void add_work(uint occluders) {
+  if (atomicAdd(work[0], occluders) + occluders < occluders) atomicAdd(work[1], 1);
 }
 
 #include "maps/host/group_mask_main.glsl"

@@ -17,8 +17,11 @@
 #include "maps/backprojection/subsampled.hpp"
 #include "maps/products/depth_pyramid.hpp"
 #include "maps/products/nearest_caster.hpp"
+#include "maps/products/work_counts.hpp"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace penumbra::maps {
 namespace {
@@ -94,6 +97,7 @@ std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
       std::make_unique<DepthPyramid>(device, search == Search::none ? PyramidKind::hsm : pyramid_of(search)));
   recipe.products.push_back(std::make_unique<LevelMaps>(device, push.budget > 0 ? 1 : push.level,
                                                         push.budget > 0 ? gpu::kCoarsestLevel : push.level));
+  recipe.products.push_back(std::make_unique<WorkCounts>(device, std::vector<std::string>{"occludersAsked"}));
   recipe.push_words = sizeof(push) / sizeof(std::uint32_t);
   recipe.push = [push](const visibility::Light&) { return push_words(push); };
   return subsampled(device, make_map_method(device, std::move(recipe), options), parsed, options);

@@ -57,6 +57,33 @@ TEST_F(MapsPredicates, TrianglesLoseLessThanQuads) {
   }
 }
 
+// B8 (Eisemann et al. 2009, section 5.2.3.2): cost is linear in the number of maps. Tiles that hide nothing are left
+// out whatever the layers, but not the same ones: of a further layer it is not known how deep it lies.
+TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
+  scenes::Scene shells = bare_floor(1, 3);
+  for (int shell = 0; shell < 4; ++shell) {
+    add_quad(shells, {0, 3.6 - 0.8 * shell, 0}, {0.35, 0, 0}, {0, 0, -0.35}).receives_shadow = false;
+  }
+  for (const scenes::Scene& scene : {sphere_over_floor(), square_above_plate(), oblique_quad(), shells}) {
+    const Stage stage = on_floor(scene, 16, light_samples(64));
+    for (const char* occluder : {"quad", "patch"}) {
+      const auto asked = [&](const char* layers) {
+        const auto method = maps::make_bitmask(device(), {{"size", "64"}, {"occluder", occluder}, {"layers", layers}});
+        (void)tests::run(*method, stage);
+        return static_cast<double>(method->counters().at("occludersAsked"));
+      };
+      const double one = asked("1");
+      ASSERT_GT(one, 1000);
+      for (const auto& [layers, times] : {std::pair("2", 2.0), {"4", 4.0}, {"8", 8.0}}) {
+        const double ratio = asked(layers) / one;
+        record(fmt::format("B8 {} of {} layers", occluder, layers), ratio);
+        EXPECT_GE(ratio, 0.9 * times) << occluder;
+        EXPECT_LE(ratio, 1.1 * times) << occluder;
+      }
+    }
+  }
+}
+
 // B2 (Eisemann et al. 2009, section 5.2.3.2): the notes' 256 light samples, 8 x 8 tiles of four on a turned square
 // (rgss), stand in 32 columns of eight: under an edge along these V has 33 levels, steps of 1/32. Where the edge is
 // turned by 20 degrees hardly two of them are passed at once. Ours in rows are 256 columns, and 16 rows.
