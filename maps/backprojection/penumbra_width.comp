@@ -40,7 +40,7 @@ void main() {
     for (uint number = 0; number < asked.side.face_count; ++number) {
       const MapFace face = face_of(asked.side, 0, lookup.size, number);
       float near = nearest[asked.number];
-      const Kernel kernel = search_kernel(face, light.lower, light.upper, near, 1.0, 1, false);
+      const Kernel kernel = search_kernel(face, light.lower, light.upper, near, 1.0, 1, false, 0);
       if (is_empty(kernel)) continue;
       uint level = 0;
       while (any(greaterThan((kernel.last >> level) - (kernel.first >> level), ivec2(7)))) ++level;

@@ -30,15 +30,17 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
 
 // near: of the whole map, and then the kernel's; lower, upper, padding: as kernel_on takes them. `begins`: what stands for
 // a texel reaches up to so much of its height, 1 if it is all there. `umbra`: whether a kernel that hides as a whole ends
-// the search.
-Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, float begins, int padding, bool umbra) {
+// the search. `beside`: texels take the depth of others so many to their lower left (which an upper right one beside the
+// kernel may have from beside it, too: a narrower kernel has to allow for those).
+Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, float begins, int padding, bool umbra, int beside) {
   Kernel kernel = kernel_on(face, lookup.size, asked.e, lower, upper, begins * near, padding);
   for (int round = 0; round < kSearchRounds && !is_empty(kernel); ++round) {
     const vec2 range = depth_range(face.map, uvec2(kernel.first), uvec2(kernel.last));
     if (range.x >= 1.0) return kNoKernel;
-    const float depth = range.x * asked.view.far;
+    const ivec2 first = max(kernel.first - beside, ivec2(0));
+    const float depth = asked.view.far * (beside > 0 ? depth_range(face.map, uvec2(first), uvec2(kernel.last)).x : range.x);
     // Sideways, a texel of row b is b times its depth over the light's plane.
-    const float height = face.axis == 2 ? depth : depth * (float(kernel.first.y) + 0.5) * face.texel.y;
+    const float height = face.axis == 2 ? depth : depth * (float(first.y) + 0.5) * face.texel.y;
     if (umbra && face.axis == 2 && asked.side.face_count == 1 && kernel.whole && lookup.depth_use == kDepthFirst &&
         behind_all(face, kernel, range.y * asked.view.far)) {
       all_hidden = true;

@@ -25,7 +25,7 @@ layout(constant_id = 2) const bool kSearch = true;      // whether a pyramid say
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
   if (kForm == kFormSphere) return sphere_kernel(face, near, kSearch);
-  if (kSearch) return search_kernel(face, light.lower, light.upper, near, 1.0, 0, true);
+  if (kSearch) return search_kernel(face, light.lower, light.upper, near, 1.0, 0, true, kFill == kFillDiagonal ? 1 : 0);
   return kernel_on(face, lookup.size, asked.e, light.lower, light.upper, near, 0);
 }
 

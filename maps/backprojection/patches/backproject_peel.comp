@@ -20,7 +20,7 @@ layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
-  const Kernel kernel = search_kernel(face, light.lower, light.upper, near, 1.0, 0, false);
+  const Kernel kernel = search_kernel(face, light.lower, light.upper, near, 1.0, 0, false, 0);
   // The root of the ratio of counts: along each axis a block is as many texels wide as are left out between two.
   const ivec2 extent = kernel.last - kernel.first + 1;
   const float side = floor(sqrt(float(own.samples)));

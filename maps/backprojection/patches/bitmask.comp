@@ -117,7 +117,7 @@ Kernel kernel_of(MapFace face) {
   coarser_share = 1.0;
   Kernel kernel = kNoKernel;
   if (kSearch) {
-    kernel = search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true);
+    kernel = search_kernel(face, light.lower, light.upper, near, 1.0, padding(), true, kFill == kFillDiagonal ? 1 : 0);
     if (is_empty(kernel)) return kernel;
   }
   if (!kSearch || level() > 0) kernel = kernel_at_level(face);

@@ -53,7 +53,7 @@ Kernel sphere_kernel(MapFace face, inout float near, bool search) {
   const vec2 widest = max(abs(face.lower), abs(face.lower + float(lookup.size) * face.texel));
   const int padding = 1 + int(ceil(kHalfDiagonal * (1.0 + max(widest.x, widest.y))));
   const float begins = 1.0 - kHalfDiagonal * max(face.texel.x, face.texel.y);
-  if (search) return search_kernel(face, lower, upper, near, max(begins, 0.0), padding, true);
+  if (search) return search_kernel(face, lower, upper, near, max(begins, 0.0), padding, true, 0);
   return kernel_on(face, lookup.size, asked.e, lower, upper, max(begins, 0.0) * near, padding);
 }
 

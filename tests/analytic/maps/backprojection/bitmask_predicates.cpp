@@ -57,6 +57,43 @@ TEST_F(MapsPredicates, TrianglesLoseLessThanQuads) {
   }
 }
 
+/// A light, a wall up to its plane, which makes its maps a hemicube, and boards one behind the other on the wall's side
+/// and below the light.
+scenes::Scene boards_one_behind_the_other() {
+  scenes::Scene scene = bare_floor(0.5, 1.5);
+  add_quad(scene, {-1.5, 2.5, 0}, {0, 0, 1.5}, {0, 2.5, 0}).casts_shadow = false;
+  add_quad(scene, {-0.8, 3.6, 0.2}, {0.3, 0.05, 0.1}, {0.05, 0.2, -0.3}).receives_shadow = false;
+  add_quad(scene, {0.5, 2.6, 0.2}, {0.3, 0.1, 0.1}, {0.1, 0.1, -0.3}).receives_shadow = false;
+  add_quad(scene, {-1.1, 3.1, 0.25}, {0.2, -0.1, 0.1}, {0.05, 0.3, -0.3}).receives_shadow = false;
+  add_quad(scene, {0.6, 1.6, 0.2}, {0.5, 0, 0.1}, {0, 0.2, -0.4}).receives_shadow = false;
+  scene.cameras.front() = camera({1.5, 3, 1}, {-1, 1.5, 0}, 70);
+  return scene;
+}
+
+// A texel's patches are those of its layers, whichever bodies they belong to: of two groups of bodies all layers
+// together hide what each hides alone, in a hemicube, too.
+TEST_F(MapsPredicates, LayersHideWhatTheirBodiesDo) {
+  scenes::Scene both = boards_one_behind_the_other(), first = both, second = both;
+  for (const std::size_t i : {2, 3}) second.objects[i].casts_shadow = false;
+  for (const std::size_t i : {4, 5}) first.objects[i].casts_shadow = false;
+  for (const bool on_the_floor : {false, true}) {
+    const auto bits = [&](const scenes::Scene& scene, const char* layers) {
+      const Stage stage =
+          on_the_floor ? on_floor(scene, 16, light_samples(256)) : Stage(scene, 24, 24, light_samples(256));
+      return run(maps::make_bitmask, stage,
+                 {{"size", "96"}, {"occluder", "patch"}, {"search", "none"}, {"bias", "0"}, {"layers", layers}});
+    };
+    const Masks joined = bits(both, "3"), nearest = bits(both, "1"), one = bits(first, "1"), other = bits(second, "1");
+    std::size_t wrong = 0, behind = 0;
+    for (std::size_t i = 0; i < joined.words.size(); ++i) {
+      wrong += joined.words[i] != (one.words[i] & other.words[i]) ? 1 : 0;
+      behind += joined.words[i] != nearest.words[i] ? 1 : 0;
+    }
+    EXPECT_EQ(wrong, 0U) << on_the_floor;
+    EXPECT_GT(behind, 50U) << "layers behind the nearest hide nothing of their own";
+  }
+}
+
 // B8 (Eisemann et al. 2009, section 5.2.3.2): cost is linear in the number of maps. Tiles that hide nothing are left
 // out whatever the layers, but not the same ones: of a further layer it is not known how deep it lies.
 TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
@@ -64,7 +101,8 @@ TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
   for (int shell = 0; shell < 4; ++shell) {
     add_quad(shells, {0, 3.6 - 0.8 * shell, 0}, {0.35, 0, 0}, {0, 0, -0.35}).receives_shadow = false;
   }
-  for (const scenes::Scene& scene : {sphere_over_floor(), square_above_plate(), oblique_quad(), shells}) {
+  for (const scenes::Scene& scene :
+       {sphere_over_floor(), square_above_plate(), oblique_quad(), shells, boards_one_behind_the_other()}) {
     const Stage stage = on_floor(scene, 16, light_samples(64));
     for (const char* occluder : {"quad", "patch"}) {
       const auto asked = [&](const char* layers) {
