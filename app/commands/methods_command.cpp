@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "app/methods.hpp"
+#include "base/error.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/ranges.h>
@@ -37,7 +38,12 @@ std::vector<Variant> variants_of(const MethodDescription& method) {
         values.push_back(fmt::format("{}", value));
     }
     for (const std::string& value : values) {
-      MethodDescription with = describe_method(method.name, {{option.name, value}});
+      MethodDescription with;
+      try {
+        with = describe_method(method.name, {{option.name, value}});
+      } catch (const UsageError&) {
+        continue;  // it takes another option, too
+      }
       if (with.lights == method.lights && with.textures == method.textures && with.output == method.output &&
           with.any_pattern == method.any_pattern)
         continue;

