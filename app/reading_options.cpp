@@ -9,9 +9,9 @@ void add_allow_outside(CLI::App& command, bool& allow_outside) {
 }
 
 void add_lenient(CLI::App& command, bool& lenient) {
-  command.add_flag(
-      "--lenient", lenient,
-      "glTF: leave out what would change shadows and is not supported, with a warning, instead of refusing");
+  command.add_flag("--lenient", lenient,
+                   "leave out what would change shadows and is not supported, of glTF or in a format that is "
+                   "written, with a warning, instead of refusing");
 }
 
 }  // namespace penumbra::app

@@ -4,12 +4,16 @@
 #include "app/pictures/frame_render.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
+#include "base/assert.hpp"
 
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace penumbra::app {
 namespace {
@@ -49,14 +53,22 @@ void FrameRenderer::choose_methods(const Session& session) {
 }
 
 void FrameRenderer::say_notes() {
+  std::vector<std::pair<std::string, std::vector<std::string>>> news;  // what is said, and of which lights
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     const std::string& note = counting_[i] ? counting_[i]->note : chosen_[i].note;
     if (note.empty()) continue;
     if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(note);  // pieces say the same
     if (std::ranges::find(said_, note) != said_.end()) continue;
-    spdlog::info("{}", note);
     said_.push_back(note);
+    const std::string subject = fmt::format("light \"{}\"", lights_[i].name);
+    PENUMBRA_ASSERT(note.starts_with(subject), "the note \"{}\" is of {}", note, subject);
+    const std::string what = note.substr(subject.size());
+    auto same = std::ranges::find(news, what, [](const auto& one) { return one.first; });
+    if (same == news.end()) same = news.insert(news.end(), {what, {}});
+    same->second.push_back(fmt::format("\"{}\"", lights_[i].name));
   }
+  for (const auto& [what, names] : news)
+    spdlog::info("light{} {}{}", names.size() > 1 ? "s" : "", fmt::join(names, ", "), what);
 }
 
 void FrameRenderer::label_lights() {

@@ -8,8 +8,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string>
 
 namespace penumbra::tests {
 namespace {
@@ -136,6 +138,23 @@ TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
       }
     }
   }
+}
+
+TEST_F(AlphaSurfaces, LightsOfWhichTheSameIsSaidShareALine) {
+  translucent(0.3);
+  json second = gltf.at("/nodes/1");
+  second["name"] = "Second";
+  second["translation"] = {0.5, 5, 0};
+  gltf.at("/nodes").push_back(second);
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
+  const Outcome outcome = render({"--stats", path("stats.json")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("lights \"Lamp\", \"Second\" (rectangle): no method gives its exact area"));
+  const json warnings = json::parse(read("stats.json")).at("warnings");
+  for (const char* light : {"light \"Lamp\" (rectangle)", "light \"Second\" (rectangle)"})
+    EXPECT_TRUE(std::ranges::any_of(warnings, [&](const json& one) {
+      return one.get<std::string>().starts_with(light);
+    })) << light;
 }
 
 /// Behind the light, below the floor and far beside, or where it casts nothing: nothing is counted.
