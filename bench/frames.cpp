@@ -36,8 +36,8 @@ std::vector<visibility::Light> lights_on_the_way(const scenes::Scene& still, con
 }
 
 /// One of the two that take turns: the host and the device.
-struct Rival {
-  Rival(const char* called, WedgesOn on, const render::Device& device, const visibility::SceneFloats& floats)
+struct Contender {
+  Contender(const char* called, WedgesOn on, const render::Device& device, const visibility::SceneFloats& floats)
       : name(called), builder(device, {.on = on}) {
     builder.prepare_mesh(floats);
   }
@@ -69,32 +69,32 @@ void measure_frames(const Options& options, const render::Device& device,
     const scenes::Scene scene = knot_scene(triangles);
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     const std::vector<visibility::Light> lights = lights_on_the_way(scene, floats.origin);
-    std::array rivals = {Rival("host", WedgesOn::host, device, floats),
-                         Rival("device", WedgesOn::device, device, floats)};
+    std::array contenders = {Contender("host", WedgesOn::host, device, floats),
+                             Contender("device", WedgesOn::device, device, floats)};
     const double load = load_of_machine();
     for (std::uint32_t run = 0; run <= options.runs; ++run) {
-      for (Rival& rival : rivals) {
-        const double seconds = rival.run(lights);
-        if (run > 0) rival.seconds.push_back(seconds);  // the first is discarded
+      for (Contender& contender : contenders) {
+        const double seconds = contender.run(lights);
+        if (run > 0) contender.seconds.push_back(seconds);  // the first is discarded
       }
-      if (rivals[0].edges != rivals[1].edges) {
-        throw std::logic_error(fmt::format("{} and {} silhouettes", rivals[0].edges, rivals[1].edges));
+      if (contenders[0].edges != contenders[1].edges) {
+        throw std::logic_error(fmt::format("{} and {} silhouettes", contenders[0].edges, contenders[1].edges));
       }
     }
     const auto frames = static_cast<double>(options.runs + 1) * kFrames;
-    for (Rival& rival : rivals) {
+    for (Contender& contender : contenders) {
       CpuEntry entry;
-      entry.name = fmt::format("wedges-per-frame/{}/triangles={}", rival.name, triangles);
-      if (&rival == &rivals[1]) {
+      entry.name = fmt::format("wedges-per-frame/{}/triangles={}", contender.name, triangles);
+      if (&contender == &contenders[1]) {
         entry.device = device.info().name;
-        entry.host_ratio = app::median(rivals[0].seconds) / app::median(rival.seconds);
+        entry.host_ratio = app::median(contenders[0].seconds) / app::median(contender.seconds);
       }
       entry.triangles = floats.triangles.size();
-      entry.items = entry.edges = rival.edges / lights.size();
-      entry.seconds = rival.seconds;
-      entry.counts = {{"edgesOnHost", rival.edges_on_host / kFrames},
-                      {"facingsOnHost", rival.facings_on_host / kFrames}};
-      for (const auto& pass : rival.builder.take_pass_times()) entry.passes[pass.name] = pass.milliseconds / frames;
+      entry.items = entry.edges = contender.edges / lights.size();
+      entry.seconds = contender.seconds;
+      entry.counts = {{"edgesOnHost", contender.edges_on_host / kFrames},
+                      {"facingsOnHost", contender.facings_on_host / kFrames}};
+      for (const auto& pass : contender.builder.take_pass_times()) entry.passes[pass.name] = pass.milliseconds / frames;
       entry.load_before = load;
       sink(entry);
     }

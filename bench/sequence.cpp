@@ -25,7 +25,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kFramesPerSecond = 24;
-constexpr std::array kPhases = {"load", "mesh", "view", "light", "evaluate", "beauty", "write"};
+constexpr std::array kStatsPhases = {"load", "mesh", "view", "light", "evaluate", "beauty", "write"};
 
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -120,7 +120,7 @@ void take_frames(const Folder& folder, SequenceEntry& entry, std::uint32_t& next
     const std::filesystem::path stats = folder / fmt::format("out.{:04}.json", next).c_str();
     if (!std::filesystem::exists(stats)) return;
     const json seconds = json::parse(read_file(stats)).at("seconds");
-    for (const char* phase : kPhases) entry.phases[phase] += seconds.at(phase).get<double>();
+    for (const char* phase : kStatsPhases) entry.phases[phase] += seconds.at(phase).get<double>();
     std::filesystem::remove(folder / fmt::format("out.{:04}.exr", next).c_str());
     ++next;
   }

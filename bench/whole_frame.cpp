@@ -78,9 +78,9 @@ class PlainProgram {
 };
 
 /// `penumbra render`, from a scene in memory.
-class Picture {
+class MethodFrame {
  public:
-  Picture(const app::MethodEntry& method, const Subject& subject, std::uint32_t samples, app::DeviceSource& devices)
+  MethodFrame(const app::MethodEntry& method, const Subject& subject, std::uint32_t samples, app::DeviceSource& devices)
       : devices_(devices), wish_{method.name, method.options, true} {
     run_.scene = subject.name;
     run_.size = fmt::format("{0}x{0}", subject.size);
@@ -135,7 +135,7 @@ FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, std::
   entry.size = subject.size;
   entry.load_before = load_of_machine();
   PlainProgram plain(scene, subject, samples);
-  std::vector<Picture> pictures;
+  std::vector<MethodFrame> pictures;
   entry.contestants.push_back({"embree", {}});
   for (const app::MethodEntry& method : options.methods) {
     pictures.emplace_back(method, subject, samples, devices);

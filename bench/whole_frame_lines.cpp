@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kPhases = {"floats", "mesh", "view", "light", "evaluate", "beauty", "write"};
+constexpr std::array kFramePhases = {"floats", "mesh", "view", "light", "evaluate", "beauty", "write"};
 
 Json timing_json(const std::vector<double>& seconds) {
   const Timing timing = timing_of(seconds);
@@ -48,7 +48,7 @@ std::string frame_table_rows(const FrameEntry& entry) {
   const FrameTimes& plain = entry.contestants.front();
   for (const FrameTimes& times : entry.contestants) {
     rows += fmt::format("| {:<52} |", entry.name + "/" + times.name);
-    for (const char* phase : kPhases) rows += fmt::format(" {:>7} |", cell(times, phase));
+    for (const char* phase : kFramePhases) rows += fmt::format(" {:>7} |", cell(times, phase));
     const Timing frame = timing_of(times.frame());
     rows += fmt::format(" {:>7.3f} | {:>7.0f} | {:>7.3g} | {:>7.3g} | {:>7.3g} | {:>7.3g} | {:>7.1f} |\n", frame.median,
                         50 * frame.spread(), times_faster(plain.frame(), times.frame()),
@@ -75,7 +75,7 @@ std::string frame_json_lines(const FrameEntry& entry, const Options& options) {
               {"samples", entry.samples},
               {"runs", times.frame().size()},
               {"loadBefore", entry.load_before}};
-    for (const char* phase : kPhases) {
+    for (const char* phase : kFramePhases) {
       if (const auto found = times.phases.find(phase); found != times.phases.end())
         line["seconds"][phase] = timing_json(found->second);
     }
