@@ -1,6 +1,7 @@
 // The ray caster against shadows that can be written down: which light samples are hidden (exactly, except for pairs
 // within rounding of the projected edge, which are counted), and how fast the share approaches the area.
 
+#include "tests/analytic/board_over_floor.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
 #include "tests/unit/visibility/scenes.hpp"
 
@@ -20,113 +21,26 @@ using visibility::SamplePattern;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-constexpr double kLightHeight = 4, kLightHalf = 1, kBoardHeight = 1;
-
-/// A floor at height 0, a board at 1 and a square light of half-size 1 at 4, all parallel. With the board's corners
-/// given, everything else is exact in float32.
-scenes::Scene board_scene(const glm::dvec2& lower, const glm::dvec2& upper) {
-  scenes::Scene scene;
-  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
-  const glm::dvec2 middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
-  tests::add_object(scene, "board", tests::quad({middle.x, kBoardHeight, middle.y}, {half.x, 0, 0}, {0, 0, -half.y}));
-  scene.lights.push_back(tests::ceiling_light(kLightHeight, kLightHalf));
-  scene.cameras.push_back(tests::camera({0.2, 0.9, 5.1}, {0.1, 0, 0.3}, 60));
-  return scene;
-}
-
-/// How far inside the board (positive) or outside (negative) the segment p→l crosses its height, in world units.
-double depth_inside(const glm::dvec3& p, const glm::dvec3& l, const glm::dvec2& lower, const glm::dvec2& upper) {
-  const glm::dvec3 q = p + (kBoardHeight - p.y) / (l.y - p.y) * (l - p);
-  return std::min(std::min(q.x - lower.x, upper.x - q.x), std::min(q.z - lower.y, upper.y - q.z));
-}
-
-struct Comparison {
-  std::size_t pairs = 0, wrong = 0, within_rounding = 0;
-};
-
-/// p and l are the stored floats, their crossing point is theirs up to double rounding; Embree's edge tests are float32
-/// on coordinates up to `extent`: eight of its ulps is what they may be off.
-Comparison compare_pairs(const Stage& setup, const glm::dvec2& lower, const glm::dvec2& upper, double extent) {
-  const Masks masks = tests::trace(setup);
-  const double rounding = 8 * extent * 0x1p-23;
-  Comparison result;
-  for (std::size_t pixel = 0; pixel < setup.samples.size(); ++pixel) {
-    const std::int32_t triangle = setup.samples.triangle[pixel];
-    if (triangle == ViewSamples::kBackground || triangle >= 2) continue;  // floor only
-    const glm::dvec3 p = glm::dvec3(setup.samples.p[pixel]) + setup.floats.origin;
-    for (std::size_t j = 0; j < setup.light.points.size(); ++j) {
-      const glm::dvec3 l = glm::dvec3(setup.light.points[j]) + setup.floats.origin;
-      const double inside = depth_inside(p, l, lower, upper);
-      ++result.pairs;
-      if (std::abs(inside) < rounding) {
-        ++result.within_rounding;
-      } else if (masks.visible(pixel, j) != (inside < 0)) {
-        ++result.wrong;
-      }
-    }
-  }
-  return result;
+/// Embree's edge tests are float32 on coordinates up to `extent`: eight of its ulps is what they may be off.
+tests::BoardPairs compare(const Stage& stage, double extent) {
+  return tests::compare_with_board(stage, tests::trace(stage), 8 * extent * 0x1p-23);
 }
 
 TEST(ClosedForm, ParallelSquareHidesExactlyItsProjection) {
   for (const glm::dvec2& size : {glm::dvec2(0.5, 0.5), glm::dvec2(0.25, 1.5), glm::dvec2(0.7, 0.3)}) {
-    const Stage setup(board_scene(-size, size), 96, 96, {256, 0, 0, SamplePattern::rows, 0});
-    const Comparison result = compare_pairs(setup, -size, size, 4);
-    EXPECT_GT(result.pairs, 500000u);
-    EXPECT_EQ(result.wrong, 0u) << "of " << result.pairs << ", " << result.within_rounding << " within rounding";
-    EXPECT_LE(result.within_rounding, result.pairs / 10000);
+    const Stage stage(tests::board_scene(-size, size), 96, 96, {256, 0, 0, SamplePattern::rows, 0});
+    expect_board(compare(stage, 4), 10000, 1e-4);
   }
 }
 
 TEST(ClosedForm, HalfPlaneHidesExactlyItsProjection) {
   // Far enough to the left, front and back that only its right edge is on the light.
-  const glm::dvec2 lower(-64, -64), upper(0.25, 64);
-  const Stage setup(board_scene(lower, upper), 96, 96, {256, 0, 0, SamplePattern::sobol, 0});
-  const Comparison result = compare_pairs(setup, lower, upper, 64);
-  EXPECT_GT(result.pairs, 500000u);
-  EXPECT_EQ(result.wrong, 0u) << "of " << result.pairs << ", " << result.within_rounding << " within rounding";
-  EXPECT_LE(result.within_rounding, result.pairs / 1000);
-}
-
-/// The share of the light [−1, 1]² that the board hides from p: the board's corners, seen from p = (x, 0, z), fall on
-/// the light's plane at p + (corner − p) · light height / board height, and stay an axis-aligned rectangle.
-double hidden_share(const glm::dvec3& p, const glm::dvec2& lower, const glm::dvec2& upper) {
-  const double scale = kLightHeight / kBoardHeight;
-  const auto overlap = [&](double from, double to, double at) {
-    const double low = std::max(at + scale * (from - at), -kLightHalf),
-                 high = std::min(at + scale * (to - at), kLightHalf);
-    return std::max(0.0, high - low) / (2 * kLightHalf);
-  };
-  return overlap(lower.x, upper.x, p.x) * overlap(lower.y, upper.y, p.z);
+  const Stage stage(tests::board_scene({-64, -64}, {0.25, 64}), 96, 96, {256, 0, 0, SamplePattern::sobol, 0});
+  expect_board(compare(stage, 64), 100000, 1e-3);
 }
 
 TEST(ClosedForm, TheShareConvergesToTheProjectedArea) {
-  const glm::dvec2 size(0.19, 0.3);
-  double previous = 1;
-  for (const std::uint32_t side : {4u, 8u, 16u, 32u, 64u}) {
-    const Stage setup(board_scene(-size, size), 64, 64, {side * side, 0, 0, SamplePattern::rows, 0});
-    const Masks masks = tests::trace(setup);
-    double squares = 0, worst = 0;
-    int count = 0;
-    for (std::size_t pixel = 0; pixel < setup.samples.size(); ++pixel) {
-      const std::int32_t triangle = setup.samples.triangle[pixel];
-      if (triangle == ViewSamples::kBackground || triangle >= 2) continue;
-      const glm::dvec3 p = glm::dvec3(setup.samples.p[pixel]) + setup.floats.origin;
-      const double hidden = hidden_share(p, -size, size), error = masks.visibility[pixel] - (1 - hidden);
-      if (hidden == 0) continue;
-      squares += error * error;
-      worst = std::max(worst, std::abs(error));
-      ++count;
-    }
-    // A sample stands for its row's height and its cell's width. Across the rows the count is off by less than one row
-    // of 1 / side (half a row at each of two edges), along each row by less than one cell of 1 / side².
-    EXPECT_LE(worst, 2.0 / side) << side;
-    const double rmse = std::sqrt(squares / count);
-    RecordProperty("rmse" + std::to_string(side * side), std::to_string(rmse));
-    EXPECT_LT(rmse, 0.8 * previous) << side;
-    previous = rmse;
-  }
-  EXPECT_LT(previous, 0.003);
+  tests::expect_board_share_converges([](const Stage& stage) { return tests::trace(stage); });
 }
 
 /// A single view sample at `target`, seen from `eye`.
