@@ -7,6 +7,14 @@
 
 namespace penumbra::mesh {
 
+void FaceCollector::expect(std::uint64_t faces) {
+  const std::size_t wanted = soup_.triangles.size() + faces;
+  if (wanted <= soup_.triangles.capacity()) return;
+  soup_.triangles.reserve(wanted);
+  soup_.object.reserve(wanted);
+  soup_.source_face.reserve(wanted);
+}
+
 void FaceCollector::add(std::span<const std::uint32_t> corners) {
   if (next_face_ == std::numeric_limits<std::uint32_t>::max()) throw InputError("more than 4,294,967,294 faces");
   const std::uint32_t face = next_face_++;

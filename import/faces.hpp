@@ -14,6 +14,9 @@ class FaceCollector {
  public:
   explicit FaceCollector(TriangleSoup& soup) : soup_(soup) {}
 
+  /// So many more faces may come.
+  void expect(std::uint64_t faces);
+
   /// Adds a face with the given corners: indices into the soup's positions, in range.
   void add(std::span<const std::uint32_t> corners);
 

@@ -11,6 +11,7 @@
 #include "import/texture_file.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -22,6 +23,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -121,9 +123,12 @@ void confine(const Arguments& arguments) {
 #endif
 }
 
-/// In two, because a copy of a large mesh is more memory than the job may need.
 struct Answer {
   mesh::WireWriter head, payload;
+  // What the payload says without copying it.
+  mesh::ImportedMesh mesh;
+  scenes::Scene scene;
+  scenes::Texture texture;
 };
 
 Answer message(mesh::HelperStatus status) {
@@ -144,11 +149,14 @@ Answer answer_for(const Arguments& arguments) {
   try {
     Answer answer = message(mesh::HelperStatus::done);
     if (arguments.kind == "mesh") {
-      mesh::put_mesh(answer.payload, read_mesh(input, arguments));
+      answer.mesh = read_mesh(input, arguments);
+      mesh::put_mesh(answer.payload, answer.mesh);
     } else if (arguments.kind == "gltf") {
-      scenes::put_scene(answer.payload, scenes::import_gltf(input, arguments.options));
+      answer.scene = scenes::import_gltf(input, arguments.options);
+      scenes::put_scene(answer.payload, answer.scene);
     } else {
-      scenes::put_texture(answer.payload, scenes::read_texture_file(input));
+      answer.texture = scenes::read_texture_file(input);
+      scenes::put_texture(answer.payload, answer.texture);
     }
     answer.head.put_strings(mesh::opened_files());
     return answer;
@@ -168,12 +176,14 @@ Answer answer_for(const Arguments& arguments) {
   }
 }
 
-bool write_all(int to, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = write(to, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
+bool write_all(int to, const mesh::WireWriter& from) {
+  for (std::span<const std::byte> bytes : from.pieces()) {
+    while (!bytes.empty()) {
+      const ssize_t count = write(to, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
   }
   return true;
 }
@@ -192,8 +202,11 @@ int main(int argc, char** argv) {
   const int output = dup(STDOUT_FILENO);
   if (output < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return static_cast<int>(ExitCode::resource);
   confine(arguments);
+  // What readers give back is theirs again: the system gives pages slowly, and this process ends soon.
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   const Answer answer = answer_for(arguments);
   // _exit: the libraries' own cleaning up after a hostile file is one more chance to crash.
-  const bool told = write_all(output, answer.head.bytes()) && write_all(output, answer.payload.bytes());
+  const bool told = write_all(output, answer.head) && write_all(output, answer.payload);
   _exit(told ? 0 : static_cast<int>(ExitCode::resource));
 }

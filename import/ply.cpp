@@ -1,15 +1,16 @@
 #include "import/ply.hpp"
 
 #include "import/faces.hpp"
-#include "import/text.hpp"
+#include "import/ply_binary.hpp"
 #include "import/ply_header.hpp"
+#include "import/text.hpp"
 
 #include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace penumbra::mesh {
 namespace {
@@ -51,70 +52,14 @@ class AsciiNumbers {
   std::uint64_t lines_with_more_ = 0;
 };
 
-/// The numbers of a binary body.
-class BinaryNumbers {
- public:
-  BinaryNumbers(const PlyHeader& header, const std::string& file)
-      : bytes_(header.body), size_(header.body.size()), file_(file), swap_(header.format == PlyFormat::big_endian) {}
-
-  double number(PlyType type) {
-    switch (type) {
-      case PlyType::int8:
-        return take<std::int8_t>();
-      case PlyType::uint8:
-        return take<std::uint8_t>();
-      case PlyType::int16:
-        return take<std::int16_t>();
-      case PlyType::uint16:
-        return take<std::uint16_t>();
-      case PlyType::int32:
-        return take<std::int32_t>();
-      case PlyType::uint32:
-        return take<std::uint32_t>();
-      case PlyType::float32:
-        return static_cast<double>(take<float>());
-      default:
-        return take<double>();
-    }
-  }
-  void end_element() {}
-  [[nodiscard]] std::size_t bytes_left() const { return bytes_.size(); }
-  static std::uint64_t lines_with_more() { return 0; }
-  static std::size_t least_size(PlyType type) { return size_of(type); }
-
-  template <typename... Args>
-  [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-    throw InputError("{}: byte {} after the header: {}", file_, size_ - bytes_.size(),
-                     text_for_people(format, std::forward<Args>(args)...));
-  }
-
- private:
-  template <typename Number>
-  Number take() {
-    std::array<char, sizeof(Number)> raw;
-    if (bytes_.size() < raw.size()) fail("the file ends in the middle of an element; it is truncated");
-    std::memcpy(raw.data(), bytes_.data(), raw.size());
-    bytes_.remove_prefix(raw.size());
-    if (swap_) std::ranges::reverse(raw);
-    Number value;
-    std::memcpy(&value, raw.data(), raw.size());
-    return value;
-  }
-
-  std::string_view bytes_;
-  std::size_t size_;
-  const std::string& file_;
-  bool swap_;
-};
-
 /// What a property is to us.
 enum class Role : std::uint8_t { none, x, y, z, corners };
 
 template <typename Numbers>
 class PlyReader {
  public:
-  PlyReader(const PlyHeader& header, const std::string& file)
-      : header_(header), file_(file), numbers_(header, file), faces_(mesh_.soup) {
+  PlyReader(const PlyHeader& header, const std::string& file, bool many_at_once)
+      : header_(header), file_(file), numbers_(header, file), many_at_once_(many_at_once), faces_(mesh_.soup) {
     for (const PlyElement& element : header.elements) {
       if (element.name == "vertex") vertices_ += element.count;
     }
@@ -124,7 +69,7 @@ class PlyReader {
 
   ImportedMesh read() {
     for (const PlyElement& element : header_.elements) read_element(element);
-    add_faces();
+    add_waiting_faces();
     if (mesh_.soup.triangles.empty()) {
       throw InputError("{}: there are no triangles in it ({} vertices, {})", file_, vertices_,
                        faces_.instead_of_surfaces());
@@ -147,7 +92,12 @@ class PlyReader {
     }
     const std::vector<Role> roles = roles_of(element, vertex, face);
     if (vertex) mesh_.soup.positions.reserve(mesh_.soup.positions.size() + element.count);
+    vertices_known_ = mesh_.soup.positions.size() == vertices_ && kept_.empty() && face_ends_.empty();
+    if (face && vertices_known_) faces_.expect(std::min<std::uint64_t>(element.count, numbers_.bytes_left() / 4));
     for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (many_at_once_ && vertex) i += take_vertices(element, roles, element.count - i);
+      if (many_at_once_ && face && !strips) i += take_faces(element, roles, element.count - i);
+      if (i == element.count) break;
       glm::dvec3 position(0);
       corners_.clear();
       for (std::size_t p = 0; p < roles.size(); ++p) read_property(element.properties[p], roles[p], position);
@@ -204,6 +154,26 @@ class PlyReader {
     }
   }
 
+  /// Where the numbers can be had many at once: how many vertices were taken.
+  std::uint64_t take_vertices(const PlyElement& element, const std::vector<Role>& roles, std::uint64_t most) {
+    if constexpr (std::is_same_v<Numbers, BinaryNumbers>) {
+      const auto place_of = [&](Role role) {
+        return static_cast<std::size_t>(std::ranges::find(roles, role) - roles.begin());
+      };
+      return numbers_.take_vertices(element, {place_of(Role::x), place_of(Role::y), place_of(Role::z)}, most,
+                                    mesh_.soup.positions);
+    }
+    return 0;
+  }
+  std::uint64_t take_faces(const PlyElement& element, const std::vector<Role>& roles, std::uint64_t most) {
+    if constexpr (std::is_same_v<Numbers, BinaryNumbers>) {
+      const auto corners = static_cast<std::size_t>(std::ranges::find(roles, Role::corners) - roles.begin());
+      return numbers_.take_faces(element, corners, most, vertices_,
+                                 [&](std::span<const std::uint32_t> face) { keep(face); });
+    }
+    return 0;
+  }
+
   void add_vertex(const glm::dvec3& p, std::uint64_t number) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       numbers_.fail("vertex {} is not finite: ({}, {}, {})", number, p.x, p.y, p.z);
@@ -213,15 +183,23 @@ class PlyReader {
 
   std::uint32_t vertex_named(double index) const {
     if (!(index >= 0 && index < static_cast<double>(vertices_)) || index != std::floor(index)) {
-      numbers_.fail("face {} names vertex {}, but there are only {} (numbered from 0)", face_ends_.size(), index,
-                    vertices_);
+      numbers_.fail("face {} names vertex {}, but there are only {} (numbered from 0)", kept_faces_, index, vertices_);
     }
     return static_cast<std::uint32_t>(index);
   }
 
-  void keep_face() {
-    for (const double index : corners_) kept_.push_back(vertex_named(index));
+  /// Faces may stand before the vertices: then they wait.
+  void keep(std::span<const std::uint32_t> face) {
+    ++kept_faces_;
+    if (vertices_known_) return faces_.add(face);
+    kept_.insert(kept_.end(), face.begin(), face.end());
     face_ends_.push_back(kept_.size());
+  }
+
+  void keep_face() {
+    face_.clear();
+    for (const double index : corners_) face_.push_back(vertex_named(index));
+    keep(face_);
   }
 
   /// Every corner from the third on makes a triangle with the two before it; −1 begins a new strip.
@@ -231,17 +209,17 @@ class PlyReader {
       length = corners_[i] == -1 ? 0 : length + 1;
       if (length < 3) continue;
       const std::size_t turn = length % 2;  // of every other triangle, so that all have one winding
+      face_.clear();
       for (const std::size_t back : {2 - (1 - turn), 1 + (1 - turn), std::size_t{0}}) {
-        kept_.push_back(vertex_named(corners_[i - back]));
+        face_.push_back(vertex_named(corners_[i - back]));
       }
-      face_ends_.push_back(kept_.size());
+      keep(face_);
     }
   }
 
-  /// Only now, because faces may stand before the vertices.
-  void add_faces() {
+  void add_waiting_faces() {
     std::size_t first = 0;
-    mesh_.soup.triangles.reserve(face_ends_.size());
+    faces_.expect(std::min(face_ends_.size(), kept_.size() / 3));
     for (const std::size_t end : face_ends_) {
       faces_.add(std::span(kept_).subspan(first, end - first));
       first = end;
@@ -251,11 +229,15 @@ class PlyReader {
   const PlyHeader& header_;
   const std::string& file_;
   Numbers numbers_;
+  bool many_at_once_;
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::uint64_t vertices_ = 0;
-  std::vector<double> corners_;         ///< of the element that is being read, as the file says
-  std::vector<std::uint32_t> kept_;     ///< corners of all faces, one after the other
+  std::vector<double> corners_;  ///< of the element that is being read, as the file says
+  bool vertices_known_ = false;  ///< all that the header promises
+  std::uint64_t kept_faces_ = 0;
+  std::vector<std::uint32_t> face_;     ///< the last one's corners
+  std::vector<std::uint32_t> kept_;     ///< corners of all faces that wait, one after the other
   std::vector<std::size_t> face_ends_;  ///< into `kept_`
 };
 
@@ -263,8 +245,13 @@ class PlyReader {
 
 ImportedMesh read_ply(std::string_view content, const std::string& file) {
   const PlyHeader header = read_ply_header(content, file);
-  if (header.format == PlyFormat::ascii) return PlyReader<AsciiNumbers>(header, file).read();
-  return PlyReader<BinaryNumbers>(header, file).read();
+  if (header.format == PlyFormat::ascii) return PlyReader<AsciiNumbers>(header, file, false).read();
+  return PlyReader<BinaryNumbers>(header, file, true).read();
+}
+
+ImportedMesh read_ply_slowly(std::string_view content, const std::string& file) {
+  const PlyHeader header = read_ply_header(content, file);
+  return PlyReader<BinaryNumbers>(header, file, false).read();
 }
 
 }  // namespace penumbra::mesh

@@ -15,4 +15,8 @@ namespace penumbra::mesh {
 /// number.
 ImportedMesh read_ply(std::string_view content, const std::string& file);
 
+/// The same of a binary body, number by number, whatever it holds: what read_ply, which takes what is usual many
+/// numbers at once, is tested against.
+ImportedMesh read_ply_slowly(std::string_view content, const std::string& file);
+
 }  // namespace penumbra::mesh

@@ -79,10 +79,14 @@ std::string decode(std::string_view content, const Encoding& encoding, const std
 
 std::string utf8_content(std::string content, const std::string& extension, const std::string& file) {
   if (std::ranges::find(kTextFormats, extension) == kTextFormats.end()) return content;
-  if (content.starts_with("\xEF\xBB\xBF")) return content.substr(3);
+  if (content.starts_with("\xEF\xBB\xBF")) {
+    content.erase(0, 3);
+    return content;
+  }
   const auto encoding =
       std::ranges::find_if(kEncodings, [&](const Encoding& e) { return content.starts_with(e.mark); });
-  return encoding == kEncodings.end() ? content : decode(content, *encoding, file);
+  if (encoding != kEncodings.end()) return decode(content, *encoding, file);
+  return content;
 }
 
 }  // namespace penumbra::mesh

@@ -18,7 +18,7 @@ ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits, Glt
   if (gltf.lenient) job.flags.emplace_back("--lenient");
   HelperAnswer answer = run_import_helper(job, limits);
   try {
-    WireReader from(answer.payload);
+    WireReader from(answer.payload());
     ImportedMesh mesh = get_mesh(from);
     mesh.sources = std::move(answer.sources);
     from.expect_end();

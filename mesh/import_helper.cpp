@@ -19,6 +19,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <new>
 #include <span>
 #include <system_error>
 #include <thread>
@@ -40,6 +41,9 @@ std::filesystem::path find_helper() {
   if (error) throw ResourceError("cannot find the running program's folder: {}", error.message());
   return self.parent_path() / "penumbra-import";
 }
+
+/// What the output's pipe holds where the system allows that: the child goes on writing while this process reads.
+constexpr std::size_t kPipeBytes = std::size_t{1} << 20;
 
 /// What the child gets as its standard streams.
 struct Streams {
@@ -120,7 +124,7 @@ enum class Ending { by_itself, out_of_time, too_much_output };
 struct Outcome {
   Ending ending = Ending::by_itself;
   int status = 0;  ///< as waitpid gives it
-  std::vector<std::byte> output;
+  GrowingBytes output;
   std::string errors;  ///< the first few KiB of what it wrote to stderr
 };
 
@@ -143,7 +147,7 @@ Outcome supervise(Child& child, Streams streams, const ImportLimits& limits) {
   output.write.close();  // or the pipes would never end
   errors.write.close();
   Outcome outcome;
-  std::vector<std::byte> buffer(std::size_t{1} << 18);
+  std::array<std::byte, 4096> buffer;
   const auto remaining = [&] { return std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count(); };
 
   while (outcome.ending == Ending::by_itself && (output.read.is_open() || errors.read.is_open())) {
@@ -155,11 +159,11 @@ Outcome supervise(Child& child, Streams streams, const ImportLimits& limits) {
     const int timeout = static_cast<int>(std::min<std::int64_t>(remaining(), 1000));
     if (::poll(waiting.data(), waiting.size(), timeout) <= 0) continue;  // time passed, or a signal came
     if (waiting[0].revents != 0) {
-      drain(output.read, buffer, [&](std::span<const std::byte> bytes) {
+      drain(output.read, outcome.output.room(kPipeBytes), [&](std::span<const std::byte> bytes) {
         if (bytes.size() > limits.output_bytes - outcome.output.size())
           outcome.ending = Ending::too_much_output;
         else
-          outcome.output.insert(outcome.output.end(), bytes.begin(), bytes.end());
+          outcome.output.add(bytes.size());
       });
     }
     if (waiting[1].revents != 0) {
@@ -232,6 +236,18 @@ ResourceError out_of_room(const std::string& file, std::uint64_t bytes, const Me
 
 }  // namespace
 
+std::span<std::byte> GrowingBytes::room(std::size_t least) {
+  if (capacity_ - size_ < least) {
+    const std::size_t wanted = std::max(2 * capacity_, size_ + least);
+    void* moved = std::realloc(memory_.get(), wanted);
+    if (moved == nullptr) throw std::bad_alloc();
+    static_cast<void>(memory_.release());  // realloc has freed it
+    memory_.reset(static_cast<std::byte*>(moved));
+    capacity_ = wanted;
+  }
+  return {memory_.get() + size_, capacity_ - size_};
+}
+
 HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted) {
   const std::string file = job.input.name.string();
   const auto [limits, room] = fit_to_machine(wanted);
@@ -240,6 +256,7 @@ HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted)
       std::to_string(::getpid()), file};
   arguments.insert(arguments.end(), job.flags.begin(), job.flags.end());
   Streams streams{make_pipe(), make_pipe(), make_pipe()};
+  ::fcntl(streams.output.write.get(), F_SETPIPE_SZ, static_cast<int>(kPipeBytes));  // where not, it is only slower
   Child child(spawn(std::move(arguments), streams, job.input));
   streams.life.read.close();
   Outcome outcome = supervise(child, std::move(streams), limits);
@@ -249,9 +266,9 @@ HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted)
   require_good_ending(outcome, file, limits);
 
   HelperAnswer answer;
-  std::size_t header = 0;
+  answer.bytes = std::move(outcome.output);
   try {
-    WireReader from(outcome.output);
+    WireReader from(answer.bytes.all());
     for (const char expected : kHelperMagic) {
       if (from.get<char>() != expected) throw WireError("it does not start as an answer does");
     }
@@ -268,12 +285,10 @@ HelperAnswer run_import_helper(const HelperJob& job, const ImportLimits& wanted)
     if (status == HelperStatus::bad_input) throw InputError("{}", from.get_string());
     if (status != HelperStatus::done) throw WireError("its status is unknown");
     for (std::string& name : from.get_raw_strings()) answer.sources.emplace_back(std::move(name));
-    header = outcome.output.size() - from.remaining();
+    answer.payload_at = answer.bytes.size() - from.remaining();
   } catch (const WireError& error) {
     throw InputError("{}: the importer's answer is damaged ({}); the file is probably damaged", file, error.what());
   }
-  outcome.output.erase(outcome.output.begin(), outcome.output.begin() + static_cast<std::ptrdiff_t>(header));
-  answer.payload = std::move(outcome.output);
   return answer;
 }
 

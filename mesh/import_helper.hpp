@@ -4,7 +4,10 @@
 #include "mesh/input_file.hpp"
 
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,9 +33,29 @@ enum class HelperStatus : std::uint8_t {
 
 inline constexpr char kHelperMagic[8] = {'P', 'N', 'B', 'R', 'I', 'M', 'P', '1'};
 
+/// Bytes that become more. Their memory grows by realloc, which moves pages of large blocks and not what is in them.
+class GrowingBytes {
+ public:
+  /// At least `least` bytes behind those that are there; throws std::bad_alloc.
+  std::span<std::byte> room(std::size_t least);
+  /// So many of the room are there now.
+  void add(std::size_t count) { size_ += count; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::span<const std::byte> all() const { return {memory_.get(), size_}; }
+
+ private:
+  struct Free {
+    void operator()(std::byte* memory) const { std::free(memory); }
+  };
+  std::unique_ptr<std::byte, Free> memory_;
+  std::size_t size_ = 0, capacity_ = 0;
+};
+
 struct HelperAnswer {
   std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, `job.input` among them
-  std::vector<std::byte> payload;
+  GrowingBytes bytes;
+  std::size_t payload_at = 0;  ///< of the bytes
+  [[nodiscard]] std::span<const std::byte> payload() const { return bytes.all().subspan(payload_at); }
 };
 
 /// Runs `penumbra-import` on a foreign file, in a process of its own, and returns its answer.

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 namespace penumbra::mesh {
 namespace {
@@ -76,37 +76,65 @@ std::vector<std::string> WireReader::get_raw_strings() {
   return texts;
 }
 
-void check_soup(const TriangleSoup& soup) {
-  if (soup.object.size() != soup.triangles.size() || soup.source_face.size() != soup.triangles.size()) {
-    throw WireError("the triangle arrays differ in length");
+std::vector<std::span<const std::byte>> WireWriter::pieces() const {
+  std::vector<std::span<const std::byte>> pieces;
+  const std::span<const std::byte> all(bytes_);
+  std::size_t done = 0;
+  for (const InPlace& piece : in_place_) {
+    pieces.push_back(all.subspan(done, piece.after - done));
+    pieces.push_back(piece.values);
+    done = piece.after;
   }
-  const auto finite = [](const glm::dvec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  };
-  if (!std::ranges::all_of(soup.positions, finite)) throw WireError("a position is not finite");
-  const auto in_range = [&](std::uint32_t index) { return index < soup.positions.size(); };
-  for (const Triangle& triangle : soup.triangles) {
-    if (!std::ranges::all_of(triangle, in_range)) throw WireError("a vertex index is out of range");
+  pieces.push_back(all.subspan(done));
+  return pieces;
+}
+
+std::vector<std::byte> WireWriter::bytes() const {
+  std::vector<std::byte> bytes;
+  for (const auto piece : pieces()) bytes.insert(bytes.end(), piece.begin(), piece.end());
+  return bytes;
+}
+
+namespace {
+
+void put_positions(WireWriter& to, const std::vector<glm::dvec3>& positions) {
+  const bool single = std::ranges::all_of(positions, [](const glm::dvec3& p) { return glm::dvec3(glm::vec3(p)) == p; });
+  to.put<std::uint8_t>(single ? 1 : 0);
+  if (!single) return to.put_array_in_place(std::span<const glm::dvec3>(positions));
+  to.put_values<glm::vec3>(positions.size(), [&](std::size_t i) { return glm::vec3(positions[i]); });
+}
+
+/// Numbers that mostly grow by `step` from one to the next.
+void put_numbers(WireWriter& to, std::span<const std::uint32_t> numbers, std::uint32_t step) {
+  std::vector<NumberRun> runs;
+  for (const std::uint32_t number : numbers) {
+    const bool goes_on = !runs.empty() && number == runs.back().first + step * runs.back().count &&
+                         runs.back().count < std::numeric_limits<std::uint32_t>::max();
+    if (!goes_on) {
+      if (runs.size() >= numbers.size() / 4) {
+        to.put<std::uint8_t>(0);
+        return to.put_array_in_place(numbers);
+      }
+      runs.push_back({number, 0});
+    }
+    ++runs.back().count;
   }
+  to.put<std::uint8_t>(1);
+  to.put_array(std::span<const NumberRun>(runs));
+}
+
+}  // namespace
+
+void put_soup(WireWriter& to, const TriangleSoup& soup) {
+  put_positions(to, soup.positions);
+  to.put_array_in_place(std::span<const Triangle>(soup.triangles));
+  put_numbers(to, soup.object, 0);
+  put_numbers(to, soup.source_face, 1);
 }
 
 void put_mesh(WireWriter& to, const ImportedMesh& mesh) {
-  to.put_array(std::span<const glm::dvec3>(mesh.soup.positions));
-  to.put_array(std::span<const Triangle>(mesh.soup.triangles));
-  to.put_array(std::span<const std::uint32_t>(mesh.soup.object));
-  to.put_array(std::span<const std::uint32_t>(mesh.soup.source_face));
+  put_soup(to, mesh.soup);
   to.put_strings(mesh.notes);
-}
-
-ImportedMesh get_mesh(WireReader& from) {
-  ImportedMesh mesh;
-  mesh.soup.positions = from.get_array<glm::dvec3>();
-  mesh.soup.triangles = from.get_array<Triangle>();
-  mesh.soup.object = from.get_array<std::uint32_t>();
-  mesh.soup.source_face = from.get_array<std::uint32_t>();
-  mesh.notes = from.get_strings();
-  check_soup(mesh.soup);
-  return mesh;
 }
 
 }  // namespace penumbra::mesh

@@ -30,20 +30,47 @@ class WireWriter {
     put<std::uint64_t>(values.size());
     append(values.data(), values.size_bytes());
   }
+  /// The same of values that are not copied: they must stay where they are until the pieces have been used.
+  template <typename T>
+  void put_array_in_place(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    put<std::uint64_t>(values.size());
+    if (!values.empty()) in_place_.push_back({bytes_.size(), std::as_bytes(values)});
+  }
+  /// An array of the values value(0), value(1) …
+  template <typename T, typename Value>
+  void put_values(std::size_t count, const Value& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    put<std::uint64_t>(count);
+    const std::size_t first = bytes_.size();
+    bytes_.resize(first + count * sizeof(T));
+    for (std::size_t i = 0; i < count; ++i) {
+      const T one = value(i);
+      std::memcpy(&bytes_[first + i * sizeof(T)], &one, sizeof(T));
+    }
+  }
   void put_string(std::string_view text) { put_array(std::span<const char>(text)); }
   void put_strings(std::span<const std::string> texts) {
     put<std::uint64_t>(texts.size());
     for (const std::string& text : texts) put_string(text);
   }
-  [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
+  /// All that was put, in order; valid until more is.
+  [[nodiscard]] std::vector<std::span<const std::byte>> pieces() const;
+  /// The same as one.
+  [[nodiscard]] std::vector<std::byte> bytes() const;
 
  private:
+  struct InPlace {
+    std::size_t after;  ///< so many of bytes_
+    std::span<const std::byte> values;
+  };
   void append(const void* data, std::size_t size) {
     if (size == 0) return;
     const auto* first = static_cast<const std::byte*>(data);
     bytes_.insert(bytes_.end(), first, first + size);
   }
   std::vector<std::byte> bytes_;
+  std::vector<InPlace> in_place_;
 };
 
 /// The answer is not what a healthy helper sends.
@@ -56,6 +83,7 @@ struct WireError : std::runtime_error {
 class WireReader {
  public:
   explicit WireReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+  explicit WireReader(std::vector<std::byte>&& bytes) = delete;  // they must outlive it
 
   template <typename T>
   T get() {
@@ -71,13 +99,18 @@ class WireReader {
   }
   template <typename T>
   std::vector<T> get_array() {
+    const auto source = get_array_in_place<T>();
+    std::vector<T> values(source.size() / sizeof(T));
+    if (!source.empty()) std::memcpy(values.data(), source.data(), source.size());
+    return values;
+  }
+  /// The bytes of an array of values, which lie anyhow.
+  template <typename T>
+  std::span<const std::byte> get_array_in_place() {
     static_assert(std::is_trivially_copyable_v<T>);
     const auto count = get<std::uint64_t>();
     if (count > rest_.size() / sizeof(T)) throw WireError("an array is longer than the answer");
-    std::vector<T> values(count);
-    const auto source = take(count * sizeof(T));
-    if (count > 0) std::memcpy(values.data(), source.data(), source.size());
-    return values;
+    return take(count * sizeof(T));
   }
   std::string get_string();  ///< made printable: see printable()
   std::vector<std::string> get_strings();
@@ -101,11 +134,18 @@ class WireReader {
 /// throw on it) replaced by '?'.
 std::string printable(std::string_view text);
 
-void put_mesh(WireWriter& to, const ImportedMesh& mesh);
-/// Checks that every index is in range, every position finite and the arrays of one length; throws WireError.
-ImportedMesh get_mesh(WireReader& from);
+/// `count` numbers: `first`, and then each as much more as its list goes up by.
+struct NumberRun {
+  std::uint32_t first = 0, count = 0;
+};
 
-/// Throws WireError unless `soup` keeps what TriangleSoup promises.
-void check_soup(const TriangleSoup& soup);
+/// The soup must stay as it is until the writer's pieces have been used. What says little takes little: positions that
+/// are single precision, and numbers of objects and faces that stay the same or count up.
+void put_soup(WireWriter& to, const TriangleSoup& soup);
+/// Checks that every index is in range, every position finite and the arrays of one length; throws WireError.
+TriangleSoup get_soup(WireReader& from);
+
+void put_mesh(WireWriter& to, const ImportedMesh& mesh);  ///< as put_soup
+ImportedMesh get_mesh(WireReader& from);                  ///< as get_soup
 
 }  // namespace penumbra::mesh

@@ -23,7 +23,7 @@ constexpr mesh::ImportLimits kTextureLimits{.memory_bytes = 1ull << 30, .output_
 Texture read_texture(const mesh::InputFile& input, const std::string& shown) {
   try {
     const mesh::HelperAnswer answer = mesh::run_import_helper({"texture", input, {}}, kTextureLimits);
-    mesh::WireReader from(answer.payload);
+    mesh::WireReader from(answer.payload());
     Texture texture = get_texture(from);
     from.expect_end();
     texture.file = shown;

@@ -10,5 +10,6 @@ penumbra_test(import FULL ImportCorpus.*
   unit/import/gltf_reader.cpp
   unit/import/gltf_surfaces.cpp
   unit/import/input_file.cpp
+  unit/import/ply_binary.cpp
   unit/import/sphere_light.cpp
   LIBRARIES penumbra_scenes penumbra_gltf_import penumbra_mesh_reader nlohmann_json::nlohmann_json ${RAPIDCHECK})

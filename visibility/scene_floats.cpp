@@ -4,6 +4,8 @@
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/pages.hpp"
+#include "base/parallel.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/plane_ids.hpp"
 
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 namespace penumbra::visibility {
 namespace {
@@ -23,6 +26,19 @@ namespace {
 bool lexicographically_less(const glm::vec3& a, const glm::vec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
+
+/// Vertices at the same place are told apart by nothing that is computed from places, so their order is free.
+Triangle sorted(Triangle t, const std::vector<glm::vec3>& positions) {
+  const auto put_in_order = [&](std::uint32_t& a, std::uint32_t& b) {
+    if (lexicographically_less(positions[b], positions[a])) std::swap(a, b);
+  };
+  put_in_order(t[0], t[1]);
+  put_in_order(t[1], t[2]);
+  put_in_order(t[0], t[1]);
+  return t;
+}
+
+constexpr auto kOpaque = scenes::Alpha::Mode::opaque;
 
 glm::dvec3 center_of_bounds(const std::vector<glm::dvec3>& positions) {
   if (positions.empty()) return glm::dvec3(0);
@@ -123,31 +139,32 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
     refuse_subnormal(floats);
   }
 
-  floats.triangles = scene.soup.triangles;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, floats.triangles.size(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      // Vertices at the same place are told apart by nothing that is computed from places, so their order is free.
-      std::sort(floats.triangles[i].begin(), floats.triangles[i].end(), [&](std::uint32_t a, std::uint32_t b) {
-        return lexicographically_less(floats.positions[a], floats.positions[b]);
-      });
-    }
+  const std::size_t count = scene.soup.triangles.size();
+  resize_on_all_cores(floats.triangles, count);
+  resize_on_all_cores(floats.object, count);
+  mesh::for_each_index(count, [&](std::size_t i) {
+    floats.triangles[i] = sorted(scene.soup.triangles[i], floats.positions);
+    floats.object[i] = scene.soup.object[i];
   });
-  floats.object = scene.soup.object;
   floats.alphas = make_surface_alphas(scene);
   floats.plane = plane_ids(floats);
 
-  const std::size_t count = floats.triangles.size();
   floats.casts_shadow.resize(count);
   floats.receives_shadow.resize(count);
   floats.emits.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  mesh::for_each_index(count, [&](std::size_t i) {
     const scenes::Object& object = scene.objects.at(floats.object[i]);
-    const bool casts = object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane;
-    const bool lets_through = object.alpha.mode != scenes::Alpha::Mode::opaque;
-    floats.casts_shadow[i] = casts && !lets_through;
-    if (casts && lets_through) floats.alphas.casters.push_back(static_cast<std::uint32_t>(i));
+    floats.casts_shadow[i] =
+        object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane && object.alpha.mode == kOpaque;
     floats.receives_shadow[i] = object.receives_shadow;
     floats.emits[i] = object.emits ? static_cast<std::int32_t>(*object.emits) : -1;
+  });
+  const auto opaque = [](const scenes::Object& object) { return object.alpha.mode == kOpaque; };
+  if (std::ranges::all_of(scene.objects, opaque)) return floats;
+  for (std::size_t i = 0; i < count; ++i) {
+    const scenes::Object& object = scene.objects.at(floats.object[i]);
+    if (object.casts_shadow && floats.plane[i] != SceneFloats::kNoPlane && !opaque(object))
+      floats.alphas.casters.push_back(static_cast<std::uint32_t>(i));
   }
   return floats;
 }

@@ -101,7 +101,12 @@ bool is_index_type(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-std::uint32_t load_index(const unsigned char* from, int type) {  // exact: a double holds every 32-bit integer
+std::uint32_t load_index(const unsigned char* from, int type) {
+  if (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+    std::uint32_t index = 0;
+    std::memcpy(&index, from, sizeof index);
+    return index;
+  }
   return static_cast<std::uint32_t>(load_component(from, type, false));
 }
 
@@ -190,7 +195,15 @@ Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_
     const ElementView view =
         view_elements(model, place, accessor.bufferView, accessor.byteOffset, {accessor.count, element_bytes});
     numbers.values.resize(number_count(accessor, numbers.components, place));
-    for (std::size_t i = 0; i < accessor.count; ++i) store(i, view.at(i));
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {  // nearly always
+      double* to = numbers.values.data();
+      for (std::size_t i = 0; i < accessor.count; ++i) {
+        const unsigned char* const from = view.at(i);
+        for (std::size_t c = 0; c < numbers.components; ++c) *to++ = load<float>(from + c * sizeof(float), false);
+      }
+    } else {
+      for (std::size_t i = 0; i < accessor.count; ++i) store(i, view.at(i));
+    }
   }
   apply_sparse(model, place, accessor, element_bytes, store);
   for (std::size_t i = 0; i < numbers.values.size(); ++i) {

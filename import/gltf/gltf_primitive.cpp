@@ -16,6 +16,7 @@ namespace {
 /// indices at the end that make no triangle.
 std::vector<mesh::Triangle> assemble(int mode, std::span<const std::uint32_t> v, std::uint64_t& leftover) {
   std::vector<mesh::Triangle> triangles;
+  triangles.reserve(mode == TINYGLTF_MODE_TRIANGLES ? v.size() / 3 : v.size());
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     for (std::size_t i = 0; i + 2 < v.size(); i += 3) triangles.push_back({v[i], v[i + 1], v[i + 2]});
     leftover += v.size() % 3;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace penumbra::scenes {
@@ -43,6 +44,7 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
   // A mirroring node turns the front of its triangles (glTF 2.0, 3.7.4); swapped corners turn it back outward.
   constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> renumbered(vertices.local.size(), kUnused);
+  if (soup.positions.empty()) soup.positions.reserve(vertices.local.size());
   for (mesh::Triangle& triangle : triangles) {
     const bool mirrored = glm::determinant(glm::dmat3(vertices.to_world(triangle[0]))) < 0;
     for (std::uint32_t& index : triangle) {
@@ -61,10 +63,14 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
       index = target;
     }
     if (mirrored) std::swap(triangle[1], triangle[2]);
-    soup.source_face.push_back(static_cast<std::uint32_t>(soup.triangles.size() - before.triangle));
-    soup.triangles.push_back(triangle);
-    soup.object.push_back(number);
   }
+  soup.object.insert(soup.object.end(), triangles.size(), number);
+  soup.source_face.resize(soup.object.size());
+  std::iota(soup.source_face.begin() + static_cast<std::ptrdiff_t>(before.triangle), soup.source_face.end(), 0U);
+  if (soup.triangles.empty())
+    soup.triangles = std::move(triangles);
+  else
+    soup.triangles.insert(soup.triangles.end(), triangles.begin(), triangles.end());
   return before;
 }
 

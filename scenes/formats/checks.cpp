@@ -218,6 +218,8 @@ void check_camera(const Camera& camera, const std::string& where) {
 void check_scene(const Scene& scene, const std::string& where, bool needs_light) {
   const mesh::TriangleSoup& soup = scene.soup;
   if (soup.triangles.empty()) throw InputError("{}: the scene has no triangles; it needs at least one mesh", where);
+  const bool all_near =
+      std::ranges::all_of(soup.positions, [](const glm::dvec3& p) { return largest(p) <= kLargestCoordinate; });
   std::vector<std::size_t> triangles_of(scene.objects.size(), 0);
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
     const std::uint32_t object = soup.object[i];
@@ -225,6 +227,7 @@ void check_scene(const Scene& scene, const std::string& where, bool needs_light)
     ++triangles_of[object];
     for (const std::uint32_t vertex : soup.triangles[i]) {
       PENUMBRA_ASSERT(vertex < soup.positions.size(), "triangle {} uses vertex {}", i, vertex);
+      if (all_near) continue;
       const glm::dvec3& position = soup.positions[vertex];
       if (largest(position) <= kLargestCoordinate) continue;  // false for NaN
       check_position(position, fmt::format("{}: mesh \"{}\"", where, scene.objects[object].name),

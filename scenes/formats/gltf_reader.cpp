@@ -22,7 +22,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   if (options.time) job.flags.push_back(fmt::format("--time={}", *options.time));
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {
-    mesh::WireReader from(answer.payload);
+    mesh::WireReader from(answer.payload());
     Scene scene = get_scene(from);
     scene.sources = std::move(answer.sources);
     from.expect_end();

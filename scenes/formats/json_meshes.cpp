@@ -78,18 +78,18 @@ mesh::TriangleSoup read_source(const json& mesh, const Place& place, const ReadO
 
 /// Vertices that no triangle uses are no part of the scene: they would move its origin without being seen.
 void drop_unused_vertices(mesh::TriangleSoup& soup, const Place& place, std::vector<std::string>& warnings) {
-  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> new_index(soup.positions.size(), kUnused);
+  std::vector<std::uint8_t> used(soup.positions.size(), 0);
   for (const mesh::Triangle& triangle : soup.triangles) {
-    for (const std::uint32_t vertex : triangle) new_index[vertex] = 0;
+    for (const std::uint32_t vertex : triangle) used[vertex] = 1;
   }
+  if (std::ranges::all_of(used, [](std::uint8_t is_used) { return is_used != 0; })) return;
+  std::vector<std::uint32_t> new_index(soup.positions.size());
   std::uint32_t kept = 0;
   for (std::size_t i = 0; i < new_index.size(); ++i) {
-    if (new_index[i] == kUnused) continue;
+    if (used[i] == 0) continue;
     soup.positions[kept] = soup.positions[i];
     new_index[i] = kept++;
   }
-  if (kept == soup.positions.size()) return;
   warnings.push_back(
       fmt::format("{}: left out {} vertices that no triangle uses", place.str(), soup.positions.size() - kept));
   soup.positions.resize(kept);
@@ -253,10 +253,14 @@ mesh::TriangleSoup read_mesh(const json& mesh, const Place& place, const ReadOpt
   drop_unused_vertices(soup, place, scene.warnings);
   if (mesh.contains("transform")) apply_transform(mesh["transform"], place / "transform", soup);
   if (mesh.contains("fit")) apply_fit(mesh["fit"], place / "fit", soup);
+  const auto finite = [](const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  if (std::ranges::all_of(soup.positions, finite)) return soup;
   for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
     for (const std::uint32_t vertex : soup.triangles[i]) {
       const glm::dvec3& p = soup.positions[vertex];
-      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+      if (finite(p)) continue;
       throw InputError("{}: a vertex of face {} is ({}, {}, {}) in world space; expected finite numbers", place.str(),
                        soup.source_face[i], p.x, p.y, p.z);
     }

@@ -39,7 +39,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (scene) {
     mesh::WireWriter writer;
     scenes::put_scene(writer, *scene);
-    mesh::WireReader reader(writer.bytes());
+    const std::vector<std::byte> bytes = writer.bytes();
+    mesh::WireReader reader(bytes);
     const scenes::Scene again = scenes::get_scene(reader);  // throws if a promise is broken
     PENUMBRA_ASSERT(again.soup.triangles == scene->soup.triangles, "{} triangles became {}",
                     scene->soup.triangles.size(), again.soup.triangles.size());

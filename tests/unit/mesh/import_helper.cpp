@@ -8,8 +8,10 @@
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 
 namespace penumbra::mesh {
@@ -81,9 +83,12 @@ TEST_F(ImportHelper, LiesAreFoundOut) {
   EXPECT_THAT(refusal(), HasSubstr("needs more than 4 GiB of memory"));
   use_helper(R"(printf 'PNBRIMP1\000\377\377\377\377\377\377\377\177')");  // 2^63 files that were opened
   EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
-  // No file, and 2^63 positions.
-  use_helper(R"(printf 'PNBRIMP1\000\000\000\000\000\000\000\000\000\377\377\377\377\377\377\377\177')");
-  EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
+  // No file, and 2^63 positions in double precision, and in single.
+  for (const char* precision : {"000", "001"}) {
+    use_helper(std::string(R"(printf 'PNBRIMP1\000\000\000\000\000\000\000\000\000\)") + precision +
+               R"(\377\377\377\377\377\377\377\177')");
+    EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
+  }
   use_helper(R"(printf 'PNBRIMP1\001\004\000\000\000\000\000\000\000a\033[m')");  // steers the terminal
   EXPECT_EQ(refusal(), "a?[m");
 }
@@ -97,7 +102,8 @@ TEST_F(ImportHelper, AnswersAreChecked) {
   const auto read_back = [](const ImportedMesh& sent) {
     WireWriter to;
     put_mesh(to, sent);
-    WireReader from(to.bytes());
+    const std::vector<std::byte> bytes = to.bytes();
+    WireReader from(bytes);
     return get_mesh(from);
   };
   EXPECT_EQ(read_back(mesh).soup.triangles, mesh.soup.triangles);
@@ -110,7 +116,48 @@ TEST_F(ImportHelper, AnswersAreChecked) {
   bad = mesh;
   bad.soup.object.clear();
   EXPECT_THROW(read_back(bad), WireError);
+  // Runs of numbers that are more or fewer than the triangles, or wrap around.
+  for (const std::uint32_t count : {0U, 1U, 2U, 0xffffffffU}) {
+    WireWriter to;
+    to.put<std::uint8_t>(0), to.put_array(std::span<const glm::dvec3>(mesh.soup.positions));
+    to.put_array(std::span<const Triangle>(mesh.soup.triangles));
+    const std::vector<NumberRun> runs = {{7, 0}, {8, count}};
+    for (int list = 0; list < 2; ++list) to.put<std::uint8_t>(1), to.put_array(std::span<const NumberRun>(runs));
+    const std::vector<std::byte> bytes = to.bytes();
+    WireReader from(bytes);
+    if (count == 1) {
+      EXPECT_EQ(get_soup(from).object, std::vector<std::uint32_t>{8});
+    } else {
+      EXPECT_THROW(get_soup(from), WireError);
+    }
+  }
   EXPECT_EQ(printable("a\tb\x7f\xc3\xa4\xff\xc2\x9b\xed\xa0\x80"), "a?b?\xc3\xa4????\?\?");
+}
+
+TEST_F(ImportHelper, SoupsArriveAsTheyWereSent) {
+  for (int kind = 0; kind < 8; ++kind) {
+    TriangleSoup soup;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+      soup.positions.emplace_back(i, -0.0, (kind & 1) != 0 && i == 2999 ? 0.1 : 0.5);  // 0.1 is no single precision
+      soup.triangles.push_back({i, (i * 7) % 3000, 2999 - i});
+      soup.object.push_back((kind & 2) != 0 ? i * 2654435761U : i / 1000);
+      soup.source_face.push_back((kind & 4) != 0 ? i / 2 : i < 10 ? i : 0xfffffff0U + i);  // counts over 2^32
+    }
+    WireWriter to;
+    put_soup(to, soup);
+    const std::vector<std::byte> bytes = to.bytes();
+    WireReader from(bytes);
+    const TriangleSoup got = get_soup(from);
+    from.expect_end();
+    EXPECT_EQ(got.positions, soup.positions);
+    EXPECT_TRUE(std::ranges::all_of(got.positions, [](const glm::dvec3& p) { return std::signbit(p.y); }));
+    EXPECT_EQ(got.triangles, soup.triangles);
+    EXPECT_EQ(got.object, soup.object);
+    EXPECT_EQ(got.source_face, soup.source_face);
+    if (kind == 0) {
+      EXPECT_LT(bytes.size(), 3000 * (sizeof(glm::vec3) + sizeof(Triangle)) + 200);
+    }
+  }
 }
 
 TEST_F(ImportHelper, MissingHelperIsAResourceError) {
