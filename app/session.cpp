@@ -218,6 +218,7 @@ Session open_session(const RunOptions& options, std::optional<double> time, Devi
   progress.begin("reading " + options.scene.filename().string(), 1);
   // What is wrong with the command line is said before anything long begins.
   SessionMaker maker(options, devices);
+  devices.begin();
   const Stopwatch load;
   scenes::Scene scene;
   {

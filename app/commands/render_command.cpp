@@ -56,6 +56,7 @@ class RenderCommand : public Command {
       spdlog::info("all {} pictures are there", frames.size());
       return 0;
     }
+    devices.begin();  // while the scene is read, mostly by another process
     ReadScene now;
     {
       const MayExitAtOnce at_once;
