@@ -14,6 +14,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/light_identities.cpp
   analytic/maps/light_tree.cpp
   analytic/maps/list_bounds.cpp
+  analytic/maps/list_geometry.cpp
   analytic/maps/lists.cpp
   analytic/maps/method.cpp
   analytic/maps/moments.cpp
@@ -31,6 +32,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/backproject.cpp
   analytic/maps/backprojection/bitmask.cpp
   analytic/maps/backprojection/bitmask_predicates.cpp
+  analytic/maps/backprojection/bitmask_umbra.cpp
   analytic/maps/backprojection/contour.cpp
   analytic/maps/backprojection/contour_claims.cpp
   analytic/maps/backprojection/fusion.cpp

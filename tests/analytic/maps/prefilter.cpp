@@ -149,5 +149,43 @@ TEST(LightBox, HasTheLightsOwnMoments) {
   }
 }
 
+// What looks for occluders looks for them between the light's bounds: a light that is wider has unseen ones, a narrower
+// one more to look at. Points of the outline are at most 1 - cos(pi / 4096) of its width inside it.
+TEST(LightBounds, HoldTheLightAndNoMore) {
+  scenes::Scene scene = scene_of(false);
+  for (const decltype(scenes::AreaLight::shape)& shape :
+       {decltype(scenes::AreaLight::shape)(scenes::Rectangle{{0, 3, 0}, {0.7, 0, 0}, {0.1, 0, 0.2}}),
+        {scenes::Disk{{0, 3, 0}, {0, -1, 0}, 0.5}},
+        {scenes::Disk{{0, 3, 0}, {0.3, -1, 0.2}, 0.5}},
+        {scenes::Ellipse{{0, 3, 0}, {0.4, 0, 0}, {0.3, 0, 0.2}}},
+        {scenes::Polygon{{{0, 3, 0}, {2, 3, 0}, {1.5, 3, 1}, {0, 3, 2}}}}}) {
+    scene.lights.front().shape = shape;
+    const Stage stage(scene, 4, 4, light_samples(1));
+    const maps::LightBasis basis = maps::light_basis(stage.light);
+    std::vector<glm::dvec3> outline;
+    if (stage.light.kind == visibility::LightKind::disk || stage.light.kind == visibility::LightKind::ellipse) {
+      const visibility::LightFrame frame = visibility::light_frame(stage.light);
+      for (int i = 0; i < 4096; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 4096;
+        outline.push_back(frame.center + std::cos(angle) * frame.u + std::sin(angle) * frame.v);
+      }
+    } else {
+      outline.assign(stage.light.outline.begin(), stage.light.outline.end());
+    }
+    glm::dvec2 lower(1e30), upper(-1e30);
+    for (const glm::dvec3& point : outline) {
+      const glm::dvec3 relative = point - basis.center;
+      const glm::dvec2 at(glm::dot(relative, basis.u), glm::dot(relative, basis.v));
+      lower = glm::min(lower, at);
+      upper = glm::max(upper, at);
+    }
+    const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
+    for (const int axis : {0, 1}) {
+      EXPECT_NEAR(bounds.lower[axis], lower[axis], 1e-6);
+      EXPECT_NEAR(bounds.upper[axis], upper[axis], 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::tests

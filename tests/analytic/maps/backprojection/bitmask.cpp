@@ -376,17 +376,23 @@ TEST_F(MapsBitmask, TheBudgetSaysWhichLevel) {
   };
   // The window holds the floor, +-3/5, and nothing beside it in 198 texels; the plate is at depth 3.
   const double across = 2 * (1.0 / 3 - 1.0 / 5) / (1.2 / 198);
-  const auto budget = [&](double width, double level) {
-    return with({{"budget", fmt::format("{:.0f}", std::pow(width / std::exp2(level), 2))}});
-  };
+  const auto budget = [&](double texels) { return with({{"budget", fmt::format("{:.0f}", texels)}}); };
   std::vector<std::vector<std::uint32_t>> levels;
   for (const char* level : {"0", "1", "2", "3"}) levels.push_back(with({{"level", level}}));
   EXPECT_NE(levels[0], levels[1]);
   EXPECT_NE(levels[1], levels[2]);
-  for (std::size_t level = 0; level < 3; ++level) {
-    // A kernel is up to two texels wider than what it holds.
-    EXPECT_EQ(budget(1.02 * (across + 2), static_cast<double>(level)), levels[level]) << level;
-    EXPECT_EQ(budget(0.98 * across, static_cast<double>(level)), levels[level + 1]) << level;
+  // The kernel is up to two texels wider than what it holds; just that many of them the finest level may look at.
+  double too_few = std::floor(0.98 * across * across), enough = std::ceil(1.02 * (across + 2) * (across + 2));
+  EXPECT_EQ(budget(too_few), levels[1]);
+  EXPECT_EQ(budget(enough), levels[0]);
+  while (enough - too_few > 1) {
+    const double middle = std::floor((too_few + enough) / 2);
+    (budget(middle) == levels[0] ? enough : too_few) = middle;
+  }
+  for (const std::size_t level : {1, 2}) {
+    const double texels = std::exp2(-2.0 * static_cast<double>(level)) * enough;
+    EXPECT_EQ(budget(std::ceil(1.005 * texels)), levels[level]) << level;
+    EXPECT_EQ(budget(std::floor(0.995 * texels)), levels[level + 1]) << level;
   }
 }
 

@@ -108,7 +108,8 @@ scenes::Scene under_shape(int shape) {
 // An occluder of n × m texels is n · m − ½ texels large: each of its four corners is cut off by an eighth. Areas are
 // rounded to 2⁻²² of the light for each of the edges, tangents to 2⁻²⁴ of the window's 1.6, which are 1e-6 of the
 // light's width there; and a disk's swept angle, for which drivers may take 4,096 units in the last place, to 2.4e-4 at
-// worst.
+// worst. What this driver takes is seen where about half of the light is hidden, and is no more where an edge grazes
+// it: there a disk of another size shows, which edges through its middle hardly know of.
 TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
   for (const int shape : {0, 1, 2, 3, 4}) {
     for (const std::uint32_t size : {33U, 96U}) {
@@ -116,17 +117,23 @@ TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
       const ParallelSquare square(stage);
       const OctagonTwin twin(stage, size);
       const Masks found = run(maps::make_contour, stage, {{"size", std::to_string(size)}});
-      double largest = 0;
-      std::size_t partly = 0;
+      double halved = 0, others = 0;
+      std::size_t partly = 0, grazed = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         if (!square.on_floor(i)) continue;
         const double expected = twin.visibility(i);
+        const bool half = expected > 0.25 && expected < 0.75;
         partly += expected > 0.01 && expected < 0.99 ? 1 : 0;
+        grazed += (expected > 1e-5 && expected < 0.01) || (expected > 0.99 && expected < 1 - 1e-5) ? 1 : 0;
+        double& largest = half ? halved : others;
         largest = std::max(largest, std::abs(static_cast<double>(found.visibility[i]) - expected));
       }
       EXPECT_GT(partly, 100U);
-      EXPECT_LT(largest, shape == 1 || shape == 4 ? 5e-4 : 4e-5) << "shape " << shape << ", size " << size;
-      RecordProperty(fmt::format("shape {} size {}", shape, size), fmt::format("{:.2g}", largest));
+      EXPECT_GT(grazed, 3U);
+      EXPECT_LT(std::max(halved, others), shape == 1 || shape == 4 ? 5e-4 : 4e-5)
+          << "shape " << shape << ", size " << size;
+      EXPECT_LT(others, 2 * halved + 4e-5) << "shape " << shape << ", size " << size;
+      RecordProperty(fmt::format("shape {} size {}", shape, size), fmt::format("{:.2g}, {:.2g}", halved, others));
     }
   }
 }
