@@ -120,7 +120,8 @@ std::string error_against_time_html(const ReportInput& in) {
     return value < kNoError ? kBottom - 12 : bottom - (bottom - kTop) * along.share(value);
   };
   std::string svg =
-      "<svg class=\"plot\" viewBox=\"0 0 860 420\" role=\"img\" aria-label=\"Error of V against time, one mark a "
+      "<div class=\"wide\"><svg class=\"plot\" viewBox=\"0 0 860 420\" role=\"img\" aria-label=\"Error of V against "
+      "time, one mark a "
       "method; the tables below have the numbers\">\n";
   for (int decade = across.first; decade <= across.last; ++decade) {
     const double x = x_of(std::pow(10, decade));
@@ -161,7 +162,7 @@ std::string error_against_time_html(const ReportInput& in) {
     svg += fmt::format("<g>{}<title>{}: RMSE {}, {}</title></g>\n", mark(dot), escape_html(dot.name),
                        error_text(dot.rmse), seconds_text(dot.seconds));
   }
-  svg += names(dots, taken) + "</svg>\n";
+  svg += names(dots, taken) + "</svg></div>\n";
   std::string html = "<h3>Error against time</h3>\n" + svg +
                      "<p class=\"note\">Further down is closer to the reference, further left is faster; both scales "
                      "step by tens. Circles are geometry-based methods, squares image-based ones, diamonds references.";

@@ -171,10 +171,19 @@ std::string failures_html(const ReportInput& in) {
 
 std::string seconds_html(const ReportInput& in) {
   const Stats& reference = in.metrics.reference;
+  const std::string asked = question_of({in.reference.description, reference});
+  bool has_ratios = false;
+  for (std::size_t i = 0; i < in.methods.size(); ++i) {
+    const MethodResult& result = in.metrics.methods[i];
+    has_ratios = has_ratios || (!result.failure && same_question(in, in.methods[i], result));
+  }
   ReportTable table{
-      "Seconds on the machine below; of repeated runs the median. Shadow = light + evaluate. A ratio is given "
-      "where a method answers the same question as the reference, with as many light samples; elsewhere "
-      "the cell says what the reference was asked.",
+      "Seconds on the machine below; of repeated runs the median. Shadow = light + evaluate. " +
+          (has_ratios
+               ? std::string("A ratio is given where a method answers the same question as the reference, with as "
+                             "many light samples.")
+               : "There are no ratios to the reference, which was asked another question: " + asked +
+                     (in.sampled_pixels == 0 ? "." : ", chosen pixels.")),
       {"Method", "Shadow", "against the reference", "Light", "Evaluate", "Mesh (once)", "Warm-up", "Memory"},
       {}};
   const auto seconds_cell = [](const std::optional<double>& seconds) {
@@ -195,7 +204,6 @@ std::string seconds_html(const ReportInput& in) {
                           seconds_cell(stats.seconds.warmup),
                           {bytes_text(stats.peak_memory_bytes), static_cast<double>(stats.peak_memory_bytes)}});
   };
-  const std::string asked = question_of({in.reference.description, reference});
   row(label_html(reference.method, "the reference, " + asked), reference, false, "–");
   const std::vector<const MethodResult*> best =
       smallest(in.metrics.methods, shadow_of, [](double seconds) { return seconds_text(seconds); });
@@ -203,13 +211,16 @@ std::string seconds_html(const ReportInput& in) {
     const MethodResult& result = in.metrics.methods[i];
     if (result.failure) continue;
     const std::string speed =
-        same_question(in, in.methods[i], result)
-            ? speed_text(shadow_of(result), reference.seconds.shadow())
-            : "another question<small>the reference: " + (in.sampled_pixels == 0 ? asked : asked + ", chosen pixels") +
-                  "</small>";
-    row(label_html(result.entry,
-                   fmt::format("{}, {}", question_of({in.methods[i].description, result.stats}), result.stats.device)),
+        same_question(in, in.methods[i], result) ? speed_text(shadow_of(result), reference.seconds.shadow()) : "–";
+    // Most run on one device, which the machine's facts name.
+    const bool elsewhere = result.stats.device != in.metrics.methods.front().stats.device;
+    row(label_html(result.entry, question_of({in.methods[i].description, result.stats}) +
+                                     (elsewhere ? ", " + result.stats.device : std::string())),
         result.stats, std::ranges::find(best, &result) != best.end(), speed);
+  }
+  if (!has_ratios) {
+    table.headers.erase(table.headers.begin() + 2);
+    for (auto& cells : table.rows) cells.erase(cells.begin() + 2);
   }
   return "<h3>Time</h3>\n" + table_html(table);
 }

@@ -40,7 +40,8 @@ function panes() {
   }
   const entries = entriesWith(state.layer);
   let best = { scale: 0, columns: 1 };
-  for (let columns = 1; columns <= entries.length; ++columns) {
+  const most = Math.max(1, Math.floor(width / (130 * devicePixelRatio)));  // names are as wide as that
+  for (let columns = 1; columns <= Math.min(most, entries.length); ++columns) {
     const scale = Math.min(width / columns / report.width, height / Math.ceil(entries.length / columns) / report.height);
     if (scale > best.scale) best = { scale, columns };
   }

@@ -21,7 +21,7 @@ visibility::MethodDescription convolution_description() {
   visibility::MethodDescription description{
       .name = "convolution",
       .family = visibility::Family::image,
-      .paper = "Soler, Sillion 1998",
+      .paper = "Soler and Sillion 1998",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps, blockers in one plane parallel to a rectangle light",
       .lights = planar_lights(),

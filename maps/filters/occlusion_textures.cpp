@@ -22,7 +22,7 @@ visibility::MeshVerdict occlusion_textures_verdict(const mesh::Diagnosis& mesh) 
 visibility::MethodDescription occlusion_textures_description() {
   visibility::MethodDescription description{.name = "occlusion-textures",
                                             .family = visibility::Family::image,
-                                            .paper = "Eisemann, Décoret 2006",
+                                            .paper = "Eisemann and Décoret 2006",
                                             .output = visibility::Output::scalar,
                                             .exact_for =
                                                 "nothing; in the limit of large maps, one flat blocker parallel to a "

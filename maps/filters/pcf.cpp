@@ -28,7 +28,7 @@ visibility::MethodDescription pcf_description() {
   visibility::MethodDescription description{
       .name = "pcf",
       .family = visibility::Family::image,
-      .paper = "Reeves, Salesin, Cook 1987",
+      .paper = "Reeves, Salesin and Cook 1987",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps the hard shadow of the light's centre",
       .lights = planar_lights(),

@@ -60,7 +60,7 @@ visibility::MeshVerdict vssm_verdict(const mesh::Diagnosis& mesh) {
 visibility::MethodDescription vssm_description() {
   visibility::MethodDescription description{.name = "vssm",
                                             .family = visibility::Family::image,
-                                            .paper = "Yang 2010, Annen 2008",
+                                            .paper = "Yang et al. 2010; Annen et al. 2008",
                                             .output = visibility::Output::scalar,
                                             .exact_for =
                                                 "nothing; in the limit of large maps, where all blockers lie in one "

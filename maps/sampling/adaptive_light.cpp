@@ -68,7 +68,7 @@ visibility::MethodDescription adaptive_light_description() {
   visibility::MethodDescription description{
       .name = "adaptive-light",
       .family = visibility::Family::image,
-      .paper = "Schwaerzler",
+      .paper = "Schwärzler",
       .output = visibility::Output::scalar,
       .exact_for = "nothing; in the limit of large maps and many levels any soup of triangles that can be rasterised",
       .lights = planar_lights(),
