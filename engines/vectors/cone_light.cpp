@@ -89,6 +89,7 @@ ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloa
     caster.triangle = triangle;
     caster.plane = scene.plane[triangle];
   });
+  if (cuts_casters_) near_side_by_side_ = side_by_side(near_);
 }
 
 LightGrid ConeLight::make_grid() const {

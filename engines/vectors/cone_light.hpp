@@ -2,6 +2,7 @@
 
 #include "engines/vectors/clusters.hpp"
 #include "engines/vectors/light_grid.hpp"
+#include "engines/vectors/near_casters.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -38,9 +39,7 @@ class ConeLight {
   /// different sides that no rectangle will do. One alone always sees it through one.
   [[nodiscard]] bool turn(LightGrid& grid, std::span<GridSample> samples) const;
   /// Of a sphere, for methods that cut casters: those that may meet the disk that anyone sees.
-  [[nodiscard]] std::span<const NearCaster> near() const {
-    return cuts_casters_ ? std::span<const NearCaster>(near_) : std::span<const NearCaster>();
-  }
+  [[nodiscard]] const NearCasters& near() const { return near_side_by_side_; }
 
  private:
   [[nodiscard]] bool touches(const LightGrid::Cones& cones, const LightCone& cone, const glm::dvec3& p) const;
@@ -53,6 +52,7 @@ class ConeLight {
   double beyond_ = 0;     // of a sun: all casters are nearer to it than this height, scaled
   float reach_ = 0;
   std::vector<NearCaster> near_;
+  NearCasters near_side_by_side_;
 };
 
 /// A cluster of which everything may matter to a method.

@@ -1,15 +1,14 @@
 #pragma once
 
 #include "engines/vectors/light_grid.hpp"
+#include "engines/vectors/near_casters.hpp"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
-#include <span>
 #include <tuple>
-#include <vector>
 
 /// Casters at the disk that a view sample sees of a sphere, as where a lamp's own body reaches into it.
 /// docs/edge-scatter.md, "Ends".
@@ -49,12 +48,5 @@ double around_disk(const LightGrid::Cones& cones, const LightCone& cone);
 
 /// Does a caster's part within `slab` of the plane come within ±`around` of the disk's middle?
 bool meets_disk(const DiskPlane& plane, const NearCaster& caster, double slab, double around);
-
-/// Of some casters those that may meet the disks of any of some view samples.
-void find_near_disks(const LightGrid& grid, std::span<const GridSample> samples, std::span<const NearCaster> among,
-                     std::vector<NearCaster>& out);
-void set_near_casters(std::span<const NearCaster> from, NearCasters& to);
-/// Whether one of them may meet a disk.
-bool any_may_meet(const DiskPlane& plane, const NearCasters& casters, double slab, double around);
 
 }  // namespace penumbra::vectors

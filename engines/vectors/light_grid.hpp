@@ -18,6 +18,9 @@
 /// (volumes/edges/edge_scatter.glsl). Lengths are scene floats times visibility::device_scale.
 namespace penumbra::vectors {
 
+struct NearCasters;
+struct NearSpheres;
+
 constexpr float kRound = 0x1p-24F;  ///< half a unit in the last place of 1
 
 /// A sphere or a sun as one view sample sees it: the ways to its light points are middle + s u + t v over the unit
@@ -28,22 +31,6 @@ struct LightCone {
 
   /// The way to the lower left corner of the square around it.
   [[nodiscard]] glm::dvec3 corner() const { return middle - u - v; }
-};
-
-/// A caster that may meet the disk that a view sample sees of a sphere.
-struct NearCaster {
-  std::array<glm::dvec3, 3> corners{};  ///< scaled, lexicographically sorted
-  glm::dvec3 middle{0};
-  double radius = 0;  ///< no corner is farther from the middle
-  std::uint32_t triangle = 0, plane = 0;
-};
-/// The same, side by side: columns of corners (x, y, z each), middle and radius, that end with room for a vector.
-struct NearCasters {
-  static constexpr std::size_t kMiddle = 9, kRadius = 12, kFields = 13, kRoom = 32;
-
-  std::array<std::vector<double>, kFields> columns;
-  std::vector<std::uint32_t> triangle, plane;
-  std::size_t count = 0;
 };
 
 /// The light, or a rectangle around it, as a grid of cells, for one of its two sides. A point x of its plane has the
@@ -80,7 +67,8 @@ struct LightGrid {
     double reach = 0;               ///< of scene and light, whatever the grid's rectangle
     /// Casters that may meet the disks of a few view samples, if the method cuts them there; else a view sample that
     /// has such casters is left to exact predicates.
-    const NearCasters* near = nullptr;
+    const NearSpheres* near = nullptr;
+    const NearCasters* casters = nullptr;  ///< all of the light's
   };
   std::optional<Cones> cones = {};
 };

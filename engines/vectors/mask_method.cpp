@@ -2,7 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "engines/vectors/disk_plane.hpp"
+#include "engines/vectors/near_casters.hpp"
 #include "engines/vectors/open_judge.hpp"
 #include "visibility/masks/visible_share.hpp"
 #include "visibility/tree/tree_refit.hpp"
@@ -45,8 +45,7 @@ struct Buffers {
   std::vector<GridSample> samples;
   std::vector<SampleMask> masks;
   std::vector<LightCone> cones;  // of the region's view samples
-  std::vector<NearCaster> near_region, near_cluster;
-  NearCasters near;
+  NearSpheres near_region, near_cluster;
   LightGrid turned;              // to a region's or a cluster's
   std::uint64_t turned_for = 0;  // the light
 };
@@ -262,7 +261,7 @@ Blocks MaskMethod::enter_region(const LightGrid& grid, std::span<GridSample> sam
   if (!cone_) return begin_region(grid, make_cluster(grid, samples));
   LightGrid& turned = turned_grid();
   turned.cones->of = buffers().cones;
-  find_near_disks(turned, samples, cone_->near(), buffers().near_region);
+  find_near_disks(turned, samples, cone_->near().spheres, buffers().near_region);
   return begin_region(turned, cone_->turn(turned, samples) ? make_cluster(turned, samples) : everything(samples));
 }
 
@@ -294,8 +293,8 @@ void MaskMethod::do_turned(std::span<const GridSample> samples, OpenJudge& judge
   LightGrid& turned = turned_grid();
   Buffers& own = buffers();
   find_near_disks(turned, samples, own.near_region, own.near_cluster);
-  if (!own.near_cluster.empty()) set_near_casters(own.near_cluster, own.near);
-  turned.cones->near = own.near_cluster.empty() ? nullptr : &own.near;
+  turned.cones->near = own.near_cluster.count == 0 ? nullptr : &own.near_cluster;
+  turned.cones->casters = &cone_->near();
   do_cluster(turned, samples, judge, masks);
 }
 

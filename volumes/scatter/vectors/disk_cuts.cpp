@@ -40,13 +40,14 @@ class SlowDiskCut {
       : in_(in), plane_(plane), cells_(in), slab_(slab), most_(most) {}
 
   void add(std::size_t number, OpenJudge& judge, Open& open, CrossingTable& out) const {
-    const vectors::NearCasters& near = *in_.grid.cones->near;
-    if (near.plane[number] == in_.at.plane) return;
+    const vectors::NearCasters& near = *in_.grid.cones->casters;
+    const double* row = &near.rows[number * vectors::NearCasters::kRow];
+    if (row[vectors::NearCasters::kPlane] == static_cast<double>(in_.at.plane)) return;
     std::array<glm::dvec3, 3> corners;
     std::array<glm::dvec2, 3> place;
     std::array<double, 3> height{};
     for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = {near.columns[3 * i][number], near.columns[3 * i + 1][number], near.columns[3 * i + 2][number]};
+      corners[i] = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
       place[i] = plane_.place(corners[i]);
       height[i] = plane_.height(corners[i]);
     }
@@ -141,12 +142,14 @@ Double along(const glm::dvec3& n, const Double3& x) {
   return product({number(n.x), number(n.y), number(n.z)}, x);
 }
 
-/// Casters side by side.
+/// Casters side by side. Most of those that are near to some disk nearby do not pass through this one: each step leaves
+/// some out, and what is left of many vectors becomes few full ones.
 class FastDiskCuts {
  public:
   FastDiskCuts(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out)
       : in_(in),
         near_(*in.grid.cones->near),
+        rows_(in.grid.cones->casters->rows.data()),
         plane_(in.grid.cones->of[in.at.cone], glm::dvec3(in.at.p)),
         cells_(in),
         slab_(thin_slab(*in.grid.cones)),
@@ -157,20 +160,59 @@ class FastDiskCuts {
         out_(out) {}
 
   void operator()() {
+    const Doubles d;
     out_.reserve(out_.count + near_.count);
-    for (std::size_t i = 0; i < near_.count; i += hn::Lanes(Doubles())) add(i);
+    const auto column = [&](std::size_t field, std::size_t i) { return hn::LoadU(d, &near_.columns[field][i]); };
+    for (std::size_t i = 0; i < near_.count; i += hn::Lanes(d)) {
+      const auto middle = [&](std::size_t axis, double of_p) {
+        return hn::Sub(column(vectors::NearSpheres::kMiddle + axis, i), number(of_p));
+      };
+      const Double3 way{middle(0, plane_.p.x), middle(1, plane_.p.y), middle(2, plane_.p.z)};
+      // A radius has room for rounding.
+      const Double most_off = hn::Add(column(vectors::NearSpheres::kRadius, i), number(slab_));
+      const Which near = hn::And(hn::FirstN(d, near_.count - i), hn::Le(hn::Abs(height(way)), most_off));
+      if (hn::AllFalse(d, near)) continue;
+      spheres_.add(column(vectors::NearSpheres::kNumber, i), near);
+      if (spheres_.full()) pick_meeting();
+    }
+    pick_meeting();
+    cut();
   }
 
  private:
+  /// Numbers of casters for a next step.
+  struct Waiting {
+    static constexpr std::size_t kMost = 256;
+
+    void add(Double which, Which these) { count += hn::CompressStore(which, these, Doubles(), &numbers[count]); }
+    [[nodiscard]] bool full() const { return count >= kMost; }
+
+    HWY_ALIGN std::array<double, kMost + 2 * hn::MaxLanes(Doubles())> numbers;
+    std::size_t count = 0;
+  };
+  /// Some of them; beyond the last one the first of all casters.
+  static Double some(const Waiting& waiting, std::size_t first) {
+    const Doubles d;
+    return hn::IfThenElseZero(hn::FirstN(d, waiting.count - first), hn::LoadU(d, &waiting.numbers[first]));
+  }
+
   /// Light samples are this near to the plane: stored ones are rounded, and it is computed in double.
   static double thin_slab(const LightGrid::Cones& cones) {
     return 2 * static_cast<double>(cones.deviation) + 0x1p-40 * cones.reach;
   }
-  /// The way from p to a point.
-  [[nodiscard]] Double3 way(std::size_t field, std::size_t i) const {
-    const auto column = [&](std::size_t axis) { return hn::LoadU(Doubles(), &near_.columns[field + axis][i]); };
-    return {hn::Sub(column(0), number(plane_.p.x)), hn::Sub(column(1), number(plane_.p.y)),
-            hn::Sub(column(2), number(plane_.p.z))};
+  using Rows = hn::Vec<hn::RebindToSigned<Doubles>>;
+  static Rows rows_of(Double numbers) {
+    const Double begins = hn::Mul(numbers, number(static_cast<double>(vectors::NearCasters::kRow)));
+    return hn::ConvertTo(hn::RebindToSigned<Doubles>(), begins);
+  }
+  [[nodiscard]] Double gather(Rows rows, std::size_t field) const {
+    return hn::GatherIndex(Doubles(), rows_ + field, rows);
+  }
+  /// The way from p to a corner.
+  [[nodiscard]] Double3 way(std::size_t corner, Rows rows) const {
+    return {hn::Sub(gather(rows, 3 * corner), number(plane_.p.x)),
+            hn::Sub(gather(rows, 3 * corner + 1), number(plane_.p.y)),
+            hn::Sub(gather(rows, 3 * corner + 2), number(plane_.p.z))};
   }
   /// As DiskPlane.
   struct Corner {
@@ -178,8 +220,8 @@ class FastDiskCuts {
     Double height, s, t;
   };
   [[nodiscard]] Double height(const Double3& w) const { return hn::Sub(along(plane_.axis, w), number(plane_.end)); }
-  [[nodiscard]] Corner corner(std::size_t which, std::size_t i) const {
-    const Double3 w = way(3 * which, i);
+  [[nodiscard]] Corner corner(std::size_t which, Rows rows) const {
+    const Double3 w = way(which, rows);
     return {w, height(w), along(plane_.u, w), along(plane_.v, w)};
   }
   struct Passing {
@@ -194,20 +236,33 @@ class FastDiskCuts {
             hn::Div(hn::Mul(number(1.01 * slab_), size), hn::Abs(across))};
   }
 
-  void add(std::size_t first) {
+  /// Of those whose spheres are near those that meet the plane, or nearly.
+  void pick_meeting() {
     const Doubles d;
-    const Which used = hn::FirstN(d, near_.count - first);
-    const Double most_off = hn::Add(hn::LoadU(d, &near_.columns[vectors::NearCasters::kRadius][first]), number(slab_));
-    // A radius has room for rounding.
-    const Which near = hn::And(used, hn::Le(hn::Abs(height(way(vectors::NearCasters::kMiddle, first))), most_off));
-    if (hn::AllFalse(d, near)) return;
-    const Corner a = corner(0, first), b = corner(1, first), c = corner(2, first);
+    for (std::size_t i = 0; i < spheres_.count; i += hn::Lanes(d)) {
+      const Double which = some(spheres_, i);
+      const Rows rows = rows_of(which);
+      const Double a = height(way(0, rows)), b = height(way(1, rows)), c = height(way(2, rows));
+      const Which meets =
+          hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), number(slab_)), hn::Ge(hn::Max(a, hn::Max(b, c)), number(-slab_)));
+      meeting_.add(which, hn::And(meets, hn::FirstN(d, spheres_.count - i)));
+      if (meeting_.full()) cut();
+    }
+    spheres_.count = 0;
+  }
+
+  void cut() {
+    for (std::size_t i = 0; i < meeting_.count; i += hn::Lanes(Doubles()))
+      cut(some(meeting_, i), hn::FirstN(Doubles(), meeting_.count - i));
+    meeting_.count = 0;
+  }
+
+  void cut(Double which, Which used) {
+    const Doubles d;
+    const Rows rows = rows_of(which);
+    const Corner a = corner(0, rows), b = corner(1, rows), c = corner(2, rows);
     const Double zero = hn::Zero(d), slab = number(slab_);
-    const Double least = hn::Min(a.height, hn::Min(b.height, c.height)),
-                 highest = hn::Max(a.height, hn::Max(b.height, c.height)),
-                 nearest = hn::Min(hn::Abs(a.height), hn::Min(hn::Abs(b.height), hn::Abs(c.height)));
-    const Which meets = hn::And(near, hn::And(hn::Le(least, slab), hn::Ge(highest, hn::Neg(slab))));
-    if (hn::AllFalse(d, meets)) return;
+    const Double nearest = hn::Min(hn::Abs(a.height), hn::Min(hn::Abs(b.height), hn::Abs(c.height)));
     const Double side = hn::Neg(product(a.way, {hn::Sub(hn::Mul(b.way.y, c.way.z), hn::Mul(b.way.z, c.way.y)),
                                                 hn::Sub(hn::Mul(b.way.z, c.way.x), hn::Mul(b.way.x, c.way.z)),
                                                 hn::Sub(hn::Mul(b.way.x, c.way.y), hn::Mul(b.way.y, c.way.x))}));
@@ -216,8 +271,8 @@ class FastDiskCuts {
         hn::Mul(number(0x1p-46),
                 hn::Sqrt(hn::Mul(product(a.way, a.way), hn::Mul(product(b.way, b.way), product(c.way, c.way)))));
     const Which sure = hn::And(hn::Gt(nearest, slab), hn::Gt(hn::Abs(side), unsure));
-    each(hn::AndNot(sure, meets), first, [&](std::size_t i) { slow_.add(i, judge_, open_, out_); });
-    if (hn::AllFalse(d, hn::And(meets, sure))) return;
+    add_slowly(which, hn::AndNot(sure, used));
+    if (hn::AllFalse(d, hn::And(used, sure))) return;
     // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
     const Passing ab = pass(a, b), bc = pass(b, c), ac = pass(a, c);
     const Which a_before = hn::Lt(a.height, zero), b_before = hn::Lt(b.height, zero), c_before = hn::Lt(c.height, zero);
@@ -235,21 +290,22 @@ class FastDiskCuts {
       return hn::And(hn::Le(hn::Sub(hn::Min(x, y), wide), number(most_)),
                      hn::Ge(hn::Add(hn::Max(x, y), wide), number(-most_)));
     };
-    Which kept = hn::And(hn::And(meets, sure), hn::And(within(from_s, to_s), within(from_t, to_t)));
-    each(kept, first, [&](std::size_t i) {
-      if (near_.plane[i] == in_.at.plane)
-        kept = hn::AndNot(hn::Eq(hn::Iota(d, 0), number(static_cast<double>(i - first))), kept);
-    });
+    const Which own = hn::Eq(gather(rows, vectors::NearCasters::kPlane), number(static_cast<double>(in_.at.plane)));
+    const Which kept =
+        hn::AndNot(own, hn::And(hn::And(used, sure), hn::And(within(from_s, to_s), within(from_t, to_t))));
+    const std::size_t more = hn::CountTrue(d, kept);
+    if (more == 0) return;
     const Double farthest = hn::Mul(number(cells_.cells), hn::Max(hn::Add(hn::Abs(from_s), hn::Abs(from_t)),
                                                                   hn::Add(hn::Abs(to_s), hn::Abs(to_t))));
     const Double error =
         hn::Mul(number(1.01), hn::Add(hn::Mul(number(cells_.cells), wide),
                                       hn::Add(hn::Mul(number(cells_.per_far), farthest), number(cells_.fixed))));
-    const std::size_t more = hn::CountTrue(d, kept);
+    const hn::Rebind<float, Doubles> floats;
     const auto store = [&](std::size_t field, Double x) {
-      HWY_ALIGN double packed[hn::MaxLanes(Doubles())];
-      hn::CompressStore(x, kept, d, packed);
-      for (std::size_t i = 0; i < more; ++i) out_[field][out_.count + i] = static_cast<float>(packed[i]);
+      // Not by Compress, for which Highway has a table in memory that g++ copies each time.
+      HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> packed;
+      hn::CompressStore(x, kept, d, packed.data());
+      hn::StoreU(hn::DemoteTo(floats, hn::Load(d, packed.data())), floats, out_[field] + out_.count);
     };
     const auto cell = [&](Double x, double middle, double half) {
       return hn::Add(number(middle), hn::Mul(number(half), x));
@@ -260,20 +316,20 @@ class FastDiskCuts {
     store(kY1, cell(to_t, cells_.middle.y, cells_.half.y));
     store(kK, hn::CopySign(number(1), side));
     store(kError, error);
-    for (std::size_t i = 0; i < more; ++i) out_[kEdge][out_.count + i] = std::bit_cast<float>(kDiskCut);
+    hn::StoreU(hn::Set(floats, std::bit_cast<float>(kDiskCut)), floats, out_[kEdge] + out_.count);
     out_.count += more;
   }
 
-  template <typename Visit>
-  static void each(Which which, std::size_t first, Visit visit) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(Doubles(), which, bytes);
-    for (std::uint32_t left = bytes[0]; left != 0; left &= left - 1)
-      visit(first + static_cast<std::size_t>(std::countr_zero(left)));
+  void add_slowly(Double which, Which these) {
+    if (hn::AllFalse(Doubles(), these)) return;
+    HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> numbers;
+    const std::size_t count = hn::CompressStore(which, these, Doubles(), numbers.data());
+    for (std::size_t i = 0; i < count; ++i) slow_.add(static_cast<std::size_t>(numbers[i]), judge_, open_, out_);
   }
 
   const DiskCutInput& in_;
-  const vectors::NearCasters& near_;
+  const vectors::NearSpheres& near_;
+  const double* rows_;  // of all casters
   vectors::DiskPlane plane_;
   DiskCells cells_;
   double slab_, most_;
@@ -281,6 +337,7 @@ class FastDiskCuts {
   OpenJudge& judge_;
   Open& open_;
   CrossingTable& out_;
+  Waiting spheres_, meeting_;
 };
 
 void add_disk_cuts_here(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out) {
