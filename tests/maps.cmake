@@ -32,7 +32,6 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/backproject.cpp
   analytic/maps/backprojection/bitmask.cpp
   analytic/maps/backprojection/bitmask_predicates.cpp
-  analytic/maps/backprojection/bitmask_umbra.cpp
   analytic/maps/backprojection/contour.cpp
   analytic/maps/backprojection/contour_claims.cpp
   analytic/maps/backprojection/fusion.cpp
@@ -43,6 +42,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/backprojection/soft_shadow_map_errors.cpp
   analytic/maps/backprojection/sphere_form.cpp
   analytic/maps/backprojection/subsampled.cpp
+  analytic/maps/backprojection/umbra.cpp
   LIBRARIES penumbra_selftest penumbra_maps penumbra_scenes penumbra_vsm penumbra_reference TBB::tbb)
 penumbra_shaders(maps_test analytic/maps/backprojection/lens.comp analytic/maps/box_means.comp analytic/maps/box_windows.comp)
 target_compile_definitions(maps_test PRIVATE PENUMBRA_DOCS="${PROJECT_SOURCE_DIR}/docs")
