@@ -103,18 +103,19 @@ TEST_F(MapsUmbra, WhatStandsJustBeforeAWallShadesIt) {
   }
 }
 
-// A plate that lies by less than 1 % of its depth above a tilted plane: texels of either stand beside each other, and
-// nodes of a hierarchy that hide as a whole, because all they hold is in front of the plane, are not those that hold
-// some of both. Nor does the plane hide anything from itself.
+// A plate that lies by less than 1 % of its depth above a tilted plane, under a wide light that sees some 20 texels of
+// a fine map beside each place: texels of either stand beside each other, and nodes of a hierarchy that hide as a
+// whole, because all they hold is in front of the plane, are not those that hold some of both. Nor does the plane hide
+// anything from itself.
 TEST_F(MapsUmbra, WhatLiesJustAboveATiltedPlaneHasOneOutlineInEveryWay) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {1.5, 0.9, 0}, {0, 0, -1.5});
   add_quad(scene, {0.5, 0.34, 0}, {0.4, 0.24, 0}, {0, 0, -0.5}).receives_shadow = false;
-  scene.lights.push_back(ceiling_light(5, 0.5));
+  scene.lights.push_back(ceiling_light(5, 2));
   scene.cameras.push_back(camera({-1, 4, 1}, {0.1, 0.07, 0}, 3));  // at an edge of the plate
-  const Stage stage(scene, 40, 40, light_samples(1));
+  const Stage stage(scene, 10, 10, light_samples(1));
   const auto v = [&](const Factory& factory, MethodOptions options) {
-    options["size"] = "256";
+    options["size"] = "1024";
     return run(factory, stage, options).visibility;
   };
   const std::vector<float> flat = v(maps::make_contour, {{"traversal", "flat"}, {"search", "none"}});
@@ -127,8 +128,8 @@ TEST_F(MapsUmbra, WhatLiesJustAboveATiltedPlaneHasOneOutlineInEveryWay) {
     lit += flat[i] == 1 ? 1 : 0;
     partly += flat[i] > 0 && flat[i] < 1 ? 1 : 0;
   }
-  EXPECT_GT(lit, 100U);
-  EXPECT_GT(partly, 20U);
+  EXPECT_GT(lit, 10U);
+  EXPECT_GT(partly, 10U);
 }
 
 }  // namespace
