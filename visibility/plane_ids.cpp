@@ -32,16 +32,17 @@ __extension__ using UInt128 = unsigned __int128;
 // ---- Arithmetic modulo the Mersenne prime p = 2⁶¹ − 1. Values are kept in [0, p).
 constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
 
+/// Of up to three products' sum, or what is below 2¹²⁴.
 std::uint64_t reduce(UInt128 x) {  // 2⁶¹ ≡ 1: fold the high bits onto the low ones
-  std::uint64_t r = static_cast<std::uint64_t>(x & kPrime) + static_cast<std::uint64_t>(x >> 61);
-  r = (r & kPrime) + (r >> 61);
-  return r == kPrime ? 0 : r;
+  std::uint64_t r = static_cast<std::uint64_t>(x & kPrime) + static_cast<std::uint64_t>(x >> 61);  // < 2⁶⁴
+  r = (r & kPrime) + (r >> 61);                                                                    // < p + 6
+  return r >= kPrime ? r - kPrime : r;
+}
+UInt128 wide_product(std::uint64_t a, std::uint64_t b) {
+  return static_cast<UInt128>(a) * b;
 }
 std::uint64_t mul(std::uint64_t a, std::uint64_t b) {
-  return reduce(static_cast<UInt128>(a) * b);
-}
-std::uint64_t add(std::uint64_t a, std::uint64_t b) {
-  return a + b >= kPrime ? a + b - kPrime : a + b;
+  return reduce(wide_product(a, b));
 }
 std::uint64_t sub(std::uint64_t a, std::uint64_t b) {
   return a >= b ? a - b : a + kPrime - b;
@@ -109,9 +110,12 @@ PlaneResidues plane_of(const std::array<glm::vec3, 3>& corners) {
     u[axis] = sub(q[1][axis], q[0][axis]);
     v[axis] = sub(q[2][axis], q[0][axis]);
   }
-  PlaneResidues plane = {sub(mul(u[1], v[2]), mul(u[2], v[1])), sub(mul(u[2], v[0]), mul(u[0], v[2])),
-                         sub(mul(u[0], v[1]), mul(u[1], v[0])), 0};
-  plane[3] = add(add(mul(plane[0], q[0][0]), mul(plane[1], q[0][1])), mul(plane[2], q[0][2]));
+  const auto minor = [&](int i, int j) {  // p² ≡ 0 keeps it from becoming negative
+    return reduce(wide_product(u[i], v[j]) + (wide_product(kPrime, kPrime) - wide_product(u[j], v[i])));
+  };
+  PlaneResidues plane = {minor(1, 2), minor(2, 0), minor(0, 1), 0};
+  plane[3] =
+      reduce(wide_product(plane[0], q[0][0]) + wide_product(plane[1], q[0][1]) + wide_product(plane[2], q[0][2]));
   return plane;
 }
 

@@ -224,8 +224,16 @@ EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCa
   if (!same) return Followed::nothing;
   find_planes();
   const auto before = size_;
-  const auto bent = std::partition(pairs_.begin() + static_cast<std::ptrdiff_t>(size_), pairs_.end(),
-                                   [&](const Pair& pair) { return !is_flat(pair); });
+  const auto flat = pairs_.begin() + static_cast<std::ptrdiff_t>(size_);
+  const auto bends = [&](const Pair& pair) { return !is_flat(pair); };
+  const auto moves = [&](const Pair& pair) { return has_moved(pair); };
+  auto bent = std::partition(flat, pairs_.end(), bends);
+  // Where much of what moves bends, the rest is flat by chance, and each of the next frames would bend some of it. Few
+  // beside the records are taken in anyway: the hierarchy hardly grows, and need not be built again for each of them.
+  constexpr std::ptrdiff_t kMuch = 8;
+  const std::ptrdiff_t moved = std::count_if(flat, pairs_.end(), moves);
+  if (bent > flat && (kMuch * (bent - flat) > moved || kMuch * moved < flat - pairs_.begin()))
+    bent = std::partition(bent, pairs_.end(), moves);
   size_ = static_cast<std::size_t>(bent - pairs_.begin());
   return size_ > before ? Followed::more : Followed::all;
 }

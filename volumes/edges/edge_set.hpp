@@ -59,7 +59,7 @@ class EdgeRecords {
 
   enum class Followed : std::uint8_t {
     all,      ///< each record is of the same edge as before; those with is_flat() add nothing now
-    more,     ///< after these there are others, which were flat
+    more,     ///< after these there are others, which were flat, and some that still are
     nothing,  ///< other edges: vertices have met or parted, or others cast. What was known is lost
   };
   /// The records of the next frame, in which vertices have moved; of one made with Flat::kept. Who shares an edge with
@@ -67,10 +67,7 @@ class EdgeRecords {
   [[nodiscard]] Followed follow(const visibility::SceneFloats& scene, const EdgeCasters& casters);
   [[nodiscard]] bool is_flat(std::size_t record) const { return is_flat(pairs_[record]); }
   /// After follow: may any of its floats be another than before?
-  [[nodiscard]] bool has_moved(std::size_t record) const {
-    const auto [first, second] = pairs_[record].sides;
-    return kept_.moved[first & ~kReversed] != 0 || (second != kNoSide && kept_.moved[second & ~kReversed] != 0);
-  }
+  [[nodiscard]] bool has_moved(std::size_t record) const { return has_moved(pairs_[record]); }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] EdgeRecord operator[](std::size_t record) const;
@@ -94,6 +91,10 @@ class EdgeRecords {
   [[nodiscard]] std::uint32_t triangle_of(std::uint32_t side) const { return casters_->triangle[side & ~kReversed]; }
   [[nodiscard]] EdgeSide side(std::uint32_t of) const;
   [[nodiscard]] bool is_flat(const Pair& pair) const;
+  [[nodiscard]] bool has_moved(const Pair& pair) const {
+    const auto [first, second] = pair.sides;
+    return kept_.moved[first & ~kReversed] != 0 || (second != kNoSide && kept_.moved[second & ~kReversed] != 0);
+  }
   void find_planes();
   void find_pairs(std::span<const mesh::Triangle> triangles, Flat flat);
   [[nodiscard]] bool follow(Pair& pair, std::span<const std::uint32_t> vertex) const;

@@ -11,9 +11,11 @@
 #include "visibility/tree/tree_refit.hpp"
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace penumbra::volumes {
 namespace {
@@ -137,6 +139,56 @@ TEST(KeptEdges, AreThoseOfTheFrameByItself) {
   EXPECT_GT(made[SceneEdges::Made::refit], 300U);
   EXPECT_GT(made[SceneEdges::Made::tree_built], 30U);
   EXPECT_GT(made[SceneEdges::Made::built], 600U) << "connectivity changes";
+}
+
+/// A sheet all of which moves, and the part of it from `from` on bends.
+void bend(scenes::Scene& scene, double from) {
+  for (glm::dvec3& p : scene.soup.positions) p += glm::dvec3(0, p.x > from ? p.x * p.x + p.z * p.x : 0, 0.25);
+}
+
+/// Flat edges that bend are taken into the hierarchy, which is built again for them; where most of what moves bends,
+/// the rest comes along, so that the next frame needs no other one.
+TEST(KeptEdges, WhatIsFlatByChanceIsTakenInAtOnce) {
+  using Made = SceneEdges::Made;
+  struct Case {
+    double from;
+    double hills;  // of another sheet, which is never flat
+    Made next;
+  };
+  for (const auto& [from, hills, next] :
+       {Case{0.25, 0, Made::refit}, Case{0.95, 0, Made::tree_built}, Case{0.95, 1, Made::refit}}) {
+    scenes::Scene scene;
+    const auto add_sheet = [&scene](const std::string& name, int cells, double height) {
+      std::vector<std::array<glm::dvec3, 3>> sheet;
+      const auto at = [&](int x, int z) {
+        return glm::dvec3(x, height * std::sin(7.3 * x * x + 5.1 * z), z) / double(cells) + glm::dvec3(0, -height, 0);
+      };
+      for (int x = 0; x < cells; ++x) {
+        for (int z = 0; z < cells; ++z) {
+          sheet.push_back({at(x, z), at(x + 1, z), at(x, z + 1)});
+          sheet.push_back({at(x + 1, z), at(x + 1, z + 1), at(x, z + 1)});
+        }
+      }
+      tests::add_object(scene, name, sheet);
+    };
+    add_sheet("sheet", 16, 0);
+    if (hills > 0) add_sheet("hills", 64, hills);
+    scene.origin = glm::dvec3(0);
+    SceneEdges kept;
+    kept.expect_frames();
+    for (const Made expected : {Made::built, Made::tree_built, next}) {
+      const SceneFloats floats = visibility::make_scene_floats(scene);
+      const float scale = visibility::device_scale(floats);
+      const visibility::TriangleTree triangles = visibility::make_triangle_tree(floats);
+      const EdgeCasters casters = edge_casters(floats, -1);
+      EXPECT_EQ(kept.make({floats, triangles, casters, scale}), expected) << from << ' ' << hills;
+      SceneEdges fresh;
+      fresh.make({floats, triangles, casters, scale});
+      EXPECT_EQ(edges_of(kept.edges().tree()), edges_of(fresh.edges().tree()));
+      expect_in_boxes(kept.edges().tree());
+      bend(scene, expected == Made::built ? from : -1);
+    }
+  }
 }
 
 /// Boxes of what is in them, and no others.
