@@ -48,7 +48,7 @@ TEST_F(LayeredHemicubes, AWallIsAsFarAsItIsFromWhicheverFaceItWasSeen) {
     const double below = -at.y;
     if (below < kWall - kAside + 0.15 || below > kWall || std::abs(at.z) > below - 0.15) continue;
     for (std::size_t e = 0; e < product.layers(); ++e) {
-      const auto& entry = entries[texel * product.layers() + e];
+      const auto& entry = entries[std::size_t{texel} * product.layers() + e];
       if (entry.weight == 0) continue;
       ++compared;
       // A texel below the sample is 2 / 60 wide at depth 1; rasterisers put corners on 1/256 of that.

@@ -389,7 +389,7 @@ TEST_F(MapsBitmask, TheBudgetSaysWhichLevel) {
     const double middle = std::floor((too_few + enough) / 2);
     (budget(middle) == levels[0] ? enough : too_few) = middle;
   }
-  for (const std::size_t level : {1, 2}) {
+  for (const std::size_t level : {std::size_t{1}, std::size_t{2}}) {
     const double texels = std::exp2(-2.0 * static_cast<double>(level)) * enough;
     EXPECT_EQ(budget(std::ceil(1.005 * texels)), levels[level]) << level;
     EXPECT_EQ(budget(std::floor(0.995 * texels)), levels[level + 1]) << level;

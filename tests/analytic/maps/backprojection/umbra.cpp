@@ -84,7 +84,7 @@ TEST_F(MapsUmbra, WhatStandsJustBeforeAWallShadesIt) {
     samples.width = samples.height = kSide;
     std::int32_t wall = 0;
     while (floats.object[static_cast<std::size_t>(wall)] != 1) ++wall;
-    const auto corners = floats.corners(static_cast<std::size_t>(wall));
+    const auto corners = floats.corners(static_cast<std::uint32_t>(wall));
     const bool toward_x = glm::cross(corners[1] - corners[0], corners[2] - corners[0]).x > 0;
     for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
       const glm::dvec2 at = (glm::dvec2(i % kSide, i / kSide) + 0.5) / static_cast<double>(kSide);
