@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "compare/visible_light.hpp"
+#include "visibility/lights/whole_form_factors.hpp"
 #include "visibility/receivers.hpp"
 
 #include <glm/geometric.hpp>
@@ -26,39 +27,65 @@ glm::dvec3 radiance_at(const visibility::Light& light, const glm::vec3& p) {
   return light.radiance * glm::dvec3(light.texture->colors[light.texture->texel_at(st)]);
 }
 
-/// The form factor of what a shadowed pixel sees of the light; `bent`: its normal is not its triangle's.
+/// The form factor of what a shadowed pixel sees of the light, by its mask or V.
 glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const LightVisibility& seen, std::size_t pixel,
-                          std::size_t words, bool bent) {
-  if (!seen.form_factors.empty() && (!bent || seen.visibility.empty())) return seen.form_factors[pixel];
+                          std::size_t words) {
   if (!seen.masks.empty()) {
     const std::size_t pairs = light.light().sample_count();
     const bool dimmed = !seen.dimmed.empty() && seen.dimmed[pixel] != 0;
     return light.visible(at, seen.masks.subspan(pixel * words, words),
                          dimmed ? seen.transmittances.subspan(pixel * pairs, pairs) : std::span<const float>());
   }
-  const double share = seen.visibility[pixel];
-  return share == 0 ? glm::dvec3(0) : share * light.unshadowed(at);
+  return double{seen.visibility[pixel]} * light.unshadowed(at);
+}
+
+/// Is all of a plain light seen from the pixel, or is V to be multiplied with what is? Then vectors do it.
+bool takes_whole(const VisibleLight& light, const LightVisibility& seen, std::size_t pixel, std::size_t words) {
+  if (light.light().texture) return false;
+  if (seen.masks.empty()) return true;
+  const bool dimmed = !seen.dimmed.empty() && seen.dimmed[pixel] != 0;
+  return !dimmed && light.sees_all(seen.masks.subspan(pixel * words, words));
 }
 
 /// Adds one light to the pixels [begin, end).
 void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVisibility& seen, std::size_t begin,
                std::size_t end, std::span<glm::dvec3> beauty) {
   const visibility::Light& light = visible.light();
+  const std::size_t words = light.words_per_mask();
+  const auto add = [&](std::size_t i, const glm::dvec3& form_factor) {
+    const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
+    const glm::dvec3 color = in.pixel_colors.empty() ? in.colors[in.scene.object[triangle]] : in.pixel_colors[i];
+    beauty[i - begin] += color * light.radiance * spot_share(light, in.samples.p[i]) * form_factor;
+  };
+  std::vector<std::uint32_t> wholes;  // pixels, and what their form factors are multiplied with
+  std::vector<double> shares;
   for (std::size_t i = begin; i < end; ++i) {
     if (in.samples.triangle[i] < 0) continue;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     if (in.scene.emits[triangle] == light.index) continue;  // V and masks are those of the rule
     if (!is_lit_by(in.scene, light, static_cast<std::uint32_t>(triangle))) continue;
     const bool bent = !in.normals.empty() && in.normals[i] != in.samples.n[i];
+    const bool shadowed = in.scene.receives_shadow[triangle] != 0;
+    if (shadowed && !seen.form_factors.empty() && (!bent || seen.visibility.empty())) {
+      add(i, seen.form_factors[i]);
+      continue;
+    }
+    if (shadowed && seen.masks.empty() && seen.visibility[i] == 0) continue;
+    if (shadowed ? takes_whole(visible, seen, i, words) : !light.texture) {
+      wholes.push_back(static_cast<std::uint32_t>(i));
+      shares.push_back(shadowed && seen.masks.empty() ? double{seen.visibility[i]} : 1.0);
+      continue;
+    }
+    if (shadowed && !seen.masks.empty() && !visible.sees_any(seen.masks.subspan(i * words, words))) continue;
     const visibility::UnshadowedLight view(light, in.samples.p[i], bent ? in.normals[i] : in.samples.n[i]);
     if (!view.shines()) continue;
     const LitPoint at{view, in.samples.p[i]};
-    const bool shadowed = in.scene.receives_shadow[triangle] != 0;
-    const glm::dvec3 form_factor =
-        shadowed ? form_factor_of(at, visible, seen, i, light.words_per_mask(), bent) : visible.unshadowed(at);
-    const glm::dvec3 color = in.pixel_colors.empty() ? in.colors[in.scene.object[triangle]] : in.pixel_colors[i];
-    beauty[i - begin] += color * light.radiance * spot_share(light, in.samples.p[i]) * form_factor;
+    add(i, shadowed ? form_factor_of(at, visible, seen, i, words) : visible.unshadowed(at));
   }
+  std::vector<double> form_factors(wholes.size());
+  visibility::whole_form_factors(light, {in.samples.p, in.normals.empty() ? in.samples.n : in.normals, wholes},
+                                 form_factors);
+  for (std::size_t k = 0; k < wholes.size(); ++k) add(wholes[k], glm::dvec3(shares[k] * form_factors[k]));
 }
 
 }  // namespace

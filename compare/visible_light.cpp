@@ -127,17 +127,23 @@ glm::dvec3 VisibleLight::visible(const LitPoint& at, Mask mask, std::span<const 
     const double whole = at.seen.shines() ? at.seen.whole() : 0;
     return whole > 0 ? of_samples(at, whole, mask, transmittances) : glm::dvec3(0);
   }
-  bool some = false, all = true;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    const std::uint32_t bits = mask[i] & all_[i];
-    some |= bits != 0;
-    all &= bits == all_[i];
-  }
-  if (!some || !at.seen.shines()) return glm::dvec3(0);
-  if (all) return unshadowed(at);
+  if (!sees_any(mask) || !at.seen.shines()) return glm::dvec3(0);
+  if (sees_all(mask)) return unshadowed(at);
   const bool cells = light_->kind == LightKind::rectangle && light_->rows != 0 && !light_->texture;
   const double whole = at.seen.whole();
   return cells ? of_runs(at, whole, mask) : of_samples(at, whole, mask);
+}
+
+bool VisibleLight::sees_all(Mask mask) const {
+  std::uint32_t missing = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) missing |= ~mask[i] & all_[i];
+  return missing == 0;
+}
+
+bool VisibleLight::sees_any(Mask mask) const {
+  std::uint32_t some = 0;
+  for (std::size_t i = 0; i < mask.size(); ++i) some |= mask[i] & all_[i];
+  return some != 0;
 }
 
 double VisibleLight::cell_border(std::uint32_t row, std::uint32_t column) const {

@@ -46,6 +46,9 @@ class VisibleLight {
   /// by which its light is multiplied (as `texel` above; cells that share one keep their closed form); empty: 1.
   [[nodiscard]] glm::dvec3 visible(const LitPoint& at, std::span<const std::uint32_t> mask,
                                    std::span<const float> transmittances = {}) const;
+  /// Is every light sample visible, or any?
+  [[nodiscard]] bool sees_all(std::span<const std::uint32_t> mask) const;
+  [[nodiscard]] bool sees_any(std::span<const std::uint32_t> mask) const;
 
  private:
   /// Light points one coordinate after the other, filled up to whole blocks of 32.

@@ -1,9 +1,11 @@
 # Error metrics, pictures and reports; form factors, and the beauty that is made of them. No device.
+find_package(hwy REQUIRED)
 penumbra_test(compare
   SOURCES
   agreement/radiance_near_light.cpp
   analytic/form_factor_closed_forms.cpp
   analytic/radiance_exact.cpp
+  analytic/whole_form_factors.cpp
   unit/compare/beauty.cpp
   unit/compare/error_budget.cpp
   unit/compare/metrics.cpp
@@ -14,4 +16,4 @@ penumbra_test(compare
   unit/compare/stats.cpp
   unit/compare/surface.cpp
   unit/compare/visible_light.cpp
-  LIBRARIES penumbra_compare penumbra_reference nlohmann_json::nlohmann_json TBB::tbb ZLIB::ZLIB)
+  LIBRARIES penumbra_compare penumbra_reference nlohmann_json::nlohmann_json TBB::tbb ZLIB::ZLIB hwy::hwy)

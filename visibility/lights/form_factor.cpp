@@ -1,5 +1,7 @@
 #include "visibility/lights/form_factor.hpp"
 
+#include "visibility/lights/angle_over_sine.hpp"
+
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -14,19 +16,6 @@ namespace penumbra::visibility {
 namespace {
 
 using std::numbers::pi;
-
-/// θ / sin θ / |a| |b| for a, b with the product |a × b|² = squared and a · b = along: what a × b is to be multiplied
-/// with. Short edges need neither root nor arc: atan(q) / q = 1 − q²/3 + q⁴/5 …, cut off where q² ≤ 1/64 leaves 2⁻⁵⁸.
-double angle_over_sine(double squared, double along) {
-  if (along > 0 && 64 * squared <= along * along) {
-    const double q = squared / (along * along);
-    double series = 1.0 / 17;
-    for (const double odd : {15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0}) series = 1 / odd - q * series;
-    return series / along;
-  }
-  const double length = std::sqrt(squared);
-  return std::atan2(length, along) / length;
-}
 
 /// What a disk's rim looks like from an element: ∫ 1, cos φ, sin φ over A − B cos φ, from one angle to another.
 class Rim {
@@ -121,7 +110,7 @@ double form_factor_term(const FormFactorEdge& edge, const glm::dvec3& n) {
   const glm::dvec3 product = 0.5 * glm::cross(edge.a + edge.b, edge.direction);
   const double squared = glm::dot(product, product);
   if (squared == 0) return 0;
-  return glm::dot(n, product) * angle_over_sine(squared, glm::dot(edge.a, edge.b)) / (2 * pi);
+  return glm::dot(n, product) * angle_over_sine(squared, glm::dot(edge.a, edge.b)) * kPerTurn;
 }
 
 double form_factor_arc(const FormFactorArc& arc, const glm::dvec3& n) {
@@ -200,7 +189,7 @@ double form_factor(const FormFactorDisk& disk, const glm::dvec3& n) {
   const Rim rim(r, rho, h);
 
   // Over the element's plane the rim is R k cos(φ − ψ) + n · centre high.
-  const double k = std::hypot(nx, ny), middle = glm::dot(n, disk.center);
+  const double k = std::sqrt(nx * nx + ny * ny), middle = glm::dot(n, disk.center);
   if (middle <= -r * k) return 0;
   if (middle >= r * k) {
     const double q = r * r + h * h - rho * rho, s = rim.root();

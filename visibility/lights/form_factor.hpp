@@ -23,12 +23,13 @@ namespace penumbra::visibility {
 /// a line angles add up: so each edge is cut for itself, cuts downward and upward are joined in pairs as they come, and
 /// that is right for polygons that are not convex, too.
 ///
-/// Errors. θ is taken by atan2, rᵢ × rᵢ₊₁ as ½ (rᵢ + rᵢ₊₁) × (rᵢ₊₁ − rᵢ). With ε = 2⁻⁵³ the product is off by about
-/// 4ε |rᵢ + rᵢ₊₁| |edge| / 2: no more than if both corners were moved by a few ulps of their distance. An edge that is
-/// short for its distance (tan θ ≤ 1/8) adds an error of a few ε |edge| / distance, so that a light of size a at the
-/// distance d has a relative error of a few ε d / a, not ε d² / a²: its edges' terms cancel, their errors are as small
-/// as they are. (Where the horizon cuts so small a light it is ε d² / a².) An edge that nearly contains the element (θ
-/// near π) is ill-conditioned: F itself changes by up to 1/2 when the element crosses it.
+/// Errors. θ is taken by a polynomial of its own (angle_over_sine.hpp), rᵢ × rᵢ₊₁ as ½ (rᵢ + rᵢ₊₁) × (rᵢ₊₁ − rᵢ). With
+/// ε = 2⁻⁵³ the product is off by about 4ε |rᵢ + rᵢ₊₁| |edge| / 2: no more than if both corners were moved by a few
+/// ulps of their distance. An edge that is short for its distance (θ ≤ π/8) adds an error of a few ε |edge| / distance,
+/// so that a light of size a at the distance d has a relative error of a few ε d / a, not ε d² / a²: its edges' terms
+/// cancel, their errors are as small as they are. (Where the horizon cuts so small a light it is ε d² / a².) An edge
+/// that nearly contains the element (θ near π) is ill-conditioned: F itself changes by up to 1/2 when the element
+/// crosses it.
 ///
 /// An edge run backward gives exactly the negative: pieces with common edges add up to their union up to the rounding
 /// of the sum.

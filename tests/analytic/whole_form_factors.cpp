@@ -1,0 +1,170 @@
+// Form factors of whole lights side by side against one at a time: the same bits on every vector width, whatever is
+// near an edge, a plane or the horizon. And the arc tangent of both against the x87's.
+#include "tests/unit/visibility/scenes.hpp"
+#include "visibility/light_samples.hpp"
+#include "visibility/lights/angle_over_sine.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
+#include "visibility/lights/whole_form_factors.hpp"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace penumbra::visibility {
+namespace {
+
+/// Elements on a lattice that the lights' corners, planes and axes share, and elements anywhere.
+struct Surroundings {
+  std::vector<glm::vec3> p, n;
+  std::vector<std::uint32_t> which;
+};
+
+Surroundings surroundings(std::mt19937& random, std::size_t count) {
+  std::uniform_real_distribution<float> far(-4, 4);
+  const auto lattice = [&] { return static_cast<float>(static_cast<int>(random() % 9) - 4) / 2; };
+  Surroundings all;
+  while (all.p.size() < count) {
+    const bool anywhere = all.p.size() % 3 == 0;
+    const auto place = [&] { return anywhere ? far(random) : lattice(); };
+    const glm::vec3 p(place(), place(), place()), n(place(), place(), place());
+    if (n == glm::vec3(0)) continue;
+    all.p.push_back(p);
+    all.n.push_back(anywhere ? glm::normalize(n) : n);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (i % 7 != 5) all.which.push_back(i);
+  }
+  return all;
+}
+
+Light light_on_lattice(const std::string& kind, bool two_sided) {
+  scenes::AreaLight source = tests::rectangle_light({0, 1, 0}, {0.5, 0, 0}, {0, 0.5, 1});
+  if (kind == "polygon")
+    source.shape = scenes::Polygon{{{1, 1, 0}, {0.5, 1, 1}, {-1, 1, 0.5}, {-0.75, 1, -1}, {0, 1, -1}}};
+  if (kind == "disk") source.shape = scenes::Disk{{0, 1, 0}, {0.5, -1, 0}, 0.75};
+  if (kind == "ellipse") source.shape = scenes::Ellipse{{0, 1, 0}, {0.5, 0.1, 0}, {0.1, 0, 0.9}};
+  if (kind == "sphere") source.shape = scenes::Sphere{{0, 1, 0}, 0.5};
+  if (kind == "sun") source.shape = scenes::Sun{{0.5, -1, 0.25}, 40};
+  if (kind == "hard sun") source.shape = scenes::Sun{{0.5, -1, 0.25}, 0};
+  source.two_sided = two_sided;
+  scenes::Scene scene;
+  scene.lights.push_back(source);
+  return make_light(scene, 0, glm::dvec3(0), {1});
+}
+
+class WholeFormFactors : public testing::TestWithParam<const char*> {
+ protected:
+  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+TEST_P(WholeFormFactors, AreThoseOfOneElementToTheLastBitOnEveryWidth) {
+  constexpr unsigned kSeed = 5;
+  std::mt19937 random(kSeed);
+  const std::string kind = GetParam();
+  for (const bool two_sided : {false, true}) {
+    if (two_sided && (kind == "sphere" || kind.ends_with("sun"))) continue;
+    const Surroundings all = surroundings(random, 3001);
+    const Light light = light_on_lattice(kind, two_sided);
+    std::size_t lit = 0, dark = 0;
+    std::vector<double> expected;
+    for (const std::uint32_t i : all.which) {
+      expected.push_back(UnshadowedLight(light, all.p[i], all.n[i]).whole());
+      ++(expected.back() > 0 ? lit : dark);
+    }
+    EXPECT_GT(lit, expected.size() / 16);
+    EXPECT_GT(dark, expected.size() / 16);
+    const std::int64_t can = hwy::SupportedTargets();
+    for (std::int64_t targets = can; targets != 0; targets &= targets - 1) {
+      hwy::SetSupportedTargetsForTest(targets & -targets);
+      std::vector<double> found(expected.size(), -1);
+      whole_form_factors(light, {all.p, all.n, all.which}, found);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(found[i] + 0.0), std::bit_cast<std::uint64_t>(expected[i] + 0.0))
+            << kind << (two_sided ? ", two sides, seed " : ", seed ") << kSeed << ", element " << all.which[i]
+            << ", target " << hwy::TargetName(targets & -targets) << ": " << found[i] << " and " << expected[i];
+      }
+      hwy::SetSupportedTargetsForTest(0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, WholeFormFactors,
+                         testing::Values("rectangle", "polygon", "disk", "ellipse", "sphere", "sun", "hard sun"),
+                         [](const auto& given) {
+                           std::string name = given.param;
+                           std::erase(name, ' ');
+                           return name;
+                         });
+
+TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
+  // Twenty bits a coordinate: a plane's point is the sum of its axes, exactly, and what double makes of the determinant
+  // is not.
+  constexpr unsigned kSeed = 9;
+  std::mt19937 random(kSeed);
+  const auto vector = [&] {
+    const auto coordinate = [&] { return static_cast<double>(random() % (1U << 20U)) / (1U << 20U) - 0.5; };
+    return glm::dvec3(coordinate(), coordinate(), coordinate());
+  };
+  for (int round = 0; round < 2000; ++round) {
+    const glm::dvec3 u = vector(), v = vector();
+    scenes::AreaLight source = tests::rectangle_light({0, 0, 0}, u, v);
+    source.two_sided = true;
+    scenes::Scene scene;
+    scene.lights.push_back(source);
+    const Light light = make_light(scene, 0, glm::dvec3(0), {1});
+    // Beside the light, on the side that their normals turn to it from.
+    const std::vector<glm::vec3> p{glm::vec3(2.0 * u), glm::vec3(2.0 * u + v), glm::vec3(u + 2.0 * v),
+                                   glm::vec3(-2.0 * v)};
+    std::vector<glm::vec3> n;
+    for (const glm::vec3& at : p) n.push_back(glm::normalize(-at + 0.1F * glm::vec3(glm::cross(u, v))));
+    const std::vector<std::uint32_t> which{0, 1, 2, 3};
+    std::vector<double> found(p.size(), -1);
+    whole_form_factors(light, {p, n, which}, found);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      ASSERT_EQ(found[i], 0) << "seed " << kSeed << ", round " << round << ", element " << i;
+  }
+}
+
+TEST(AngleOverSine, IsTheArcTangentToAFewRoundings) {
+  if (std::numeric_limits<long double>::digits < 64) GTEST_SKIP() << "long double is no longer than double";
+  // In ε = 2⁻⁵³. Short edges: q is off by 2, of which the series feels a twentieth; its coefficients leave .04, its
+  // last sums 1.7; the division adds 1: 3. Others: the length is off by 1; so the ratio by .5 + 3 · .41 and the arc
+  // by 2.8 absolutely beside a base off by .3 and a sum by 1 at most, of an angle of π/8 or more, 8.5 relatively at its
+  // least; the length and the division add 2: 11. (Beyond, angles are larger and errors are not.)
+  constexpr long double kEpsilon = 0x1p-53L;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> turn(0, 3.14159), scale(-40, 40);
+  long double worst_short = 0, worst = 0;
+  for (int i = 0; i < 400000; ++i) {
+    const double angle = i % 4 == 0 ? std::exp2(scale(random) - 41) : turn(random), size = std::exp2(scale(random));
+    const double sine = size * std::sin(angle), squared = sine * sine, along = size * std::cos(angle);
+    const long double root = sqrtl(squared), exact = atan2l(root, along) / root;
+    const long double off = std::abs((angle_over_sine(squared, along) - exact) / exact) / kEpsilon;
+    long double& most = along > 0 && squared <= kArcSeriesEnd * along * along ? worst_short : worst;
+    most = std::max(most, off);
+  }
+  RecordProperty("short", std::to_string(worst_short));
+  RecordProperty("others", std::to_string(worst));
+  EXPECT_LE(worst_short, 3);
+  EXPECT_LE(worst, 11);
+  EXPECT_GT(worst_short, 0);
+  for (const double q : {0.0, 0x1p-60, 0.01, 0.1, kArcSeriesEnd}) {
+    // Without the roundings of doubles: 2^−57.8, beside the polynomial's own in long double.
+    long double sum = 0;
+    for (std::size_t k = kArcSeries.size(); k-- > 0;) sum = sum * q + kArcSeries[k];
+    const long double root = sqrtl(q), exact = q == 0 ? 1 : atanl(root) / root;
+    EXPECT_LE(std::abs(sum - exact), 0x1p-57L) << q;
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::visibility

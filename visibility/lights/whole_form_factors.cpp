@@ -1,0 +1,337 @@
+// The form factor of a whole light, many elements side by side. Lanes repeat the operations of unshadowed_light.cpp and
+// form_factor.cpp in their order, none of which is contracted, so that all have the bits of those. What the horizon
+// cuts, what is so near to the light's plane that double does not know its side, and ellipses are left to them.
+#include "visibility/lights/whole_form_factors.hpp"
+
+#include "base/assert.hpp"
+#include "visibility/lights/angle_over_sine.hpp"
+#include "visibility/lights/unshadowed_light.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#ifndef PENUMBRA_WHOLE_FORM_FACTORS
+#define PENUMBRA_WHOLE_FORM_FACTORS
+namespace penumbra::visibility {
+namespace {
+
+/// A corner as p sees it: (centre + u) + v.
+struct OutlineCorner {
+  glm::dvec3 u, v;
+  glm::dvec3 edge;  ///< from the corner before it
+};
+
+/// What all elements share.
+struct WholeLight {
+  LightFrame frame;                    // not of a sphere
+  std::vector<OutlineCorner> corners;  // none: round
+  glm::dvec3 front{0};                 // unit, where it emits
+  glm::dvec3 across{0}, at_most{0};    // u × v, and the sizes of the products that it is made of
+};
+
+WholeLight make_whole_light(const Light& light) {
+  WholeLight whole;
+  if (light.kind == LightKind::sphere) return whole;
+  whole.frame = light_frame(light);
+  const auto& [c, u, v] = whole.frame;
+  whole.across = glm::cross(u, v);
+  const glm::dvec3 a = glm::abs(u), b = glm::abs(v);
+  whole.at_most = {a.y * b.z + b.y * a.z, a.z * b.x + b.z * a.x, a.x * b.y + b.x * a.y};
+  whole.front = glm::normalize(whole.across);
+  if (light.kind == LightKind::rectangle) {
+    whole.corners = {{-u, -v, -2.0 * v}, {u, -v, 2.0 * u}, {u, v, 2.0 * v}, {-u, v, -2.0 * u}};
+  } else if (light.kind == LightKind::polygon) {
+    const auto in_plane = [&](const glm::dvec3& way) { return way - glm::dot(whole.front, way) * whole.front; };
+    const std::size_t count = light.outline.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dvec3 from(light.outline[i]), to(light.outline[(i + 1) % count]);  // in the order of its sum
+      whole.corners.push_back({in_plane(to - c), glm::dvec3(0), in_plane(to - from)});
+    }
+  }
+  return whole;
+}
+
+constexpr std::size_t kWidest = 64;  // lanes: no vector has as many
+
+/// A vector's elements, one coordinate after the other.
+struct ElementLanes {
+  std::array<std::array<double, kWidest>, 3> p, n;
+};
+
+}  // namespace
+}  // namespace penumbra::visibility
+#endif
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "visibility/lights/whole_form_factors.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace penumbra::visibility::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, kWidest>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+V number(double x) {
+  return hn::Set(D(), x);
+}
+
+struct V3 {
+  V x, y, z;
+};
+V3 vector(const glm::dvec3& a) {
+  return {number(a.x), number(a.y), number(a.z)};
+}
+V3 operator+(const V3& a, const V3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+V3 operator-(const V3& a, const V3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+V3 times(V s, const V3& a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+V3 over(const V3& a, V s) {
+  return {hn::Div(a.x, s), hn::Div(a.y, s), hn::Div(a.z, s)};
+}
+V dot(const V3& a, const V3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+V3 cross(const V3& a, const V3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+V3 normalize(const V3& a) {
+  return times(hn::Div(number(1), hn::Sqrt(dot(a, a))), a);
+}
+
+V series_of_arc(V q) {
+  const V qq = hn::Mul(q, q);
+  V even = number(kArcSeries[10]), odd = number(kArcSeries[11]);
+  for (std::size_t i = 10; i > 0; i -= 2) {
+    even = hn::Add(hn::Mul(even, qq), number(kArcSeries[i - 2]));
+    odd = hn::Add(hn::Mul(odd, qq), number(kArcSeries[i - 1]));
+  }
+  return hn::Add(hn::Mul(odd, q), even);
+}
+
+/// angle_over_sine, each lane by its own branch.
+V angles_over_sines(V squared, V along) {
+  const V zero = hn::Zero(D()), square = hn::Mul(along, along);
+  const M small = hn::Le(squared, hn::Mul(number(kArcSeriesEnd), square)), ahead = hn::Gt(along, zero),
+          is_short = hn::And(small, ahead);
+  if (hn::AllTrue(D(), is_short)) return hn::Div(series_of_arc(hn::Div(squared, square)), along);
+  const V length = hn::Sqrt(squared), size = hn::Abs(along);
+  const M is_far = hn::Gt(length, hn::Mul(number(kArcSeriesFar), size));
+  const auto choose = [&](V far, V near, V middle) {
+    return hn::IfThenElse(is_far, far, hn::IfThenElse(small, near, middle));
+  };
+  const V over_of = choose(hn::Neg(size), length, hn::Sub(length, size)),
+          under = choose(length, size, hn::Add(length, size));
+  const V ratio = hn::Div(hn::IfThenElse(is_short, squared, over_of), hn::IfThenElse(is_short, square, under));
+  const V series = series_of_arc(hn::IfThenElse(is_short, ratio, hn::Mul(ratio, ratio)));
+  const V base = choose(number(std::numbers::pi / 2), zero, number(std::numbers::pi / 4));
+  const V acute = hn::Add(base, hn::Mul(ratio, series));
+  const V angle = hn::IfThenElse(hn::Lt(along, zero), hn::Sub(number(std::numbers::pi), acute), acute);
+  return hn::Div(hn::IfThenElse(is_short, series, angle), hn::IfThenElse(is_short, along, length));
+}
+
+/// form_factor_term.
+V terms(const V3& a, const V3& b, const V3& direction, const V3& n) {
+  const V3 product = times(number(0.5), cross(a + b, direction));
+  const V squared = dot(product, product);
+  const V term = hn::Mul(hn::Mul(dot(n, product), angles_over_sines(squared, dot(a, b))), number(kPerTurn));
+  return hn::IfThenZeroElse(hn::Eq(squared, hn::Zero(D())), term);
+}
+
+/// F where `known`.
+struct Wholes {
+  V value;
+  M known;
+};
+
+/// On which side of the light's plane p is, `center` the way from it to the light's centre.
+struct Sides {
+  M front, known;
+};
+Sides sides_of(const WholeLight& light, const V3& center) {
+  const V determinant = hn::Neg(dot(vector(light.across), center));
+  const V3 size{hn::Abs(center.x), hn::Abs(center.y), hn::Abs(center.z)};
+  // Seven roundings (J. Shewchuk, "Adaptive precision floating-point arithmetic", 1997, ORIENT3D): 8 ε of the products'
+  // sizes.
+  const V error = hn::Mul(number(0x1p-50), dot(vector(light.at_most), size));
+  return {hn::Gt(determinant, hn::Zero(D())), hn::Gt(hn::Abs(determinant), error)};
+}
+
+/// Dark sides are 0, and what the horizon hides.
+Wholes of_polygon(const Light& light, const WholeLight& whole, const V3& p, const V3& n) {
+  const V zero = hn::Zero(D());
+  const V3 center = vector(whole.frame.center) - p;
+  const Sides sides = sides_of(whole, center);
+  const bool is_rectangle = light.kind == LightKind::rectangle;
+  const V height = dot(n, center), height_u = dot(n, vector(whole.frame.u)), height_v = dot(n, vector(whole.frame.v));
+  // The rectangle's heights as UnshadowedLight::part has them; a polygon's as whole().
+  const auto corner_of = [&](std::size_t i) {
+    return (center + vector(whole.corners[i].u)) + vector(whole.corners[i].v);
+  };
+  const auto height_of = [&](std::size_t i, const V3& corner) {
+    if (!is_rectangle) return dot(n, corner);
+    const V first = i == 1 || i == 2 ? hn::Add(height, height_u) : hn::Sub(height, height_u);
+    return i >= 2 ? hn::Add(first, height_v) : hn::Sub(first, height_v);
+  };
+  const std::size_t count = whole.corners.size();
+  V3 before = corner_of(count - 1);
+  M above = hn::Ge(height_of(count - 1, before), zero), below = hn::Lt(height_of(count - 1, before), zero);
+  V sum = zero;
+  for (std::size_t i = 0; i < count; ++i) {
+    const V3 corner = corner_of(i);
+    const V at = height_of(i, corner);
+    above = hn::And(above, hn::Ge(at, zero));
+    below = hn::And(below, hn::Lt(at, zero));
+    sum = hn::Add(sum, terms(before, corner, vector(whole.corners[i].edge), n));
+    before = corner;
+  }
+  // A rectangle runs counter-clockwise as seen from its front, an outline either way around.
+  const V signed_sum = hn::IfThenElse(sides.front, hn::Neg(sum), sum);
+  const V value = is_rectangle ? hn::IfThenElse(hn::Gt(signed_sum, zero), signed_sum, zero) : hn::Abs(sum);
+  const M lit = light.two_sided ? above : hn::And(above, sides.front);
+  const M dark = light.two_sided ? below : hn::Or(below, hn::Not(sides.front));
+  return {hn::IfThenElseZero(lit, value), hn::And(sides.known, hn::Or(lit, dark))};
+}
+
+/// form_factor of a disk that is above the horizon or below it.
+Wholes of_disk(const V3& center, const V3& normal, V radius, const V3& n) {
+  const V zero = hn::Zero(D());
+  const V toward = hn::Neg(dot(normal, center));
+  const M turned = hn::Lt(toward, zero);
+  const auto turn = [&](V x) { return hn::IfThenElse(turned, hn::Neg(x), x); };
+  const V3 z{turn(normal.x), turn(normal.y), turn(normal.z)};
+  const V h = hn::Abs(toward);
+  V3 off = V3{hn::Neg(center.x), hn::Neg(center.y), hn::Neg(center.z)} - times(h, z);
+  off = off - times(dot(off, z), z);
+  const V rho = hn::Sqrt(dot(off, off));
+  const M beside =
+      hn::Gt(rho, hn::Mul(number(0x1p-50), hn::Sqrt(dot(center, center))));  // on the axis x is any direction
+  const V3 x = over(off, rho), y = cross(z, x);
+  const V nx = dot(n, x), ny = dot(n, y), nz = dot(n, z);
+  // Rim
+  const V b = hn::Mul(hn::Mul(number(2), rho), radius);
+  const V rr = hn::Mul(radius, radius), oo = hn::Mul(rho, rho), hh = hn::Mul(h, h);
+  const V a = hn::Add(hn::Add(rr, oo), hh);
+  const auto square = [](V length) { return hn::Mul(length, length); };
+  const V s = hn::Sqrt(hn::Mul(hn::Add(square(hn::Sub(radius, rho)), hh), hn::Add(square(hn::Add(radius, rho)), hh)));
+  const V k = hn::Sqrt(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny))), middle = dot(n, center);
+  const V reach = hn::Mul(radius, k);
+  const M below = hn::Le(middle, hn::Neg(reach)), above = hn::AndNot(below, hn::Ge(middle, reach));
+  const V q = hn::Sub(hn::Add(rr, hh), oo);
+  const V far = hn::Div(hn::Mul(hn::Mul(hn::Mul(hn::Mul(number(4), rho), rho), h), h), hn::Sub(s, q));
+  const V upper = hn::IfThenElse(hn::Ge(q, zero), hn::Add(q, s), far);
+  const V sum =
+      hn::Add(hn::Mul(hn::Mul(hn::Mul(nx, h), radius), b), hn::Mul(hn::Mul(hn::Mul(nz, radius), radius), upper));
+  const V value = hn::Div(hn::Neg(sum), hn::Mul(s, hn::Add(a, s)));
+  return {hn::IfThenElseZero(hn::And(above, hn::Gt(value, zero)), value), hn::And(beside, hn::Or(above, below))};
+}
+
+Wholes of_flat_disk(const Light& light, const WholeLight& whole, const V3& p, const V3& n) {
+  const V3 center = vector(whole.frame.center) - p;
+  const Sides sides = sides_of(whole, center);
+  const auto away = [&](double x) { return hn::IfThenElse(sides.front, number(-x), number(x)); };
+  const V3 along{away(whole.front.x), away(whole.front.y), away(whole.front.z)};
+  const Wholes disk = of_disk(center, along, number(light.radius), n);
+  if (light.two_sided) return {disk.value, hn::And(disk.known, sides.known)};
+  return {hn::IfThenElseZero(sides.front, disk.value), hn::And(sides.known, hn::Or(disk.known, hn::Not(sides.front)))};
+}
+
+Wholes of_sun(const Light& light, const WholeLight& whole, const V3& n) {
+  const glm::dvec3 along = glm::normalize(whole.frame.center);
+  if (light.sun->tangent != 0) return of_disk(vector(whole.frame.center), vector(along), number(light.sun->tangent), n);
+  const V cosine = dot(n, vector(along));
+  return {hn::IfThenElseZero(hn::Gt(cosine, hn::Zero(D())), cosine), hn::Eq(cosine, cosine)};
+}
+
+/// light_frame_from, and the disk that it is.
+Wholes of_sphere(const Light& light, const V3& p, const V3& n) {
+  const V one = number(1), r = number(light.radius);
+  const V3 c = vector(glm::dvec3(light.center)), q = p - c;
+  const V d = hn::Sqrt(dot(q, q));
+  const V touching = hn::Mul(hn::Sub(d, r), hn::Add(d, r));
+  const V3 to = over(q, d);
+  const V sign = hn::CopySign(one, to.z), slope = hn::Div(number(-1), hn::Add(sign, to.z));
+  const V b = hn::Mul(hn::Mul(to.x, to.y), slope);
+  const V3 axis{hn::Add(one, hn::Mul(hn::Mul(hn::Mul(sign, to.x), to.x), slope)), hn::Mul(sign, b),
+                hn::Neg(hn::Mul(sign, to.x))};
+  const V share = hn::Div(r, d), k = hn::Mul(share, share), radius = hn::Div(hn::Mul(r, hn::Sqrt(touching)), d);
+  const V3 u = times(radius, axis);
+  const Wholes disk = of_disk((c + times(k, q)) - p, normalize(c - p), hn::Sqrt(dot(u, u)), n);
+  // d is off by less than 4 ε of itself: so much farther from the sphere, p is outside.
+  return {disk.value, hn::And(disk.known, hn::Gt(d, hn::Mul(r, number(1 + 0x1p-48))))};
+}
+
+void whole_form_factors_here(const Light& light, const SurfaceElements& elements, std::span<double> out) {
+  const WholeLight whole = make_whole_light(light);
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  ElementLanes at;
+  std::array<double, kWidest> values{};
+  for (std::size_t first = 0; first < out.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, out.size() - first);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::uint32_t i = elements.which[first + std::min(lane, count - 1)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        at.p[axis][lane] = double{elements.p[i][static_cast<int>(axis)]};
+        at.n[axis][lane] = double{elements.n[i][static_cast<int>(axis)]};
+      }
+    }
+    const auto load = [&](const auto& of) {
+      return V3{hn::LoadU(d, of[0].data()), hn::LoadU(d, of[1].data()), hn::LoadU(d, of[2].data())};
+    };
+    const V3 p = load(at.p), n = normalize(load(at.n));
+    const Wholes found = !whole.corners.empty()            ? of_polygon(light, whole, p, n)
+                         : light.kind == LightKind::disk   ? of_flat_disk(light, whole, p, n)
+                         : light.kind == LightKind::sphere ? of_sphere(light, p, n)
+                                                           : of_sun(light, whole, n);
+    hn::StoreU(found.value, d, values.data());
+    std::copy_n(values.begin(), count, out.begin() + static_cast<std::ptrdiff_t>(first));
+    if (hn::AllTrue(d, found.known)) continue;
+    std::array<std::uint8_t, kWidest / 8> known{};
+    hn::StoreMaskBits(d, found.known, known.data());
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if ((known[lane / 8] >> (lane % 8) & 1) != 0) continue;
+      const std::uint32_t i = elements.which[first + lane];
+      out[first + lane] = UnshadowedLight(light, elements.p[i], elements.n[i]).whole();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::visibility::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace penumbra::visibility {
+
+HWY_EXPORT(whole_form_factors_here);
+
+void whole_form_factors(const Light& light, const SurfaceElements& elements, std::span<double> whole) {
+  PENUMBRA_ASSERT(elements.which.size() == whole.size(), "{} elements, {} form factors", elements.which.size(),
+                  whole.size());
+  if (light.kind != LightKind::ellipse) return HWY_DYNAMIC_DISPATCH(whole_form_factors_here)(light, elements, whole);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const std::uint32_t at = elements.which[i];
+    whole[i] = UnshadowedLight(light, elements.p[at], elements.n[at]).whole();
+  }
+}
+
+}  // namespace penumbra::visibility
+#endif
