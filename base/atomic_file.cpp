@@ -154,18 +154,24 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
+  write_at(size_, bytes);
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   PENUMBRA_ASSERT(descriptor_ >= 0, "write after commit to {}", path_.string());
   settled_ = false;
   const std::uint64_t quota = disk_quota();
   while (!bytes.empty()) {
-    const std::uint64_t room = quota - std::min(quota, written_);
+    const std::uint64_t room = quota - std::min(quota, offset);
     if (room == 0) fail(ENOSPC);
-    const ssize_t count = ::write(descriptor_, bytes.data(), std::min<std::uint64_t>(bytes.size(), room));
+    const ssize_t count =
+        ::pwrite(descriptor_, bytes.data(), std::min<std::uint64_t>(bytes.size(), room), static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(errno);
     if (count == 0) fail(ENOSPC);
     bytes = bytes.subspan(static_cast<std::size_t>(count));  // a short write: the next try says why
-    written_ += static_cast<std::uint64_t>(count);
+    offset += static_cast<std::uint64_t>(count);
+    size_ = std::max(size_, offset);
   }
 }
 

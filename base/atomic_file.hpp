@@ -37,6 +37,10 @@ class AtomicFile {
   /// Appends.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+  /// Writes from byte `offset` of the file on, over what is there; what is skipped beyond the end becomes zeros.
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+  /// Bytes from the beginning to the end of what was written.
+  [[nodiscard]] std::uint64_t size() const { return size_; }
 
   /// Flushes what was written to the disk: after it commit() only gives the name. For several files that shall all
   /// appear or none: write and settle each, then commit each.
@@ -54,7 +58,7 @@ class AtomicFile {
   std::filesystem::path destination_;  ///< path_ with symbolic links resolved
   std::filesystem::path temporary_;    ///< empty while the file has no name, and once committed
   int descriptor_ = -1;
-  std::uint64_t written_ = 0;
+  std::uint64_t size_ = 0;
   bool settled_ = false;
 };
 
