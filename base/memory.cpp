@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -139,6 +140,14 @@ std::uint64_t peak_resident_bytes() {
     if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10U;  // in KiB
   }
   return 0;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  // Larger arrays than that (glibc takes no larger limit) still come from the system and go back to it.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 25);
+  ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
 }
 
 std::string in_bytes(std::uint64_t bytes) {

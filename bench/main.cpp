@@ -2,6 +2,7 @@
 #include "app/process/output_files.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "bench/cpu.hpp"
 #include "bench/entry.hpp"
 #include "bench/frames.hpp"
@@ -123,6 +124,7 @@ int run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   try {
+    keep_freed_memory();  // as the program does
     return run({argv + 1, argv + argc});
   } catch (const Error& error) {
     fmt::print(stderr, "penumbra-bench: error: {}\n", error.what());

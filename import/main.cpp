@@ -2,6 +2,7 @@
 // read and at what cost, and takes its answer from its standard output (mesh/import_helper.hpp says how).
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "mesh/import_helper.hpp"
 #include "import/read.hpp"
 #include "mesh/import_wire.hpp"
@@ -11,7 +12,6 @@
 #include "import/texture_file.hpp"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -23,7 +23,6 @@
 #include <charconv>
 #include <csignal>
 #include <cstdlib>
-#include <limits>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -202,9 +201,7 @@ int main(int argc, char** argv) {
   const int output = dup(STDOUT_FILENO);
   if (output < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return static_cast<int>(ExitCode::resource);
   confine(arguments);
-  // What readers give back is theirs again: the system gives pages slowly, and this process ends soon.
-  mallopt(M_MMAP_THRESHOLD, 1 << 25);
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+  keep_freed_memory();
   const Answer answer = answer_for(arguments);
   // _exit: the libraries' own cleaning up after a hostile file is one more chance to crash.
   const bool told = write_all(output, answer.head) && write_all(output, answer.payload);

@@ -2,6 +2,7 @@
 
 #include "app/process/failure.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -61,6 +62,7 @@ double start_of_process() {
 }  // namespace
 
 void prepare_process() {
+  keep_freed_memory();
   occupy_closed_streams();
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
