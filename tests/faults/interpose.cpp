@@ -1,6 +1,7 @@
 // Loaded before the C library (LD_PRELOAD) by tests: makes the n-th call of a function fail, or be the last one of the
 // process; or a driver's threads deaf.
-//   PENUMBRA_FAULT_CALL=write|fsync|linkat|rename|open   which calls count: on regular files, and opens that create one
+//   PENUMBRA_FAULT_CALL=write|fsync|linkat|rename|open   which calls count: on regular files (pwrite as write), and
+//                                                        opens that create one
 //   PENUMBRA_FAULT_AT=N                                  the one that fails, from 1
 //   PENUMBRA_FAULT_ERRNO=E                               how; 0: the process is killed there
 //   PENUMBRA_FAULT_DEAF=NAME                             threads that a library whose path holds NAME starts do nothing
@@ -55,6 +56,12 @@ ssize_t write(int file, const void* bytes, size_t count) {
   static const auto real = next<ssize_t (*)(int, const void*, size_t)>("write");
   if (is_regular(file) && fails("write")) return -1;
   return real(file, bytes, count);
+}
+
+ssize_t pwrite(int file, const void* bytes, size_t count, off_t offset) {
+  static const auto real = next<ssize_t (*)(int, const void*, size_t, off_t)>("pwrite");
+  if (is_regular(file) && fails("write")) return -1;
+  return real(file, bytes, count, offset);
 }
 
 int fsync(int file) {
