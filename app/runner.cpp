@@ -3,6 +3,7 @@
 #include "app/process/interrupt.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/memory.hpp"
+#include "base/pages.hpp"
 #include "visibility/alpha/alpha_filter.hpp"
 #include "visibility/masks/visible_share.hpp"
 
@@ -252,7 +253,7 @@ class Host {
   visibility::AlphaCounts alpha_counts_;  // of the light at hand
   std::vector<float> transmittances_;     // of the tile last evaluated, as filter() left it
   std::vector<std::uint8_t> dimmed_;
-  std::vector<std::uint32_t> masks_;
+  UnsetList<std::uint32_t> masks_;
   std::vector<glm::dvec3> form_factors_;
 };
 

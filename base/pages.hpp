@@ -5,17 +5,65 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
 #include <sys/mman.h>
 
 namespace penumbra {
 
+/// Most processors' larger pages: one is given in a fraction of the time that its 512 small ones take.
+constexpr std::size_t kLargePage = std::size_t{1} << 21U;
+
+/// Allocator of lists that all cores write before anybody reads them: resize() leaves values as the memory has them,
+/// so that each page is first touched by who writes it, and large lists lie in large pages where the system has some.
+template <typename Value>
+struct PageAllocator {
+  using value_type = Value;
+  PageAllocator() = default;
+  template <typename Other>
+  explicit(false) PageAllocator(const PageAllocator<Other>& /*other*/) {}
+
+  Value* allocate(std::size_t count) {
+    if (!is_large(count)) return std::allocator<Value>().allocate(count);
+    if (count > SIZE_MAX / sizeof(Value)) throw std::bad_array_new_length();
+    void* const first = ::operator new (count * sizeof(Value), std::align_val_t{kLargePage});
+    // A system without large pages gives small ones.
+    static_cast<void>(::madvise(first, count * sizeof(Value) / kLargePage * kLargePage, MADV_HUGEPAGE));
+    return static_cast<Value*>(first);
+  }
+  void deallocate(Value* first, std::size_t count) {
+    if (!is_large(count)) return std::allocator<Value>().deallocate(first, count);
+    ::operator delete (first, std::align_val_t{kLargePage});
+  }
+  template <typename Other, typename... Arguments>
+  void construct(Other* at, Arguments&&... arguments) {
+    if constexpr (sizeof...(arguments) == 0) {
+      ::new (static_cast<void*>(at)) Other;
+    } else {
+      ::new (static_cast<void*>(at)) Other(std::forward<Arguments>(arguments)...);
+    }
+  }
+  template <typename Other>
+  bool operator==(const PageAllocator<Other>& /*other*/) const {
+    return true;
+  }
+
+ private:
+  static bool is_large(std::size_t count) { return count > 2 * kLargePage / sizeof(Value); }
+};
+
+/// A list whose new values are not set.
+template <typename Value>
+using UnsetList = std::vector<Value, PageAllocator<Value>>;
+
 /// list.resize(count) of an empty list that is filled on all cores: they also ask for its memory, which the system
 /// gives page by page, and which takes longer than writing it.
 template <typename Value>
 void resize_on_all_cores(std::vector<Value>& list, std::size_t count) {
-  constexpr std::size_t kPage = 4096, kPiece = std::size_t{1} << 22U;
+  constexpr std::size_t kPage = 4096, kPiece = 2 * kLargePage;
   list.reserve(count);
   const std::size_t bytes = count * sizeof(Value),
                     to_page = (kPage - reinterpret_cast<std::uintptr_t>(list.data()) % kPage) % kPage;

@@ -186,7 +186,10 @@ std::uint32_t MaskMethod::max_tile_rows() const {
 void MaskMethod::evaluate(const visibility::Tile& tile) {
   tile_ = tile;
   const std::size_t pixels = std::size_t{tile.row_count} * samples_->width;
-  masks_.resize(std::max(masks_.size(), pixels * mask_words(grids_[0])));
+  if (const std::size_t words = pixels * mask_words(grids_[0]); masks_.size() < words) {
+    masks_.clear();
+    masks_.resize(words);
+  }
   visible_.assign(pixels, 0);
   const auto start = std::chrono::steady_clock::now();
   do_tile();

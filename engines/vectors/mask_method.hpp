@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/pages.hpp"
 #include "engines/vectors/clusters.hpp"
 #include "engines/vectors/cone_light.hpp"
 #include "engines/vectors/light_grid.hpp"
@@ -131,7 +132,7 @@ class MaskMethod : public visibility::Method {
   std::uint64_t light_number_ = 0;  // of all that methods of this process have prepared
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::Tile tile_;
-  std::vector<std::uint16_t> masks_;  // of the tile
+  UnsetList<std::uint16_t> masks_;  // of the tile; set where some light samples are visible and some are not
   std::vector<std::uint32_t> visible_;
   std::atomic<std::uint64_t> open_pixels_ = 0, open_pairs_ = 0;
   double milliseconds_ = 0;

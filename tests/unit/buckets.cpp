@@ -110,5 +110,24 @@ TEST(Pages, ListsHaveTheirSizeAndHoldZeros) {
   EXPECT_TRUE(std::ranges::all_of(list, [](const Big& x) { return x.values[0] == 1 && x.values[39] == 0; }));
 }
 
+TEST(Pages, ListsOfNoSetValuesKeepWhatIsWrittenAndAreAligned) {
+  for (const std::size_t count : {1U, 5000U, 3000000U}) {
+    UnsetList<std::uint32_t> list;
+    list.resize(count);
+    for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * 7);
+    if (count == 3000000) {
+      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(list.data()) % kLargePage, 0U);
+    }
+    list.resize(2 * count);  // moves
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(list[i], static_cast<std::uint32_t>(i * 7));
+    const UnsetList<std::uint32_t> copy = list, two = {3, 4}, filled(count, 9U);
+    EXPECT_TRUE(std::ranges::equal(std::span(copy).first(count), std::span(list).first(count)));
+    EXPECT_EQ(two[1], 4U);
+    EXPECT_TRUE(std::ranges::all_of(filled, [](std::uint32_t x) { return x == 9; }));
+  }
+  UnsetList<std::uint32_t> list;
+  EXPECT_THROW(list.resize(SIZE_MAX / 8), std::exception);
+}
+
 }  // namespace
 }  // namespace penumbra
