@@ -15,6 +15,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "engines/vectors/pack-inl.hpp"
+
 #ifndef PENUMBRA_NEAR_CASTERS_ONCE
 #define PENUMBRA_NEAR_CASTERS_ONCE
 namespace penumbra::vectors {
@@ -58,7 +60,7 @@ void find_near_here(const DiskSpan& span, const NearSpheres& among, NearSpheres&
     const auto kept = hn::And(hn::And(in_reach, in_plane), hn::FirstN(d, among.count - i));
     if (hn::AllFalse(d, kept)) continue;
     for (std::size_t field = 0; field < NearSpheres::kFields; ++field)
-      hn::CompressStore(column(field), kept, d, &out.columns[field][count]);
+      pack(column(field), kept, d, &out.columns[field][count]);
     count += hn::CountTrue(d, kept);
   }
   out.count = count;

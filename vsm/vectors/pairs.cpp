@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "vsm/vectors/pairs.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 #include "vsm/vectors/project-inl.hpp"
 
@@ -137,9 +138,9 @@ class SampleTest {
       const V to = hn::Min(hn::IfThenElse(high_near, hn::Sub(high_k, one), hn::Floor(high_x)), hn::Sub(columns, one));
       const M lands = hn::And(narrow, hn::Le(from, to));
       const auto lands_i = hn::RebindMask(di, lands);
-      hn::CompressStore(hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::MulAdd(row, set(kRowUnit), from))), lands_i, di,
-                        s_.row_and_from.data() + landed);
-      hn::CompressStore(hn::ConvertTo(di, hn::IfThenElseZero(lands, to)), lands_i, di, s_.to.data() + landed);
+      pack(hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::MulAdd(row, set(kRowUnit), from))), lands_i, di,
+           s_.row_and_from.data() + landed);
+      pack(hn::ConvertTo(di, hn::IfThenElseZero(lands, to)), lands_i, di, s_.to.data() + landed);
       landed += hn::CountTrue(d, lands);
       if (landed + hn::Lanes(d) > s_.to.size()) {
         s_.to.resize(2 * s_.to.size());

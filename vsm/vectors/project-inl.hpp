@@ -9,6 +9,7 @@
 #endif
 
 #include "engines/vectors/hull-inl.hpp"
+#include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 #include "vsm/vectors/pairs.hpp"
 
@@ -49,7 +50,7 @@ constexpr std::size_t kChunk = 256;  // triangles between two looks whether anyt
     const std::size_t more = hn::CountTrue(D(), kept);
     if (more == 0) continue;
     for (std::size_t field = 0; field < kTriangleFields; ++field) {
-      hn::CompressStore(column(in.triangles, field, i), kept, D(), near[field] + near.count);
+      pack(column(in.triangles, field, i), kept, D(), near[field] + near.count);
     }
     near.count += more;
   }
@@ -110,7 +111,7 @@ class Projection {
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
     SurvivorTable& out = s_.survivors;
-    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out[field] + out.count); };
+    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, out[field] + out.count); };
     store(kX0, ax);
     store(kY0, ay);
     store(kX1, bx);

@@ -15,6 +15,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "engines/vectors/pack-inl.hpp"
+
 #ifndef PENUMBRA_DISK_CUTS_ONCE
 #define PENUMBRA_DISK_CUTS_ONCE
 namespace penumbra::volumes {
@@ -128,6 +130,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::ScalableTag<double>;
 using Double = hn::Vec<Doubles>;
 using Which = hn::Mask<Doubles>;
+using vectors::HWY_NAMESPACE::pack;
 
 struct Double3 {
   Double x, y, z;
@@ -184,7 +187,7 @@ class FastDiskCuts {
   struct Waiting {
     static constexpr std::size_t kMost = 256;
 
-    void add(Double which, Which these) { count += hn::CompressStore(which, these, Doubles(), &numbers[count]); }
+    void add(Double which, Which these) { count += pack(which, these, Doubles(), &numbers[count]); }
     [[nodiscard]] bool full() const { return count >= kMost; }
 
     HWY_ALIGN std::array<double, kMost + 2 * hn::MaxLanes(Doubles())> numbers;
@@ -304,7 +307,7 @@ class FastDiskCuts {
     const auto store = [&](std::size_t field, Double x) {
       // Not by Compress, for which Highway has a table in memory that g++ copies each time.
       HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> packed;
-      hn::CompressStore(x, kept, d, packed.data());
+      pack(x, kept, d, packed.data());
       hn::StoreU(hn::DemoteTo(floats, hn::Load(d, packed.data())), floats, out_[field] + out_.count);
     };
     const auto cell = [&](Double x, double middle, double half) {
@@ -323,7 +326,7 @@ class FastDiskCuts {
   void add_slowly(Double which, Which these) {
     if (hn::AllFalse(Doubles(), these)) return;
     HWY_ALIGN std::array<double, hn::MaxLanes(Doubles())> numbers;
-    const std::size_t count = hn::CompressStore(which, these, Doubles(), numbers.data());
+    const std::size_t count = pack(which, these, Doubles(), numbers.data());
     for (std::size_t i = 0; i < count; ++i) slow_.add(static_cast<std::size_t>(numbers[i]), judge_, open_, out_);
   }
 

@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include "engines/vectors/hull-inl.hpp"
+#include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -132,7 +133,7 @@ class GroupFilter {
       const std::size_t more = hn::CountTrue(D(), kept);
       if (more == 0) continue;
       for (std::size_t field = 0; field < kTriangleFields; ++field) {
-        hn::CompressStore(column(field), kept, D(), near[field] + near.count);
+        pack(column(field), kept, D(), near[field] + near.count);
       }
       near.count += more;
     }
@@ -240,11 +241,11 @@ class GroupFilter {
     const std::size_t more = hn::CountTrue(D(), kept);
     if (more == 0) return;
     for (std::size_t field = 0; field <= kPlane2; ++field) {
-      hn::CompressStore(column(field, i), kept, D(), table[field] + table.count);
+      pack(column(field, i), kept, D(), table[field] + table.count);
     }
-    hn::CompressStore(error, kept, D(), table[kGroupError] + table.count);
+    pack(error, kept, D(), table[kGroupError] + table.count);
     const V numbers = hn::BitCast(D(), numbers_from(i));
-    hn::CompressStore(numbers, kept, D(), table[kGroupEdge] + table.count);
+    pack(numbers, kept, D(), table[kGroupEdge] + table.count);
     table.count += more;
   }
 

@@ -8,6 +8,7 @@
 #endif
 
 #include "engines/vectors/disk_plane.hpp"
+#include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
 
@@ -209,7 +210,7 @@ class Projection {
     if (in_.grid.tiles && !in_.exact_area) kept = hn::And(kept, left_of_a_sample(low_x, low_y, high_y));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
-    const auto store = [&](std::size_t field, V v) { hn::CompressStore(v, kept, d, out_[field] + out_.count); };
+    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, out_[field] + out_.count); };
     store(kX0, e.a.x);
     store(kY0, e.a.y);
     store(kX1, e.b.x);

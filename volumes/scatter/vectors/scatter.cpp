@@ -16,6 +16,7 @@
 #define HWY_TARGET_INCLUDE "volumes/scatter/vectors/scatter.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 #include "volumes/scatter/vectors/projection-inl.hpp"
 
@@ -122,8 +123,8 @@ class SampleScatter {
       const M right = hn::Ge(x, set(-0.5F)), lands = hn::And(crossed, hn::And(right, hn::Lt(first, columns)));
       from = hn::Min(from, hn::IfThenElse(hn::AndNot(hn::Xor(right, upper_right), crossed), row, end));
       const auto place = hn::ConvertTo(di, hn::IfThenElseZero(lands, hn::Add(hn::Mul(first, stride), row)));
-      hn::CompressStore(place, hn::RebindMask(di, lands), di, s_.landing.data() + landed);
-      hn::CompressStore(hn::ConvertTo(di, jump), hn::RebindMask(di, lands), di, s_.jump.data() + landed);
+      pack(place, hn::RebindMask(di, lands), di, s_.landing.data() + landed);
+      pack(hn::ConvertTo(di, jump), hn::RebindMask(di, lands), di, s_.jump.data() + landed);
       landed += hn::CountTrue(d, lands);
       const V on_light = hn::Min(hn::Max(hn::Round(column), set(0)), hn::Sub(columns, set(1)));
       const M near_column = hn::Lt(hn::Abs(hn::Sub(column, on_light)), error_x);
@@ -158,8 +159,8 @@ class SampleScatter {
   void change_left(V row, V up, M which) {
     HWY_ALIGN float rows[hn::MaxLanes(D())];
     HWY_ALIGN float ups[hn::MaxLanes(D())];
-    const std::size_t count = hn::CompressStore(row, which, D(), rows);
-    hn::CompressStore(up, which, D(), ups);
+    const std::size_t count = pack(row, which, D(), rows);
+    pack(up, which, D(), ups);
     for (std::size_t lane = 0; lane < count; ++lane) {
       Counter& cell = changes_.left[static_cast<std::size_t>(rows[lane])];
       cell = static_cast<Counter>(cell + static_cast<Counter>(ups[lane]));
