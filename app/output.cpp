@@ -71,10 +71,14 @@ void BeautyAccumulator::add(const TileResult& result) {
   // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
   std::vector<glm::vec3>& pixels = parts_[whole_of_[result.light]];
   pixels.resize(session_.pixel_count(), glm::vec3(0));
-  visibility::ViewSamples rows = rows_of(session_.samples, result.tile);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (std::isnan(result.visibility[i])) rows.triangle[i] = visibility::ViewSamples::kBackground;
+  const bool is_all = result.visibility.size() == session_.pixel_count() &&
+                      std::ranges::none_of(result.visibility, [](float v) { return std::isnan(v); });
+  visibility::ViewSamples part;
+  if (!is_all) part = rows_of(session_.samples, result.tile);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (std::isnan(result.visibility[i])) part.triangle[i] = visibility::ViewSamples::kBackground;
   }
+  const visibility::ViewSamples& rows = is_all ? session_.samples : part;
   compare::LightVisibility seen;
   seen.form_factors = result.form_factors;
   seen.masks = result.masks;

@@ -28,7 +28,8 @@ class BeautyAccumulator {
   BeautyAccumulator(const Session& session, std::span<const visibility::Light> lights);
   void add(const TileResult& result);
   /// For each of whole_lights each pixel; empty for a light of which nothing came.
-  [[nodiscard]] const std::vector<std::vector<glm::vec3>>& parts() const { return parts_; }
+  [[nodiscard]] const std::vector<std::vector<glm::vec3>>& parts() const& { return parts_; }
+  [[nodiscard]] std::vector<std::vector<glm::vec3>> parts() && { return std::move(parts_); }
   /// All lights together, added in their order: what does not depend on the order in which they were done.
   [[nodiscard]] std::vector<glm::vec3> sum() const;
 

@@ -207,11 +207,8 @@ class Host {
     }
     leave_out(light_index, first, values);
     if (method_.description().output == Output::mask) read_masks(light, classes);
-    form_factors_.clear();
-    if (method_.description().output == Output::radiance) {
-      form_factors_.resize(count);
-      method_.read_form_factors(form_factors_);
-    }
+    form_factors_.resize(sink_ && method_.description().output == Output::radiance ? count : 0);
+    if (!form_factors_.empty()) method_.read_form_factors(form_factors_);
     if (sink_) sink_({light_index, tile, values, masks_, transmittances_, dimmed_, form_factors_});
   }
 
@@ -294,6 +291,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   for (const std::size_t light : chosen) visibility::check_light(method.description(), plan.lights[light]);
 
   if (plan.pixels) method.want_pixels(*plan.pixels);
+  method.want_form_factors(plan.shades);
 
   const Stopwatch total;
   MethodRun result;

@@ -39,6 +39,7 @@ struct RunPlan {
   bool filtered_alone = false;  ///< of a light with filtered_by, those view samples alone; else NaN
   std::uint32_t runs = 1;       ///< timed runs
   bool discard_first = false;   ///< one more before them, which warms up and does not count
+  bool shades = false;          ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
   std::optional<std::vector<std::uint32_t>> pixels =
       {};                              ///< all that will be looked at (ascending); nothing: every pixel
   std::vector<std::size_t> only = {};  ///< the lights that are done (indices); empty: all of them

@@ -75,6 +75,10 @@ class Method {
   /// leaves the rest out and gives NaN as their V; others need not listen. Without a call: all pixels.
   virtual void want_pixels([[maybe_unused]] std::span<const std::uint32_t> pixels) {}
 
+  /// Will read_form_factors follow each evaluate? Then a method of Output::radiance may find them on the way to V,
+  /// where they cost less than afterwards, in the time of evaluate. Without a call: it may, and V need not wait for it.
+  virtual void want_form_factors([[maybe_unused]] bool wanted) {}
+
   /// Meshes will follow one another as frames do. What a method can carry over from the one before it then keeps, at
   /// the cost of memory; answers are the same bits as without. Before the first prepare_mesh.
   virtual void expect_frames() {}

@@ -115,7 +115,7 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   beauty_seconds_ += watch.seconds();
   run_ = run_lights(beauty, bits_ ? &*bits_ : nullptr);
   watch.restart();
-  beauty_ = beauty.parts();
+  beauty_ = std::move(beauty).parts();
   alpha_.clear();
   for (const std::int32_t triangle : lit().samples.triangle)
     alpha_.push_back(triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f);
@@ -131,6 +131,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     Kept& kept = method_for(method);
     make_seconds_ += make.seconds();
     plan.prepared = kept.prepared;
+    plan.shades = true;
     MethodRun run = run_method(
         *kept.method, lit(), plan,
         [&](const TileResult& tile) {

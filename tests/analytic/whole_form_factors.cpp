@@ -1,8 +1,9 @@
-// Form factors of whole lights side by side against one at a time: the same bits on every vector width, whatever is
-// near an edge, a plane or the horizon. And the arc tangent of both against the x87's.
+// Form factors of whole lights, and of their parts, side by side against one at a time: the same bits on every vector
+// width, whatever is near an edge, a plane or the horizon. And the arc tangent of both against the x87's.
 #include "tests/unit/visibility/scenes.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/lights/angle_over_sine.hpp"
+#include "visibility/lights/part_form_factors.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
 #include "visibility/lights/whole_form_factors.hpp"
 
@@ -104,6 +105,57 @@ INSTANTIATE_TEST_SUITE_P(Kinds, WholeFormFactors,
                            std::erase(name, ' ');
                            return name;
                          });
+
+/// On the lattice as rows=exact has them, between two heights; now and then without a side, or of no area.
+FourCorneredParts parts_on_lattice(std::mt19937& random, std::size_t count) {
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  FourCorneredParts parts;
+  parts.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto place = [&] { return i % 3 == 0 ? anywhere(random) : static_cast<int>(random() % 9) / 4.0 - 1; };
+    const auto [low, high] = std::minmax({place(), place()});
+    const auto [left, right] = std::minmax({place(), place()});
+    const auto [upper_left, upper_right] = std::minmax({place(), place()});
+    parts.set(i, {glm::dvec2(left, low), {right, low}, {upper_right, high}, {upper_left, high}});
+  }
+  return parts;
+}
+
+class PartFormFactors : public WholeFormFactors {};
+
+TEST_P(PartFormFactors, AreThoseOfOnePartToTheLastBitOnEveryWidth) {
+  constexpr unsigned kSeed = 6;
+  std::mt19937 random(kSeed);
+  const std::string kind = GetParam();
+  const std::int64_t can = hwy::SupportedTargets();
+  std::size_t lit = 0, dark = 0, cut = 0;
+  for (const bool two_sided : {false, true}) {
+    const Surroundings all = surroundings(random, 600);
+    const Light light = light_on_lattice(kind, two_sided);
+    for (const std::uint32_t i : all.which) {
+      const FourCorneredParts parts = parts_on_lattice(random, 1 + random() % 20);
+      const UnshadowedLight seen(light, all.p[i], all.n[i]);
+      double expected = 0;
+      for (std::size_t part = 0; part < parts.size(); ++part) expected += seen.part(parts.get(part));
+      ++(expected != 0 ? lit : dark);
+      const UnshadowedLight::Frame frame = seen.frame();
+      cut += std::abs(frame.height) < std::abs(frame.height_u) + std::abs(frame.height_v) ? 1 : 0;
+      for (std::int64_t targets = can; targets != 0; targets &= targets - 1) {
+        hwy::SetSupportedTargetsForTest(targets & -targets);
+        const double found = sum_of_parts(seen, parts);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(found + 0.0), std::bit_cast<std::uint64_t>(expected + 0.0))
+            << kind << (two_sided ? ", two sides, seed " : ", seed ") << kSeed << ", element " << i << ", target "
+            << hwy::TargetName(targets & -targets) << ": " << found << " and " << expected;
+        hwy::SetSupportedTargetsForTest(0);
+      }
+    }
+  }
+  EXPECT_GT(lit, 200U);
+  EXPECT_GT(dark, 100U);
+  EXPECT_GT(cut, 100U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PartFormFactors, testing::Values("rectangle", "polygon"));
 
 TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
   // Twenty bits a coordinate: a plane's point is the sum of its axes, exactly, and what double makes of the determinant

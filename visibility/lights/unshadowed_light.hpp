@@ -34,6 +34,13 @@ class UnshadowedLight {
   /// Of the part from `low` to `high`.
   [[nodiscard]] double box(const glm::dvec2& low, const glm::dvec2& high) const;
   [[nodiscard]] const glm::dvec3& normal() const { return n_; }
+  /// What part() computes with, for whoever does many side by side.
+  struct Frame {
+    glm::dvec3 center{0}, u{0}, v{0};               ///< relative to p
+    double height = 0, height_u = 0, height_v = 0;  ///< n · these
+    int side = 0;                                   ///< +1: p is where u × v points, −1: behind, 0: dark
+  };
+  [[nodiscard]] Frame frame() const { return {center_, u_, v_, height_, height_u_, height_v_, side_}; }
 
  private:
   [[nodiscard]] double part_of_disk(std::span<const glm::dvec2> corners) const;

@@ -9,6 +9,9 @@
 #include "tests/agreement/volumes/soft_stage.hpp"
 #include "volumes/edges/light_window.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 namespace penumbra::volumes {
 namespace {
 
@@ -116,6 +119,32 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOfShapes,
                          [](const auto& it) {
                            return std::string(std::get<0>(it.param)) + name_of(std::get<1>(it.param));
                          });
+
+/// Found on the way to V or afterwards, form factors are the same, and V is, too. The rectangle, then all others.
+TEST_F(ExactRows, FormFactorsAreTheSameOnTheWay) {
+  const auto same = [](const auto& a, const auto& b) {
+    return std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+  };
+  for (std::size_t i = 0; i <= kShapes.size(); ++i) {
+    std::mt19937 random(11);
+    scenes::Scene scene = tests::shipped_scene("contact");
+    if (i > 0) reshape(scene, kShapes[i - 1], random);
+    SCOPED_TRACE(i > 0 ? name_of(kShapes[i - 1]) : "rectangle");
+    const SoftStage stage(scene, device(), 32, 32);
+    const auto method = make();
+    const auto [shares, form_factors] = run(*method, stage.floats, stage.light, stage.samples);
+    const auto counters = method->counters();
+    for (const bool wanted : {true, false, true}) {
+      method->want_form_factors(wanted);
+      const auto again = run(*method, stage.floats, stage.light, stage.samples);
+      EXPECT_TRUE(same(again.shares, shares)) << wanted;
+      EXPECT_TRUE(same(again.form_factors, form_factors)) << wanted;
+      EXPECT_EQ(method->counters(), counters) << wanted;
+    }
+    const auto partly = std::ranges::count_if(shares, [](float share) { return share > 0 && share < 1; });
+    EXPECT_TRUE(partly > 10 || (i > 0 && kShapes[i - 1] == Shape::thin_sun)) << partly;
+  }
+}
 
 /// Everything coincides with something: edges along tangents and through the centre, ends on the rim and on the
 /// outline.

@@ -5,10 +5,14 @@
 #include "areas/form_factor_sum.hpp"
 #include "base/assert.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
+#include "visibility/lights/whole_form_factors.hpp"
 #include "volumes/scatter/vectors/vector_edges.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 
 #include <glm/common.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <optional>
 #include <utility>
@@ -46,7 +50,9 @@ class VectorEdgeRows final : public VectorEdges {
     blocks_.reset();
     if (light.texture) blocks_.emplace(*light.texture);
   }
+  void want_form_factors(bool wanted) override { wants_radiance_ = finds_radiance_ = wanted; }
   void evaluate(const visibility::Tile& tile) override {
+    partly_seen_.clear();
     shares_.assign(std::size_t{tile.row_count} * samples().width, std::nullopt);
     VectorEdges::evaluate(tile);
   }
@@ -55,21 +61,20 @@ class VectorEdgeRows final : public VectorEdges {
   }
   void read_visibility(std::span<float> visibility) override {
     // All or nothing, where no share was asked for.
-    for (std::size_t i = 0; i < visibility.size(); ++i)
-      visibility[i] = shares_[i].value_or(visible_samples()[i] != 0 ? 1.0F : 0.0F);
+    for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = share_of(i);
   }
-  /// Evaluates the tile once more, so that a caller who needs V alone does not wait for this.
   void read_form_factors(std::span<glm::dvec3> form_factors) override {
-    std::vector<float> visibility(form_factors.size());
-    read_visibility(visibility);
-    radiance_.assign(form_factors.size(), std::nullopt);
-    repeat();
-    for (std::size_t i = 0; i < form_factors.size(); ++i) {
-      const std::size_t pixel = first_pixel() + i;
-      const bool dark = visibility[i] == 0 || samples().triangle[pixel] == visibility::ViewSamples::kBackground;
-      form_factors[i] = dark ? glm::dvec3(0) : radiance_[i] ? *radiance_[i] : unshadowed(pixel);
+    if (!finds_radiance_) {  // once more, so that a caller who needs V alone did not wait for this
+      finds_radiance_ = true;
+      repeat();
+      finds_radiance_ = wants_radiance_;
     }
-    radiance_.clear();
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, form_factors.size(), 1024),
+                      [&](const auto& range) { shade_unshadowed(range.begin(), range.end(), form_factors); });
+    for (const PartlySeen& seen : partly_seen_) {
+      for (const auto& [pixel, form_factor] : seen) form_factors[pixel] = form_factor;
+    }
+    if (!finds_radiance_) partly_seen_.clear();
   }
 
  private:
@@ -99,6 +104,27 @@ class VectorEdgeRows final : public VectorEdges {
             vectors::LightGridInput::Window{corner, to_scale * axes.u, to_scale * axes.v, axes.skew},
             static_cast<float>(2 + axes.skew)};
   }
+  /// V of a pixel of the tile.
+  [[nodiscard]] float share_of(std::size_t pixel) const {
+    return shares_[pixel].value_or(visible_samples()[pixel] != 0 ? 1.0F : 0.0F);
+  }
+  /// Form factors of the tile's pixels from `begin` to `end`, where float32 says that all of the light is seen, or
+  /// nothing.
+  void shade_unshadowed(std::size_t begin, std::size_t end, std::span<glm::dvec3> form_factors) const {
+    std::vector<std::uint32_t> wholes;
+    for (std::size_t i = begin; i < end; ++i) {
+      form_factors[i] = glm::dvec3(0);
+      const std::size_t pixel = first_pixel() + i;
+      if (share_of(i) != 1 || samples().triangle[pixel] == visibility::ViewSamples::kBackground) continue;
+      if (blocks_)
+        form_factors[i] = unshadowed(pixel);
+      else
+        wholes.push_back(static_cast<std::uint32_t>(pixel));
+    }
+    std::vector<double> found(wholes.size());
+    visibility::whole_form_factors(light(), {samples().p, samples().n, wholes}, found);
+    for (std::size_t k = 0; k < wholes.size(); ++k) form_factors[wholes[k] - first_pixel()] = glm::dvec3(found[k]);
+  }
   /// Of what nothing hides.
   [[nodiscard]] glm::dvec3 unshadowed(std::size_t pixel) const {
     const visibility::UnshadowedLight seen(light(), samples().p[pixel], samples().n[pixel]);
@@ -124,7 +150,7 @@ class VectorEdgeRows final : public VectorEdges {
         continue;
       }
       shares_[tile_pixel(at)] = static_cast<float>(*share);
-      if (!radiance_.empty()) radiance_[tile_pixel(at)] = unshadowed(at.pixel);
+      if (finds_radiance_ && is_partial(*share)) set_radiance(at, unshadowed(at.pixel));
     }
   }
   bool decide_open(const GridSample& at) override {
@@ -135,7 +161,11 @@ class VectorEdgeRows final : public VectorEdges {
     scratch_.local().unproven += is_hard() ? 0 : 1;
     const areas::ExactView exact = areas_.view(samples(), at.pixel);
     shares_[tile_pixel(at)] = static_cast<float>(exact.visibility);
-    if (!radiance_.empty()) radiance_[tile_pixel(at)] = exact.form_factor;
+    if (finds_radiance_ && is_partial(exact.visibility)) set_radiance(at, exact.form_factor);
+  }
+  static bool is_partial(double share) { return static_cast<float>(share) != 0 && static_cast<float>(share) != 1; }
+  void set_radiance(const GridSample& at, const glm::dvec3& form_factor) {
+    partly_seen_.local().emplace_back(static_cast<std::uint32_t>(tile_pixel(at)), form_factor);
   }
   void do_occluded(const ScatterInput& input, OpenJudge& judge, std::span<SampleMask>) override {
     if (is_hard()) {
@@ -143,11 +173,13 @@ class VectorEdgeRows final : public VectorEdges {
       return;
     }
     std::vector<float> shares(input.samples.size());
-    std::vector<glm::dvec3> radiance(radiance_.empty() ? 0 : input.samples.size());
+    std::vector<glm::dvec3> radiance(finds_radiance_ ? input.samples.size() : 0);
     integrate({input, *region_, blocks_, scene(), light(), samples(), areas_, scale()}, scratch_.local(), judge,
               {shares, radiance});
-    for (std::size_t i = 0; i < shares.size(); ++i) shares_[tile_pixel(input.samples[i])] = shares[i];
-    for (std::size_t i = 0; i < radiance.size(); ++i) radiance_[tile_pixel(input.samples[i])] = radiance[i];
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      shares_[tile_pixel(input.samples[i])] = shares[i];
+      if (finds_radiance_ && is_partial(double{shares[i]})) set_radiance(input.samples[i], radiance[i]);
+    }
   }
 
   void count(std::map<std::string, std::uint64_t>& counters) override {
@@ -156,10 +188,13 @@ class VectorEdgeRows final : public VectorEdges {
   }
 
   AreasOnDemand areas_;
-  std::optional<LightRegion> region_;                // of the light
-  std::optional<areas::TextureBlocks> blocks_;       // of its texture
-  std::vector<std::optional<float>> shares_;         // of the tile; none: the light is behind, or below the horizon
-  std::vector<std::optional<glm::dvec3>> radiance_;  // likewise; empty: not wanted
+  std::optional<LightRegion> region_;           // of the light
+  std::optional<areas::TextureBlocks> blocks_;  // of its texture
+  std::vector<std::optional<float>> shares_;    // of the tile; none: the light is behind, or below the horizon
+  bool wants_radiance_ = false;                 // after each tile
+  bool finds_radiance_ = false;                 // on the way to shares
+  using PartlySeen = std::vector<std::pair<std::uint32_t, glm::dvec3>>;
+  tbb::enumerable_thread_specific<PartlySeen> partly_seen_;  // pixels of the tile, and what they see of the light
 };
 
 }  // namespace

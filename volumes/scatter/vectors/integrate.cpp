@@ -2,6 +2,7 @@
 // samples.
 
 #include "areas/form_factor_sum.hpp"
+#include "visibility/lights/part_form_factors.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
 #include "volumes/scatter/vectors/rows.hpp"
 #include "volumes/scatter/vectors/scatter.hpp"
@@ -111,27 +112,44 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   return rows.visible_share(depth, all.parts_asked ? &all.parts : nullptr);
 }
 
-glm::dvec3 form_factor_of(const IntegralInput& in, const GridSample& at, const std::vector<Trapezoid>& parts,
-                          double share) {
-  if (share == 0) return glm::dvec3(0);
-  const visibility::UnshadowedLight unshadowed(in.light, in.samples.p[at.pixel], in.samples.n[at.pixel]);
-  areas::FormFactorSum sum(unshadowed, in.texture);
-  if (parts.empty() || static_cast<float>(share) == 1) {
-    sum.add_whole();
-    return share * sum.sum();
+/// Of view samples that see a part of the light.
+class PartlyLit {
+ public:
+  explicit PartlyLit(const IntegralInput& in)
+      : in_(in),
+        cells_(2.0 * glm::dvec2(in.scatter.grid.half_cells)),
+        is_plain_(!in.texture && !visibility::is_round(in.light.kind)) {}
+
+  glm::dvec3 form_factor(const GridSample& at, const std::vector<Trapezoid>& parts) {
+    const visibility::UnshadowedLight unshadowed(in_.light, in_.samples.p[at.pixel], in_.samples.n[at.pixel]);
+    if (is_plain_) {
+      corners_.resize(parts.size());
+      for (std::size_t i = 0; i < parts.size(); ++i) corners_.set(i, corners_of(parts[i]));
+      return glm::dvec3(std::max(visibility::sum_of_parts(unshadowed, corners_), 0.0));
+    }
+    areas::FormFactorSum sum(unshadowed, in_.texture);
+    for (const Trapezoid& part : parts) sum.add_polygon(corners_of(part));
+    return glm::max(sum.sum(), glm::dvec3(0));
   }
-  const glm::dvec2 cells = 2.0 * glm::dvec2(in.scatter.grid.half_cells);
-  for (const auto& [low, high] : parts) {
-    const auto corner = [&](double x, double y) { return in.region.window.frame_place(glm::dvec2(x, y) / cells); };
-    sum.add_polygon(std::array{corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y),
-                               corner(high.left, high.y)});
+
+ private:
+  /// Counter-clockwise, in the frame.
+  [[nodiscard]] std::array<glm::dvec2, 4> corners_of(const Trapezoid& part) const {
+    const auto& [low, high] = part;
+    const auto corner = [&](double x, double y) { return in_.region.window.frame_place(glm::dvec2(x, y) / cells_); };
+    return {corner(low.left, low.y), corner(low.right, low.y), corner(high.right, high.y), corner(high.left, high.y)};
   }
-  return glm::max(sum.sum(), glm::dvec3(0));
-}
+
+  const IntegralInput& in_;
+  glm::dvec2 cells_;
+  bool is_plain_;
+  visibility::FourCorneredParts corners_;
+};
 
 void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& judge, const Integral& out) {
   const ScatterInput& in = input.scatter;
   Rows rows{RowSum(in.grid, input.region, input.scene, input.scale), input.region.window, {}, !out.radiance.empty()};
+  PartlyLit partly_lit(input);
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
     const ClusterSample& at = in.samples[i];
     const std::optional<double> share = share_of(input, scratch, at, rows, judge);
@@ -143,7 +161,8 @@ void integrate_here(const IntegralInput& input, Scratch& scratch, OpenJudge& jud
       return;
     }
     out.shares[i] = static_cast<float>(*share);
-    if (!out.radiance.empty()) out.radiance[i] = form_factor_of(input, at, rows.parts, *share);
+    const bool is_partial = out.shares[i] != 0 && out.shares[i] != 1;
+    if (!out.radiance.empty() && is_partial) out.radiance[i] = partly_lit.form_factor(at, rows.parts);
   });
 }
 

@@ -134,7 +134,8 @@ void scatter_points(const ScatterInput& input, Scratch& scratch, OpenJudge& judg
 void scatter(const ScatterInput& input, Scratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 
 /// Not light samples but the light: `shares` of it that are visible (RowSum). A view sample whose share double cannot
-/// prove gets it from integers (areas::ExactArea). `radiance`, if there: form factors of what is visible.
+/// prove gets it from integers (areas::ExactArea). `radiance`, if there: form factors of what is visible, where that is
+/// a part of the light.
 struct Integral {
   std::span<float> shares;
   std::span<glm::dvec3> radiance;

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "visibility/lights/unshadowed_light.hpp"
+
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace penumbra::visibility {
+
+/// Parts of a light with four corners each, counter-clockwise in the frame's coordinates: lists of the first corners,
+/// the second ones and so on, each with room for a vector that begins at its last.
+class FourCorneredParts {
+ public:
+  using Corners = std::array<glm::dvec2, 4>;
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// Before set().
+  void resize(std::size_t count) {
+    size_ = count;
+    for (List& list : lists_) list.s.resize(count + kRoom), list.t.resize(count + kRoom);
+  }
+  void set(std::size_t part, const Corners& corners) {
+    for (std::size_t i = 0; i < corners.size(); ++i) lists_[i].s[part] = corners[i].x, lists_[i].t[part] = corners[i].y;
+  }
+  [[nodiscard]] Corners get(std::size_t part) const {
+    const auto corner = [&](std::size_t i) { return glm::dvec2(lists_[i].s[part], lists_[i].t[part]); };
+    return {corner(0), corner(1), corner(2), corner(3)};
+  }
+  [[nodiscard]] const double* s(std::size_t corner) const { return lists_[corner].s.data(); }
+  [[nodiscard]] const double* t(std::size_t corner) const { return lists_[corner].t.data(); }
+
+ private:
+  static constexpr std::size_t kRoom = 63;  // no vector has more lanes than 64
+  struct List {
+    std::vector<double> s, t;
+  };
+  std::array<List, 4> lists_;
+  std::size_t size_ = 0;
+};
+
+/// The sum of UnshadowedLight::part() of all of them, in their order, on the processor's vector units: the same bits,
+/// whatever their width. Of a rectangle or polygon.
+double sum_of_parts(const UnshadowedLight& seen, const FourCorneredParts& parts);
+
+}  // namespace penumbra::visibility
