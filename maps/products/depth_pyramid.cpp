@@ -23,23 +23,25 @@ std::uint64_t nodes_of(const gpu::PyramidHeader& header, std::uint32_t level, st
   return side * side * faces;
 }
 
-/// With all its levels.
-gpu::PyramidHeader whole_header(PyramidKind kind, std::uint32_t size) {
-  gpu::PyramidHeader header{};
-  header.cells = size + 1;
-  if (kind == PyramidKind::hsm) {
-    header.top = header.whole = gpu::pyramid_log2(size) + 1;  // 2^top ≥ size + 1: one node covers all cells
-  } else {
-    header.whole = kind == PyramidKind::ysm ? kWholeOfHybrid : 0;
-    header.top = header.whole + gpu::pyramid_log2(gpu::pyramid_nodes(header.cells, header.whole));
+/// Up to this level the nodes of one kind stand as far apart as they are wide.
+std::uint32_t whole_of(PyramidKind kind, std::uint32_t size) {
+  switch (kind) {
+    case PyramidKind::hsm:
+      return gpu::pyramid_log2(size) + 1;  // 2^whole ≥ size + 1: one node covers all cells
+    case PyramidKind::ysm:
+      return kWholeOfHybrid;
+    case PyramidKind::mssm:
+      break;
   }
-  return header;
+  return 0;
 }
 
-std::uint64_t least_bytes(PyramidKind kind, std::uint32_t size, std::uint32_t faces) {
-  gpu::PyramidHeader header = whole_header(kind, size);
-  header.top = header.whole;
-  return pyramid_bytes(header, faces);
+gpu::PyramidHeader header_of(std::uint32_t whole, std::uint32_t size) {
+  gpu::PyramidHeader header{};
+  header.cells = size + 1;
+  header.whole = whole;
+  header.top = whole + gpu::pyramid_log2(gpu::pyramid_nodes(header.cells, whole));
+  return header;
 }
 
 }  // namespace
@@ -51,17 +53,21 @@ std::uint64_t pyramid_bytes(const gpu::PyramidHeader& header, std::uint32_t face
 }
 
 gpu::PyramidHeader pyramid_header(PyramidKind kind, std::uint32_t size, std::uint32_t faces, std::uint64_t most_bytes) {
-  gpu::PyramidHeader header = whole_header(kind, size);
+  const std::uint32_t quadtree = whole_of(PyramidKind::hsm, size);
+  const auto fits = [&](const gpu::PyramidHeader& header) {
+    return sizeof header + pyramid_bytes(header, faces) <= most_bytes;
+  };
+  gpu::PyramidHeader header = header_of(whole_of(kind, size), size);
+  while (header.whole < quadtree && !fits(header)) header = header_of(header.whole + 1, size);
   PENUMBRA_ASSERT(header.top < gpu::kPyramidLevels, "{} levels", header.top + 1);
-  while (header.top > header.whole && sizeof header + pyramid_bytes(header, faces) > most_bytes) --header.top;
-  if (sizeof header + pyramid_bytes(header, faces) > most_bytes) {
-    std::uint32_t fits = size;
-    while (fits > 1 && sizeof header + least_bytes(kind, fits, faces) > most_bytes) --fits;
+  if (!fits(header)) {
+    std::uint32_t less = size;
+    while (less > 1 && !fits(header_of(whole_of(PyramidKind::hsm, less), less))) --less;
     throw ResourceError(
         "method option size={}: a pyramid over {} maps needs {} bytes, more than one buffer here can hold; take "
         "size={} "
         "or less",
-        size, faces, pyramid_bytes(header, faces), fits);
+        size, faces, pyramid_bytes(header, faces), less);
   }
   std::uint64_t first = 0;
   for (std::uint32_t level = 0; level <= header.top; ++level) {

@@ -12,9 +12,9 @@ namespace penumbra::maps {
 /// Where a pyramid has its nodes; see depth_pyramid.shared.h.
 enum class PyramidKind : std::uint8_t { hsm, mssm, ysm };
 
-/// A pyramid over `faces` maps of size² texels. An MSSM or a YSM whose upper levels would not fit into `most_bytes`
-/// does without them: rectangles and walks then take more nodes of the coarsest level that there is. Throws
-/// ResourceError, saying which size would do, where not even that fits.
+/// A pyramid over `faces` maps of size² texels. An MSSM or a YSM that would not fit into `most_bytes` is a quadtree up
+/// to the first level from which on it does: without upper levels a question about a whole map would take as many nodes
+/// as the coarsest level has. Throws ResourceError, saying which size would do, where not even a quadtree fits.
 gpu::PyramidHeader pyramid_header(PyramidKind kind, std::uint32_t size, std::uint32_t faces, std::uint64_t most_bytes);
 
 /// The bytes of its nodes.
