@@ -89,3 +89,22 @@ bool all_beside_light(Bounds group, MapFace face, ivec2 lower, ivec2 upper, floa
   const vec2 to = (group.at_high + reach * light_upper - face.lower) / face.texel;
   return any(lessThan(vec2(upper + 2), from)) || any(greaterThan(vec2(lower - 1), to));
 }
+
+// Does the receiver e see all that a sideways face holds at `depths` between the centres of texels lower ... upper, and half
+// a texel more on every side, beyond one and the same side of the light's bounding rectangle? It sees q at s / w
+// (onto_light in kernel.glsl), w no less than kSlack of its height. s - border * w is linear in each of q's three
+// coordinates on the face: it is least at a corner, for either w. Twice eight roundings of 2^-24 are below the slack.
+bool all_beside_light_sideways(vec3 e, MapFace face, ivec2 lower, ivec2 upper, vec2 depths, vec2 light_lower, vec2 light_upper) {
+  const vec2 from = face.lower + vec2(lower) * face.texel, to = face.lower + vec2(upper + 1) * face.texel;
+  const vec2 widest = max(-light_lower, light_upper);
+  vec2 above = vec2(1e30), below = vec2(1e30);
+  for (int k = 0; k < 8; ++k) {
+    const vec3 corner = vec3((k & 1) == 0 ? from.x : to.x, (k & 2) == 0 ? from.y : to.y, 1.0);
+    const vec3 q = from_face(face, corner) * ((k & 4) == 0 ? depths.x : depths.y), s = onto_light(e, q);
+    const vec2 slack = 4.0 * kSlack * (abs(q.xy) * e.z + (abs(e.xy) + widest) * (e.z + abs(q.z)));
+    const vec2 ends = vec2(s.z, kSlack * e.z);
+    above = min(above, s.xy - slack - max(light_upper * ends.x, light_upper * ends.y));
+    below = min(below, min(light_lower * ends.x, light_lower * ends.y) - slack - s.xy);
+  }
+  return any(greaterThan(max(above, below), vec2(0.0)));
+}

@@ -52,6 +52,9 @@ void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_t
   const bool own_here = own_face(view.side[side_number].face_count, pixel_e[pixel]) == face_number;
   const vec2 a = vertex_on_light(pixel, own_here, base, from, depth_from);
   const vec2 b = vertex_on_light(pixel, own_here, base, to, depth_to);
+  // What is seen beside the light hides none of it. Asked here, too, so that nodes may be left out for it
+  // (all_beside_light_sideways) without a change of rounding.
+  if (face.axis != 2 && (any(greaterThan(min(a, b), light.upper)) || any(lessThan(max(a, b), light.lower)))) return;
   const float turned = own_here ? cross2(from_own(pixel, base, from), from_own(pixel, base, to)) : face_turn * cross2(a, b);
   const float turn = turned >= 0.0 ? 1.0 : -1.0;
   const float area = beyond_edge(to_unit(a), to_unit(b), turn * face_turn);

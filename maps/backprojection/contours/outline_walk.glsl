@@ -67,6 +67,12 @@ void look_below_nodes(ivec4 cells, uint first, uint members_asked) {
         (range.y < limits.x || all_beside_light(group, face, lower, upper, range.x, light.lower, light.upper))) {
       continue;
     }
+    // Pixels that see a hemicube look one by one (choose_members).
+    if (own.traversal == kHierarchy && face.axis != 2 &&
+        all_beside_light_sideways(pixel_e[members[first]], face, ivec2(at) - 1, ivec2(at) + (1 << level) - 1,
+                                  vec2(range.x, min(range.y, limits.y)), light.lower, light.upper)) {
+      continue;
+    }
     const uint half_width = 1u << (level - 1);
     for (uint k = 0; k < 4; ++k) {
       const uvec2 child = at + uvec2(k & 1, k >> 1) * half_width;

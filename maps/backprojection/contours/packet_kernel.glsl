@@ -16,18 +16,16 @@ void find_kernel(uint pixel) {
   for (uint round = 0; round < 4 && own.search != kNoSearch && !no_cells(cells); ++round) {
     const vec2 range = view.far * depth_range_of_cells(face.map, uvec2(cells.xy), uvec2(cells.zw));
     const vec2 limits = thresholds(alone, face, max(cells.xy - 1, 0), min(cells.zw, ivec2(lookup.size) - 1), view.far);
-    if (range.x >= limits.y || range.y < limits.x) {
-      cells = ivec4(0, 0, -1, -1);
-    } else if (face.axis == 2) {
-      const ivec4 narrow = cells_of(kernel_on(face, lookup.size, e, light.lower, light.upper, range.x, 0));
-      if (no_cells(narrow)) {
-        cells = narrow;
-        break;
-      }
-      const ivec4 within = ivec4(max(narrow.xy, cells.xy), min(narrow.zw, cells.zw));
-      if (within == cells) break;
-      cells = within;
+    if (range.x >= limits.y || range.y < limits.x) cells = ivec4(0, 0, -1, -1);
+    if (no_cells(cells) || face.axis != 2) break;
+    const ivec4 narrow = cells_of(kernel_on(face, lookup.size, e, light.lower, light.upper, range.x, 0));
+    if (no_cells(narrow)) {
+      cells = narrow;
+      break;
     }
+    const ivec4 within = ivec4(max(narrow.xy, cells.xy), min(narrow.zw, cells.zw));
+    if (within == cells) break;
+    cells = within;
   }
   pixel_cells[pixel] = cells;
 

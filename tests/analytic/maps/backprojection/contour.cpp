@@ -242,6 +242,21 @@ TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
   expect_one_image(broken, "32", "broken mesh");
 }
 
+// Below nodes outlines alone are looked at, which grow as a map's side does, 4 times; areas would, 16 times. The
+// light's plane cuts the floor: most of the floor is seen in a hemicube's sideways faces, and beside the light.
+TEST_F(MapsContourWays, HierarchiesFollowOutlinesInHemicubes) {
+  scenes::Scene scene = contour_floor(0.6);
+  add_object(scene, "ball", sphere({0, 1, 0}, 0.5, 24));
+  scene.lights.front() = rectangle_light({0, 3, -2.5}, {1.2, 0, 0}, {0, 1, 0.6});
+  const Stage stage(scene, 12, 12, light_samples(1));
+  const auto found = [&](const char* size) { return counted(maps::make_contour, stage, {{"size", size}}); };
+  const Counted small = found("32"), large = found("128");
+  EXPECT_EQ(small.count("mapFaces"), 5);
+  EXPECT_GT(small.count("edges"), 100);
+  EXPECT_LE(large.count("cells"), 4 * small.count("cells"));
+  expect_one_image(stage, "32", "hemicube");
+}
+
 TEST_F(MapsContour, TilesDoNotChangeIt) {
   const Stage stage(ball_over_floor(1), 31, 40, light_samples(1));
   for (const char* sub_lights : {"1", "2"}) {
