@@ -42,6 +42,7 @@ penumbra_test(volumes
   property/volumes/vector_bounds.cpp
   property/volumes/wedge_builder.cpp
   unit/light_tiles.cpp
+  unit/near_casters.cpp
   unit/point_rows.cpp
   LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb gmpxx gmp)
 target_compile_definitions(volumes_test PRIVATE PENUMBRA_TEST_LAMPS="${CMAKE_CURRENT_SOURCE_DIR}/lamps")
