@@ -1,200 +1,60 @@
 // The program's end of the wire: what the import helper answers about scenes and textures, checked.
 
+#include "scenes/scene_fields.hpp"
 #include "scenes/scene_wire.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
+#include <utility>
 
 namespace penumbra::scenes {
 namespace {
 
 using mesh::WireError;
-using mesh::WireReader;
 
-glm::dvec3 get_vector(WireReader& from) {
-  const auto v = from.get<glm::dvec3>();
-  if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z)) throw WireError("a vector is not finite");
-  return v;
+/// Of an enumeration, whose values begin at 0.
+constexpr auto kLast = std::tuple(PictureUse::Wrap::clamp, Alpha::Mode::blend);
+
+template <typename T>
+concept IsEnum = std::is_enum_v<T>;
+
+template <typename T>
+bool is_finite(const T& number) {
+  if constexpr (std::is_floating_point_v<T>) return std::isfinite(number);
+  return true;
 }
-
-double get_number(WireReader& from) {
-  const auto value = from.get<double>();
-  if (!std::isfinite(value)) throw WireError("a number is not finite");
-  return value;
-}
-
-/// One of an enumeration's values, which begin at 0.
-template <typename Enum>
-Enum get_enum(WireReader& from, Enum last) {
-  const auto value = from.get<std::uint8_t>();
-  if (value > static_cast<std::uint8_t>(last)) throw WireError("a value is none of its kind");
-  return static_cast<Enum>(value);
-}
-
-std::optional<double> get_optional(WireReader& from) {
-  return from.get_bool() ? std::optional(get_number(from)) : std::nullopt;
-}
-
-LightShape get_shape(WireReader& from) {
-  switch (from.get<std::uint8_t>()) {
-    case 0: {
-      Rectangle shape;
-      shape.center = get_vector(from), shape.half_u = get_vector(from), shape.half_v = get_vector(from);
-      return shape;
-    }
-    case 1: {
-      Disk shape;
-      shape.center = get_vector(from), shape.normal = get_vector(from), shape.radius = get_number(from);
-      return shape;
-    }
-    case 2: {
-      Polygon shape{from.get_array<glm::dvec3>()};
-      for (const glm::dvec3& v : shape.vertices) {
-        if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-          throw WireError("a corner is not finite");
-      }
-      if (shape.vertices.size() < 3) throw WireError("a polygon has fewer than three corners");
-      return shape;
-    }
-    case 3: {
-      Sphere shape;
-      shape.center = get_vector(from), shape.radius = get_number(from);
-      if (from.get_bool()) {
-        Cone& cone = shape.cone.emplace();
-        cone.direction = get_vector(from), cone.inner = get_number(from), cone.outer = get_number(from);
-        cone.smooth = from.get_bool();
-      }
-      return shape;
-    }
-    case 4: {
-      Ellipse shape;
-      shape.center = get_vector(from), shape.half_u = get_vector(from), shape.half_v = get_vector(from);
-      return shape;
-    }
-    case 5: {
-      Sun shape;
-      shape.direction = get_vector(from), shape.angle = get_number(from);
-      return shape;
-    }
-    case 6: {
-      Pieces shape;
-      const auto count = from.get<std::uint64_t>();
-      for (std::uint64_t i = 0; i < count; ++i) {
-        const LightShape one = get_shape(from);
-        if (const auto* rectangle = std::get_if<Rectangle>(&one))
-          shape.pieces.emplace_back(*rectangle);
-        else if (const auto* polygon = std::get_if<Polygon>(&one))
-          shape.pieces.emplace_back(*polygon);
-        else if (const auto* sphere = std::get_if<Sphere>(&one))
-          shape.pieces.emplace_back(*sphere);
-        else
-          throw WireError("a light has a piece of a kind that is none");
-      }
-      if (shape.pieces.empty()) throw WireError("a light has no pieces");
-      return shape;
-    }
-    default:
-      throw WireError("a light's shape is unknown");
+template <glm::length_t N, typename T>
+bool is_finite(const glm::vec<N, T>& v) {
+  for (glm::length_t i = 0; i < N; ++i) {
+    if (!is_finite(v[i])) return false;
   }
+  return true;
 }
 
-Object get_object(WireReader& from) {
-  Object object;
-  object.name = from.get_string();
-  object.color = get_vector(from);
-  object.casts_shadow = from.get_bool();
-  object.receives_shadow = from.get_bool();
-  if (from.get_bool()) object.emits = from.get<std::uint32_t>();
-  object.material = from.get_string();
-  if (from.get_bool()) {
-    PictureUse& use = object.picture.emplace();
-    use.picture = from.get<std::uint32_t>();
-    use.wrap_s = get_enum(from, PictureUse::Wrap::clamp), use.wrap_t = get_enum(from, PictureUse::Wrap::clamp);
-    use.nearest = from.get_bool();
-  }
-  object.alpha.mode = get_enum(from, Alpha::Mode::blend);
-  object.alpha.factor = get_number(from), object.alpha.cutoff = get_number(from);
-  return object;
+template <typename T>
+void check(const T& /*part*/) {}
+
+void check(const Polygon& polygon) {
+  if (polygon.vertices.size() < 3) throw WireError("a polygon has fewer than three corners");
 }
 
-/// Without a texture: the formats that come this way have none.
-AreaLight get_light(WireReader& from) {
-  AreaLight light;
-  light.name = from.get_string();
-  light.shape = get_shape(from);
-  light.radiance = get_vector(from);
-  light.two_sided = from.get_bool();
-  light.unshaded_by = from.get_array<std::uint32_t>();
-  return light;
+void check(const Pieces& shape) {
+  if (shape.pieces.empty()) throw WireError("a light has no pieces");
 }
 
-Camera get_camera(WireReader& from) {
-  Camera camera;
-  camera.name = from.get_string();
-  camera.eye = get_vector(from);
-  camera.target = get_vector(from);
-  camera.up = get_vector(from);
-  camera.vertical_fov = get_number(from);
-  camera.height = get_optional(from);
-  camera.aspect = get_optional(from);
-  camera.shift.x = get_number(from), camera.shift.y = get_number(from);
-  return camera;
-}
-
-Picture get_picture(WireReader& from) {
-  Picture picture;
-  picture.file = from.get_string();
-  picture.width = from.get<std::uint32_t>();
-  picture.height = from.get<std::uint32_t>();
-  picture.texels = from.get_array<std::array<std::uint8_t, 4>>();
+void check(const Picture& picture) {
   if (picture.texels.empty() || picture.texels.size() != std::uint64_t{picture.width} * picture.height) {
     throw WireError("a picture has more or fewer texels than its size says");
   }
-  return picture;
 }
 
-template <typename Vector>
-void get_look(WireReader& from, std::vector<Vector>& list, std::size_t positions) {
-  list = from.get_array<Vector>();
-  if (!list.empty() && list.size() != positions) throw WireError("not every vertex looks like something");
-  for (const Vector& value : list) {
-    for (glm::length_t i = 0; i < Vector::length(); ++i) {
-      if (!std::isfinite(value[i])) throw WireError("a vertex's look is not finite");
-    }
+void check(const Scene& scene) {
+  for (const std::size_t looks : {scene.looks.normals.size(), scene.looks.colors.size(), scene.looks.places.size()}) {
+    if (looks != 0 && looks != scene.soup.positions.size()) throw WireError("not every vertex looks like something");
   }
-}
-
-template <typename Entry>
-void get_entries(WireReader& from, std::vector<Entry>& entries, Entry (*get)(WireReader&)) {
-  const auto count = from.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < count; ++i) entries.push_back(get(from));
-}
-
-}  // namespace
-
-Scene get_scene(WireReader& from) {
-  Scene scene;
-  scene.name = from.get_string();
-  scene.width = from.get<std::uint32_t>();
-  scene.height = from.get<std::uint32_t>();
-  scene.soup = mesh::get_soup(from);
-  get_look(from, scene.looks.normals, scene.soup.positions.size());
-  get_look(from, scene.looks.colors, scene.soup.positions.size());
-  get_look(from, scene.looks.places, scene.soup.positions.size());
-  get_entries(from, scene.objects, get_object);
-  get_entries(from, scene.pictures, get_picture);
-  get_entries(from, scene.lights, get_light);
-  get_entries(from, scene.cameras, get_camera);
-  if (from.get_bool()) scene.origin = get_vector(from);
-  if (from.get_bool()) {
-    scene.motion.emplace();
-    scene.motion->first = get_number(from), scene.motion->last = get_number(from);
-  }
-  scene.warnings = from.get_strings();
-
   for (const std::uint32_t object : scene.soup.object) {
     if (object >= scene.objects.size()) throw WireError("a triangle belongs to no object");
   }
@@ -208,10 +68,72 @@ Scene get_scene(WireReader& from) {
     }
   }
   if (scene.cameras.empty()) throw WireError("there is no camera");
+}
+
+/// Gets what Put (scene_wire.cpp) puts: every number finite, every kind one that there is.
+struct Get {
+  mesh::WireReader& from;
+
+  void operator()(bool& value) const { value = from.get_bool(); }
+  void operator()(std::string& text) const { text = from.get_string(); }
+  void operator()(mesh::TriangleSoup& soup) const { soup = mesh::get_soup(from); }
+  template <IsNumber T>
+  void operator()(T& number) const {
+    number = from.get<T>();
+    if (!is_finite(number)) throw WireError("a number is not finite");
+  }
+  template <IsEnum T>
+  requires IsNumber<T>
+  void operator()(T& value) const {
+    const auto number = from.get<std::underlying_type_t<T>>();
+    if (number > static_cast<std::underlying_type_t<T>>(std::get<T>(kLast)))
+      throw WireError("a value is none of its kind");
+    value = static_cast<T>(number);
+  }
+  template <HasFields T>
+  void operator()(T& part) const {
+    std::apply([&](auto&... field) { ((*this)(field), ...); }, fields_of(part));
+    check(part);
+  }
+  template <typename T>
+  void operator()(std::optional<T>& value) const {
+    if (from.get_bool()) (*this)(value.emplace());
+  }
+  template <IsNumber T>
+  void operator()(std::vector<T>& numbers) const {
+    numbers = from.get_array<T>();
+    if (!std::ranges::all_of(numbers, [](const T& number) { return is_finite(number); }))
+      throw WireError("one of many numbers is not finite");
+  }
+  /// As long as there are entries: a false count makes no room.
+  template <typename T>
+  void operator()(std::vector<T>& entries) const {
+    const auto count = from.get<std::uint64_t>();
+    for (std::uint64_t i = 0; i < count; ++i) (*this)(entries.emplace_back());
+  }
+  template <typename... Kinds>
+  void operator()(std::variant<Kinds...>& one) const {
+    const auto kind = from.get<std::uint8_t>();
+    if (kind >= sizeof...(Kinds)) throw WireError("a light's shape is unknown");
+    get_kind(one, kind, std::index_sequence_for<Kinds...>());
+  }
+
+ private:
+  template <typename Variant, std::size_t... Kind>
+  void get_kind(Variant& one, std::size_t kind, std::index_sequence<Kind...> /*kinds*/) const {
+    ((kind == Kind ? (*this)(one.template emplace<Kind>()) : void()), ...);
+  }
+};
+
+}  // namespace
+
+Scene get_scene(mesh::WireReader& from) {
+  Scene scene;
+  Get{from}(scene);
   return scene;
 }
 
-Texture get_texture(WireReader& from) {
+Texture get_texture(mesh::WireReader& from) {
   Texture texture;
   texture.width = from.get<std::uint32_t>();
   texture.height = from.get<std::uint32_t>();

@@ -7,5 +7,6 @@ penumbra_test(scenes
   unit/scenes/json.cpp
   unit/scenes/shapes.cpp
   unit/scenes/shipped.cpp
+  unit/scenes/wire.cpp
   unit/scenes/writer.cpp
   LIBRARIES penumbra_scenes nlohmann_json::nlohmann_json)
