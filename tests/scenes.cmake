@@ -5,8 +5,10 @@ penumbra_test(scenes
   unit/scenes/files.cpp
   unit/scenes/float_rounding.cpp
   unit/scenes/json.cpp
+  unit/scenes/json_scene.cpp
   unit/scenes/shapes.cpp
   unit/scenes/shipped.cpp
   unit/scenes/wire.cpp
   unit/scenes/writer.cpp
+  unit/scenes/writer_glb.cpp
   LIBRARIES penumbra_scenes nlohmann_json::nlohmann_json)

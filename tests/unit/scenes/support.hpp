@@ -83,6 +83,24 @@ inline std::string scene_text(const std::string& mesh = kMesh, const std::string
   return fmt::format(R"({{"format": "penumbra-scene/1", {}, "meshes": [{}], "lights": [{}]}})", camera, mesh, light);
 }
 
+/// For writers: shapes and lights of every kind, and numbers that are hard to write.
+inline constexpr const char* kEverything = R"({ "format": "penumbra-scene/1", "size": [640, 360],
+  "cameras": [{"name": "main", "eye": [0.1, 2, 6.3], "target": [0, 1, 0], "verticalFov": 37.7}, {"eye": [1, 2, 3], "target": [0, 0, 0], "up": [1, 0, 0.2], "shift": [0.3, -0.1]}],
+  "meshes": [
+    {"name": "a \"quoted\" näme", "shape": {"type": "blob", "subdivisions": 2}, "transform": {"rotate": [13, 29, 71], "scale": [1.1, 0.9, -0.7], "translate": [1e-9, 0.3, -1e5]}, "color": [0.1, 0.2, 0.3]},
+    {"shape": {"type": "hair", "strands": 20}, "castsShadow": false},
+    {"quad": {"center": [0, -0.0, 0], "halfU": [4, 0, 0], "halfV": [0, 0, -4]}, "receivesShadow": false, "lights": ["key", "sun"]},
+    {"name": "lamp", "triangles": [[0,5,0, 1,5,0, 0,5,1]], "emits": "poly"}],
+  "lights": [
+    {"name": "key", "rectangle": {"center": [0, 5, 0], "halfU": [0.1, 0, 0], "halfV": [0, 0, 0.3]}, "radiance": [1.5, 0, 1e-7], "twoSided": true},
+    {"name": "rim", "disk": {"center": [2, 5, 0], "normal": [0.3, -1, 0.1], "radius": 0.4}},
+    {"name": "poly", "polygon": [[0,5,0],[1,5,0],[0,5,1]]},
+    {"name": "oval", "ellipse": {"center": [0, 5, 0.1], "halfU": [0.6, 0, 0], "halfV": [0, 0.1, 0.3]}},
+    {"name": "sun", "sun": {"direction": [-0.35, -0.87, -0.35], "angle": 0.53}, "irradiance": [3, 2.9, 2.5]},
+    {"name": "point", "sun": {"direction": [0.1, -0.87, -0.35], "angle": 0}, "irradiance": [0.1, 0.2, 0.3]},
+    {"name": "spot", "sphere": {"center": [0, 4, -2], "radius": 0.1, "cone": {"direction": [0.1, -1, 0.2], "inner": 10, "outer": 25, "smooth": true}}},
+    {"name": "bulb", "sphere": {"center": [0, 4, 2], "radius": 0.2}, "casters": {"include": ["lamp", "a \"quoted\" näme"]}}] })";
+
 inline scenes::Scene read_text(const std::string& text) {
   const TemporaryFolder folder;
   return scenes::read_scene(folder.write("scene.json", text));

@@ -1,15 +1,11 @@
-// Contours against their closed form, and what holds of them on every scene: the way in which they are looked for never
-// changes a bit of V (Yang et al. 2009, sections 1 and 4.3).
+// Contours against their closed form, in kernels and sub-lights.
 
 #include "base/error.hpp"
 #include "maps/host/map_fit.hpp"
-#include "scenes/formats/reader.hpp"
-#include "mesh/shapes/broken_meshes.hpp"
 #include "tests/agreement/differences.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
 #include <numbers>
-#include <set>
 
 namespace penumbra::tests {
 namespace {
@@ -95,16 +91,6 @@ class OctagonTwin {
   std::vector<glm::dvec2> outline_, light_;
 };
 
-/// The light's first axis stays along x, where the occluder's sides are.
-scenes::Scene under_shape(int shape) {
-  scenes::Scene scene = parallel_square();
-  if (shape == 1) scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
-  if (shape == 2) scene.lights.front().shape = scenes::Polygon{{{-1, 5, -1}, {1, 5, -1}, {0.7, 5, 0.9}, {-0.4, 5, 1}}};
-  if (shape == 3) scene.lights.front() = rectangle_light({0.1, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.8});
-  if (shape == 4) scene.lights.front().shape = scenes::Ellipse{{0.1, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.5}};
-  return scene;
-}
-
 // An occluder of n × m texels is n · m − ½ texels large: each of its four corners is cut off by an eighth. Areas are
 // rounded to 2⁻²² of the light for each of the edges, tangents to 2⁻²⁴ of the window's 1.6, which are 1e-6 of the
 // light's width there; and a disk's swept angle, for which drivers may take 4,096 units in the last place, to 2.4e-4 at
@@ -136,125 +122,6 @@ TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
       RecordProperty(fmt::format("shape {} size {}", shape, size), fmt::format("{:.2g}, {:.2g}", halved, others));
     }
   }
-}
-
-/// All ways to look for the same contours.
-std::vector<std::pair<Factory, MethodOptions>> all_ways() {
-  std::vector<std::pair<Factory, MethodOptions>> ways;
-  for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
-    ways.push_back({maps::make_contour, {{"search", search}, {"traversal", "flat"}}});
-  }
-  for (const char* traversal : {"hierarchy", "minmax"}) {
-    for (const char* search : {"none", "hsm", "ysm"}) {
-      ways.push_back({maps::make_contour, {{"search", search}, {"traversal", traversal}}});
-    }
-  }
-  for (const char* packet : {"1x1", "2x2", "3x3", "8x8"}) ways.push_back({maps::make_packet, {{"packet", packet}}});
-  for (const char* divergence : {"0", "0.31", "1"}) {
-    ways.push_back({maps::make_packet, {{"packet", "4x2"}, {"divergence", divergence}}});
-  }
-  ways.push_back({maps::make_packet, {{"packet", "5x5"}, {"divergence", "1"}, {"hierarchy", "off"}}});
-  ways.push_back({maps::make_packet, {{"packet", "3x7"}}});
-  ways.push_back({maps::make_packet, {{"packet", "64x1"}, {"divergence", "1"}}});
-  return ways;
-}
-
-class MapsContourWays : public ContourTest {
- protected:
-  static void expect_one_image(const Stage& stage, const char* size, const std::string& what) {
-    const Masks first = run(maps::make_contour, stage, {{"size", size}, {"search", "none"}, {"traversal", "flat"}});
-    std::set<float> values(first.visibility.begin(), first.visibility.end());
-    for (const float v : values) EXPECT_TRUE(v >= 0 && v <= 1) << what << ": " << v;
-    for (auto [factory, options] : all_ways()) {
-      options["size"] = size;
-      const std::vector<float> found = run(factory, stage, options).visibility;
-      std::string way;
-      for (const auto& [name, value] : options) way += fmt::format(" {}={}", name, value);
-      for (std::size_t i = 0; i < found.size(); ++i) {
-        if (found[i] == first.visibility[i]) continue;
-        ADD_FAILURE() << what << way << ", pixel " << i << ": " << found[i] << " for " << first.visibility[i];
-        break;
-      }
-    }
-  }
-};
-
-TEST_F(MapsContourWays, OneImageOnAShippedSceneOfAnySize) {
-  const Stage stage(scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / "bunny.json"), 41, 37,
-                    light_samples(1));
-  expect_one_image(stage, "100", "bunny");
-}
-
-TEST_F(MapsContourWays, OneImageInHemicubesOnBothSidesAndForEveryShape) {
-  scenes::Scene room;
-  add_quad(room, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});
-  add_quad(room, {0, 2, -3}, {3, 0, 0}, {0, 2, 0});
-  add_quad(room, {-3, 2, 0}, {0, 0, 3}, {0, 2, 0});
-  add_quad(room, {-1.5, 2, -1.5}, {0.3, 0.3, 0}, {0, 0, 0.8});
-  add_quad(room, {0.5, 1.5, 0}, {0.5, 0.1, 0}, {0, 0, 0.4});
-  add_quad(room, {0.5, 3.5, 0}, {0.5, 0.1, 0}, {0, 0, 0.4});
-  room.lights.push_back(ceiling_light(3, 0.4));
-  room.lights.front().two_sided = true;
-  room.cameras.push_back(camera({0, 2, 7}, {0, 1.7, 0}, 50));
-  expect_one_image(Stage(room, 17, 16, light_samples(1)), "20", "room");
-  for (const int shape : {1, 2, 3}) {
-    expect_one_image(Stage(under_shape(shape), 16, 16, light_samples(1)), "40", "shape");
-  }
-}
-
-// Triangles that touch, overlap, stand through the light's plane, behind it and on the receivers: V is defined, in any
-// way of looking the same, and the same for another order of the triangles.
-TEST_F(MapsContourWays, OneImageOfSoupsAndWithinBounds) {
-  for (std::uint32_t seed = 0; seed < 4; ++seed) {
-    std::mt19937 random(seed);
-    const auto number = [&] { return static_cast<double>(random() % 7) - 3; };
-    std::vector<Corners> triangles(12);
-    for (Corners& corners : triangles) {
-      for (glm::dvec3& corner : corners) corner = {number(), number(), number()};
-    }
-    const auto scene_of = [&](const std::vector<Corners>& soup) {
-      scenes::Scene scene;
-      add_object(scene, "soup", soup);
-      scene.lights.push_back(rectangle_light({0, seed % 2 == 0 ? 4.0 : 1.0, 0}, {1, 0, 0}, {0, 0, 1}));
-      scene.lights.front().two_sided = seed % 3 == 0;
-      scene.cameras.push_back(camera({1, 2, 9}, {0, 0, 0}, 50));
-      return scene;
-    };
-    const Stage stage(scene_of(triangles), 12, 10, light_samples(1));
-    expect_one_image(stage, seed % 2 == 0 ? "8" : "21", fmt::format("seed {}", seed));
-    const Masks first = run(maps::make_packet, stage, {{"size", "21"}});
-    std::shuffle(triangles.begin(), triangles.end(), random);
-    const Stage shuffled(scene_of(triangles), 12, 10, light_samples(1));
-    EXPECT_EQ(run(maps::make_packet, shuffled, {{"size", "21"}}).visibility, first.visibility) << "seed " << seed;
-  }
-}
-
-// Meshes with every defect that there is a name for, and soups whose corners, edges and planes coincide.
-TEST_F(MapsContourWays, OneImageOfBrokenMeshesAndLatticeSoups) {
-  for (const std::uint32_t seed : {1U, 2U}) {
-    const mesh::LatticeSoup soup{.triangles = 40, .cells = 3, .seed = seed, .center = {0, 1, 0}};
-    expect_one_image(Stage(with_a_floor(mesh::make_lattice_soup(soup)), 12, 12, light_samples(1)), "24",
-                     fmt::format("lattice soup {}", seed));
-  }
-  std::vector<std::string> defects;
-  for (const mesh::DefectName& defect : mesh::broken_defects()) defects.emplace_back(defect.name);
-  const Stage broken(with_a_floor(mesh::make_broken_mesh({defects, 1, {0, 1, 0}, 1}).soup), 16, 16, light_samples(1));
-  expect_one_image(broken, "32", "broken mesh");
-}
-
-// Below nodes outlines alone are looked at, which grow as a map's side does, 4 times; areas would, 16 times. The
-// light's plane cuts the floor: most of the floor is seen in a hemicube's sideways faces, and beside the light.
-TEST_F(MapsContourWays, HierarchiesFollowOutlinesInHemicubes) {
-  scenes::Scene scene = contour_floor(0.6);
-  add_object(scene, "ball", sphere({0, 1, 0}, 0.5, 24));
-  scene.lights.front() = rectangle_light({0, 3, -2.5}, {1.2, 0, 0}, {0, 1, 0.6});
-  const Stage stage(scene, 12, 12, light_samples(1));
-  const auto found = [&](const char* size) { return counted(maps::make_contour, stage, {{"size", size}}); };
-  const Counted small = found("32"), large = found("128");
-  EXPECT_EQ(small.count("mapFaces"), 5);
-  EXPECT_GT(small.count("edges"), 100);
-  EXPECT_LE(large.count("cells"), 4 * small.count("cells"));
-  expect_one_image(stage, "32", "hemicube");
 }
 
 TEST_F(MapsContour, TilesDoNotChangeIt) {

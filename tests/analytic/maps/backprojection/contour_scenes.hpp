@@ -38,6 +38,17 @@ inline scenes::Scene plates_alike(bool gap) {
   return scene;
 }
 
+/// A parallel square under a disk (1), a polygon, a skew rectangle or an ellipse. The light's first axis stays along x,
+/// where the occluder's sides are.
+inline scenes::Scene under_shape(int shape) {
+  scenes::Scene scene = parallel_square();
+  if (shape == 1) scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
+  if (shape == 2) scene.lights.front().shape = scenes::Polygon{{{-1, 5, -1}, {1, 5, -1}, {0.7, 5, 0.9}, {-0.4, 5, 1}}};
+  if (shape == 3) scene.lights.front() = rectangle_light({0.1, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.8});
+  if (shape == 4) scene.lights.front().shape = scenes::Ellipse{{0.1, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.5}};
+  return scene;
+}
+
 inline bool on_object(const Stage& stage, std::size_t pixel, std::uint32_t object) {
   const std::int32_t triangle = stage.samples.triangle[pixel];
   return triangle >= 0 && stage.floats.object[static_cast<std::size_t>(triangle)] == object;
