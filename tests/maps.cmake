@@ -15,6 +15,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/light_tree.cpp
   analytic/maps/list_bounds.cpp
   analytic/maps/list_geometry.cpp
+  analytic/maps/layered_attenuation.cpp
   analytic/maps/lists.cpp
   analytic/maps/method.cpp
   analytic/maps/moments.cpp
