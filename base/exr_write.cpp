@@ -235,7 +235,8 @@ void write_exr(AtomicFile& file, const ExrImage& image) {
   for (const auto& [name, value] : image.matrices) {
     check_name(path, "attribute's name", name);
     exr_attr_m44f_t matrix;
-    for (glm::length_t i = 0; i < 4; ++i) std::memcpy(matrix.m + 4 * i, &value[i][0], 4 * sizeof(float));
+    static_assert(sizeof matrix.m == sizeof value);
+    std::memcpy(matrix.m, &value[0][0], sizeof value);
     writer.check(exr_attr_set_m44f(context, 0, name.c_str(), &matrix));
   }
 

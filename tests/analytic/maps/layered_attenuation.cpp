@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace penumbra::tests {
 namespace {
@@ -175,7 +173,7 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
       }
       std::vector<float> found;
       for (std::size_t e = 0; e < product.layers(); ++e) {
-        const auto& entry = entries[i * product.layers() + e];
+        const auto& entry = entries[std::size_t{i} * product.layers() + e];
         if (entry.weight > 0 && entry.t < 4) found.push_back(entry.t);
       }
       ++compared;

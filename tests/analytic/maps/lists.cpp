@@ -9,8 +9,6 @@
 
 #include <bit>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace penumbra::tests {
 namespace {

@@ -17,7 +17,6 @@ namespace penumbra::compare {
 namespace {
 
 using visibility::Light;
-using visibility::LightKind;
 using visibility::SamplePattern;
 using visibility::SampleRequest;
 using visibility::UnshadowedLight;
