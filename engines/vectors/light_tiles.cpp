@@ -12,11 +12,10 @@ std::uint32_t divided_up(std::uint32_t x, std::uint32_t by) {
   return (x + by - 1) / by;
 }
 
-/// As many as there are tiles in each, so that edges pass few; or of one tile, where finding out which would take
-/// longer than testing.
+/// As many as there are tiles in each, so that edges pass few.
 std::uint32_t rows_for(std::uint32_t tiles) {
-  constexpr std::uint32_t kFew = 16;
-  return tiles <= kFew ? tiles : static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(tiles))));
+  return std::min(static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(tiles)))),
+                  LightTiles::kMostRows);
 }
 
 void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std::uint32_t> samples) {
@@ -42,6 +41,27 @@ void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std
   }
 }
 
+/// `right`: the largest X of all samples.
+void add_steps(LightTiles& tiles, float right) {
+  constexpr float kPerCell = 2;
+  // What is looked up has been rounded twice, and so are the steps' limits here, by 2⁻²⁴ of the way from −½ each.
+  const float margin = 0x1p-21F * (right + 1);
+  tiles.steps_per_cell = std::min(kPerCell, static_cast<float>(LightTiles::kMostSteps) / (right + 1));
+  tiles.steps = static_cast<std::int32_t>((right + 0.5F) * tiles.steps_per_cell) + 2;
+  tiles.tiles_at.reserve(tiles.rows.size() * static_cast<std::size_t>(tiles.steps));
+  for (const LightTiles::Row& row : tiles.rows) {
+    const auto low = tiles.tile_low.begin() + row.first, high = tiles.tile_high.begin() + row.first;
+    for (std::int32_t step = 0; step < tiles.steps; ++step) {
+      const float at = static_cast<float>(step) / tiles.steps_per_cell - 0.5F, next = at + 1 / tiles.steps_per_cell;
+      const bool is_first = step == 0, is_last = step + 1 == tiles.steps;  // which stand for all beyond
+      const auto first = is_first ? high : std::lower_bound(high, high + row.count, at - margin);
+      const auto end = is_last ? low + row.count : std::upper_bound(low, low + row.count, next + margin);
+      tiles.tiles_at.push_back(static_cast<std::int32_t>(row.first + (first - high)) |
+                               static_cast<std::int32_t>(row.first + (end - low)) << 16);
+    }
+  }
+}
+
 }  // namespace
 
 LightTiles make_light_tiles(std::span<const glm::vec2> places) {
@@ -63,6 +83,11 @@ LightTiles make_light_tiles(std::span<const glm::vec2> places) {
   tiles.most_difference = 0;                     // the corner is left of what is beyond
   for (const LightTiles::Row& one : tiles.rows)  // a row's last tile begins farthest to the right
     tiles.most_difference = std::max(tiles.most_difference, tiles.tile_low[one.first + one.count - 1] - one.low);
+  add_steps(tiles, std::max(0.0F, *std::ranges::max_element(tiles.tile_high)));
+  tiles.row_low.fill(std::numeric_limits<float>::max());
+  tiles.row_high = tiles.row_low;
+  std::ranges::transform(tiles.rows, tiles.row_low.begin(), &LightTiles::Row::low);
+  std::ranges::transform(tiles.rows, tiles.row_high.begin(), &LightTiles::Row::high);
   tiles.tile_low.resize(count + LightTiles::kWide);
   tiles.tile_high.resize(count + LightTiles::kWide);
   for (const glm::vec2& place : places) {

@@ -34,6 +34,8 @@ struct LightTiles {
   static constexpr std::uint32_t kWide = SlotFloats::kWide;  ///< light samples of a tile
   static constexpr std::uint32_t kNone = 0xffffffffU;
   static constexpr float kStepsPerCell = 4;  ///< of row_from
+  static constexpr std::uint32_t kMostRows = 16;
+  static constexpr std::uint32_t kMostSteps = 256;  ///< of tiles_at, or a few more
 
   struct Row {
     float low = 0, high = 0;             ///< the least and the largest Y of its samples
@@ -42,6 +44,13 @@ struct LightTiles {
   std::vector<Row> rows;               ///< from low to high: their heights have no more than an end in common
   std::vector<std::int32_t> row_from;  ///< of each step upward from Y = −½: no row below this one reaches so high
   SlotFloats x, y;                     ///< of each slot, in cells; NaN where there is no sample
+  using RowFloats = std::array<float, kMostRows + 1>;
+  RowFloats row_low{}, row_high{};  ///< of each row, the same; of those that are not there, out of reach
+  /// Of each row, of each of `steps` to the right from X = −½ (the first and the last stand for all beyond): the first
+  /// tile that reaches so far to the right, and, 2¹⁶ times, the end of those that begin no farther to the right.
+  std::vector<std::int32_t> tiles_at;
+  std::int32_t steps = 1;
+  float steps_per_cell = 1;
   /// The least and the largest X of each tile; kWide more, so that vectors may read on.
   std::vector<float> tile_low, tile_high;
   std::vector<std::uint16_t> used;       ///< of each tile: a bit a slot with a sample

@@ -24,8 +24,8 @@ TEST(LightTiles, HoldEachSampleOnce) {
       std::vector<int> met(count, 0);
       std::uint32_t next = 0;
       const auto rows = static_cast<std::uint32_t>(tiles.rows.size());
-      ASSERT_LE(rows, count <= 256 ? 16 : tiles.rows.front().count + 2);
-      ASSERT_LE(tiles.rows.front().count, count <= 256 ? 1 : rows + 2);
+      ASSERT_EQ(rows, std::min(std::lround(std::sqrt(tiles.tile_count())), long{LightTiles::kMostRows}));
+      ASSERT_LE(tiles.rows.front().count, (tiles.tile_count() + rows - 1) / rows);
       ASSERT_GE(tiles.tile_low.size(), tiles.tile_count() + LightTiles::kWide);
       ASSERT_GE(tiles.tile_high.size(), tiles.tile_count() + LightTiles::kWide);
       for (std::size_t i = 0; i < tiles.rows.size(); ++i) {
@@ -62,6 +62,46 @@ TEST(LightTiles, HoldEachSampleOnce) {
                     static_cast<float>(step) / LightTiles::kStepsPerCell - 0.5F);
       }
     }
+  }
+}
+
+/// Of places in 64 cells, and of few.
+TEST(LightTiles, AreFoundByStepsToTheRight) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> across(-0.5F, 63.5F), anywhere(-100.0F, 200.0F);
+  for (const std::uint32_t count : {1U, 16U, 40U, 256U, 1000U, 4096U}) {
+    std::vector<glm::vec2> places(count);
+    for (glm::vec2& at : places) at = count == 40 ? glm::vec2(3, 7) : glm::vec2(across(random), across(random));
+    const LightTiles tiles = make_light_tiles(places);
+    ASSERT_LE(tiles.steps, static_cast<std::int32_t>(LightTiles::kMostSteps) + 2);
+    for (std::size_t i = 0; i < tiles.rows.size(); ++i) {
+      const LightTiles::Row& row = tiles.rows[i];
+      ASSERT_EQ(tiles.row_low[i], row.low);
+      ASSERT_EQ(tiles.row_high[i], row.high);
+      for (int once = 0; once < 2000; ++once) {
+        const auto some = static_cast<std::uint32_t>(row.first + random() % row.count);
+        const float x = once % 3 == 0 ? anywhere(random) : once % 3 == 1 ? tiles.tile_low[some] : tiles.tile_high[some];
+        const float step = std::clamp((x + 0.5F) * tiles.steps_per_cell, 0.0F, static_cast<float>(tiles.steps - 1));
+        const std::int32_t found =
+            tiles.tiles_at[i * static_cast<std::size_t>(tiles.steps) + static_cast<std::size_t>(step)];
+        const auto first = static_cast<std::uint32_t>(found & 0xffff), end = static_cast<std::uint32_t>(found >> 16);
+        ASSERT_LE(row.first, first);
+        ASSERT_LE(end, row.first + row.count);
+        for (std::uint32_t tile = row.first; tile < row.first + row.count; ++tile) {
+          if (tiles.tile_high[tile] >= x) {
+            ASSERT_LE(first, tile) << x;
+          }
+          if (tiles.tile_low[tile] <= x) {
+            ASSERT_GT(end, tile) << x;
+          }
+        }
+        // No more than a step's.
+        if (first > row.first && x < 63) {
+          ASSERT_LT(tiles.tile_high[first - 1], x + 0.01F);
+        }
+      }
+    }
+    ASSERT_GT(tiles.row_low[tiles.rows.size()], 1e30F);
   }
 }
 

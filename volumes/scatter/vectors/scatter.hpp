@@ -122,9 +122,10 @@ struct Scratch {
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
-  std::vector<float> tile_changes, row_changes;  // PointChanges
-  vectors::SlotFloats depths;                    // 0 between view samples
-  std::vector<std::uint16_t> touched;
+  std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // PointChanges
+  vectors::SlotFloats depths;                                        // 0 between view samples
+  std::vector<std::uint8_t> is_touched;                              // of each tile; 0 between view samples
+  std::vector<std::uint32_t> touched;
   Open open;
   std::uint64_t listed = 0, dense_regions = 0, unproven = 0;  // counted
 };

@@ -33,9 +33,7 @@ enum UpwardField : std::size_t {
   kWayY,
   kJump,       // of the depth to the right of it
   kNear,       // a light sample that is no farther on either side (in areas: side_of) may be on the other one
-  kSlope,      // of x
-  kBeside,     // along a row: no farther from it are such light samples
-  kLeftmost,   // nor are they left of here,
+  kLeftmost,   // nor are such light samples left of here,
   kRightmost,  // right of here,
   kBottom,     // below
   kTop,        // or above
@@ -43,8 +41,25 @@ enum UpwardField : std::size_t {
 };
 struct UpwardEdges {
   HWY_ALIGN std::array<std::array<float, hn::MaxLanes(D())>, kUpwardFields> fields;
-  HWY_ALIGN std::array<std::int32_t, hn::MaxLanes(D())> tile_row;  // of tiles: none below it reaches up to kBottom
-  std::size_t first = 0;                                           // in the CrossingTable
+  std::size_t first = 0;  // in the CrossingTable
+};
+/// Rows of tiles that a few edges are in: one of each is a row and an edge.
+struct EdgesInRows {
+  static constexpr std::int32_t kEdges = 0xff, kCrosses = 0x100;  // it crosses the row's way
+  static constexpr int kRowShift = 9;
+  static constexpr std::size_t kMost = (LightTiles::kMostRows + 1) * hn::MaxLanes(D());
+  HWY_ALIGN std::array<std::int32_t, kMost> where;  // the edge, kCrosses, and the row
+  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // of LightTiles::tiles_at: from and, 2¹⁶ times, to
+  std::size_t count = 0;
+};
+/// The same in registers, and what only finding tiles takes.
+struct UpwardVectors {
+  V low_x, low_y, high_x, high_y, jump, leftmost, rightmost, bottom, top;
+  V slope;         // of x
+  V beside;        // along a row: no farther from it are light samples that may be on the other side
+  hn::Vec<I> row;  // of tiles: none below it reaches up to `bottom`
+  M used;
+  M beside_left;  // the light's corner or left side may have to do with them
 };
 /// One of them.
 struct UpwardEdge {
@@ -59,45 +74,52 @@ struct UpwardEdge {
   }
 };
 
-/// Returns those that the light's corner or left side may have to do with. (bound side of a point)
-[[maybe_unused]] M turn_upward(const LightGrid& grid, const CrossingTable& table, std::size_t first, UpwardEdges& out) {
+/// (bound side of a point)
+[[maybe_unused]] HWY_INLINE UpwardVectors turn_upward(const LightGrid& grid, const CrossingTable& table,
+                                                      std::size_t first, UpwardEdges& out) {
   const D d;
   const auto column = [&](std::size_t field) { return hn::Load(d, table[field] + first); };
   const auto store = [&](UpwardField field, V v) { hn::Store(v, d, out.fields[field].data()); };
   const V x0 = column(kX0), y0 = column(kY0), x1 = column(kX1), y1 = column(kY1);
-  const M used = first_lanes(table.count - first), up = hn::Lt(y0, y1);
+  const M up = hn::Lt(y0, y1);
   const V k = grid.side < 0 ? hn::Neg(column(kK)) : column(kK);  // seen from behind, all turn the other way
-  const V low_x = hn::IfThenElse(up, x0, x1), low_y = hn::IfThenElse(up, y0, y1);
-  const V high_x = hn::IfThenElse(up, x1, x0), high_y = hn::IfThenElse(up, y1, y0);
-  const V way_x = hn::Sub(high_x, low_x), way_y = hn::Sub(high_y, low_y), wide = hn::Abs(way_x);
+  UpwardVectors e;
+  e.used = first_lanes(table.count - first);
+  e.low_x = hn::IfThenElse(up, x0, x1), e.low_y = hn::IfThenElse(up, y0, y1);
+  e.high_x = hn::IfThenElse(up, x1, x0), e.high_y = hn::IfThenElse(up, y1, y0);
+  e.jump = hn::IfThenElse(up, hn::Neg(k), k);
+  const V way_x = hn::Sub(e.high_x, e.low_x), way_y = hn::Sub(e.high_y, e.low_y), wide = hn::Abs(way_x);
   const V around = hn::Mul(set(2.41F), column(kError)), rounding = set(16 * kRound);
+  e.leftmost = hn::Sub(hn::Min(e.low_x, e.high_x), around);
+  e.rightmost = hn::Add(hn::Max(e.low_x, e.high_x), around);
+  e.bottom = hn::Sub(e.low_y, around);
+  e.top = hn::Add(e.high_y, around);
   out.first = first;
-  store(kLowX, low_x);
-  store(kLowY, low_y);
-  store(kHighX, high_x);
-  store(kHighY, high_y);
+  store(kLowX, e.low_x);
+  store(kLowY, e.low_y);
+  store(kHighX, e.high_x);
+  store(kHighY, e.high_y);
   store(kWayX, way_x);
   store(kWayY, way_y);
-  store(kJump, hn::IfThenElse(up, hn::Neg(k), k));
+  store(kJump, e.jump);
   store(kNear, hn::MulAdd(around, hn::Add(wide, way_y), hn::Mul(rounding, hn::Mul(wide, way_y))));
+  store(kLeftmost, e.leftmost);
+  store(kRightmost, e.rightmost);
+  store(kBottom, e.bottom);
+  store(kTop, e.top);
   // A flatter one may be beside any light sample of a row: right at every limit, which only keeps slopes finite.
   const M leans = hn::Gt(way_y, hn::Mul(set(1e-6F), wide));
-  const V slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
+  e.slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
   const V beside =
-      hn::MulAdd(around, hn::Add(set(1), hn::Abs(slope)), hn::Mul(rounding, hn::Add(hn::Abs(low_x), wide)));
-  store(kSlope, slope);
-  store(kBeside, hn::IfThenElse(leans, beside, set(3e38F)));
-  store(kLeftmost, hn::Sub(hn::Min(low_x, high_x), around));
-  store(kRightmost, hn::Add(hn::Max(low_x, high_x), around));
-  const V bottom = hn::Sub(low_y, around);
-  store(kBottom, bottom);
-  store(kTop, hn::Add(high_y, around));
+      hn::MulAdd(around, hn::Add(set(1), hn::Abs(e.slope)), hn::Mul(rounding, hn::Add(hn::Abs(e.low_x), wide)));
+  e.beside = hn::IfThenElse(leans, beside, set(3e38F));
   const V steps = set(static_cast<float>(grid.tiles->row_from.size() - 1));
-  const V step = hn::Min(hn::Max(hn::Mul(hn::Add(bottom, set(0.5F)), set(LightTiles::kStepsPerCell)), set(0)), steps);
-  const auto number = hn::ConvertTo(I(), hn::IfThenElseZero(used, step));
-  hn::Store(hn::GatherIndex(I(), grid.tiles->row_from.data(), number), I(), out.tile_row.data());
-  const M left = hn::Or(hn::Lt(low_x, set(-0.5F)), hn::Lt(high_x, set(-0.5F)));
-  return hn::And(used, hn::Or(left, hn::Le(bottom, set(-0.5F))));
+  const V step = hn::Min(hn::Max(hn::Mul(hn::Add(e.bottom, set(0.5F)), set(LightTiles::kStepsPerCell)), set(0)), steps);
+  const auto number = hn::ConvertTo(I(), hn::IfThenElseZero(e.used, step));
+  e.row = hn::GatherIndex(I(), grid.tiles->row_from.data(), number);
+  const M left = hn::Or(hn::Lt(e.low_x, set(-0.5F)), hn::Lt(e.high_x, set(-0.5F)));
+  e.beside_left = hn::And(e.used, hn::Or(left, hn::Le(e.bottom, set(-0.5F))));
+  return e;
 }
 
 }  // namespace
