@@ -41,6 +41,7 @@ penumbra_test(volumes
   property/volumes/silhouette_pass.cpp
   property/volumes/vector_bounds.cpp
   property/volumes/wedge_builder.cpp
+  unit/horizon.cpp
   unit/light_tiles.cpp
   unit/near_casters.cpp
   unit/point_rows.cpp
