@@ -1,6 +1,6 @@
 # Devices, buffers, and the visibility buffer against its definition.
 penumbra_test(render
-  SOURCES unit/render/buffer.cpp unit/render/device.cpp unit/render/visibility_buffer.cpp
+  SOURCES unit/render/buffer.cpp unit/render/device.cpp unit/render/scan_conversion.cpp unit/render/visibility_buffer.cpp
   # The shared fixture names view-sample mapping, hence the link.
   LIBRARIES penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb)
 # The second rasteriser where a build has none.

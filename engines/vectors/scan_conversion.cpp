@@ -1,24 +1,26 @@
 // Which triangles may cover which pixels, tile by tile. scan_tile.cpp decides, in double, as visibility::cover does;
-// here is only what must not lose a pixel that it would give to a triangle.
+// here is only what must not lose a pixel that it would give to a triangle. Of most triangles scan_boxes.cpp says it,
+// in float; careful_box() does of those near the eye's plane, in double.
 //
 // Where can a pixel beside a triangle's projection be covered? cover() takes the signs of s₁ = d·(a×b), s₂ = d·(b×c),
 // s₃ = −d·(a×c), where a, b, c are the corners seen from the eye and d is the ray. Exactly, d = (s₂a + s₃b + s₁c) / D
 // with D = det(a, b, c), so that the ray's place on the screen is the mean of the corners' with weights s z / D.
 // Rounding moves each s by at most E = 8 · 2⁻⁵³ |d| R², R the largest |corner| (sums of absolute components
 // throughout): a pixel that is covered although it lies m pixels beside the box of the projection has at least one
-// weight below zero, none below −E R / |D|, and so m ≤ 3 E R extent / |D|. If |D| is large enough (`is_certain`), a
-// margin of 1/32 pixel is therefore safe, and t is between the corners' depths except for a part in 2⁸. Triangles seen
+// weight below zero, none below −E R / |D|, and so m ≤ 3 E R extent / |D|. If |D| is large enough (`certain`), a
+// margin of 1/32 pixel is therefore safe, and t is between the corners' depths except for a part in 2⁸ (1 / t is the
+// corners' mean of 1 / z with these weights). Triangles seen
 // as good as edge-on get the margin of one pixel that proposals of the visibility buffer have
 // (render/visibility_buffer.vert), and are never left out as hidden.
 
 #include "engines/vectors/scan_conversion.hpp"
 
+#include "engines/vectors/scan_boxes.hpp"
 #include "engines/vectors/scan_tile.hpp"
 #include "base/size1.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec4.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -36,7 +38,6 @@ using visibility::PinholeCamera;
 using visibility::SceneFloats;
 
 constexpr double kMargin = 1.0 / 32;                         // pixels, beside a triangle that is certain
-constexpr double kNoise = 0x1p-38;                           // of |D| in units of |d| R³: see above, and t's 2⁻⁸
 constexpr std::size_t kBatch = std::size_t{1} << 16U;        // triangles between two looks at what is hidden
 constexpr std::size_t kChunk = std::size_t{1} << 11U;        // of them, what one core sorts at a time
 constexpr std::size_t kMostEntries = std::size_t{1} << 16U;  // of a chunk's lists, except those of its last triangle
@@ -88,7 +89,7 @@ class Outline {
     const glm::dvec3 a = glm::dvec3(corners[0]) - view.eye, b = glm::dvec3(corners[1]) - view.eye,
                      c = glm::dvec3(corners[2]) - view.eye;
     const double reach = std::max({size1(a), size1(b), size1(c)}), det = glm::dot(a, glm::cross(b, c));
-    if (!(std::abs(det) > kNoise * longest_ray * reach * reach * reach)) return;  // nothing is left out
+    if (!(std::abs(det) > kScanNoise * longest_ray * reach * reach * reach)) return;  // nothing is left out
     const double side = det > 0 ? 1 : -1;
     edges_ = {side * glm::cross(a, b), side * glm::cross(b, c), side * glm::cross(c, a)};
     error_ = 0x1p-48 * longest_ray * reach * reach;  // twice E, once for cover() and once for here
@@ -110,8 +111,7 @@ class Scan {
   std::vector<std::int32_t> run();
 
  private:
-  void project();
-  [[nodiscard]] std::optional<PixelBox> box_of(std::uint32_t triangle) const;
+  [[nodiscard]] std::optional<PixelBox> box_of(const PixelBoxes& boxes, std::size_t i) const;
   [[nodiscard]] std::optional<PixelBox> careful_box(std::uint32_t triangle) const;
   [[nodiscard]] std::optional<PixelBox> pixels_in(glm::dvec2 lower, glm::dvec2 upper, double margin,
                                                   double nearest) const;
@@ -123,12 +123,9 @@ class Scan {
   const SceneFloats& scene_;
   const ScanCamera camera_;
   const PinholeCamera& view_;
-  glm::dvec2 size_, scale_;  // pixels; pixels a unit of slope, y down
-  glm::dvec2 middle_;        // where slope 0 is: pixels
-  double longest_ray_;
+  const Screen screen_;
+  const BoxCamera floats_;
   std::uint32_t tiles_x_, tiles_y_;
-  /// x, y in pixels, z, and |corner| / z: what a float can say. The last is infinite where that is too little.
-  std::vector<glm::vec4> projected_;
   std::vector<double> nearest_;
   std::vector<std::int64_t> carrier_;
   std::vector<double> farthest_;  // of each tile: the largest of its pixels' smallest t
@@ -138,12 +135,8 @@ Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
     : scene_(scene),
       camera_(camera),
       view_(camera_.view),
-      size_(camera.width, camera.height),
-      scale_(size_.y / 2 / camera.tan_half_fov),
-      middle_(0.5 * size_.x - glm::dot(camera.middle, camera.right) * scale_.x,
-              0.5 * size_.y + glm::dot(camera.middle, camera.up) * scale_.y),
-      longest_ray_(size1(camera.middle) +
-                   (size_.x / size_.y * size1(camera.right) + size1(camera.up)) * camera.tan_half_fov),
+      screen_(camera),
+      floats_(scene, camera, screen_),
       tiles_x_((camera.width + kScanTile - 1) / kScanTile),
       tiles_y_((camera.height + kScanTile - 1) / kScanTile) {
   const std::size_t tiles = std::size_t{tiles_x_} * tiles_y_;
@@ -159,23 +152,9 @@ Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
   }
 }
 
-void Scan::project() {
-  constexpr double kSteepest = 1024;  // |corner| / z up to which pixels in float are as good as needed
-  projected_.resize(scene_.positions.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, projected_.size(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const glm::dvec3 d = glm::dvec3(scene_.positions[i]) - view_.eye;
-      const double z = glm::dot(d, view_.forward), reach = size1(d);
-      projected_[i] = z * kSteepest > reach ? glm::vec4(middle_.x + glm::dot(d, view_.right) / z * scale_.x,
-                                                        middle_.y - glm::dot(d, view_.up) / z * scale_.y, z, reach / z)
-                                            : glm::vec4(0, 0, 0, std::numeric_limits<float>::infinity());
-    }
-  });
-}
-
 std::optional<PixelBox> Scan::pixels_in(glm::dvec2 lower, glm::dvec2 upper, double margin, double nearest) const {
   lower = glm::max(lower - margin - 0.5, glm::dvec2(0));
-  upper = glm::min(upper + margin - 0.5, size_ - 1.0);
+  upper = glm::min(upper + margin - 0.5, screen_.size - 1.0);
   const double left = std::ceil(lower.x), right = std::floor(upper.x), top = std::ceil(lower.y),
                bottom = std::floor(upper.y);
   if (!(left <= right && top <= bottom)) return std::nullopt;
@@ -183,30 +162,16 @@ std::optional<PixelBox> Scan::pixels_in(glm::dvec2 lower, glm::dvec2 upper, doub
   return PixelBox{whole(left), whole(right), whole(top), whole(bottom), static_cast<float>(nearest * (1 - 0x1p-7))};
 }
 
-std::optional<PixelBox> Scan::box_of(std::uint32_t triangle) const {
-  const visibility::Triangle& corners = scene_.triangles[triangle];
-  const glm::vec4 &a = projected_[corners[0]], &b = projected_[corners[1]], &c = projected_[corners[2]];
-  const glm::vec4 lower = glm::min(glm::min(a, b), c), upper = glm::max(glm::max(a, b), c);
-  const auto width = static_cast<float>(size_.x), height = static_cast<float>(size_.y);
-  if (!std::isfinite(upper.w)) return careful_box(triangle);
-  if (upper.x < -1 || lower.x > width + 1 || upper.y < -1 || lower.y > height + 1) return std::nullopt;
-  const float extent = std::max(upper.x - lower.x, upper.y - lower.y);
-  const float area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));  // twice the triangle's
-  // |D| = area z z z / scale², and R³ / (z z z) is at most this ratio's cube.
-  const float ratio = upper.w * upper.z / lower.z;
-  const auto noise = static_cast<float>(kNoise * longest_ray_ * scale_.x * scale_.x);
-  // Each coordinate is rounded by 2⁻²⁴ of itself, at most four screens; the area by that times two extents, twice.
-  const float rounding = 0x1p-19F * std::max(width, height) * extent;
-  if (!(upper.x < 4 * width && lower.x > -3 * width && upper.y < 4 * height && lower.y > -3 * height &&
-        area > rounding && area > noise * (1 + extent / 32) * ratio * ratio * ratio)) {
-    return careful_box(triangle);
-  }
-  return pixels_in({lower.x, lower.y}, {upper.x, upper.y}, kMargin, static_cast<double>(lower.z));
+std::optional<PixelBox> Scan::box_of(const PixelBoxes& boxes, std::size_t i) const {
+  if (boxes.left[i] == PixelBoxes::kOpen) return careful_box(boxes.triangle[i]);
+  const auto whole = [](std::int32_t pixel) { return static_cast<std::uint32_t>(pixel); };
+  return PixelBox{whole(boxes.left[i]), whole(boxes.right[i]), whole(boxes.top[i]), whole(boxes.bottom[i]),
+                  boxes.nearest[i]};
 }
 
 std::optional<PixelBox> Scan::careful_box(std::uint32_t triangle) const {
   std::array<glm::dvec3, 3> corners;
-  glm::dvec2 lower = size_, upper(0);
+  glm::dvec2 lower = screen_.size, upper(0);
   double reach = 0, nearest = std::numeric_limits<double>::infinity();
   bool in_front = false, behind = false;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -219,16 +184,16 @@ std::optional<PixelBox> Scan::careful_box(std::uint32_t triangle) const {
       behind = true;
       continue;
     }
-    const glm::dvec2 at(middle_.x + glm::dot(corners[i], view_.right) / z * scale_.x,
-                        middle_.y - glm::dot(corners[i], view_.up) / z * scale_.y);
+    const glm::dvec2 at(screen_.middle.x + glm::dot(corners[i], view_.right) / z * screen_.scale,
+                        screen_.middle.y - glm::dot(corners[i], view_.up) / z * screen_.scale);
     lower = glm::min(lower, at);
     upper = glm::max(upper, at);
   }
   if (!in_front) return std::nullopt;
-  if (behind) return pixels_in(glm::dvec2(0), size_, 1, 0);
+  if (behind) return pixels_in(glm::dvec2(0), screen_.size, 1, 0);
   const double extent = std::max(upper.x - lower.x, upper.y - lower.y);
   const double det = std::abs(glm::dot(corners[0], glm::cross(corners[1], corners[2])));
-  const bool certain = det > kNoise * (1 + extent / 32) * longest_ray_ * reach * reach * reach;
+  const bool certain = det > kScanNoise * (1 + extent / 32) * screen_.longest_ray * reach * reach * reach;
   return pixels_in(lower, upper, certain ? kMargin : 1, certain ? nearest : 0);
 }
 
@@ -245,7 +210,7 @@ void Scan::sort(std::uint32_t triangle, const PixelBox& box, Chunk& chunk) const
                       bottom = box.bottom / kScanTile;
   std::optional<Outline> outline;
   if ((right - left + 1) * (bottom - top + 1) > kFewTiles)
-    outline.emplace(view_, scene_.corners(triangle), longest_ray_);
+    outline.emplace(view_, scene_.corners(triangle), screen_.longest_ray);
   for (std::uint32_t y = top; y <= bottom; ++y) {
     for (std::uint32_t x = left; x <= right; ++x) {
       const std::uint32_t tile = y * tiles_x_ + x;
@@ -262,10 +227,20 @@ void Scan::sort(std::uint32_t triangle, const PixelBox& box, Chunk& chunk) const
 
 void Scan::sort(Chunk& chunk) const {
   chunk.clear();
-  for (; chunk.next < chunk.end && !chunk.is_full(); ++chunk.next) {
-    if (scene_.plane[chunk.next] == SceneFloats::kNoPlane) continue;
-    const auto triangle = static_cast<std::uint32_t>(chunk.next);
-    if (const std::optional<PixelBox> box = box_of(triangle)) sort(triangle, *box, chunk);
+  PixelBoxes boxes;
+  while (chunk.next < chunk.end && !chunk.is_full()) {
+    const std::size_t end = std::min(chunk.next + PixelBoxes::kMost, chunk.end);
+    find_boxes(scene_, floats_, chunk.next, end, boxes);
+    chunk.next = end;
+    for (std::size_t i = 0; i < boxes.count; ++i) {
+      const std::uint32_t triangle = boxes.triangle[i];
+      if (chunk.is_full()) {
+        chunk.next = triangle;
+        break;
+      }
+      if (scene_.plane[triangle] == SceneFloats::kNoPlane) continue;
+      if (const std::optional<PixelBox> box = box_of(boxes, i)) sort(triangle, *box, chunk);
+    }
   }
   chunk.sort(farthest_.size());
 }
@@ -285,7 +260,6 @@ void Scan::paint(std::span<const Chunk> chunks) {
 }
 
 std::vector<std::int32_t> Scan::run() {
-  project();
   const std::size_t count = scene_.triangles.size();
   std::vector<Chunk> chunks;
   for (std::size_t first = 0; first < count; first += kBatch) {
