@@ -2,6 +2,8 @@
 
 #include "engines/vectors/find.hpp"
 
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engines/vectors/find.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -82,6 +84,16 @@ hn::Mask<D> is_none(const EdgeSideWide& s, const EdgeSideWide& t) {
                 hn::And(s.nothing, t.nothing));
 }
 
+hn::Mask<D> edge_between_rows(const EdgeInput& in, const Point& a, const Point& b) {
+  const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
+  const auto along = [&](const glm::vec3& n) {
+    const V at_a = dot(from_a, n), at_b = dot(from_b, n);
+    return Extent{hn::Min(at_a, at_b), hn::Max(at_a, at_b)};
+  };
+  return between_rows({in.grid, in.cluster, in.alone}, along(in.grid.across), along(in.grid.along), along(in.grid.axis),
+                      hn::Max(length(from_a), length(from_b)));
+}
+
 void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
   const D d;
   const WideEdges& leaf = in.tree.leaves[number];
@@ -89,10 +101,11 @@ void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
   for (std::size_t lane = 0; lane < kWide; lane += hn::Lanes(d)) {
     const Point a = load(leaf.a, lane), b = load(leaf.b, lane);
     const V level_a = dot(a, in.grid.axis), level_b = dot(b, in.grid.axis);
-    const hn::Mask<D> met =
+    hn::Mask<D> met =
         hn::And(used_lanes(leaf.used, lane),
                 ShaftTest{in.cluster.whole}(hn::Min(level_a, level_b), hn::Max(level_a, level_b),
                                             [&](const glm::vec3& n) { return hn::Min(dot(a, n), dot(b, n)); }));
+    if (in.alone != nullptr && !hn::AllFalse(d, met)) met = hn::AndNot(edge_between_rows(in, a, b), met);
     if (hn::AllFalse(d, met)) continue;
     const EdgeSideWide s = side_of(in, leaf, 0, lane), t = side_of(in, leaf, 1, lane);
     const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
@@ -192,11 +205,28 @@ void find_edge_roots_here(const EdgeInput& in, EdgeTable& table, std::vector<std
   drop_idle_leaves(roots, table, [&](std::uint32_t leaf, EdgeTable& out) { add_edges(in, leaf, out); });
 }
 
-void find_edges_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
-                     EdgeTable& edges) {
-  edges.count = 0;
-  walk<true>({in.grid, in.cluster}, in.cluster.whole, in.tree.nodes, roots, stack,
-             [&](std::uint32_t leaf) { add_edges(in, leaf, edges); });
+bool find_more_edges_here(const EdgeInput& in, std::vector<std::uint32_t>& stack, EdgeTable& edges, std::size_t most) {
+  go_on<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree.nodes, stack, [&](std::uint32_t leaf) {
+    add_edges(in, leaf, edges);
+    return edges.count <= most;
+  });
+  return edges.count <= most;
+}
+
+std::size_t count_edge_leaves_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots,
+                                   std::vector<std::uint32_t>& stack) {
+  std::size_t leaves = 0;
+  walk<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree.nodes, roots, stack,
+             [&](std::uint32_t) { ++leaves; });
+  return leaves;
+}
+
+void narrow_edge_roots_here(const EdgeInput& in, std::vector<std::uint32_t>& roots) {
+  narrow<true>({in.grid, in.cluster}, in.cluster.whole, in.tree, roots);
+}
+
+void narrow_triangle_roots_here(const TriangleInput& in, std::vector<std::uint32_t>& roots) {
+  narrow<false>({in.grid, in.cluster}, in.shaft, in.tree, roots);
 }
 
 void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std::vector<std::uint32_t>& roots) {
@@ -228,7 +258,10 @@ HWY_AFTER_NAMESPACE();
 namespace penumbra::vectors {
 
 HWY_EXPORT(find_edge_roots_here);
-HWY_EXPORT(find_edges_here);
+HWY_EXPORT(find_more_edges_here);
+HWY_EXPORT(count_edge_leaves_here);
+HWY_EXPORT(narrow_edge_roots_here);
+HWY_EXPORT(narrow_triangle_roots_here);
 HWY_EXPORT(find_triangle_roots_here);
 HWY_EXPORT(count_leaves_here);
 HWY_EXPORT(find_triangles_here);
@@ -239,7 +272,26 @@ void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::
 
 void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
                 EdgeTable& edges) {
-  HWY_DYNAMIC_DISPATCH(find_edges_here)(input, roots, stack, edges);
+  stack = roots;
+  edges.count = 0;
+  static_cast<void>(find_more_edges(input, stack, edges, std::numeric_limits<std::size_t>::max()));
+}
+
+bool find_more_edges(const EdgeInput& input, std::vector<std::uint32_t>& stack, EdgeTable& edges, std::size_t most) {
+  return HWY_DYNAMIC_DISPATCH(find_more_edges_here)(input, stack, edges, most);
+}
+
+std::size_t count_edge_leaves(const EdgeInput& input, const std::vector<std::uint32_t>& roots,
+                              std::vector<std::uint32_t>& stack) {
+  return HWY_DYNAMIC_DISPATCH(count_edge_leaves_here)(input, roots, stack);
+}
+
+void narrow_edge_roots(const EdgeInput& input, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(narrow_edge_roots_here)(input, roots);
+}
+
+void narrow_triangle_roots(const TriangleInput& input, std::vector<std::uint32_t>& roots) {
+  HWY_DYNAMIC_DISPATCH(narrow_triangle_roots_here)(input, roots);
 }
 
 void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots) {

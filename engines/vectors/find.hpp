@@ -66,6 +66,9 @@ struct EdgeInput {
   const LightGrid& grid;
   const WideEdgeTree& tree;
   const Cluster& cluster;
+  /// The cluster's one view sample, which is its middle, if edges that it sees between two rows of light samples change
+  /// nothing; else null.
+  const ClusterSample* alone = nullptr;
 };
 struct TriangleInput {
   const LightGrid& grid;
@@ -81,6 +84,15 @@ void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::
 /// Edges that the shaft to the light meets and that may be silhouettes as seen from the cluster.
 void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
                 EdgeTable& edges);
+/// The same, but stops when there are more than `most` edges: returns whether that are all. What the stack holds then
+/// is what is left to do.
+bool find_more_edges(const EdgeInput& input, std::vector<std::uint32_t>& stack, EdgeTable& edges, std::size_t most);
+/// Leaves that find_edges would look at.
+std::size_t count_edge_leaves(const EdgeInput& input, const std::vector<std::uint32_t>& roots,
+                              std::vector<std::uint32_t>& stack);
+/// Roots of walks of clusters that are part of this one, from those of clusters that it is part of.
+void narrow_edge_roots(const EdgeInput& input, std::vector<std::uint32_t>& roots);
+void narrow_triangle_roots(const TriangleInput& input, std::vector<std::uint32_t>& roots);
 /// Where the walks for triangles in `shaft` of clusters that are part of this one may begin, as for edges.
 void find_triangle_roots(const TriangleInput& input, TriangleTable& triangles, std::vector<std::uint32_t>& roots);
 /// Leaves that the shaft meets, at most `most`.

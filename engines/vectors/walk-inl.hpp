@@ -11,11 +11,13 @@
 #include "engines/vectors/light_grid.hpp"
 #include "engines/vectors/trees.hpp"
 
+#include <glm/common.hpp>
 #include <hwy/highway.h>
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 HWY_BEFORE_NAMESPACE();
@@ -35,6 +37,7 @@ struct Point {
 struct WalkInput {
   const LightGrid& grid;
   const Cluster& cluster;
+  const ClusterSample* alone = nullptr;  ///< EdgeInput
 };
 
 Point load(const WidePoints& points, std::size_t lane) {
@@ -117,6 +120,41 @@ hn::Mask<D> same_side(const WalkInput& in, const WideNode& node, std::size_t lan
   return hn::Gt(least, hn::Add(scaled(spread, 1.01F), slack));
 }
 
+/// Does what lies within these extents, relative to the one view sample and no farther from it than `far`, appear
+/// between two rows of light samples and to the right of the light's left side? (bound gaps)
+hn::Mask<D> between_rows(const WalkInput& in, const Extent& across, const Extent& along, const Extent& level, V far) {
+  const D d;
+  const auto set = [&](float x) { return hn::Set(d, x); };
+  const Placing& place = in.alone->on_grid;
+  const V way = hn::Neg(level.high), longest = hn::Neg(level.low);
+  const hn::Mask<D> bounded =
+      hn::And(hn::Gt(way, scaled(longest, 0.25F)), hn::Gt(way, set(256 * kRound * in.grid.reach)));
+  const V inverse = hn::Div(set(1), way), most = scaled(inverse, place.height);
+  const V least = hn::Div(set(place.height), longest);
+  const auto places = [&](const Extent& from, float foot) {
+    return Extent{hn::Add(set(foot), hn::Min(hn::Mul(from.low, least), hn::Mul(from.low, most))),
+                  hn::Add(set(foot), hn::Max(hn::Mul(from.high, least), hn::Mul(from.high, most)))};
+  };
+  const Extent x = places(across, place.foot.x), y = places(along, place.foot.y);
+  const auto aside = [&](const Extent& from) { return hn::Max(hn::Abs(from.low), hn::Abs(from.high)); };
+  const V foot = hn::Mul(hn::Add(aside(across), aside(along)), most);
+  const V reach = hn::Add(far, set(in.grid.cut_reach > 0 ? cut_far(in.grid) : 0));
+  const V error = hn::MulAdd(hn::Mul(reach, inverse), hn::MulAdd(set(place.per_reach), foot, set(place.per_way)),
+                             hn::MulAdd(set(place.per_foot), foot, set(place.fixed)));
+  const V around = scaled(error, 4);
+  const hn::Mask<D> right = hn::Gt(hn::Sub(x.low, around), set(-0.5F));
+  const hn::Mask<D> between = hn::Gt(hn::Ceil(hn::Sub(y.low, around)), hn::Floor(hn::Add(y.high, around)));
+  return hn::And(bounded, hn::And(right, between));
+}
+hn::Mask<D> box_between_rows(const WalkInput& in, const Point& middle, const Point& half) {
+  const Point to = minus(middle, in.cluster.middle);
+  const V far = dot({hn::Add(hn::Abs(to.x), half.x), hn::Add(hn::Abs(to.y), half.y), hn::Add(hn::Abs(to.z), half.z)},
+                    glm::vec3(1));
+  return between_rows(in, extent(to, half, in.grid.across, glm::abs(in.grid.across)),
+                      extent(to, half, in.grid.along, glm::abs(in.grid.along)),
+                      extent(to, half, in.grid.axis, in.grid.axis_size), far);
+}
+
 /// The children whose boxes meet the shaft, and, with cones, may hold a silhouette edge: a bit each.
 template <bool kCones>
 std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNode& node) {
@@ -126,9 +164,29 @@ std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNo
     const Point middle = load(node.middle, lane), half = load(node.half, lane);
     hn::Mask<D> met = box_meets(in, shaft, middle, half);
     if (kCones && !hn::AllFalse(d, met)) met = hn::AndNot(same_side(in, node, lane, middle, half), met);
+    if (kCones && in.alone != nullptr && !hn::AllFalse(d, met))
+      met = hn::AndNot(box_between_rows(in, middle, half), met);
     hits |= bits_of(met) << lane;
   }
   return hits & node.used;
+}
+
+/// Calls `leaf` for each leaf whose box meets the shaft, of the subtrees on the stack; until one call returns false.
+template <bool kCones, typename Leaf>
+void go_on(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+           std::vector<std::uint32_t>& stack, Leaf leaf) {
+  while (!stack.empty()) {
+    const std::uint32_t next = stack.back();
+    stack.pop_back();
+    if ((next & kLeafBit) != 0) {
+      if (!leaf(next & ~kLeafBit)) return;
+      continue;
+    }
+    const WideNode& node = nodes[next];
+    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
+      stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
+    }
+  }
 }
 
 /// Calls `leaf` for each leaf whose box meets the shaft.
@@ -136,17 +194,27 @@ template <bool kCones, typename Leaf>
 void walk(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
           const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
   stack = roots;
-  while (!stack.empty()) {
-    const std::uint32_t next = stack.back();
-    stack.pop_back();
-    if ((next & kLeafBit) != 0) {
-      leaf(next & ~kLeafBit);
+  go_on<kCones>(in, shaft, nodes, stack, [&](std::uint32_t next) {
+    leaf(next);
+    return true;
+  });
+}
+
+/// Puts children in place of each root as long as there are not too many.
+template <bool kCones, typename Tree>
+void narrow(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& roots) {
+  constexpr std::size_t kMost = 24;
+  const std::vector<std::uint32_t> before = std::exchange(roots, {});
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const bool is_leaf = (before[i] & kLeafBit) != 0;
+    const std::uint32_t hits = is_leaf ? 0 : children_met<kCones>(in, shaft, tree.nodes[before[i]]);
+    const auto count = static_cast<std::size_t>(std::popcount(hits));
+    if (is_leaf || (count > 1 && roots.size() + count + (before.size() - i - 1) > kMost)) {
+      roots.push_back(before[i]);
       continue;
     }
-    const WideNode& node = nodes[next];
-    for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
-      stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
-    }
+    for (std::uint32_t left = hits; left != 0; left &= left - 1)
+      roots.push_back(tree.nodes[before[i]].reference[static_cast<std::size_t>(std::countr_zero(left))]);
   }
 }
 

@@ -158,6 +158,26 @@ TEST_F(AgreementOn, MeshesFinerThanPixels) {
   EXPECT_GT(both.mapped().counters().at("denseRegions"), 0U);
 }
 
+// Triangles far smaller than pixels: view samples look for edges alone, in rows also past those between two rows. Rows
+// and tiles of light samples, on the mesh and on the floor beneath.
+TEST_F(AgreementOn, MeshesFarFinerThanPixels) {
+  mesh::KnotShape knot;
+  knot.segments = 2000;
+  knot.sides = 150;
+  const scenes::Scene scene = tests::with_a_floor(tests::fitted(mesh::make_knot(knot)));
+  for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
+    visibility::SampleRequest request;
+    request.pattern = pattern;
+    tests::BothMethods both(device(), tests::kNativeEdgeScatter);
+    const tests::Differences found = both.on(scene, 40, request);
+    tests::print(fmt::format("{}", visibility::name_of(pattern)), found);
+    EXPECT_GT(found.pairs, 0U);
+    EXPECT_LE(static_cast<double>(found.differing), 2e-4 * static_cast<double>(found.pairs));
+    EXPECT_EQ(found.mapped_right, found.judged) << found.first_wrong;
+    EXPECT_GT(both.mapped().counters().at("samplesAlone"), 0U);
+  }
+}
+
 std::vector<std::string> shipped_scenes(bool with_large_ones) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(PENUMBRA_SCENES)) {

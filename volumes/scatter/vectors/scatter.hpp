@@ -28,7 +28,9 @@ namespace penumbra::volumes {
 // From engines/vectors/, by name: what the stages here hand to one another is made of these.
 using vectors::Cluster;
 using vectors::ClusterSample;
+using vectors::count_edge_leaves;
 using vectors::count_leaves;
+using vectors::EdgeInput;
 using vectors::EdgeTable;
 using vectors::GridSample;
 using vectors::HorizonLine;
@@ -38,6 +40,8 @@ using vectors::kWide;
 using vectors::LightCone;
 using vectors::LightGrid;
 using vectors::LightTiles;
+using vectors::narrow_edge_roots;
+using vectors::narrow_triangle_roots;
 using vectors::Open;
 using vectors::OpenJudge;
 using vectors::Placing;
@@ -118,7 +122,9 @@ struct Scratch {
   GroupLists lists;
   CrossingTable crossing;
   std::vector<std::uint32_t> edge_roots, triangle_roots, stack;
-  bool dense = false;                       // the region (kDense)
+  std::vector<std::uint32_t> narrow_edge_roots, narrow_triangle_roots, probe_stack;  // of view samples alone
+  bool dense = false;                                                                // the region (kDense)
+  bool alone = false;                       // so are the view samples of one of the region's clusters
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
   std::vector<std::int16_t> histogram, left;
   std::vector<std::int32_t> wide_histogram, wide_left;
@@ -127,7 +133,7 @@ struct Scratch {
   std::vector<std::uint8_t> is_touched;                              // of each tile; 0 between view samples
   std::vector<std::uint32_t> touched;
   Open open;
-  std::uint64_t listed = 0, dense_regions = 0, unproven = 0;  // counted
+  std::uint64_t listed = 0, dense_regions = 0, alone_samples = 0, unproven = 0;  // counted
 };
 
 /// `masks`: one for each view sample; of its bits all or none are written. scatter_points: light samples in tiles.

@@ -35,6 +35,20 @@ class VectorEdges : public vectors::MaskMethod {
   vectors::Blocks begin_region(const LightGrid& grid, const Cluster& all) override;
   void do_cluster(const LightGrid& grid, std::span<const GridSample> view_samples, OpenJudge& judge,
                   std::span<SampleMask> masks) final;
+  struct Roots {
+    const std::vector<std::uint32_t>&edges, &triangles;
+  };
+  /// Finds all edges of a cluster (of several view samples), unless to find those of each view sample alone is less
+  /// work: then false.
+  bool find_edges_together(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
+                           const Roots& roots);
+  void do_each_alone(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
+                     const Roots& roots, OpenJudge& judge, std::span<SampleMask> masks);
+  void do_list(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
+               OpenJudge& judge, std::span<SampleMask> masks);
+  /// Edges that cross neither a row of light samples nor the light's left side change nothing.
+  [[nodiscard]] bool skips_gaps(const LightGrid& grid) const { return !exact_area_ && !grid.tiles; }
+  [[nodiscard]] static bool at_disk(const LightGrid& grid) { return grid.cones && grid.cones->near != nullptr; }
   [[nodiscard]] const CutEdges& cut_edges(const LightGrid& grid) const {
     return grid.side < 0 && !back_.tree().nodes.empty() ? back_ : *front_;
   }
