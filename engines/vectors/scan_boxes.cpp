@@ -8,13 +8,13 @@
 //   u, v, z its error, the axes' rounding, a product's and two sums': 6 · 2⁻²⁴ R + 2⁻⁴⁷, less than η = 2⁻²¹ R + 2⁻⁴⁵
 //   q       computed with z > 256 η, it is off by at most η (1 + |u / z|) / z ≤ 1.005 η (1 + |q|) / z, which η's slack
 //           of a third covers
-//   pixels  scale · q, then the middle, the margin and a half: nine roundings of 2⁻²⁴, none of more than X + |middle| +
-//   2,
-//           where X = max |scale q|. With error(q): ε = η (scale + X) / z + 2⁻²⁰ (X + |middle| + 1). The rays' own
-//           places and the camera's axes are doubles, off by far less than this second part.
-//   D       (e₁ × e₂) · d, e₁ and e₂ edges: each a rounding, then products, difference, product, two sums: 7 · 2⁻²⁴ T
-//   R,
-//           T = |e₁| |e₂|, and T times the error of d: 2⁻²³ R + 2⁻⁴⁷. Less than 2 η T; underflow adds below 2⁻¹⁴⁰.
+//   pixels  scale · q, then the middle, the margin and a half: nine roundings of 2⁻²⁴, none of more than
+//           X + |middle| + 2, where X = max |scale q|. With error(q):
+//           ε = η (scale + X) / z + 2⁻²⁰ (X + |middle| + 1). The rays' own places and the camera's axes are
+//           doubles, off by far less than this second part.
+//   D       (e₁ × e₂) · d, e₁ and e₂ edges: each a rounding, then products, difference, product, two sums:
+//           7 · 2⁻²⁴ T R, T = |e₁| |e₂|, and T times the error of d: 2⁻²³ R + 2⁻⁴⁷. Less than 2 η T;
+//           underflow adds below 2⁻¹⁴⁰.
 
 #include "engines/vectors/scan_boxes.hpp"
 
