@@ -117,7 +117,7 @@ class PointScatter {
     const Tile d;
     const auto edge = static_cast<std::size_t>(where & EdgesInRows::kEdges);
     const std::int32_t row = where >> EdgesInRows::kRowShift;
-    const std::int32_t* tiles_at = tiles_.tiles_at.data() + row * tiles_.steps;
+    const std::int32_t* tiles_at = tiles_.tiles_at.data() + std::ptrdiff_t{row} * tiles_.steps;
     const auto from = static_cast<std::uint32_t>(tiles_at[steps & 0xffff] & 0xffff),
                end = static_cast<std::uint32_t>(tiles_at[steps >> 16] >> 16);
     const UpwardEdge e{edges_, edge};
