@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/pages.hpp"
+
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -69,7 +71,7 @@ Parts into_parts(std::size_t count, std::size_t parts, unsigned shift, const Wor
 /// Numbers of elements, sorted into buckets; each bucket ascending.
 struct Buckets {
   std::vector<std::uint32_t> first;  ///< one a bucket and one past the last's end
-  std::vector<std::uint32_t> items;
+  UnsetList<std::uint32_t> items;
 
   [[nodiscard]] std::size_t size() const { return first.size() - 1; }
   [[nodiscard]] std::span<std::uint32_t> operator[](std::size_t bucket) {

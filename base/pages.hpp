@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,45 +18,28 @@ namespace penumbra {
 /// Most processors' larger pages: one is given in a fraction of the time that its 512 small ones take.
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
 
-/// Allocator of lists that all cores write before anybody reads them: resize() leaves values as the memory has them,
-/// so that each page is first touched by who writes it, and large lists lie in large pages where the system has some.
+/// Arrays of so many bytes begin at a large page and lie in large pages where the system has some: pages.cpp replaces
+/// `operator new` for this, so that it is true of every list, of libraries too. (Not under address sanitizer.)
+constexpr std::size_t kLargeArray = 2 * kLargePage;
+
+/// Allocator of lists that all cores write before anybody reads them: resize() leaves plain values as the memory has
+/// them, their own initialisers too, so that each page is first touched by who writes it.
 template <typename Value>
-struct PageAllocator {
-  using value_type = Value;
+struct PageAllocator : std::allocator<Value> {
   PageAllocator() = default;
   template <typename Other>
   explicit(false) PageAllocator(const PageAllocator<Other>& /*other*/) {}
 
-  Value* allocate(std::size_t count) {
-    if (!is_large(count)) return std::allocator<Value>().allocate(count);
-    if (count > SIZE_MAX / sizeof(Value)) throw std::bad_array_new_length();
-    void* const first = ::operator new (count * sizeof(Value), std::align_val_t{kLargePage});
-    // A system without large pages gives small ones.
-    static_cast<void>(::madvise(first, count * sizeof(Value) / kLargePage * kLargePage, MADV_HUGEPAGE));
-    return static_cast<Value*>(first);
-  }
-  void deallocate(Value* first, std::size_t count) {
-    if (!is_large(count)) return std::allocator<Value>().deallocate(first, count);
-    ::operator delete (first, std::align_val_t{kLargePage});
-  }
   template <typename Other, typename... Arguments>
   void construct(Other* at, Arguments&&... arguments) {
-    if constexpr (sizeof...(arguments) == 0) {
-      ::new (static_cast<void*>(at)) Other;
-    } else {
+    constexpr bool kIsPlain = std::is_trivially_copyable_v<Other> && std::is_trivially_destructible_v<Other>;
+    if constexpr (sizeof...(arguments) > 0 || !kIsPlain) {
       ::new (static_cast<void*>(at)) Other(std::forward<Arguments>(arguments)...);
     }
   }
-  template <typename Other>
-  bool operator==(const PageAllocator<Other>& /*other*/) const {
-    return true;
-  }
-
- private:
-  static bool is_large(std::size_t count) { return count > 2 * kLargePage / sizeof(Value); }
 };
 
-/// A list whose new values are not set.
+/// A list whose new values are not set (PageAllocator).
 template <typename Value>
 using UnsetList = std::vector<Value, PageAllocator<Value>>;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/pages.hpp"
 #include "mesh/triangle_soup.hpp"
 
 #include <glm/vec3.hpp>
@@ -26,7 +27,7 @@ struct SortedSide {
 /// The sides of all triangles, grouped by edge: what edge graphs are made of.
 struct SortedSides {
   std::vector<std::uint32_t> first;  ///< of each vertex, into `sides`; and one past the last's end
-  std::vector<SortedSide> sides;     ///< of a vertex by `other`, then by number
+  UnsetList<SortedSide> sides;       ///< of a vertex by `other`, then by number
 
   [[nodiscard]] std::span<const SortedSide> from(std::size_t vertex) const {
     return std::span(sides).subspan(first[vertex], first[vertex + 1] - first[vertex]);

@@ -1,7 +1,6 @@
 #include "engines/vectors/trees.hpp"
 
 #include "base/assert.hpp"
-#include "base/pages.hpp"
 #include "base/parallel.hpp"
 
 #include <bit>
@@ -44,20 +43,18 @@ void append(WideEdgeTree& tree, const WideEdgeTree& more) {
 
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale,
                                     WideTriangleTree wide) {
-  if (wide.nodes.empty()) resize_on_all_cores(wide.nodes, tree.nodes.size());
+  if (wide.nodes.empty()) wide.nodes.resize(tree.nodes.size());
   PENUMBRA_ASSERT(wide.nodes.size() == tree.nodes.size(), "{} nodes of {}", wide.nodes.size(), tree.nodes.size());
   mesh::for_each_index(wide.nodes.size(), [&](std::size_t node) {
-    wide.nodes[node].used = 0;
+    WideNode& at = wide.nodes[node] = {};
     for (std::size_t lane = 0; lane < kWide; ++lane)
-      store(wide.nodes[node], lane, visibility::child_texels(tree.nodes[node][lane], scale));
+      store(at, lane, visibility::child_texels(tree.nodes[node][lane], scale));
   });
   if (!wide.nodes.empty()) wide.roots = {0};
-  if (wide.leaves.empty()) resize_on_all_cores(wide.leaves, tree.leaves.size());
+  if (wide.leaves.empty()) wide.leaves.resize(tree.leaves.size());
   PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(), tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t i) {
-    WideTriangles& leaf = wide.leaves[i];
-    leaf.used = 0;
-    leaf.closed.fill(0);
+    WideTriangles& leaf = wide.leaves[i] = {};
     for (std::size_t lane = 0; lane < kWide; ++lane) {
       const std::uint32_t triangle = tree.leaves[i][lane];
       if (triangle == TriangleTree::kNoTriangle) continue;

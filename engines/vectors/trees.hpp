@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/pages.hpp"
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -45,13 +46,13 @@ struct alignas(64) WideTriangles {
 
 struct WideEdgeTree {
   std::vector<std::uint32_t> roots;  ///< none, or 0 and those of trees that were appended
-  std::vector<WideNode> nodes;
-  std::vector<WideEdges> leaves;
+  UnsetList<WideNode> nodes;
+  UnsetList<WideEdges> leaves;
 };
 struct WideTriangleTree {
   std::vector<std::uint32_t> roots;  ///< none or 0
-  std::vector<WideNode> nodes;
-  std::vector<WideTriangles> leaves;
+  UnsetList<WideNode> nodes;
+  UnsetList<WideTriangles> leaves;
 };
 
 /// One more root.

@@ -173,8 +173,8 @@ std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNo
 
 /// Calls `leaf` for each leaf whose box meets the shaft, of the subtrees on the stack; until one call returns false.
 template <bool kCones, typename Leaf>
-void go_on(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
-           std::vector<std::uint32_t>& stack, Leaf leaf) {
+void go_on(const WalkInput& in, const Shaft& shaft, const UnsetList<WideNode>& nodes, std::vector<std::uint32_t>& stack,
+           Leaf leaf) {
   while (!stack.empty()) {
     const std::uint32_t next = stack.back();
     stack.pop_back();
@@ -191,7 +191,7 @@ void go_on(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>&
 
 /// Calls `leaf` for each leaf whose box meets the shaft.
 template <bool kCones, typename Leaf>
-void walk(const WalkInput& in, const Shaft& shaft, const std::vector<WideNode>& nodes,
+void walk(const WalkInput& in, const Shaft& shaft, const UnsetList<WideNode>& nodes,
           const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
   stack = roots;
   go_on<kCones>(in, shaft, nodes, stack, [&](std::uint32_t next) {

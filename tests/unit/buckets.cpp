@@ -54,7 +54,7 @@ TEST(Buckets, AreThoseOfAStableSort) {
     for (const std::uint32_t buckets : {1U, 7U, 5000U, 300000U}) {
       const std::vector<std::uint32_t> of = random_words(count, buckets - 1);
       Buckets made = into_buckets(count, buckets, [&](std::size_t i) { return of[i]; });
-      std::vector<std::uint32_t> sorted(count);
+      UnsetList<std::uint32_t> sorted(count);
       std::iota(sorted.begin(), sorted.end(), 0U);
       std::ranges::stable_sort(sorted, {}, [&](std::uint32_t i) { return of[i]; });
       EXPECT_EQ(made.items, sorted);
@@ -110,14 +110,11 @@ TEST(Pages, ListsHaveTheirSizeAndHoldZeros) {
   EXPECT_TRUE(std::ranges::all_of(list, [](const Big& x) { return x.values[0] == 1 && x.values[39] == 0; }));
 }
 
-TEST(Pages, ListsOfNoSetValuesKeepWhatIsWrittenAndAreAligned) {
+TEST(Pages, ListsOfNoSetValuesKeepWhatIsWritten) {
   for (const std::size_t count : {1U, 5000U, 3000000U}) {
     UnsetList<std::uint32_t> list;
     list.resize(count);
     for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * 7);
-    if (count == 3000000) {
-      EXPECT_EQ(reinterpret_cast<std::uintptr_t>(list.data()) % kLargePage, 0U);
-    }
     list.resize(2 * count);  // moves
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(list[i], static_cast<std::uint32_t>(i * 7));
     const UnsetList<std::uint32_t> copy = list, two = {3, 4}, filled(count, 9U);
@@ -128,6 +125,24 @@ TEST(Pages, ListsOfNoSetValuesKeepWhatIsWrittenAndAreAligned) {
   UnsetList<std::uint32_t> list;
   EXPECT_THROW(list.resize(SIZE_MAX / 8), std::exception);
 }
+
+#ifndef __SANITIZE_ADDRESS__  // which brings its own operator new
+TEST(Pages, LargeArraysOfAnyListBeginAtALargePage) {
+  for (const std::size_t bytes : {kLargeArray, kLargeArray + 1, 17 * kLargeArray + 5}) {
+    const std::vector<char> list(bytes, 'x');
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(list.data()) % kLargePage, 0U);
+    EXPECT_TRUE(std::ranges::all_of(list, [](char x) { return x == 'x'; }));
+    UnsetList<std::uint16_t> unset(bytes / 2);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(unset.data()) % kLargePage, 0U);
+    struct alignas(64) Line {
+      char x;
+    };
+    const std::vector<Line> lines(bytes / sizeof(Line) + 1);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(lines.data()) % kLargePage, 0U);
+  }
+  EXPECT_THROW(static_cast<void>(::operator new(SIZE_MAX / 2)), std::bad_alloc);
+}
+#endif
 
 }  // namespace
 }  // namespace penumbra

@@ -2,7 +2,6 @@
 
 #include "base/assert.hpp"
 #include "base/buckets.hpp"
-#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "visibility/tree/halves.hpp"
 
@@ -105,11 +104,12 @@ class Divider {
     if (items.size() <= kWidth) return leaf(items, place.leaf);
     Bounds all = nothing();
     Place next{place.node + 1, place.leaf};
+    TriangleTree::Node& node = tree_->nodes[place.node] = {};
     std::size_t count = 0;
     halve(items, step_of(items.size()), [&](std::span<Divided> part) {
       const Size size = size_of(part.size());
       const Bounds box = divide(part, next);
-      tree_->nodes[place.node][count++] = {box.lower, box.upper, next.reference(size)};
+      node[count++] = {box.lower, box.upper, next.reference(size)};
       include(all, box);
       next.pass(size);
     });
@@ -164,11 +164,11 @@ class Along {
     Size all = size_of_part(whole);
     const bool alone = all.nodes == 0;  // one leaf, which gets a node above it
     if (alone) all.close();
-    resize_on_all_cores(tree_.leaves, all.leaves);
-    resize_on_all_cores(tree_.nodes, all.nodes);
+    tree_.leaves.resize(all.leaves);
+    tree_.nodes.resize(all.nodes);
     tree_.depth = all.depth;
     const Bounds box = place(whole, {});
-    if (alone) tree_.nodes[0][0] = {box.lower, box.upper, TriangleTree::kLeafBit};
+    if (alone) tree_.nodes[0] = {Child{box.lower, box.upper, TriangleTree::kLeafBit}};
     return std::move(tree_);
   }
 
@@ -239,7 +239,7 @@ class Along {
     tbb::task_group tasks;
     Place next{at.node + 1, at.leaf};
     std::size_t count = 0;
-    TriangleTree::Node& node = tree_.nodes[at.node];
+    TriangleTree::Node& node = tree_.nodes[at.node] = {};
     for_each_child(part, [&](const Part& child) {
       const Size size = size_of_part(child);
       if (size.leaves == 0) return;  // no box is near it

@@ -4,7 +4,6 @@
 
 #include "visibility/tree/triangle_tree.hpp"
 
-#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "visibility/tree/box_groups.hpp"
 #include "visibility/tree/halves.hpp"
@@ -225,7 +224,8 @@ class Builder {
 
   /// Depth first, so that the leaves below a node follow one another.
   void place(const Planned& planned, std::uint32_t number, std::uint32_t first_leaf) {
-    if (planned.children.empty()) return place_leaves(planned, tree.nodes[number], first_leaf);
+    TriangleTree::Node& node = tree.nodes[number] = {};
+    if (planned.children.empty()) return place_leaves(planned, node, first_leaf);
     tbb::task_group tasks;
     std::uint32_t next_node = number + 1, next_leaf = first_leaf;
     for (std::size_t i = 0; i < planned.children.size(); ++i) {
@@ -234,9 +234,9 @@ class Builder {
       if (child.is_leaf()) {
         TriangleTree::Node alone;
         place_leaves(child, alone, next_leaf);
-        tree.nodes[number][i] = alone[0];
+        node[i] = alone[0];
       } else {
-        tree.nodes[number][i] = {lower, upper, next_node};
+        node[i] = {lower, upper, next_node};
         const auto below = [this, &child, next_node, next_leaf] { place(child, next_node, next_leaf); };
         if (child.range.boxes > kTask)
           tasks.run(below);
@@ -310,8 +310,8 @@ TriangleTree make_tree(std::size_t count, const std::function<NumberedBox(std::s
   Builder builder({grouped.boxes.get(), count});
   const Planned root = builder.plan(range_of(grouped.groups), 0);
   TriangleTree& tree = builder.tree;
-  resize_on_all_cores(tree.leaves, root.leaves);
-  resize_on_all_cores(tree.nodes, std::max(root.nodes, 1U));
+  tree.leaves.resize(root.leaves);
+  tree.nodes.resize(std::max(root.nodes, 1U));
   tree.depth = std::max(root.depth, 1U);
   builder.place(root, 0, 0);
   return std::move(tree);

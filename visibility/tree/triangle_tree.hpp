@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/pages.hpp"
 #include "visibility/bounds.hpp"
 #include "visibility/scene_floats.hpp"
 
@@ -31,9 +32,9 @@ struct TriangleTree {
   using Node = std::array<Child, kWidth>;
   using Leaf = std::array<std::uint32_t, kWidth>;  ///< triangles; kNoTriangle in unused slots at the end
 
-  std::vector<Node> nodes;   ///< the root is node 0; empty when nothing casts shadow
-  std::vector<Leaf> leaves;  ///< depth first: those below a node follow one another
-  std::uint32_t depth = 0;   ///< nodes on the longest way from root to leaf
+  UnsetList<Node> nodes;    ///< the root is node 0; empty when nothing casts shadow
+  UnsetList<Leaf> leaves;   ///< depth first: those below a node follow one another
+  std::uint32_t depth = 0;  ///< nodes on the longest way from root to leaf
 
   /// Calls `visit(triangle)` for each triangle in a leaf whose box touches [lower, upper].
   template <typename Visit>

@@ -1,6 +1,5 @@
 #include "volumes/edges/edge_set.hpp"
 
-#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
 #include "mesh/sorted_sides.hpp"
@@ -80,7 +79,7 @@ EdgeSide plane_of(const SceneFloats& scene, const EdgeCasters& casters, std::uin
 EdgeRecords::EdgeRecords(const SceneFloats& scene, const EdgeCasters& casters, Flat flat)
     : scene_(&scene), casters_(&casters) {
   const std::size_t count = casters.triangle.size();
-  resize_on_all_cores(planes_, count);
+  planes_.resize(count);
   find_planes();
   std::vector<mesh::Triangle> chosen;
   if (count < scene.triangles.size()) {
@@ -178,7 +177,7 @@ void EdgeRecords::find_pairs(std::span<const mesh::Triangle> triangles, Flat fla
     });
     auto pairs = static_cast<std::uint32_t>(pairs_.size());
     for (std::uint32_t& number : first) pairs += std::exchange(number, pairs);
-    pairs_.empty() ? resize_on_all_cores(pairs_, pairs) : pairs_.resize(pairs);
+    pairs_.resize(pairs);
     mesh::for_each_index(vertex.size(), [&](std::size_t from) {
       std::uint32_t next = first[from];
       for_each_pair(from, wanted_flat, [&](const Pair& pair) { pairs_[next++] = pair; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/pages.hpp"
 #include "mesh/triangle_soup.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -103,9 +104,9 @@ class EdgeRecords {
 
   const visibility::SceneFloats* scene_;
   const EdgeCasters* casters_;
-  std::vector<EdgeSide> planes_;  // of each caster (plane_of)
-  std::vector<Pair> pairs_;       // the records, then what is flat and kept
-  std::size_t size_ = 0;          // records
+  UnsetList<EdgeSide> planes_;  // of each caster (plane_of)
+  UnsetList<Pair> pairs_;       // the records, then what is flat and kept
+  std::size_t size_ = 0;        // records
   /// With Flat::kept, as the last frame had it.
   struct Kept {
     std::vector<glm::vec3> places;

@@ -109,7 +109,7 @@ class Cones {
   [[nodiscard]] const Cone& of_child(std::size_t node, std::size_t child) const {
     return of_child_[node * TriangleTree::kWidth + child];
   }
-  [[nodiscard]] std::vector<Cone> of_leaves() && { return std::move(of_leaf_); }
+  [[nodiscard]] UnsetList<Cone> of_leaves() && { return std::move(of_leaf_); }
 
  private:
   static constexpr std::uint32_t kTaskLevels = 3;  // 512 tasks
@@ -119,6 +119,7 @@ class Cones {
         std::span(of_child_).subspan(std::size_t{node} * TriangleTree::kWidth, TriangleTree::kWidth);
     const auto of_child = [&](std::size_t i) {
       const std::uint32_t reference = tree_.nodes[node][i].reference;
+      own[i] = {};
       if (reference == TriangleTree::kNoChild) return;
       const bool leaf = (reference & TriangleTree::kLeafBit) != 0;
       own[i] = leaf ? of_leaf_[reference & ~TriangleTree::kLeafBit] : of_node(reference, level + 1);
@@ -134,7 +135,7 @@ class Cones {
   }
 
   const TriangleTree& tree_;
-  std::vector<Cone> of_child_, of_leaf_;
+  UnsetList<Cone> of_child_, of_leaf_;
 };
 
 template <typename Records>

@@ -35,7 +35,7 @@ struct NormalCone {
 };
 /// Of leaves; of a hierarchy that is refit, those that have not moved stay.
 struct LeafCones {
-  std::vector<NormalCone> cones;                    ///< empty: none is known
+  UnsetList<NormalCone> cones;                      ///< empty: none is known
   std::function<bool(std::size_t leaf)> has_moved;  ///< called on all cores
 };
 /// A child of a hierarchy's node as EdgeTexels has it.

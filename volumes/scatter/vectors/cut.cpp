@@ -1,7 +1,6 @@
 #include "volumes/scatter/vectors/cut.hpp"
 
 #include "base/assert.hpp"
-#include "base/pages.hpp"
 #include "base/parallel.hpp"
 
 #include <algorithm>
@@ -85,12 +84,11 @@ vectors::WideEdgeTree wide_leaves(const visibility::TriangleTree& tree, const Re
   vectors::WideEdgeTree wide;
   if (before != nullptr) wide = std::move(before->edges);
   const bool again = !wide.leaves.empty();
-  if (!again) resize_on_all_cores(wide.leaves, tree.leaves.size());
+  if (!again) wide.leaves.resize(tree.leaves.size());
   PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(), tree.leaves.size());
   mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
     if (again && !before->cones.has_moved(number)) return;
-    WideEdges& leaf = wide.leaves[number];
-    leaf.used = 0;
+    WideEdges& leaf = wide.leaves[number] = {};
     const visibility::TriangleTree::Leaf& slots = tree.leaves[number];
     for (std::size_t lane = 0; lane < slots.size() && slots[lane] != visibility::TriangleTree::kNoTriangle; ++lane) {
       if (adds_nothing(records, slots[lane])) continue;
@@ -122,13 +120,12 @@ void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree
     }
     return normals;
   };
-  if (wide.nodes.empty()) resize_on_all_cores(wide.nodes, tree.nodes.size());
+  if (wide.nodes.empty()) wide.nodes.resize(tree.nodes.size());
   for_each_edge_node(
       tree, scale, normals_of,
       [&](std::size_t node, std::span<const EdgeChild> children) {
-        wide.nodes[node].used = 0;
-        for (std::size_t lane = 0; lane < children.size(); ++lane)
-          vectors::store(wide.nodes[node], lane, children[lane]);
+        WideNode& at = wide.nodes[node] = {};
+        for (std::size_t lane = 0; lane < children.size(); ++lane) vectors::store(at, lane, children[lane]);
       },
       kept);
 }

@@ -54,7 +54,7 @@ class SceneEdges {
   // Where frames are expected:
   std::optional<EdgeRecords> records_;
   visibility::TriangleTree tree_;
-  std::vector<NormalCone> cones_;  // of its leaves
+  UnsetList<NormalCone> cones_;  // of its leaves
   double built_cost_ = 0;
   float scale_ = 0;
 };
