@@ -83,7 +83,6 @@ void cut_tile(const LightGrid& grid, const GridSample& at, std::size_t tile, Ope
 
 void cut_tiles(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask) {
   const LightTiles& tiles = *grid.tiles;
-  std::uint32_t visible = 0;
   for (const LightTiles::Row& row : tiles.rows) {
     for (std::uint32_t first = 0; first < row.count; first += 16) {
       const TilesAtHorizon found = find_passed(grid, at, row, first);
@@ -93,9 +92,7 @@ void cut_tiles(const LightGrid& grid, const GridSample& at, Open& open, SampleMa
         mask.bits[row.first + first + static_cast<std::uint32_t>(std::countr_zero(left))] = 0;
     }
   }
-  for (std::size_t tile = 0; tile < tiles.tile_count(); ++tile)
-    visible += static_cast<std::uint32_t>(std::popcount(mask.bits[tile]));
-  mask.visible = visible;
+  mask.count(tiles.tile_count());
 }
 
 void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask) {

@@ -2,8 +2,10 @@
 
 #include "engines/vectors/light_grid.hpp"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <vector>
 
@@ -38,6 +40,18 @@ struct Open {
 struct SampleMask {
   std::uint16_t* bits = nullptr;
   std::uint32_t visible = 0;
+
+  /// Sets `visible` from the bits of so many words.
+  void count(std::size_t words) {
+    visible = 0;
+    std::size_t i = 0;
+    for (; i + 4 <= words; i += 4) {
+      std::uint64_t four = 0;
+      std::memcpy(&four, bits + i, sizeof four);
+      visible += static_cast<std::uint32_t>(std::popcount(four));
+    }
+    for (; i < words; ++i) visible += static_cast<std::uint32_t>(std::popcount(bits[i]));
+  }
 };
 
 /// The light point centre + s u + t v is above the carrier's plane where A s + B t + C > 0.

@@ -34,6 +34,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -147,21 +148,19 @@ class Finder {
   }
 
   void store(std::size_t first, M taken, M known, const Box& box) const {
-    const D d;
     const I whole;
-    const std::size_t at = boxes_.count;
-    const auto compressed = [&](V values, std::int32_t* to) {
-      hn::StoreU(hn::ConvertTo(whole, hn::Compress(values, taken)), whole, to);
-    };
     const Words words;
-    const auto numbers = hn::Add(hn::Iota(words, 0), hn::Set(words, static_cast<std::uint32_t>(first)));
-    hn::StoreU(hn::BitCast(words, hn::Compress(hn::BitCast(d, numbers), taken)), words, &boxes_.triangle[at]);
-    compressed(hn::IfThenElse(known, box.left, set(PixelBoxes::kOpen)), &boxes_.left[at]);
-    compressed(box.right, &boxes_.right[at]);
-    compressed(box.top, &boxes_.top[at]);
-    compressed(box.bottom, &boxes_.bottom[at]);
-    hn::StoreU(hn::Compress(box.nearest, taken), d, &boxes_.nearest[at]);
-    boxes_.count += hn::CountTrue(d, taken);
+    const std::size_t at = boxes_.count;
+    const auto pack_whole = [&](V values, std::int32_t* to) {
+      pack(hn::ConvertTo(whole, values), hn::RebindMask(whole, taken), whole, to);
+    };
+    pack(hn::Add(hn::Iota(words, 0), hn::Set(words, static_cast<std::uint32_t>(first))), hn::RebindMask(words, taken),
+         words, &boxes_.triangle[at]);
+    pack_whole(hn::IfThenElse(known, box.left, set(PixelBoxes::kOpen)), &boxes_.left[at]);
+    pack_whole(box.right, &boxes_.right[at]);
+    pack_whole(box.top, &boxes_.top[at]);
+    pack_whole(box.bottom, &boxes_.bottom[at]);
+    boxes_.count += pack(box.nearest, taken, D(), &boxes_.nearest[at]);
   }
 
   const visibility::SceneFloats& scene_;

@@ -44,6 +44,8 @@ bool are_one(const SceneFloats& scene, const ViewRay& ray, const ViewWalk::Met& 
 }  // namespace
 
 Panes::Panes(const SceneFloats& scene, const ViewSamples& seen) : scene_(scene), camera_(seen.camera) {
+  const auto blends = [](const SurfaceAlphas::Surface& one) { return one.alpha.mode == scenes::Alpha::Mode::blend; };
+  if (std::ranges::none_of(scene.alphas.surfaces, blends)) return;
   std::vector<std::uint32_t> blend;
   for (const std::uint32_t triangle : triangles_with_area(scene)) {
     if (alpha_mode(scene, triangle) == scenes::Alpha::Mode::blend) blend.push_back(triangle);

@@ -240,19 +240,6 @@ void for_each_tile(const LightTiles& tiles, const PointChanges& changes, std::in
   }
 }
 
-/// How many bits are set of so many words.
-std::uint32_t count_bits(const std::uint16_t* words, std::size_t count) {
-  std::uint32_t bits = 0;
-  std::size_t i = 0;
-  for (; i + 4 <= count; i += 4) {
-    std::uint64_t four = 0;
-    std::memcpy(&four, words + i, sizeof four);
-    bits += static_cast<std::uint32_t>(std::popcount(four));
-  }
-  for (; i < count; ++i) bits += static_cast<std::uint32_t>(std::popcount(words[i]));
-  return bits;
-}
-
 /// A light sample is visible where the depth is 0. Slots are 0 afterwards, and no tile is touched.
 void sum_up(const LightTiles& tiles, PointChanges& changes, std::int32_t depth_at_corner, std::int32_t* depths,
             SampleMask& mask) {
@@ -273,7 +260,7 @@ void sum_up(const LightTiles& tiles, PointChanges& changes, std::int32_t depth_a
     mask.bits[tile] = static_cast<std::uint16_t>(bits & tiles.used[tile]);
     changes.is_touched[tile] = 0;
   }
-  mask.visible = count_bits(mask.bits, tiles.tile_count());
+  mask.count(tiles.tile_count());
 }
 
 /// D at the light's corner as the edges have it, from D at a light sample that is not open: exact predicates count

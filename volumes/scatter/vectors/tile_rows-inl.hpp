@@ -21,6 +21,16 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
+/// Rows of tiles that a few edges are in: one of each is a row and an edge.
+struct EdgesInRows {
+  static constexpr std::int32_t kEdges = 0xff, kCrosses = 0x100;  // it crosses the row's way
+  static constexpr int kRowShift = 9;
+  static constexpr std::size_t kMost = (LightTiles::kMostRows + 1) * hn::MaxLanes(D());
+  HWY_ALIGN std::array<std::int32_t, kMost> where;  // the edge, kCrosses, and the row
+  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // of LightTiles::tiles_at: from and, 2¹⁶ times, to
+  std::size_t count = 0;
+};
+
 /// Finds in which rows of tiles a vector of edges is, and from where to where.
 class RowsFinder {
  public:

@@ -43,16 +43,7 @@ struct UpwardEdges {
   HWY_ALIGN std::array<std::array<float, hn::MaxLanes(D())>, kUpwardFields> fields;
   std::size_t first = 0;  // in the CrossingTable
 };
-/// Rows of tiles that a few edges are in: one of each is a row and an edge.
-struct EdgesInRows {
-  static constexpr std::int32_t kEdges = 0xff, kCrosses = 0x100;  // it crosses the row's way
-  static constexpr int kRowShift = 9;
-  static constexpr std::size_t kMost = (LightTiles::kMostRows + 1) * hn::MaxLanes(D());
-  HWY_ALIGN std::array<std::int32_t, kMost> where;  // the edge, kCrosses, and the row
-  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // of LightTiles::tiles_at: from and, 2¹⁶ times, to
-  std::size_t count = 0;
-};
-/// The same in registers, and what only finding tiles takes.
+/// Edges in registers, and what only finding tiles takes.
 struct UpwardVectors {
   V low_x, low_y, high_x, high_y, jump, leftmost, rightmost, bottom, top;
   V slope;         // of x
