@@ -1,5 +1,6 @@
 #include "base/memory.hpp"
 
+#include "base/kept_arrays.hpp"
 #include "base/error.hpp"
 
 #include <algorithm>
@@ -127,7 +128,10 @@ MemoryRoom memory_room(const std::filesystem::path& root) {
 void require_memory(std::uint64_t bytes, std::string_view what, std::string_view remedy) {
   constexpr std::uint64_t kAlwaysTried = 16u << 20;  // not worth the look-up, and an ordinary bad_alloc if it fails
   if (bytes <= kAlwaysTried) return;
-  const MemoryRoom room = memory_room();
+  MemoryRoom room = memory_room();
+  if (bytes <= room.bytes) return;
+  kept_arrays().free_all();
+  room = memory_room();
   if (bytes <= room.bytes) return;
   throw ResourceError("{} needs about {} of memory, more than the {} that {}; {}", what, in_bytes(bytes),
                       in_bytes(room.bytes), room.limit, remedy);
@@ -143,8 +147,9 @@ std::uint64_t peak_resident_bytes() {
 }
 
 void keep_freed_memory() {
+  kept_arrays().start_keeping();
 #ifdef __GLIBC__
-  // Larger arrays than that (glibc takes no larger limit) still come from the system and go back to it.
+  // glibc takes no larger limit than this; larger arrays are kept_arrays()'.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 25);
   ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif

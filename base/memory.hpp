@@ -25,8 +25,8 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
 /// The most memory that this process has had in use at once (its largest resident set); 0: the system does not say.
 std::uint64_t peak_resident_bytes();
 
-/// Memory that is given back stays the process's, as far as the C library lets it: the system gives pages slowly, a
-/// picture asks for its arrays again and again, and then ends. At most as much stays as was in use at once.
+/// Memory that is given back stays the process's: the system gives pages slowly, a picture asks for its arrays again
+/// and again, and then ends. At most as much stays as was in use at once. Large arrays: kept_arrays().
 void keep_freed_memory();
 
 /// "1.5 GiB", "320 MiB", "12 bytes".

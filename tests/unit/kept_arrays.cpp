@@ -1,0 +1,82 @@
+// Which arrays are kept for the next, and how many.
+
+#include "base/kept_arrays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <vector>
+
+namespace penumbra {
+namespace {
+
+constexpr std::size_t kEighth = KeptArrays::kLeast / 8;
+
+/// As operator new does.
+void* new_or_kept(KeptArrays& arrays, std::size_t bytes) {
+  if (void* const kept = arrays.take(bytes)) return kept;
+  arrays.count(bytes);
+  return std::malloc(bytes);
+}
+
+TEST(KeptArrays, AreForTheNextOfAboutTheirSize) {
+  KeptArrays arrays;
+  void* const early = new_or_kept(arrays, 8 * kEighth);
+  EXPECT_FALSE(arrays.keep(early, 8 * kEighth)) << "not asked to";
+  std::free(early);
+  arrays.start_keeping();
+  void* const small = new_or_kept(arrays, 8 * kEighth);
+  void* const large = new_or_kept(arrays, 9 * kEighth);
+  EXPECT_TRUE(arrays.keep(large, 9 * kEighth));
+  EXPECT_TRUE(arrays.keep(small, 8 * kEighth));
+  EXPECT_EQ(arrays.bytes(), 17 * kEighth);
+  EXPECT_EQ(arrays.take(8 * kEighth), small) << "the smallest that does";
+  EXPECT_EQ(arrays.take(8 * kEighth), large) << "an eighth larger";
+  EXPECT_EQ(arrays.bytes(), 0U);
+  EXPECT_TRUE(arrays.keep(large, 9 * kEighth));
+  EXPECT_EQ(arrays.take(8 * kEighth - 8), nullptr) << "more than an eighth";
+  EXPECT_TRUE(arrays.keep(small, 8 * kEighth));
+  arrays.free_all();
+  EXPECT_EQ(arrays.bytes(), 0U);
+}
+
+TEST(KeptArrays, AreWithThoseInUseNoMoreThanWasInUseAtOnce) {
+  KeptArrays arrays;
+  arrays.start_keeping();
+  std::mt19937 random(5);
+  std::vector<void*> used;
+  std::map<void*, std::size_t> size_of;
+  std::size_t in_use = 0, most = 0, taken = 0;
+  for (int i = 0; i < 3000; ++i) {
+    if (used.size() < 12 && (used.empty() || random() % 2 == 0)) {
+      const std::size_t bytes = (8 + random() % 40) * 1000;
+      void* first = arrays.take(bytes);
+      if (first != nullptr) {
+        ++taken;
+      } else {
+        arrays.count(bytes);
+        first = std::malloc(bytes);
+        size_of[first] = bytes;
+      }
+      used.push_back(first);
+      in_use += size_of[first];
+      most = std::max(most, in_use);
+    } else {
+      std::swap(used.back(), used[random() % used.size()]);
+      void* const first = used.back();
+      used.pop_back();
+      in_use -= size_of[first];
+      if (!arrays.keep(first, size_of[first])) std::free(first);
+    }
+    ASSERT_LE(in_use + arrays.bytes(), most);
+  }
+  EXPECT_GT(taken, 200U);
+  for (void* const first : used) std::free(first);
+  arrays.free_all();
+}
+
+}  // namespace
+}  // namespace penumbra
