@@ -19,24 +19,26 @@ void* KeptArrays::take(std::size_t bytes) {
     if (fits && (best == nullptr || one.bytes < best->bytes)) best = &one;
   }
   if (best == nullptr) {
-    const std::size_t used = used_bytes_ + bytes;
-    free_more_than(std::max(most_used_bytes_, used) - used);
+    used_bytes_ += bytes;
+    free_more_than(std::max(most_used_bytes_, used_bytes_) - used_bytes_);
     return nullptr;
   }
   const Array taken = std::exchange(*best, {});
   kept_bytes_ -= taken.bytes;
-  begin_use(taken.bytes);
+  use(taken.bytes);
   return taken.first;
 }
 
-void KeptArrays::count(std::size_t bytes) {
+void KeptArrays::settle(std::size_t bytes, std::size_t made) {
   const std::scoped_lock lock(mutex_);
-  begin_use(bytes);
+  used_bytes_ -= std::min(used_bytes_, bytes);
+  use(made);
+  free_more_than(most_used_bytes_ - used_bytes_);
 }
 
 bool KeptArrays::keep(void* first, std::size_t bytes) {
   const std::scoped_lock lock(mutex_);
-  used_bytes_ -= bytes;
+  used_bytes_ -= std::min(used_bytes_, bytes);  // (a library may bring an operator new of its own)
   const auto place = std::ranges::find(kept_, nullptr, &Array::first);
   if (!keeps_ || place == kept_.end()) return false;
   *place = {first, bytes};
@@ -54,7 +56,7 @@ std::size_t KeptArrays::bytes() const {
   return kept_bytes_;
 }
 
-void KeptArrays::begin_use(std::size_t bytes) {
+void KeptArrays::use(std::size_t bytes) {
   used_bytes_ += bytes;
   most_used_bytes_ = std::max(most_used_bytes_, used_bytes_);
 }

@@ -7,24 +7,24 @@
 namespace penumbra {
 
 /// Large arrays that were given back, kept for the next of about their size: the C library would give them to the
-/// system, which then clears each page anew. Those in use and those kept are together never more than what was in use
-/// at once, so that no picture takes more memory for it. Of all threads.
+/// system, which then clears each page anew. Large arrays that are in use and those that are kept are together never
+/// more than the most that was in use at once. Any thread may call any of these.
 class KeptArrays {
  public:
-  /// What is smaller the C library keeps itself (keep_freed_memory).
+  /// Bytes; smaller arrays the C library keeps itself (keep_freed_memory).
   static constexpr std::size_t kLeast = std::size_t{1} << 25U;
 
-  /// Before this none is.
+  /// Nothing is kept before this is called.
   void start_keeping();
-  /// Null: none is as large, or all are larger by more than an eighth; and the caller will ask for a new one, for which
-  /// there is room then.
+  /// An array of at least so many bytes, at most an eighth more: the smallest that is kept. Null: there is none, and
+  /// the caller makes one and says so (settle); others are freed if they would be too much beside it.
   [[nodiscard]] void* take(std::size_t bytes);
-  /// A new one is in use.
-  void count(std::size_t bytes);
-  /// One is no longer in use. False: it is not kept.
+  /// What was asked for and not there is an array of so many bytes now; 0: none that will be given to keep().
+  void settle(std::size_t bytes, std::size_t made);
+  /// An array is no longer in use. False: it is not kept, and the caller's to free.
   [[nodiscard]] bool keep(void* first, std::size_t bytes);
-  /// Gives all of them back to the C library.
   void free_all();
+  /// Of all that are kept.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -33,7 +33,7 @@ class KeptArrays {
     std::size_t bytes = 0;
   };
 
-  void begin_use(std::size_t bytes);
+  void use(std::size_t bytes);
   void free_more_than(std::size_t room);
 
   mutable std::mutex mutex_;

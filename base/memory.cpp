@@ -1,7 +1,7 @@
 #include "base/memory.hpp"
 
-#include "base/kept_arrays.hpp"
 #include "base/error.hpp"
+#include "base/kept_arrays.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -130,7 +130,7 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
   if (bytes <= kAlwaysTried) return;
   MemoryRoom room = memory_room();
   if (bytes <= room.bytes) return;
-  kept_arrays().free_all();
+  give_back_memory();
   room = memory_room();
   if (bytes <= room.bytes) return;
   throw ResourceError("{} needs about {} of memory, more than the {} that {}; {}", what, in_bytes(bytes),
@@ -144,6 +144,13 @@ std::uint64_t peak_resident_bytes() {
     if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) << 10U;  // in KiB
   }
   return 0;
+}
+
+void give_back_memory() {
+  kept_arrays().free_all();
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
 }
 
 void keep_freed_memory() {

@@ -26,8 +26,10 @@ void require_memory(std::uint64_t bytes, std::string_view what, std::string_view
 std::uint64_t peak_resident_bytes();
 
 /// Memory that is given back stays the process's: the system gives pages slowly, a picture asks for its arrays again
-/// and again, and then ends. At most as much stays as was in use at once. Large arrays: kept_arrays().
+/// and again, and then ends. (Large arrays: kept_arrays.hpp.)
 void keep_freed_memory();
+/// What has stayed goes back to the system.
+void give_back_memory();
 
 /// "1.5 GiB", "320 MiB", "12 bytes".
 std::string in_bytes(std::uint64_t bytes);

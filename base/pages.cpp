@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -20,8 +21,8 @@ penumbra::KeptArrays& penumbra::kept_arrays() {
   return arrays;
 }
 
-// Address sanitizer has an operator new of its own, which finds more.
-#ifndef __SANITIZE_ADDRESS__
+// Sanitizers have an operator new of their own, which finds more.
+#ifndef PENUMBRA_SHADOW_MEMORY
 
 namespace {
 
@@ -30,23 +31,31 @@ using penumbra::kLargePage;
 
 constexpr std::size_t kUsual = alignof(std::max_align_t);
 
+/// The C library gives a little more than is asked for, up to a large page.
+constexpr std::size_t kLeastAsked = KeptArrays::kLeast - kLargePage - 4096;
+
+bool is_kept_size(void* first) {
+  return malloc_usable_size(first) >= KeptArrays::kLeast;
+}
+
 void* memory_of(std::size_t bytes, std::size_t alignment) {
   if (bytes < penumbra::kLargeArray) {
     if (alignment <= kUsual) return std::malloc(std::max<std::size_t>(bytes, 1));
     return std::aligned_alloc(alignment, std::max<std::size_t>((bytes + alignment - 1) / alignment, 1) * alignment);
   }
-  const bool may_be_kept = bytes >= KeptArrays::kLeast && alignment <= kLargePage;
+  const bool may_be_kept = bytes >= kLeastAsked && alignment <= kLargePage;
   if (void* const kept = may_be_kept ? arrays.take(bytes) : nullptr) return kept;
-  void* const first = std::aligned_alloc(std::max(alignment, kLargePage), bytes);
-  // Whole pages alone, so that the array takes no byte more. A system without large pages gives small ones.
+  void* first = nullptr;  // (aligned_alloc takes whole large pages alone, where sanitizers look)
+  if (::posix_memalign(&first, std::max(alignment, kLargePage), bytes) != 0) first = nullptr;
+  // Only pages that are the array's alone. A system without large pages gives small ones.
   if (first != nullptr) static_cast<void>(::madvise(first, bytes / kLargePage * kLargePage, MADV_HUGEPAGE));
-  if (const std::size_t taken = malloc_usable_size(first); taken >= KeptArrays::kLeast) arrays.count(taken);
+  if (may_be_kept) arrays.settle(bytes, is_kept_size(first) ? malloc_usable_size(first) : 0);
   return first;
 }
 
 void give_back(void* first) {
-  const std::size_t bytes = malloc_usable_size(first);
-  if (bytes < KeptArrays::kLeast || !arrays.keep(first, bytes)) std::free(first);
+  const bool ours = reinterpret_cast<std::uintptr_t>(first) % kLargePage == 0;
+  if (!ours || !is_kept_size(first) || !arrays.keep(first, malloc_usable_size(first))) std::free(first);
 }
 
 void* memory_or_throw(std::size_t bytes, std::size_t alignment) {

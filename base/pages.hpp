@@ -19,11 +19,12 @@ namespace penumbra {
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
 
 /// Arrays of so many bytes begin at a large page and lie in large pages where the system has some: pages.cpp replaces
-/// `operator new` for this, so that it is true of every list, of libraries too. (Not under address sanitizer.)
+/// `operator new` for this, so that it is true of every list, of libraries too. (Not under address and thread
+/// sanitizer.)
 constexpr std::size_t kLargeArray = 2 * kLargePage;
 
 /// Allocator of lists that all cores write before anybody reads them: resize() leaves plain values as the memory has
-/// them, their own initialisers too, so that each page is first touched by who writes it.
+/// them, whatever initialisers their members have, so that each page is first touched by who writes it.
 template <typename Value>
 struct PageAllocator : std::allocator<Value> {
   PageAllocator() = default;

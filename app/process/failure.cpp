@@ -40,6 +40,7 @@ Failure describe_current_exception() {
     return {error.code(), error.what()};
   } catch (const std::bad_alloc&) {
     // How much there was cannot be told any more: unwinding has given back what was taken.
+    give_back_memory();
     const MemoryRoom room = memory_room();
     return {ExitCode::resource, fmt::format("out of memory ({} is all that {}, now that everything is given back); "
                                             "choose a smaller --size, fewer --light-samples or a smaller scene",

@@ -126,7 +126,7 @@ TEST(Pages, ListsOfNoSetValuesKeepWhatIsWritten) {
   EXPECT_THROW(list.resize(SIZE_MAX / 8), std::exception);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which brings its own operator new
+#ifndef PENUMBRA_SHADOW_MEMORY  // which brings its own operator new
 TEST(Pages, LargeArraysOfAnyListBeginAtALargePage) {
   for (const std::size_t bytes : {kLargeArray, kLargeArray + 1, 17 * kLargeArray + 5}) {
     const std::vector<char> list(bytes, 'x');
