@@ -223,7 +223,7 @@ struct FittedLimits {
 /// What the file may cost on this machine now: the helper's own memory; and its answer, which this process holds up to
 /// three times (as it grows, and as what is made of it).
 FittedLimits fit_to_machine(ImportLimits limits) {
-  give_back_memory();
+  give_back_memory();  // what this process only keeps is the helper's, too
   const MemoryRoom room = memory_room();
   limits.memory_bytes = std::min(limits.memory_bytes, room.bytes);
   limits.output_bytes = std::min(limits.output_bytes, room.bytes / 4);
