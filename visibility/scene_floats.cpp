@@ -13,10 +13,13 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -40,14 +43,35 @@ Triangle sorted(Triangle t, const std::vector<glm::vec3>& positions) {
 
 constexpr auto kOpaque = scenes::Alpha::Mode::opaque;
 
+/// The box around points, in parallel. Without any: its corners are what they are made from.
+template <typename Point>
+struct Around {
+  Point lower{std::numeric_limits<typename Point::value_type>::infinity()}, upper = -lower;
+
+  Around with(const Around& other) const { return {glm::min(lower, other.lower), glm::max(upper, other.upper)}; }
+};
+template <typename Point, typename PointAt>
+Around<Point> box_around(std::size_t count, const PointAt& point_at) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count, 4096), Around<Point>(),
+      [&](const tbb::blocked_range<std::size_t>& range, Around<Point> around) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const Point point = point_at(i);
+          around = {glm::min(around.lower, point), glm::max(around.upper, point)};
+        }
+        return around;
+      },
+      [](const Around<Point>& a, const Around<Point>& b) { return a.with(b); });
+}
+
 glm::dvec3 center_of_bounds(const std::vector<glm::dvec3>& positions) {
   if (positions.empty()) return glm::dvec3(0);
-  glm::dvec3 lower = positions.front(), upper = lower;
-  for (const glm::dvec3& position : positions) {
-    lower = glm::min(lower, position);
-    upper = glm::max(upper, position);
-  }
+  const auto [lower, upper] = box_around<glm::dvec3>(positions.size(), [&](std::size_t i) { return positions[i]; });
   return 0.5 * lower + 0.5 * upper;
+}
+
+bool is_finite(const glm::vec3& x) {
+  return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
 }
 
 [[noreturn]] void refuse_position(const scenes::Scene& scene, std::size_t position, const glm::dvec3& origin) {
@@ -122,20 +146,20 @@ SceneFloats make_scene_floats(const scenes::Scene& scene) {
                  fmt::format("a scene of {} triangles", count_of_triangles), "make its meshes smaller");
   SceneFloats floats;
   floats.origin = scene.origin ? *scene.origin : center_of_bounds(scene.soup.positions);
-  floats.positions.reserve(scene.soup.positions.size());
-  for (const glm::dvec3& world : scene.soup.positions) {
-    const glm::vec3 position = glm::vec3(world - floats.origin) + 0.0f;  // + 0 turns −0 into +0
-    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-      refuse_position(scene, floats.positions.size(), floats.origin);
-    }
-    floats.positions.push_back(position);
+  resize_on_all_cores(floats.positions, scene.soup.positions.size());
+  std::atomic<bool> finite = true;
+  const auto [lower, upper] = box_around<glm::vec3>(floats.positions.size(), [&](std::size_t i) {
+    floats.positions[i] = glm::vec3(scene.soup.positions[i] - floats.origin) + 0.0f;  // + 0 turns −0 into +0
+    if (!is_finite(floats.positions[i])) finite.store(false, std::memory_order_relaxed);
+    return floats.positions[i];
+  });
+  if (!finite) {
+    const auto first = std::ranges::find_if_not(floats.positions, is_finite);
+    refuse_position(scene, static_cast<std::size_t>(first - floats.positions.begin()), floats.origin);
   }
   if (!floats.positions.empty()) {
-    floats.lower = floats.upper = floats.positions.front();
-    for (const glm::vec3& position : floats.positions) {
-      floats.lower = glm::min(floats.lower, position);
-      floats.upper = glm::max(floats.upper, position);
-    }
+    floats.lower = lower;
+    floats.upper = upper;
     refuse_subnormal(floats);
   }
 

@@ -6,8 +6,8 @@
 
 #include "base/buckets.hpp"
 #include "base/parallel.hpp"
+#include "visibility/tree/box_around.hpp"
 
-#include <glm/common.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
@@ -15,27 +15,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <limits>
 #include <utility>
 
 namespace penumbra::visibility {
 namespace {
 
 constexpr unsigned kAxisBits = 10, kWordBits = 3 * kAxisBits;
-
-struct Extent {
-  glm::vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
-
-  void include(const glm::vec3& low, const glm::vec3& high) {
-    lower = glm::min(lower, low);
-    upper = glm::max(upper, high);
-  }
-  /// Half of its surface, in double: no product of floats is too large for it.
-  [[nodiscard]] double area() const {
-    const glm::dvec3 size = glm::dvec3(upper) - glm::dvec3(lower);
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-  }
-};
 
 /// A bit, and after it two zeros.
 std::uint32_t spread(std::uint32_t bits) {
@@ -48,8 +33,8 @@ std::uint32_t spread(std::uint32_t bits) {
 /// Cubic cells, as many along the longest side as there are numbers for.
 class Grid {
  public:
-  explicit Grid(const Extent& middles) : lower_(middles.lower) {
-    const glm::dvec3 size = glm::dvec3(middles.upper) - lower_;
+  explicit Grid(const BoxAround& middles) : lower_(middles.lower()) {
+    const glm::dvec3 size = glm::dvec3(middles.upper()) - lower_;
     const double longest = std::max({size.x, size.y, size.z});
     cells_ = longest > 0 ? kCells / longest : 0;
   }
@@ -121,18 +106,20 @@ class Cutter {
     // The box that, alone, makes the group large goes to the end and out of it.
     for (; count > 1; --count) {
       const std::span<NumberedBox> boxes = list_.subspan(first, count);
-      Extent all;
+      BoxAround all;
       double largest_area = -1;
       std::size_t largest = 0;
       for (std::size_t i = 0; i < count; ++i) {
-        all.include(boxes[i].lower, boxes[i].upper);
-        const double area = Extent{boxes[i].lower, boxes[i].upper}.area();
+        all.include(boxes[i]);
+        BoxAround one;
+        one.include(boxes[i]);
+        const double area = one.area();
         if (area > largest_area) largest_area = area, largest = i;
       }
       if (!(largest_area > 0.25 * all.area())) break;
-      Extent others;
+      BoxAround others;
       for (std::size_t i = 0; i < count; ++i) {
-        if (i != largest) others.include(boxes[i].lower, boxes[i].upper);
+        if (i != largest) others.include(boxes[i]);
       }
       if (!(others.area() < 0.5 * all.area())) break;
       std::swap(boxes[largest], boxes[count - 1]);
@@ -142,22 +129,22 @@ class Cutter {
   }
 
   void add_group(std::uint32_t first, std::uint32_t count) {
-    Extent all;
-    for (const NumberedBox& box : list_.subspan(first, count)) all.include(box.lower, box.upper);
-    groups_.push_back({all.lower, first, all.upper, count});
+    BoxAround all;
+    for (const NumberedBox& box : list_.subspan(first, count)) all.include(box);
+    groups_.push_back({all.lower(), first, all.upper(), count});
   }
 
   std::span<NumberedBox> list_;
   std::vector<BoxGroup>& groups_;
 };
 
-Extent joined(Extent a, const Extent& b) {
-  a.include(b.lower, b.upper);
+BoxAround joined(BoxAround a, const BoxAround& b) {
+  a.include(b);
   return a;
 }
 
 /// Puts boxes into `to`, in the order of groups. `middles`: the box around theirs.
-std::vector<BoxGroup> group(std::span<const NumberedBox> from, const Extent& middles, std::span<NumberedBox> to) {
+std::vector<BoxGroup> group(std::span<const NumberedBox> from, const BoxAround& middles, std::span<NumberedBox> to) {
   const Grid grid(middles);
   const std::size_t good = Parts::good_count(from.size());
   const unsigned bits = kWordBits - static_cast<unsigned>(std::countr_zero(good));  // in which a part's words differ
@@ -185,12 +172,12 @@ std::vector<BoxGroup> group(std::span<const NumberedBox> from, const Extent& mid
 
 GroupedBoxes group_boxes(std::size_t count, const std::function<NumberedBox(std::size_t)>& box) {
   const auto boxes = std::make_unique_for_overwrite<NumberedBox[]>(count);
-  const Extent middles = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, count, 4096), Extent(),
-      [&](const tbb::blocked_range<std::size_t>& range, Extent extent) {
+  const BoxAround middles = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count, 4096), BoxAround(),
+      [&](const tbb::blocked_range<std::size_t>& range, BoxAround extent) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           boxes[i] = box(i);
-          extent.include(boxes[i].middle(), boxes[i].middle());
+          extent.include(boxes[i].middle());
         }
         return extent;
       },
@@ -203,8 +190,8 @@ GroupedBoxes group_boxes(std::size_t count, const std::function<NumberedBox(std:
 
 std::vector<BoxGroup> group_again(std::span<NumberedBox> boxes) {
   const std::vector<NumberedBox> from(boxes.begin(), boxes.end());
-  Extent middles;
-  for (const NumberedBox& box : from) middles.include(box.middle(), box.middle());
+  BoxAround middles;
+  for (const NumberedBox& box : from) middles.include(box.middle());
   return group(from, middles, boxes);
 }
 

@@ -6,8 +6,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace penumbra::visibility {
@@ -26,16 +28,25 @@ bool normal_is_known(const std::array<glm::vec3, 3>& corners) {
   return cross.x + cross.y + cross.z > 0x1p-25 * (size1.x + size1.y + size1.z) * (size2.x + size2.y + size2.z);
 }
 
+namespace {
+
 /// Of a flat box: half an extent that no coordinate's last digit notices, but far from the subnormal numbers, each
 /// product with which costs a processor a hundred and more cycles.
 constexpr float kThinnest = 0x1p-40F;
+
+/// Of a positive float; as std::nextafter, which is a call.
+float next_above(float x) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(std::min(x, kMost)) + 1);
+}
+
+}  // namespace
 
 std::array<Texel, 2> child_texels(const TriangleTree::Child& child, float scale) {
   const glm::vec3 lower = child.lower * scale, upper = child.upper * scale;
   const glm::vec3 middle = 0.5F * lower + 0.5F * upper;
   glm::vec3 half = glm::max(upper - middle, middle - lower);
-  for (int axis = 0; axis < 3; ++axis)
-    half[axis] = std::max(kThinnest, std::nextafter(half[axis], std::numeric_limits<float>::infinity()));
+  for (int axis = 0; axis < 3; ++axis) half[axis] = half[axis] >= kThinnest ? next_above(half[axis]) : kThinnest;
   return {Texel{middle, child.reference}, Texel{half, 0}};
 }
 

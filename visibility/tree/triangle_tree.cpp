@@ -5,6 +5,7 @@
 #include "visibility/tree/triangle_tree.hpp"
 
 #include "base/parallel.hpp"
+#include "visibility/tree/box_around.hpp"
 #include "visibility/tree/box_groups.hpp"
 #include "visibility/tree/halves.hpp"
 
@@ -32,27 +33,11 @@ constexpr std::uint32_t kDeep = 24;
 
 constexpr std::uint32_t kTask = 1U << 13U;  // boxes worth one
 
-struct Box {
-  glm::vec3 lower{std::numeric_limits<float>::infinity()}, upper{-std::numeric_limits<float>::infinity()};
-
-  void include(const glm::vec3& low, const glm::vec3& high) {
-    lower = glm::min(lower, low);
-    upper = glm::max(upper, high);
-  }
-  void include(const Box& box) { include(box.lower, box.upper); }
-  /// Half of its surface; 0 if it is empty. In double: no product of floats is too large for it.
-  [[nodiscard]] double area() const {
-    if (lower.x > upper.x) return 0;
-    const glm::dvec3 size = glm::dvec3(upper) - glm::dvec3(lower);
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-  }
-};
-
 /// Groups that follow one another.
 struct Range {
   std::span<BoxGroup> groups;
   std::uint32_t boxes = 0;
-  Box box;
+  BoxAround box;
 
   [[nodiscard]] bool is_last() const { return boxes <= kTogether; }
 };
@@ -61,7 +46,7 @@ Range range_of(std::span<BoxGroup> groups) {
   Range range{groups, 0, {}};
   for (const BoxGroup& group : groups) {
     range.boxes += group.count;
-    range.box.include(group.lower, group.upper);
+    range.box.include(group);
   }
   return range;
 }
@@ -79,17 +64,17 @@ struct Division {
   std::size_t bin = 0;       // the second half's first
   std::uint32_t groups = 0;  // of the first half
   std::array<std::uint32_t, 2> boxes{};
-  std::array<Box, 2> box;
+  std::array<BoxAround, 2> box;
 };
 
 /// Slabs of equal width along each axis, and what has its middle in each.
 class Bins {
  public:
   explicit Bins(const Range& range) : count_(std::clamp<std::size_t>(range.groups.size(), 4, kMost)) {
-    Box middles;
-    for (const BoxGroup& group : range.groups) middles.include(group.middle(), group.middle());
-    const glm::dvec3 extent = glm::dvec3(middles.upper) - glm::dvec3(middles.lower);
-    lower_ = middles.lower;
+    BoxAround middles;
+    for (const BoxGroup& group : range.groups) middles.include(group.middle());
+    const glm::dvec3 extent = glm::dvec3(middles.upper()) - glm::dvec3(middles.lower());
+    lower_ = middles.lower();
     for (int axis = 0; axis < 3; ++axis) {
       slabs_[axis] = extent[axis] > 0 ? static_cast<double>(count_) / extent[axis] : 0;
       std::fill_n(bins_[static_cast<std::size_t>(axis)].begin(), count_, Bin{});
@@ -97,7 +82,7 @@ class Bins {
     for (const BoxGroup& group : range.groups) {
       for (int axis = 0; axis < 3; ++axis) {
         Bin& bin = bins_[static_cast<std::size_t>(axis)][bin_of(group, axis)];
-        bin.box.include(group.lower, group.upper);
+        bin.box.include(group);
         bin.boxes += group.count;
         ++bin.groups;
       }
@@ -119,14 +104,14 @@ class Bins {
  private:
   static constexpr std::size_t kMost = 32;
   struct Bin {
-    Box box;
+    BoxAround box;
     std::uint32_t boxes = 0, groups = 0;
   };
 
   void find_better(const Range& range, int axis, Division& best) const {
     const std::array<Bin, kMost>& bins = bins_[static_cast<std::size_t>(axis)];
     std::array<double, kMost> areas;  // from each slab on
-    Box box;
+    BoxAround box;
     for (std::size_t i = count_; i-- > 1;) {
       box.include(bins[i].box);
       areas[i] = box.area();
@@ -230,13 +215,13 @@ class Builder {
     std::uint32_t next_node = number + 1, next_leaf = first_leaf;
     for (std::size_t i = 0; i < planned.children.size(); ++i) {
       const Planned& child = planned.children[i];
-      const auto& [lower, upper] = child.range.box;
+      const BoxAround& box = child.range.box;
       if (child.is_leaf()) {
         TriangleTree::Node alone;
         place_leaves(child, alone, next_leaf);
         node[i] = alone[0];
       } else {
-        node[i] = {lower, upper, next_node};
+        node[i] = {box.lower(), box.upper(), next_node};
         const auto below = [this, &child, next_node, next_leaf] { place(child, next_node, next_leaf); };
         if (child.range.boxes > kTask)
           tasks.run(below);
@@ -288,14 +273,14 @@ class Builder {
     halve(std::span(items).first(count), kWidth, [&](std::span<const Divided> part) {
       TriangleTree::Leaf& leaf = tree.leaves[next_leaf];
       leaf.fill(TriangleTree::kNoTriangle);
-      Box all;
+      BoxAround all;
       for (std::size_t i = 0; i < part.size(); ++i) {
         const NumberedBox& box = *boxes[part[i].at];
         leaf[i] = box.number;
-        all.include(box.lower, box.upper);
+        all.include(box);
       }
       std::sort(leaf.begin(), leaf.begin() + static_cast<std::ptrdiff_t>(part.size()));
-      node[children++] = {all.lower, all.upper, TriangleTree::kLeafBit | next_leaf++};
+      node[children++] = {all.lower(), all.upper(), TriangleTree::kLeafBit | next_leaf++};
     });
   }
 

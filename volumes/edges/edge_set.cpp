@@ -148,8 +148,8 @@ EdgeSide EdgeRecords::side(std::uint32_t of) const {
 /// Is k_e 0 for every p: two triangles of one plane, on either side of the edge?
 bool EdgeRecords::is_flat(const Pair& pair) const {
   if (pair.sides[1] == kNoSide) return false;
-  const EdgeSide &s = planes_[pair.sides[0] & ~kReversed], &t = planes_[pair.sides[1] & ~kReversed];
-  if (s.plane == SceneFloats::kNoPlane || s.plane != t.plane) return false;
+  const std::uint32_t plane = scene_->plane[triangle_of(pair.sides[0])];
+  if (plane == SceneFloats::kNoPlane || plane != scene_->plane[triangle_of(pair.sides[1])]) return false;
   return glm::dot(side(pair.sides[0]).n, side(pair.sides[1]).n) < 0;
 }
 

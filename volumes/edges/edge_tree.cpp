@@ -4,94 +4,17 @@
 #include "visibility/tree/tree_along.hpp"
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <optional>
 #include <utility>
 
 namespace penumbra::volumes {
 namespace {
 
 using Cone = NormalCone;
-constexpr Cone kAllDirections{{0, 0, 0}, 0};
-constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space leave nothing out
-
-/// Two normals such that k_e = 0 where p is in front of both or behind both: of a record, or an axis twice.
-struct Normals {
-  glm::dvec3 x, y;
-};
-
-/// The middle of directions, each turned to the side of the sum of those before; 0: there is none.
-class Middle {
- public:
-  /// Turns them if need be.
-  void add(Normals& one) {
-    const glm::dvec3 both = one.x + one.y;
-    if (glm::dot(sum_, both) < 0) {
-      one = {-one.x, -one.y};
-      sum_ -= both;
-    } else {
-      sum_ += both;
-    }
-  }
-  [[nodiscard]] glm::dvec3 axis() const {
-    const double length = glm::length(sum_);
-    return length > 0 ? sum_ / length : glm::dvec3(0);
-  }
-
- private:
-  glm::dvec3 sum_{0};
-};
-
-const double kLeastCosine = std::cos(kWidest);
-
-/// The second normal turned so that k_e = 0 where p is on the same side of both; nothing if there are not two.
-std::optional<Normals> normals_of(const std::array<glm::vec3, 2>& sides) {
-  const glm::dvec3 n1(sides[0]), n2(-sides[1]);
-  if (n1 == glm::dvec3(0) || n2 == glm::dvec3(0)) return std::nullopt;
-  return Normals{glm::normalize(n1), glm::normalize(n2)};
-}
-
 using visibility::TriangleTree;
-
-Cone cone_of(const LeafNormals& records) {
-  std::array<Normals, TriangleTree::kWidth> normals;
-  Middle middle;
-  for (std::size_t i = 0; i < records.count; ++i) {
-    const std::optional<Normals> own = normals_of(records.n[i]);
-    if (!own) return kAllDirections;
-    normals[i] = *own;
-    middle.add(normals[i]);
-  }
-  Cone cone{middle.axis(), 1};
-  for (const Normals& own : std::span(normals).first(records.count))
-    cone.cosine = std::min({cone.cosine, glm::dot(cone.axis, own.x), glm::dot(cone.axis, own.y)});
-  return cone.cosine <= kLeastCosine ? kAllDirections : cone;
-}
-
-/// Holds all of these.
-Cone joined(std::span<const Cone> cones) {
-  std::array<Normals, TriangleTree::kWidth> axes;
-  Middle middle;
-  for (std::size_t i = 0; i < cones.size(); ++i) {
-    if (cones[i].is_all()) return kAllDirections;
-    axes[i] = {cones[i].axis, cones[i].axis};
-    middle.add(axes[i]);
-  }
-  Cone all{middle.axis(), 1};
-  for (std::size_t i = 0; i < cones.size(); ++i) {
-    const double between = glm::dot(all.axis, axes[i].x), own = cones[i].cosine;
-    if (between <= 0) return kAllDirections;
-    // Both angles are below 90 degrees: the cosine of their sum.
-    const auto sine = [](double cosine) { return std::sqrt(std::max(1 - cosine * cosine, 0.0)); };
-    all.cosine = std::min(all.cosine, between * own - sine(between) * sine(own));
-  }
-  return all.cosine <= kLeastCosine ? kAllDirections : all;
-}
 
 class Cones {
  public:

@@ -3,6 +3,7 @@
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/tree/triangle_tree.hpp"
 #include "volumes/edges/edge_set.hpp"
+#include "volumes/edges/normal_cones.hpp"
 
 #include <glm/vec3.hpp>
 
@@ -21,18 +22,6 @@ visibility::TriangleTree edge_tree(const EdgeRecords& records, const visibility:
 /// Over any records.
 visibility::TriangleTree edge_tree(std::span<const EdgeRecord> records);
 
-/// n of both sides of a leaf's records (EdgeRecord::sides).
-struct LeafNormals {
-  std::array<std::array<glm::vec3, 2>, visibility::TriangleTree::kWidth> n;
-  std::size_t count = 0;
-};
-/// Directions within an angle of an axis, up to sign. cosine ≤ 0: all.
-struct NormalCone {
-  glm::dvec3 axis{0};
-  double cosine = 1;
-
-  [[nodiscard]] bool is_all() const { return cosine <= 0; }
-};
 /// Of leaves; of a hierarchy that is refit, those that have not moved stay.
 struct LeafCones {
   UnsetList<NormalCone> cones;                      ///< empty: none is known
