@@ -45,5 +45,6 @@ penumbra_test(volumes
   unit/light_tiles.cpp
   unit/near_casters.cpp
   unit/point_rows.cpp
+  unit/wide_leaves.cpp
   LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb gmpxx gmp)
 target_compile_definitions(volumes_test PRIVATE PENUMBRA_TEST_LAMPS="${CMAKE_CURRENT_SOURCE_DIR}/lamps")

@@ -38,7 +38,7 @@ void append(WideEdgeTree& tree, const WideEdgeTree& more) {
     }
     tree.nodes.push_back(node);
   }
-  tree.leaves.insert(tree.leaves.end(), more.leaves.begin(), more.leaves.end());
+  tree.leaves.append(more.leaves);
 }
 
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale,
@@ -51,10 +51,7 @@ WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const 
       store(at, lane, visibility::child_texels(tree.nodes[node][lane], scale));
   });
   if (!wide.nodes.empty()) wide.roots = {0};
-  if (wide.leaves.empty()) wide.leaves.resize(tree.leaves.size());
-  PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(), tree.leaves.size());
-  mesh::for_each_index(tree.leaves.size(), [&](std::size_t i) {
-    WideTriangles& leaf = wide.leaves[i] = {};
+  wide.leaves.make(tree.leaves.size(), [&scene, &tree, scale](std::size_t i, WideTriangles& leaf) {
     for (std::size_t lane = 0; lane < kWide; ++lane) {
       const std::uint32_t triangle = tree.leaves[i][lane];
       if (triangle == TriangleTree::kNoTriangle) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/pages.hpp"
+#include "engines/vectors/wide_leaves.hpp"
 #include "visibility/tree/tree_texels.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -47,17 +48,18 @@ struct alignas(64) WideTriangles {
 struct WideEdgeTree {
   std::vector<std::uint32_t> roots;  ///< none, or 0 and those of trees that were appended
   UnsetList<WideNode> nodes;
-  UnsetList<WideEdges> leaves;
+  WideLeaves<WideEdges> leaves;
 };
 struct WideTriangleTree {
   std::vector<std::uint32_t> roots;  ///< none or 0
   UnsetList<WideNode> nodes;
-  UnsetList<WideTriangles> leaves;
+  WideLeaves<WideTriangles> leaves;
 };
 
 /// One more root.
 void append(WideEdgeTree& tree, const WideEdgeTree& more);
-/// `memory`: a tree of the same form, to be written over.
+/// Makes leaves of many when somebody asks for them: `scene` and `tree` must stay as they are. `memory`: a tree of the
+/// same form that was made like this one, to be written over.
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale, WideTriangleTree memory = {});
 
@@ -67,7 +69,11 @@ void store(WideNode& node, std::size_t lane, std::span<const visibility::Texel> 
 
 template <typename Tree>
 std::uint64_t bytes_of(const Tree& tree) {
-  return tree.nodes.size() * sizeof(tree.nodes[0]) + tree.leaves.size() * sizeof(tree.leaves[0]);
+  const std::uint64_t nodes = tree.nodes.size() * sizeof(tree.nodes[0]);
+  if constexpr (requires { tree.leaves.memory_bytes(); })
+    return nodes + tree.leaves.memory_bytes();
+  else
+    return nodes + tree.leaves.size() * sizeof(tree.leaves[0]);
 }
 
 }  // namespace penumbra::vectors

@@ -242,6 +242,11 @@ EdgeRecord EdgeRecords::operator[](std::size_t record) const {
   return {scene_->positions[pair.a], scene_->positions[pair.b], {side(pair.sides[0]), side(pair.sides[1])}};
 }
 
+std::array<glm::vec3, 2> EdgeRecords::normals(std::size_t record) const {
+  const Pair& pair = pairs_[record];
+  return {side(pair.sides[0]).n, side(pair.sides[1]).n};
+}
+
 visibility::Bounds EdgeRecords::box(std::size_t record) const {
   const Pair& pair = pairs_[record];
   const glm::vec3 &from = scene_->positions[pair.a], &to = scene_->positions[pair.b];

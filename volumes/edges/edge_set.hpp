@@ -55,7 +55,7 @@ class EdgeRecords {
     dropped,
     kept,  ///< aside: in another frame they may not be flat
   };
-  /// All must outlive it.
+  /// Both must outlive it; records and their normals ask the scene alone.
   EdgeRecords(const visibility::SceneFloats& scene, const EdgeCasters& casters, Flat flat = Flat::dropped);
 
   enum class Followed : std::uint8_t {
@@ -77,6 +77,8 @@ class EdgeRecords {
     return planes_.size() * kKept + pairs_.size() * sizeof(Pair) + kept_.places.size() * (sizeof(glm::vec3) + 4);
   }
   [[nodiscard]] visibility::Bounds box(std::size_t record) const;
+  /// n of its sides.
+  [[nodiscard]] std::array<glm::vec3, 2> normals(std::size_t record) const;
   /// One of its triangles: the scene's number.
   [[nodiscard]] std::uint32_t triangle(std::size_t record) const { return triangle_of(pairs_[record].sides[0]); }
 

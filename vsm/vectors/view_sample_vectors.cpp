@@ -2,6 +2,7 @@
 
 #include "vsm/vectors/view_sample_vectors.hpp"
 
+#include "base/parallel.hpp"
 #include "engines/vectors/horizon.hpp"
 #include "engines/vectors/mask_method.hpp"
 #include "vsm/closed_parts.hpp"
@@ -42,15 +43,16 @@ class VectorViewSample final : public vectors::MaskMethod {
     MaskMethod::prepare_mesh(scene);
     closed_ = find_closed_parts(scene);
     if (closed_.parts.empty()) return;
-    for (std::size_t slot = 0; slot < tree().leaves.size() * kWide; ++slot) {
-      const std::uint32_t triangle = tree().leaves[slot / kWide][slot % kWide];
-      if (triangle == visibility::TriangleTree::kNoTriangle || closed_.part[triangle] == 0) continue;
-      WideTriangles& leaf = triangles().leaves[slot / kWide];
-      const std::size_t lane = slot % kWide;
-      leaf.closed[lane] = 1U << closed_.part[triangle];
-      if (closed_.turn[triangle] > 0) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) std::swap(leaf.corner[1][axis][lane], leaf.corner[2][axis][lane]);
-    }
+    mesh::for_each_index(tree().leaves.size(), [&](std::size_t number) {
+      const visibility::TriangleTree::Leaf& leaf = tree().leaves[number];
+      for (std::size_t lane = 0; lane < kWide; ++lane) {
+        if (leaf[lane] == visibility::TriangleTree::kNoTriangle || closed_.part[leaf[lane]] == 0) continue;
+        WideTriangles& wide = triangles().leaves[number];
+        wide.closed[lane] = 1U << closed_.part[leaf[lane]];
+        if (closed_.turn[leaf[lane]] > 0) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis) std::swap(wide.corner[1][axis][lane], wide.corner[2][axis][lane]);
+      }
+    });
   }
 
  private:

@@ -56,13 +56,14 @@ void deform(scenes::Scene& scene, const scenes::Scene& at_rest, tests::LatticeSo
 using Edge = std::array<float, 20>;  // ends, and normal, anchor, plane of each side
 std::vector<Edge> edges_of(const vectors::WideEdgeTree& tree) {
   std::vector<Edge> found;
-  for (const vectors::WideEdges& leaf : tree.leaves) {
+  for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
+    const vectors::WideEdges& leaf = tree.leaves[i];
     for (std::size_t lane = 0; lane < vectors::kWide; ++lane) {
       if ((leaf.used >> lane & 1U) == 0) continue;
       Edge edge{};
-      std::size_t i = 0;
+      std::size_t next = 0;
       for (const auto* points : {&leaf.a, &leaf.b, &leaf.n[0], &leaf.n[1], &leaf.anchor[0], &leaf.anchor[1]}) {
-        for (const vectors::WideFloats& axis : *points) edge[i++] = axis[lane];
+        for (const vectors::WideFloats& axis : *points) edge[next++] = axis[lane];
       }
       edge[18] = static_cast<float>(leaf.plane[0][lane]);
       edge[19] = static_cast<float>(leaf.plane[1][lane]);
@@ -189,6 +190,33 @@ TEST(KeptEdges, WhatIsFlatByChanceIsTakenInAtOnce) {
       bend(scene, expected == Made::built ? from : -1);
     }
   }
+}
+
+/// So many leaves are made when somebody asks, when the list of casters may be that of another light.
+TEST(SceneEdges, OfManyAreThoseThatAreMadeAtOnce) {
+  scenes::Scene scene;
+  std::vector<std::array<glm::dvec3, 3>> sheet;
+  constexpr int kCells = 440;
+  const auto at = [](int x, int z) { return glm::dvec3(x, std::sin(7.3 * x * x + 5.1 * z), z); };
+  for (int x = 0; x < kCells; ++x) {
+    for (int z = 0; z < kCells; ++z) {
+      sheet.push_back({at(x, z), at(x + 1, z), at(x, z + 1)});
+      sheet.push_back({at(x + 1, z), at(x + 1, z + 1), at(x, z + 1)});
+    }
+  }
+  tests::add_object(scene, "sheet", sheet);
+  const SceneFloats floats = visibility::make_scene_floats(scene);
+  const visibility::TriangleTree triangles = visibility::make_triangle_tree(floats);
+  EdgeCasters casters = edge_casters(floats, -1);
+  const SceneMesh mesh{floats, triangles, casters, visibility::device_scale(floats)};
+  SceneEdges at_once, later;
+  at_once.expect_frames();
+  at_once.make(mesh);
+  later.make(mesh);
+  casters = {};
+  const std::uint64_t before = later.edges().tree().leaves.memory_bytes();
+  EXPECT_EQ(edges_of(at_once.edges().tree()), edges_of(later.edges().tree()));
+  EXPECT_LT(before, later.edges().tree().leaves.memory_bytes());
 }
 
 /// Boxes of what is in them, and no others.

@@ -4,6 +4,8 @@
 #include "base/parallel.hpp"
 
 #include <algorithm>
+#include <array>
+#include <memory>
 #include <utility>
 
 namespace penumbra::volumes {
@@ -70,53 +72,46 @@ void store(WidePoints& points, std::size_t lane, const glm::vec3& x) {
   for (int axis = 0; axis < 3; ++axis) points[static_cast<std::size_t>(axis)][lane] = x[axis];
 }
 
-bool adds_nothing(const EdgeRecords& records, std::size_t record) {
-  return records.is_flat(record);
+/// No record is left out.
+constexpr auto kAllUsed = [](std::uint32_t) { return true; };
+
+std::array<glm::vec3, 2> normals_at(const EdgeRecords& records, std::size_t record) {
+  return records.normals(record);
 }
-bool adds_nothing(const std::vector<EdgeRecord>&, std::size_t) {
-  return false;
+std::array<glm::vec3, 2> normals_at(const std::vector<EdgeRecord>& records, std::size_t record) {
+  return {records[record].sides[0].n, records[record].sides[1].n};
 }
 
-/// Into `before`, if it has leaves, in their place.
-template <typename Records>
-vectors::WideEdgeTree wide_leaves(const visibility::TriangleTree& tree, const Records& records, float scale,
-                                  WideEdgesBefore* before = nullptr) {
-  vectors::WideEdgeTree wide;
-  if (before != nullptr) wide = std::move(before->edges);
-  const bool again = !wide.leaves.empty();
-  if (!again) wide.leaves.resize(tree.leaves.size());
-  PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(), tree.leaves.size());
-  mesh::for_each_index(tree.leaves.size(), [&](std::size_t number) {
-    if (again && !before->cones.has_moved(number)) return;
-    WideEdges& leaf = wide.leaves[number] = {};
-    const visibility::TriangleTree::Leaf& slots = tree.leaves[number];
-    for (std::size_t lane = 0; lane < slots.size() && slots[lane] != visibility::TriangleTree::kNoTriangle; ++lane) {
-      if (adds_nothing(records, slots[lane])) continue;
-      const EdgeRecord record = records[slots[lane]];
-      store(leaf.a, lane, record.a * scale);
-      store(leaf.b, lane, record.b * scale);
-      for (std::size_t side = 0; side < 2; ++side) {
-        leaf.plane[side][lane] = record.sides[side].plane;
-        store(leaf.n[side], lane, record.sides[side].n);
-        store(leaf.anchor[side], lane, record.sides[side].anchor * scale);
-      }
-      leaf.cut[lane] = record.cut;
-      leaf.used |= 1U << lane;
+/// Those of one leaf of a tree over records that are in use.
+template <typename Records, typename IsUsed>
+void fill(const visibility::TriangleTree::Leaf& slots, const Records& records, const IsUsed& is_used, float scale,
+          WideEdges& leaf) {
+  for (std::size_t lane = 0; lane < slots.size() && slots[lane] != visibility::TriangleTree::kNoTriangle; ++lane) {
+    if (!is_used(slots[lane])) continue;
+    const EdgeRecord record = records[slots[lane]];
+    store(leaf.a, lane, record.a * scale);
+    store(leaf.b, lane, record.b * scale);
+    for (std::size_t side = 0; side < 2; ++side) {
+      leaf.plane[side][lane] = record.sides[side].plane;
+      store(leaf.n[side], lane, record.sides[side].n);
+      store(leaf.anchor[side], lane, record.sides[side].anchor * scale);
     }
-  });
-  return wide;
+    leaf.cut[lane] = record.cut;
+    leaf.used |= 1U << lane;
+  }
 }
 
 /// Above its leaves.
-void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree, float scale,
-               LeafCones* kept = nullptr) {
+template <typename Records, typename IsUsed>
+void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree, const Records& records,
+               const IsUsed& is_used, float scale, LeafCones* kept = nullptr) {
   if (tree.nodes.empty()) return;
   wide.roots = {0};
   const auto normals_of = [&](std::size_t number) {
-    const WideEdges& leaf = wide.leaves[number];
     LeafNormals normals;
-    for (std::size_t lane = 0; lane < vectors::kWide; ++lane) {
-      if ((leaf.used >> lane & 1U) != 0) normals.n[normals.count++] = {point(leaf.n[0], lane), point(leaf.n[1], lane)};
+    for (const std::uint32_t record : tree.leaves[number]) {
+      if (record == visibility::TriangleTree::kNoTriangle) break;
+      if (is_used(record)) normals.n[normals.count++] = normals_at(records, record);
     }
     return normals;
   };
@@ -133,25 +128,49 @@ void add_nodes(vectors::WideEdgeTree& wide, const visibility::TriangleTree& tree
 }  // namespace
 
 vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::TriangleTree& triangles, float scale) {
-  const visibility::TriangleTree tree = edge_tree(records, triangles);
-  vectors::WideEdgeTree wide = wide_leaves(tree, records, scale);
-  // Half a gigabyte of ten million triangles, where most is in use.
-  { const EdgeRecords done = std::move(records); }
-  add_nodes(wide, tree, scale);
+  struct Source {
+    EdgeRecords records;
+    visibility::TriangleTree tree;
+  };
+  visibility::TriangleTree tree = edge_tree(records, triangles);
+  const auto source = std::make_shared<Source>(Source{std::move(records), std::move(tree)});
+  vectors::WideEdgeTree wide;
+  add_nodes(wide, source->tree, source->records, kAllUsed, scale);
+  source->tree.nodes = {};
+  wide.leaves.make(
+      source->tree.leaves.size(),
+      [source, scale](std::size_t number, WideEdges& leaf) {
+        fill(source->tree.leaves[number], source->records, kAllUsed, scale, leaf);
+      },
+      source->records.memory_bytes() + vectors::bytes_of(source->tree));
   return wide;
 }
 
 vectors::WideEdgeTree wide_edges(const EdgeRecords& records, const visibility::TriangleTree& tree, float scale,
                                  WideEdgesBefore before) {
-  vectors::WideEdgeTree wide = wide_leaves(tree, records, scale, &before);
-  add_nodes(wide, tree, scale, &before.cones);
+  vectors::WideEdgeTree wide = std::move(before.edges);
+  const auto is_used = [&](std::uint32_t record) { return !records.is_flat(record); };
+  const auto make = [&](std::size_t number, WideEdges& leaf) {
+    fill(tree.leaves[number], records, is_used, scale, leaf);
+  };
+  if (wide.leaves.empty()) {
+    wide.leaves.make_now(tree.leaves.size(), make);
+  } else {
+    PENUMBRA_ASSERT(wide.leaves.size() == tree.leaves.size(), "{} leaves of {}", wide.leaves.size(),
+                    tree.leaves.size());
+    wide.leaves.make_again(before.cones.has_moved, make);
+  }
+  add_nodes(wide, tree, records, is_used, scale, &before.cones);
   return wide;
 }
 
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale) {
   const visibility::TriangleTree tree = edge_tree(records);
-  vectors::WideEdgeTree wide = wide_leaves(tree, records, scale);
-  add_nodes(wide, tree, scale);
+  vectors::WideEdgeTree wide;
+  wide.leaves.make_now(tree.leaves.size(), [&](std::size_t number, WideEdges& leaf) {
+    fill(tree.leaves[number], records, kAllUsed, scale, leaf);
+  });
+  add_nodes(wide, tree, records, kAllUsed, scale);
   return wide;
 }
 
@@ -167,7 +186,7 @@ void CutEdges::restore() {
   leaves_.clear();
   tree_.roots.resize(roots_);
   tree_.nodes.resize(nodes_count_);
-  tree_.leaves.resize(leaves_count_);
+  tree_.leaves.forget_appended();
   is_cut_ = false;
 }
 
@@ -176,7 +195,6 @@ void CutEdges::leave_out(std::span<const EdgeSlot> slots) {
   is_cut_ = true;
   roots_ = tree_.roots.size();
   nodes_count_ = tree_.nodes.size();
-  leaves_count_ = tree_.leaves.size();
   for (const auto& [leaf, lane] : slots) {
     leaves_.push_back({leaf, tree_.leaves[leaf].used});
     tree_.leaves[leaf].used &= ~(1U << lane);

@@ -15,7 +15,8 @@
 /// Edge scatter on a processor: edges for lights whose plane cuts them. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// Of all records of a scene, along the tree over its triangles; of any records.
+/// Of all records of a scene, none of them flat, along the tree over its triangles: leaves of many are made when
+/// somebody asks for them, so the scene must stay as it is. Or of any records.
 vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::TriangleTree& triangles, float scale);
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
 /// What there was for the frame before: leaves, if there are any, of which those that have not moved stay.
@@ -67,8 +68,8 @@ class CutEdges {
   std::optional<CutEnds> ends_;
   std::uint32_t plane_of_light_ = vectors::Cluster::kSeveral;
   bool is_cut_ = false;
-  std::size_t roots_ = 0, nodes_count_ = 0, leaves_count_ = 0;  // of the whole
-  std::vector<Used> nodes_, leaves_;                            // that were changed
+  std::size_t roots_ = 0, nodes_count_ = 0;  // of the whole
+  std::vector<Used> nodes_, leaves_;         // that were changed
 };
 
 }  // namespace penumbra::volumes

@@ -71,7 +71,7 @@ void SceneEdges::find_bodies(const SceneMesh& mesh) {
       if (one >= 0) bodies_[one].grown_together = true;
     }
   }
-  const UnsetList<vectors::WideEdges>& leaves = edges_.tree().leaves;
+  const vectors::WideLeaves<vectors::WideEdges>& leaves = edges_.tree().leaves;
   for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (std::uint32_t used = leaves[leaf].used; used != 0; used &= used - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(used));
