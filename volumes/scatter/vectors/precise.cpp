@@ -319,6 +319,7 @@ void scatter_precisely(const PreciseInput& in, const Changes<Counter>& changes, 
   cross_left_side(in, edge_on_light, from, static_cast<Counter>(a < b ? k : -k), changes, marks);
 }
 
+template void scatter_precisely(const PreciseInput&, const Changes<std::int8_t>&, Open&);
 template void scatter_precisely(const PreciseInput&, const Changes<std::int16_t>&, Open&);
 template void scatter_precisely(const PreciseInput&, const Changes<std::int32_t>&, Open&);
 

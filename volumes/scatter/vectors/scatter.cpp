@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 #include <optional>
 
 #undef HWY_TARGET_INCLUDE
@@ -27,35 +28,10 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-template <typename Counter>
-class SampleScatter {
- public:
-  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, OpenJudge& judge)
-      : in_(in), s_(scratch), changes_(changes), judge_(judge) {}
-
-  /// Whether the depth changes anywhere on the light, or something is open.
-  bool operator()(const ClusterSample& at) {
-    at_ = &at;
-    const auto special = [&](const SpecialEdges& edges) { precisely(edges); };
-    Projection{in_, at, s_.lists, s_.crossing}(special);
-    std::size_t landed = 0;
-    bool any = false;
-    for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) any |= cross(i, landed);
-    for (std::size_t i = 0; i < landed; ++i) {
-      Counter& cell = changes_.cells[s_.landing[i]];
-      cell = static_cast<Counter>(cell + s_.jump[i]);
-    }
-    return any || landed > 0 || any_precise_ || s_.open.any();
-  }
-
- private:
-  void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& projected) {
-    const float turned = in_.grid.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
-    scatter_precisely<Counter>({in_, *at_, edge, turned, is_settled, projected}, changes_, s_.open);
-    any_precise_ = true;
-  }
-  /// Edges of the group that are not for vectors.
-  void precisely(const SpecialEdges& edges) {
+/// Where the group's edges appear to one view sample: those that vectors add, and those that are added one by one.
+void project(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge) {
+  scratch.precise.clear();
+  const auto special = [&](const SpecialEdges& edges) {
     HWY_ALIGN float k[hn::MaxLanes(D())];
     std::uint8_t open[8] = {};
     hn::Store(edges.multiplicity.k, D(), k);
@@ -64,13 +40,41 @@ class SampleScatter {
       const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
       const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
       const std::optional<float> sure =
-          is_open ? exact_multiplicity(in_.edges, edge, *at_, judge_) : std::optional(k[lane]);
+          is_open ? exact_multiplicity(in.edges, edge, at, judge) : std::optional(k[lane]);
       if (sure) {
-        precisely(edge, *sure, edges.settled, std::nullopt);
+        scratch.precise.push_back({edge, *sure, edges.settled});
       } else {
-        s_.open.pixel = true;
+        scratch.open.pixel = true;
       }
     });
+  };
+  Projection{in, at, scratch.lists, scratch.crossing}(special);
+}
+
+/// Adds their changes.
+template <typename Counter>
+class SampleScatter {
+ public:
+  SampleScatter(const ScatterInput& in, Scratch& scratch, const Changes<Counter>& changes, const ClusterSample& at)
+      : in_(in), s_(scratch), changes_(changes), at_(at) {}
+
+  /// Whether the depth changes anywhere on the light, or something is open.
+  bool operator()() {
+    for (const PreciseEdge& one : s_.precise) precisely(one.edge, one.k, one.settled, std::nullopt);
+    std::size_t landed = 0;
+    bool any = !s_.precise.empty();
+    for (std::size_t i = 0; i < s_.crossing.count; i += hn::Lanes(D())) any |= cross(i, landed);
+    for (std::size_t i = 0; i < landed; ++i) {
+      Counter& cell = changes_.cells[s_.landing[i]];
+      cell = static_cast<Counter>(cell + s_.jump[i]);
+    }
+    return any || landed > 0 || any_looked_at_ || s_.open.any();
+  }
+
+ private:
+  void precisely(std::size_t edge, float k, bool is_settled, const std::optional<std::array<glm::vec2, 2>>& projected) {
+    const float turned = in_.grid.side < 0 ? -k : k;  // seen from behind, counter-clockwise is clockwise
+    scatter_precisely<Counter>({in_, at_, edge, turned, is_settled, projected}, changes_, s_.open);
   }
 
   /// Scatters crossing edges; returns whether the left side changes.
@@ -175,46 +179,57 @@ class SampleScatter {
       const std::array projected{glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
       precisely(number & ~kUnsettled, table[kK][i], (number & kUnsettled) == 0, projected);
     });
+    any_looked_at_ = true;
   }
 
   const ScatterInput& in_;
   Scratch& s_;
   const Changes<Counter>& changes_;
-  OpenJudge& judge_;
-  const ClusterSample* at_ = nullptr;
-  bool any_precise_ = false;
+  const ClusterSample& at_;
+  bool any_looked_at_ = false;
 };
 
 // ---- depths to bits ------------------------------------------------------------------------------------------------
 
-template <typename Counter>
-using CounterTag = hn::CappedTag<Counter, 16>;
+/// A bit a lane, from bit `place` on, a multiple of their number.
+template <class Tag>
+void store_bits(Tag d, hn::Mask<Tag> which, std::size_t place, std::uint8_t* bytes) {
+  if constexpr (hn::MaxLanes(Tag()) >= 8) {
+    hn::StoreMaskBits(d, which, bytes + place / 8);
+  } else {
+    std::uint8_t found[8] = {};
+    hn::StoreMaskBits(d, which, found);
+    const std::uint32_t before = place % 8 == 0 ? 0U : bytes[place / 8];
+    bytes[place / 8] = static_cast<std::uint8_t>(before | std::uint32_t{found[0]} << place % 8);
+  }
+}
+
+/// As many rows as there are lanes, from `row` on, from the depths at their left ends.
+template <class Tag, typename Counter>
+void sum_rows(Tag d, const LightGrid& grid, const Changes<Counter>& changes, std::size_t row, SampleMask& mask) {
+  auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.bits);
+  auto depths = hn::LoadU(d, changes.left + row);
+  for (std::size_t column = 0; column < grid.columns; ++column) {
+    const std::size_t at = column * grid.padded_rows + row;
+    depths = hn::Add(depths, hn::LoadU(d, changes.cells + at));
+    store_bits(d, hn::Eq(depths, hn::Zero(d)), at, bytes);
+  }
+}
 
 /// Depths from changes; a light sample is visible where the depth is 0.
 template <typename Counter>
 void sum_up(const LightGrid& grid, const Changes<Counter>& changes, std::uint32_t depth_at_corner, SampleMask& mask) {
-  const CounterTag<Counter> d;
   std::int32_t depth = static_cast<std::int32_t>(depth_at_corner);
   for (std::uint32_t row = 0; row < grid.padded_rows; ++row) {  // left becomes the depth at the light's left side
     depth += changes.left[row];
     changes.left[row] = row < grid.rows ? static_cast<Counter>(depth) : Counter{1};
   }
-  const std::size_t words = grid.padded_rows / 16;
-  std::size_t visible = 0;
-  for (std::size_t row = 0; row < grid.padded_rows; row += hn::Lanes(d)) {
-    auto depths = hn::LoadU(d, changes.left + row);
-    for (std::size_t column = 0; column < grid.columns; ++column) {
-      depths = hn::Add(depths, hn::LoadU(d, changes.cells + column * grid.padded_rows + row));
-      const auto none = hn::Eq(depths, hn::Zero(d));
-      visible += hn::CountTrue(d, none);
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(d, none, bytes);
-      std::uint16_t& word = mask.bits[column * words + row / 16];
-      const std::uint32_t found = (bytes[0] | std::uint32_t{bytes[1]} << 8U) << row % 16;
-      word = static_cast<std::uint16_t>(row % 16 == 0 ? found : word | found);
-    }
-  }
-  mask.visible = static_cast<std::uint32_t>(visible);
+  const hn::CappedTag<Counter, 64> many;
+  const hn::CappedTag<Counter, 16> some;
+  std::size_t row = 0;
+  for (; row + hn::Lanes(many) <= grid.padded_rows; row += hn::Lanes(many)) sum_rows(many, grid, changes, row, mask);
+  for (; row < grid.padded_rows; row += hn::Lanes(some)) sum_rows(some, grid, changes, row, mask);
+  mask.count(mask_words(grid));
 }
 
 /// D at the light's corner, from D at a light sample that is not open: exact predicates count there.
@@ -247,24 +262,46 @@ std::uint32_t depth_by_any_sample(const LightGrid& grid, Open& open, const Clust
   return 0;
 }
 
-/// One view sample, its group's edges sorted out.
+/// One view sample whose edges have been projected: adds all changes, and the depth at the light's corner. False:
+/// nothing changes anywhere on the light, and its corner's depth is that of all of it.
 template <typename Counter>
-void scatter_sample(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& histogram,
-                    std::vector<Counter>& left, const ClusterSample& at, OpenJudge& judge, SampleMask& mask) {
+bool scatter_changes(const ScatterInput& in, Scratch& scratch, std::vector<Counter>& counters, const ClusterSample& at,
+                     OpenJudge& judge, std::uint32_t& depth, SampleMask& mask) {
+  const LightGrid& grid = in.grid;
+  const std::size_t cells = std::size_t{grid.columns} * grid.padded_rows;
+  counters.resize(cells + grid.padded_rows);
+  std::memset(counters.data(), 0, counters.size() * sizeof(Counter));
+  const Changes<Counter> changes{counters.data(), counters.data() + cells};
+  const bool any = SampleScatter<Counter>(in, scratch, changes, at)();
+  if (scratch.open.corner) depth = depth_by_other_sample(grid, changes, scratch.open, at, judge);
+  if (any) sum_up(grid, changes, depth, mask);
+  return any;
+}
+
+/// One view sample, its group's edges sorted out.
+void scatter_sample(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge,
+                    SampleMask& mask) {
   const LightGrid& grid = in.grid;
   const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
+  const std::size_t triangles = scratch.lists.triangles.count;
   std::uint32_t depth =
-      scratch.lists.triangles.count == 0
+      triangles == 0
           ? 0
           : count_to_corner({grid, in.tree, scratch.lists.triangles, at, !edges, in.light_plane}, scratch.open);
   bool changes_any = false;
   if (edges) {
-    histogram.assign(std::size_t{grid.columns} * grid.padded_rows, 0);
-    left.assign(grid.padded_rows, 0);
-    const Changes<Counter> changes{histogram.data(), left.data()};
-    changes_any = SampleScatter<Counter>(in, scratch, changes, judge)(at);
-    if (scratch.open.corner) depth = depth_by_other_sample(grid, changes, scratch.open, at, judge);
-    if (changes_any) sum_up(grid, changes, depth, mask);
+    project(in, scratch, at, judge);
+    // Whoever goes from the corner up the left side and to a light sample crosses an edge once, or twice, which changes
+    // nothing. So no depth is larger, and where it is less than there are counts, none but 0 is counted as 0, whatever
+    // sums overflow on the way.
+    const std::size_t most =
+        (scratch.open.corner ? triangles : depth) + 2 * (scratch.crossing.count + scratch.precise.size());
+    if (most < 0x100)
+      changes_any = scatter_changes(in, scratch, scratch.bytes, at, judge, depth, mask);
+    else if (most < 0x10000)
+      changes_any = scatter_changes(in, scratch, scratch.words, at, judge, depth, mask);
+    else
+      changes_any = scatter_changes(in, scratch, scratch.wide_words, at, judge, depth, mask);
   } else if (scratch.open.corner) {
     depth = depth_by_any_sample(grid, scratch.open, at, judge);
   }
@@ -281,15 +318,9 @@ void scatter_here(const ScatterInput& in, Scratch& scratch, OpenJudge& judge, st
     scratch.jump.resize(4096);
   }
   for_each_sample(in, scratch.lists, [&](std::size_t i) {
-    // Changes of a cell and its depth stay within ±(2 edges + triangles).
-    const bool narrow = 2 * (scratch.lists.settled.count + scratch.lists.unsettled.count) + in.triangles.count < 32000;
     const ClusterSample& at = in.samples[i];
     reset_open(in.grid, in.touch, at, scratch.open);
-    if (narrow) {
-      scatter_sample(in, scratch, scratch.histogram, scratch.left, at, judge, masks[i]);
-    } else {
-      scatter_sample(in, scratch, scratch.wide_histogram, scratch.wide_left, at, judge, masks[i]);
-    }
+    scatter_sample(in, scratch, at, judge, masks[i]);
     if (scratch.open.any()) judge.decide(at, scratch.open, masks[i]);
   });
 }

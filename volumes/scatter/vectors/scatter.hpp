@@ -114,6 +114,13 @@ struct CornerInput {
 };
 std::uint32_t count_to_corner(const CornerInput& input, Open& open);
 
+/// An edge that vectors leave to scatter_precisely (precise.hpp): k as the table has it.
+struct PreciseEdge {
+  std::uint32_t edge;  ///< in the EdgeTable
+  float k;
+  bool settled;
+};
+
 /// Buffers of one thread.
 struct Scratch {
   std::vector<ClusterSample> samples;
@@ -126,8 +133,10 @@ struct Scratch {
   bool dense = false;                                                                // the region (kDense)
   bool alone = false;                       // so are the view samples of one of the region's clusters
   std::vector<std::int32_t> landing, jump;  // scattered changes: where in the histogram, and by how much
-  std::vector<std::int16_t> histogram, left;
-  std::vector<std::int32_t> wide_histogram, wide_left;
+  std::vector<PreciseEdge> precise;
+  std::vector<std::int8_t> bytes;  // Changes
+  std::vector<std::int16_t> words;
+  std::vector<std::int32_t> wide_words;
   std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // PointChanges
   vectors::SlotFloats depths;                                        // 0 between view samples
   std::vector<std::uint8_t> is_touched;                              // of each tile; 0 between view samples
