@@ -111,7 +111,8 @@ void add_edges(const EdgeInput& in, std::uint32_t number, EdgeTable& out) {
     const hn::Mask<D> kept = hn::AndNot(is_none(s, t), met);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
-    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, out[field] + out.count); };
+    const auto row = out.row(out.count);
+    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, row[field]); };
     const Point from_a = minus(a, in.cluster.middle), from_b = minus(b, in.cluster.middle);
     store(kAx, dot(from_a, in.grid.across));
     store(kAy, dot(from_a, in.grid.along));
@@ -170,7 +171,8 @@ void add_triangles(const TriangleInput& in, std::uint32_t number, TriangleTable&
     if (in.outside_of != 0 && !hn::AllFalse(d, kept)) kept = hn::AndNot(seen_from_outside(in, leaf, lane), kept);
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) continue;
-    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, out[field] + out.count); };
+    const auto row = out.row(out.count);
+    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, row[field]); };
     V far = hn::Zero(d);
     std::size_t field = kCornerA;
     for (const Point& corner : {a, b, c}) {

@@ -17,6 +17,14 @@ class Table {
 
   float* operator[](std::size_t field) { return data_.get() + field * capacity_; }
   const float* operator[](std::size_t field) const { return data_.get() + field * capacity_; }
+  /// A row's places, for who writes many of them: until the next reserve().
+  struct Row {
+    float* first;
+    std::size_t stride;
+
+    float* operator[](std::size_t field) const { return first + field * stride; }
+  };
+  Row row(std::size_t number) { return {data_.get() + number, capacity_}; }
   void reserve(std::size_t rows) {
     if (rows + kSlack <= capacity_) return;
     const std::size_t capacity = (2 * rows + 2 * kSlack + 15) / 16 * 16 + 16;  // + 16: columns begin in different sets

@@ -132,9 +132,8 @@ class GroupFilter {
       }
       const std::size_t more = hn::CountTrue(D(), kept);
       if (more == 0) continue;
-      for (std::size_t field = 0; field < kTriangleFields; ++field) {
-        pack(column(field), kept, D(), near[field] + near.count);
-      }
+      const auto row = near.row(near.count);
+      for (std::size_t field = 0; field < kTriangleFields; ++field) pack(column(field), kept, D(), row[field]);
       near.count += more;
     }
   }
@@ -240,12 +239,10 @@ class GroupFilter {
   void store(GroupTable& table, std::size_t i, M kept, V error) const {
     const std::size_t more = hn::CountTrue(D(), kept);
     if (more == 0) return;
-    for (std::size_t field = 0; field <= kPlane2; ++field) {
-      pack(column(field, i), kept, D(), table[field] + table.count);
-    }
-    pack(error, kept, D(), table[kGroupError] + table.count);
-    const V numbers = hn::BitCast(D(), numbers_from(i));
-    pack(numbers, kept, D(), table[kGroupEdge] + table.count);
+    const auto row = table.row(table.count);
+    for (std::size_t field = 0; field <= kPlane2; ++field) pack(column(field, i), kept, D(), row[field]);
+    pack(error, kept, D(), row[kGroupError]);
+    pack(hn::BitCast(D(), numbers_from(i)), kept, D(), row[kGroupEdge]);
     table.count += more;
   }
 

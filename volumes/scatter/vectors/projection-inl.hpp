@@ -25,7 +25,7 @@ struct Multiplicity {
   V k;
   M open;
 };
-[[maybe_unused]] Multiplicity multiplicity(const GroupTable& table, const ClusterSample& at, std::size_t i) {
+[[maybe_unused]] HWY_INLINE Multiplicity multiplicity(const GroupTable& table, const ClusterSample& at, std::size_t i) {
   const D d;
   Multiplicity m{hn::Zero(d), hn::FirstN(d, 0)};
   for (const std::size_t first : {std::size_t{kNormal1X}, std::size_t{kNormal2X}}) {
@@ -210,7 +210,8 @@ class Projection {
     if (in_.grid.tiles && !in_.exact_area) kept = hn::And(kept, left_of_a_sample(low_x, low_y, high_y));
     const std::size_t more = hn::CountTrue(d, kept);
     if (more == 0) return;
-    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, out_[field] + out_.count); };
+    const auto row = out_.row(out_.count);
+    const auto store = [&](std::size_t field, V v) { pack(v, kept, d, row[field]); };
     store(kX0, e.a.x);
     store(kY0, e.a.y);
     store(kX1, e.b.x);
