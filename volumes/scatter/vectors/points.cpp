@@ -244,10 +244,9 @@ void for_each_tile(const LightTiles& tiles, const PointChanges& changes, std::in
 void sum_up(const LightTiles& tiles, PointChanges& changes, std::int32_t depth_at_corner, std::int32_t* depths,
             SampleMask& mask) {
   const Tile d;
-  for_each_tile(tiles, changes, depth_at_corner, [&](std::uint32_t tile, std::int32_t depth) {
-    depths[tile] = depth;
-    mask.bits[tile] = depth == 0 ? tiles.used[tile] : std::uint16_t{0};
-  });
+  for_each_tile(tiles, changes, depth_at_corner, [&](std::uint32_t tile, std::int32_t depth) { depths[tile] = depth; });
+  for (std::size_t tile = 0; tile < tiles.tile_count(); ++tile)  // without a branch, which is hard to foresee
+    mask.bits[tile] = static_cast<std::uint16_t>(tiles.used[tile] & -static_cast<std::int32_t>(depths[tile] == 0));
   for (std::size_t i = 0; i < changes.touched_count; ++i) {
     const std::uint32_t tile = changes.touched[i];
     const auto zero = hn::Set(d, static_cast<float>(-depths[tile]));
