@@ -1,8 +1,11 @@
 #pragma once
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cmath>
 #include <span>
 
 /// Signs of polynomials in coordinates, exact for every finite input (CGAL's filtered kernel: floating point where its
@@ -22,6 +25,36 @@ constexpr Side opposite(Side side) {
 /// silhouette would not close.
 Side side_of_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p);
 Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p);
+
+/// side_of_plane() of one plane and many points: what is the plane's own is computed once, and in double a side costs a
+/// few products where rounding cannot turn it.
+class SidesOfPlane {
+ public:
+  SidesOfPlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : corners_{a, b, c} {
+    const glm::dvec3 u = b - a, v = c - a, wide_u = glm::abs(u), wide_v = glm::abs(v);
+    normal_ = glm::cross(u, v);
+    size_ = {wide_u.y * wide_v.z + wide_u.z * wide_v.y, wide_u.z * wide_v.x + wide_u.x * wide_v.z,
+             wide_u.x * wide_v.y + wide_u.y * wide_v.x};
+  }
+
+  /// (b − a) × (c − a), rounded.
+  [[nodiscard]] const glm::dvec3& normal() const { return normal_; }
+  [[nodiscard]] Side operator()(const glm::dvec3& p) const {
+    const glm::dvec3 d = p - corners_[0];
+    const double value = normal_.x * d.x + normal_.y * d.y + normal_.z * d.z;
+    const glm::dvec3 wide = glm::abs(d);
+    const double size = size_.x * wide.x + size_.y * wide.y + size_.z * wide.z;
+    // Of `size`: two differences, their product, the difference of two products, d, three products and two sums round by
+    // 2⁻⁵³ each, eight in all; twice that. And where numbers are subnormal, each product loses up to 2⁻¹⁰⁷⁴.
+    const double error = 0x1p-49 * size + 0x1p-1000 * (wide.x + wide.y + wide.z + 1);
+    if (!(std::abs(value) > error)) return side_of_plane(corners_[0], corners_[1], corners_[2], p);
+    return value > 0 ? Side::front : Side::back;
+  }
+
+ private:
+  std::array<glm::dvec3, 3> corners_;
+  glm::dvec3 normal_, size_;  // and the sums of its terms' absolute values
+};
 
 /// Which side of the plane (a, b, c) the direction d points to: the sign of det(b − a, c − a, d); `on`: along the
 /// plane.

@@ -15,8 +15,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 namespace penumbra::visibility {
@@ -25,16 +28,14 @@ namespace {
 /// Where the pixel's ray meets the triangle's plane, computed from the sorted vertices.
 struct PlaneHit {
   double t = 0;           // distance along the view axis
-  glm::dvec3 normal{0};   // (b − a) × (c − a)
   double eye_height = 0;  // normal · (eye − a): positive if the normal points to the viewer's side
 };
 
-std::optional<PlaneHit> meet_plane(const ViewRay& ray, const std::array<glm::vec3, 3>& corners) {
-  const glm::dvec3 a = corners[0], b = corners[1], c = corners[2];
+/// `normal`: (b − a) × (c − a).
+std::optional<PlaneHit> meet_plane(const ViewRay& ray, const glm::dvec3& a, const glm::dvec3& normal) {
   PlaneHit hit;
-  hit.normal = glm::cross(b - a, c - a);
-  hit.eye_height = glm::dot(hit.normal, ray.start - a);
-  const double descent = -glm::dot(hit.normal, ray.direction);
+  hit.eye_height = glm::dot(normal, ray.start - a);
+  const double descent = -glm::dot(normal, ray.direction);
   if (descent == 0) return std::nullopt;
   hit.t = hit.eye_height / descent;
   if (!(hit.t > 0) || !std::isfinite(hit.t)) return std::nullopt;
@@ -43,8 +44,8 @@ std::optional<PlaneHit> meet_plane(const ViewRay& ray, const std::array<glm::vec
 
 /// Which side of the sorted triangle's plane the ray's start is on: exact; if it is exactly on the plane (seen edge-on,
 /// covered by rounding alone), the side that rounding saw it on.
-std::int8_t facing_of(const ViewRay& ray, const std::array<glm::vec3, 3>& corners, double eye_height) {
-  const Side side = side_of_plane(glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2]), ray.start);
+std::int8_t facing_of(const ViewRay& ray, const mesh::SidesOfPlane& sides, double eye_height) {
+  const Side side = sides(ray.start);
   if (side != Side::on) return static_cast<std::int8_t>(side);
   return eye_height > 0 ? std::int8_t{1} : std::int8_t{-1};
 }
@@ -97,13 +98,37 @@ bool cone_above(const std::array<glm::vec3, 3>& carrier, std::int8_t facing, con
   return CGAL::sign(middle * middle - tangent * tangent * (u * u + v * v)) == CGAL::POSITIVE;
 }
 
-PixelClass classify(const SceneFloats& scene, const ViewSamples& samples, std::size_t pixel, const Light& light) {
+/// What pixels are for one light.
+class Classifier {
+ public:
+  Classifier(const SceneFloats& scene, const ViewSamples& samples, const Light& light)
+      : scene_(scene), samples_(samples), light_(light) {
+    if (is_planar(light.kind)) plane_.emplace(light.center, light.center_u, light.center_v);
+  }
+
+  [[nodiscard]] PixelClass operator()(std::size_t pixel) const;
+
+ private:
+  [[nodiscard]] bool in_front(const glm::vec3& p) const {
+    if (!plane_) return in_front_of_light(light_, p);
+    const Side side = (*plane_)(p);
+    return light_.two_sided ? side != Side::on : side == Side::front;
+  }
+
+  const SceneFloats& scene_;
+  const ViewSamples& samples_;
+  const Light& light_;
+  std::optional<mesh::SidesOfPlane> plane_;
+};
+
+PixelClass Classifier::operator()(std::size_t pixel) const {
+  const auto& [scene, samples, light] = std::tie(scene_, samples_, light_);
   if (samples.triangle[pixel] == ViewSamples::kBackground) return PixelClass::background;
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   if (scene.emits[carrier] == light.index) return PixelClass::emitter;
   if (!is_lit_by(scene, light, carrier)) return PixelClass::unlit;
   if (!is_receiver(scene, light, carrier)) return PixelClass::unshadowed;
-  if (!in_front_of_light(light, samples.p[pixel])) return PixelClass::behind;
+  if (!in_front(samples.p[pixel])) return PixelClass::behind;
   if (scene.emits[carrier] >= 0) return PixelClass::other_body;
   const std::array<glm::vec3, 3> corners = scene.corners(carrier);
   if (light.sun) {
@@ -112,10 +137,10 @@ PixelClass classify(const SceneFloats& scene, const ViewSamples& samples, std::s
   if (light.kind == LightKind::sphere) {
     return sphere_above(corners, samples.facing[pixel], light) ? PixelClass::judged : PixelClass::horizon;
   }
-  for (const glm::vec3& corner : light.outline) {
-    if (!above_horizon(corners, samples.facing[pixel], corner)) return PixelClass::horizon;
-  }
-  return PixelClass::judged;
+  const mesh::SidesOfPlane sides(corners[0], corners[1], corners[2]);
+  const Side above = samples.facing[pixel] > 0 ? Side::front : Side::back;
+  const bool all = std::ranges::all_of(light.outline, [&](const glm::vec3& corner) { return sides(corner) == above; });
+  return all ? PixelClass::judged : PixelClass::horizon;
 }
 
 template <typename Body>
@@ -210,7 +235,9 @@ std::optional<double> cover(const ViewRay& ray, const std::array<glm::vec3, 3>& 
                ca = -glm::dot(ray.direction, glm::cross(a, c));
   const bool left = ab >= 0 && bc >= 0 && ca >= 0, right = ab <= 0 && bc <= 0 && ca <= 0;
   if (left == right) return std::nullopt;  // neither; or all zero: edge-on or without area
-  const std::optional<PlaneHit> hit = meet_plane(ray, corners);
+  const glm::dvec3 first = corners[0];
+  const std::optional<PlaneHit> hit =
+      meet_plane(ray, first, glm::cross(glm::dvec3(corners[1]) - first, glm::dvec3(corners[2]) - first));
   if (!hit) return std::nullopt;
   return hit->t;
 }
@@ -242,15 +269,16 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
     const auto x = static_cast<std::uint32_t>(pixel % camera.width),
                y = static_cast<std::uint32_t>(pixel / camera.width);
     const ViewRay ray = camera.ray(x, y);
-    const std::optional<PlaneHit> hit = meet_plane(ray, corners);
+    const mesh::SidesOfPlane sides(corners[0], corners[1], corners[2]);
+    const std::optional<PlaneHit> hit = meet_plane(ray, corners[0], sides.normal());
     const glm::vec3 p = hit ? glm::vec3(ray.start + hit->t * ray.direction) + 0.0f : glm::vec3(0);
     if (!hit || !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       triangle = ViewSamples::kBackground;  // a rasteriser's proposal that the ray only meets at infinity: edge-on
       return;
     }
     samples.p[pixel] = p;
-    samples.facing[pixel] = facing_of(ray, corners, hit->eye_height);
-    samples.n[pixel] = glm::vec3(glm::normalize(hit->normal * static_cast<double>(samples.facing[pixel]))) + 0.0f;
+    samples.facing[pixel] = facing_of(ray, sides, hit->eye_height);
+    samples.n[pixel] = glm::vec3(glm::normalize(sides.normal() * static_cast<double>(samples.facing[pixel]))) + 0.0f;
     samples.depth[pixel] = static_cast<float>(hit->t);
   });
   return samples;
@@ -283,7 +311,8 @@ ViewSamples brute_force_view_samples(const SceneFloats& scene, const PinholeCame
 
 std::vector<PixelClass> classify_pixels(const SceneFloats& scene, const ViewSamples& samples, const Light& light) {
   std::vector<PixelClass> classes(samples.size());
-  for_each_pixel(samples, [&](std::size_t pixel) { classes[pixel] = classify(scene, samples, pixel, light); });
+  const Classifier classify(scene, samples, light);
+  for_each_pixel(samples, [&](std::size_t pixel) { classes[pixel] = classify(pixel); });
   return classes;
 }
 

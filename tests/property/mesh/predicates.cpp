@@ -49,6 +49,7 @@ void expect_exact(const PointSource& point, int rounds, Tally& tally) {
     const glm::dvec3 a = point(), b = point(), c = point(), p = point();
     const Side side = exact_side(a, b, c, p);
     ASSERT_EQ(side_of_plane(a, b, c, p), side) << "round " << round;
+    ASSERT_EQ(SidesOfPlane(a, b, c)(p), side) << "round " << round;
     ASSERT_EQ(side_of_plane(b, a, c, p), opposite(side)) << "round " << round;
     ASSERT_EQ(side_of_plane(b, c, a, p), side) << "round " << round;
     ASSERT_EQ(side_of_plane(p, c, b, a), side) << "round " << round;  // an even permutation of all four
