@@ -56,7 +56,7 @@ hn::Mask<D> equals(const WideWords& numbers, std::size_t lane, std::uint32_t num
   return hn::MaskFromVec(hn::BitCast(D(), hn::VecFromMask(words, equal)));
 }
 
-EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
+HWY_INLINE EdgeSideWide side_of(const EdgeInput& in, const WideEdges& leaf, std::size_t side, std::size_t lane) {
   const D d;
   const glm::vec3& box = in.cluster.half_size;
   EdgeSideWide s;

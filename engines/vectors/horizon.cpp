@@ -100,7 +100,6 @@ void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open
   const hn::CappedTag<float, 16> d;
   const std::size_t words = grid.padded_rows / 16;
   const auto constant = [&](float x) { return hn::Set(d, x); };
-  std::uint32_t visible = 0;
   const float per_column = at.above.x / grid.half_cells.x, per_row = at.above.y / grid.half_cells.y;
   const float sure = sure_of(at);
   for (std::uint32_t first = 0; first < grid.padded_rows; first += static_cast<std::uint32_t>(hn::Lanes(d))) {
@@ -112,27 +111,26 @@ void cut_at_horizon_here(const LightGrid& grid, const GridSample& at, Open& open
     const float least = hn::GetLane(hn::MinOfLanes(d, value_of_row)),
                 most = hn::GetLane(hn::MaxOfLanes(d, value_of_row));
     const std::uint32_t lanes = (1U << hn::Lanes(d)) - 1, place = first % 16;
-    for (std::uint32_t column = 0; column < grid.columns; ++column) {
-      std::uint16_t& word = mask.bits[column * words + first / 16];
+    // From the side that is farthest below: beyond the first column that is above, all are.
+    for (std::uint32_t i = 0; i < grid.columns; ++i) {
+      const std::uint32_t column = per_column < 0 ? grid.columns - 1 - i : i;
       const float of_column = static_cast<float>(column) * per_column;
+      if (of_column + least > sure) break;
+      std::uint16_t& word = mask.bits[column * words + first / 16];
+      const auto seen = [&] { return static_cast<std::uint32_t>(std::popcount(word & lanes << place)); };
+      mask.visible -= seen();
       if (of_column + most < -sure) {
         word = static_cast<std::uint16_t>(word & ~(lanes << place));
         continue;
       }
-      if (of_column + least > sure) {
-        visible += static_cast<std::uint32_t>(std::popcount(word & lanes << place));
-        continue;
-      }
       const auto value = hn::MulAdd(constant(static_cast<float>(column)), constant(per_column), value_of_row);
-      std::uint32_t left = cut(d, value, at.above_error, place, word);
-      visible += static_cast<std::uint32_t>(std::popcount(word & lanes << place));
-      for (; left != 0; left &= left - 1) {
+      for (std::uint32_t left = cut(d, value, at.above_error, place, word); left != 0; left &= left - 1) {
         const std::uint32_t row = first + static_cast<std::uint32_t>(std::countr_zero(left));
         if (row < grid.rows) open.samples.push_back(row * grid.columns + column);
       }
+      mask.visible += seen();
     }
   }
-  mask.visible = visible;
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace penumbra::vectors {
 
 /// All light samples, or none.
 void fill(const LightGrid& grid, bool visible, SampleMask& mask);
-/// Light samples that are not strictly above the carrier's plane are not visible. (bound horizon)
+/// Light samples that are not strictly above the carrier's plane are not visible. The mask counts its bits, before and
+/// after. (bound horizon)
 void cut_at_horizon(const LightGrid& grid, const GridSample& at, Open& open, SampleMask& mask);
 /// The mask of a view sample with no triangle between it and the light: everything above its horizon is visible. What
 /// is open already is decided.

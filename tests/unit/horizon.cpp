@@ -61,6 +61,7 @@ void expect_cut(const Places& places, const GridSample& at, std::mt19937& random
   SampleMask mask{bits.data(), 0};
   fill(grid, true, mask);
   for (std::uint16_t& word : bits) word = static_cast<std::uint16_t>(word & random() & 0xffffU);  // casters
+  mask.count(bits.size());
   before = bits;
   Open open;
   cut_at_horizon(grid, at, open, mask);
