@@ -6,6 +6,7 @@ penumbra_test(agreement FULL CorpusSweep.*
   agreement/aimed_pairs.cpp
   agreement/tiny_lights.cpp
   agreement/broken_meshes_raytrace.cpp
+  agreement/deep_stacks.cpp
   agreement/mesh/face_counters_binary.cpp
   agreement/mesh/face_counters_text.cpp
   agreement/long_walks.cpp

@@ -3,13 +3,16 @@
 #include "base/kept_arrays.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <new>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace penumbra {
@@ -81,6 +84,27 @@ TEST(KeptArrays, AreWithThoseInUseNoMoreThanWasInUseAtOnce) {
   EXPECT_GT(taken, 200U);
   for (void* const first : used) std::free(first);
   arrays.free_all();
+}
+
+/// The sum that is kept is right again once all is given back, whoever took it in between.
+TEST(KeptArrays, MayBeAskedForByAnyThread) {
+  KeptArrays arrays;
+  arrays.start_keeping();
+  constexpr std::size_t kArrays = 20000;
+  tbb::parallel_for(std::size_t{0}, kArrays, [&](std::size_t i) {
+    const std::size_t bytes = 1800 + i % 200;
+    void* first = arrays.take(bytes);
+    const bool is_new = first == nullptr;
+    if (is_new) first = std::malloc(2000);
+    if (is_new) arrays.settle(bytes, 2000);
+    std::memset(first, static_cast<int>(i), 2000);  // nobody else has it
+    ASSERT_TRUE(std::ranges::all_of(std::span(static_cast<unsigned char*>(first), 2000),
+                                    [&](unsigned char x) { return x == static_cast<unsigned char>(i); }));
+    if (!arrays.keep(first, 2000)) std::free(first);
+    if (i % 1000 == 0) arrays.free_all();
+  });
+  arrays.free_all();
+  EXPECT_EQ(arrays.bytes(), 0U);
 }
 
 #ifndef PENUMBRA_SHADOW_MEMORY  // which brings its own operator new
