@@ -216,6 +216,7 @@ TEST(SceneEdges, OfManyAreThoseThatAreMadeAtOnce) {
   casters = {};
   const std::uint64_t before = later.edges().tree().leaves.memory_bytes();
   EXPECT_EQ(edges_of(at_once.edges().tree()), edges_of(later.edges().tree()));
+  expect_in_boxes(later.edges().tree());
   EXPECT_LT(before, later.edges().tree().leaves.memory_bytes());
 }
 
