@@ -86,7 +86,7 @@ EdgeTexels texels_of(const TriangleTree& tree, const Records& records, float sca
       normals.n[normals.count] = {n(2).value, n(4).value};
     return normals;
   };
-  constexpr std::size_t kTexels = 3 * TriangleTree::kWidth;  // of a node
+  constexpr std::size_t kTexels = std::size_t{3} * TriangleTree::kWidth;  // of a node
   texels.nodes.resize(tree.nodes.size() * kTexels);
   for_each_edge_node(tree, scale, normals_of, [&](std::size_t node, std::span<const EdgeChild> children) {
     for (std::size_t i = 0; i < kTexels; ++i) texels.nodes[node * kTexels + i] = children[i / 3][i % 3];
