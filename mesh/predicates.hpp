@@ -44,8 +44,8 @@ class SidesOfPlane {
     const double value = normal_.x * d.x + normal_.y * d.y + normal_.z * d.z;
     const glm::dvec3 wide = glm::abs(d);
     const double size = size_.x * wide.x + size_.y * wide.y + size_.z * wide.z;
-    // Of `size`: two differences, their product, the difference of two products, d, three products and two sums round by
-    // 2⁻⁵³ each, eight in all; twice that. And where numbers are subnormal, each product loses up to 2⁻¹⁰⁷⁴.
+    // Of `size`: two differences, their product, the difference of two products, d, three products and two sums round
+    // by 2⁻⁵³ each, eight in all; twice that. And where numbers are subnormal, each product loses up to 2⁻¹⁰⁷⁴.
     const double error = 0x1p-49 * size + 0x1p-1000 * (wide.x + wide.y + wide.z + 1);
     if (!(std::abs(value) > error)) return side_of_plane(corners_[0], corners_[1], corners_[2], p);
     return value > 0 ? Side::front : Side::back;

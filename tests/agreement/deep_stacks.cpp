@@ -39,8 +39,7 @@ TEST_F(DeepStacks, HideWhatTheyHide) {
     const tests::Masks expected =
         tests::run(*tests::kNativeViewSample.make(device(), {}), stage.floats, stage.light, stage.samples);
     for (const auto& method : {tests::kNativeEdgeScatter, tests::kEdgeScatter, tests::kNativeEdgeScatterPoints}) {
-      const tests::Masks masks =
-          tests::run(*method.make(device(), {}), stage.floats, stage.light, stage.samples);
+      const tests::Masks masks = tests::run(*method.make(device(), {}), stage.floats, stage.light, stage.samples);
       EXPECT_EQ(tests::differing_bits(masks, expected), 0U) << method << ", " << boxes << " boxes";
     }
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
