@@ -59,7 +59,7 @@ struct WideTriangleTree {
 /// One more root.
 void append(WideEdgeTree& tree, const WideEdgeTree& more);
 /// Makes leaves of many when somebody asks for them: `scene` and `tree` must stay as they are. `memory`: a tree of the
-/// same form that was made like this one, to be written over.
+/// same form, whose nodes, and leaves if they are few, are written over.
 WideTriangleTree wide_triangle_tree(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree,
                                     float scale, WideTriangleTree memory = {});
 

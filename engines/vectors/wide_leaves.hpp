@@ -24,13 +24,29 @@ class WideLeaves {
   /// Fills a leaf, which is Leaf{} before. Called on any thread, for as long as there are leaves to be made.
   using Make = std::function<void(std::size_t number, Leaf& leaf)>;
 
+  WideLeaves() = default;
+  WideLeaves(const WideLeaves&) = default;
+  /// The other one is empty then.
+  WideLeaves(WideLeaves&& other) noexcept { *this = std::move(other); }
+  WideLeaves& operator=(const WideLeaves& other) { return *this = WideLeaves(other); }
+  WideLeaves& operator=(WideLeaves&& other) noexcept {
+    count_ = std::exchange(other.count_, 0);
+    own_ = std::move(other.own_);
+    make_ = std::move(other.make_);
+    blocks_ = std::move(other.blocks_);
+    held_bytes_ = std::exchange(other.held_bytes_, 0);
+    appended_ = std::move(other.appended_);
+    return *this;
+  }
+  ~WideLeaves() = default;
+
   /// All of them: at once if they are few, else each, with its neighbours, when somebody asks for it. `held`: bytes of
   /// what `make` holds.
   void make(std::size_t count, Make make, std::uint64_t held = 0) {
     constexpr std::size_t kFew = std::size_t{1} << 16U;
     count_ = count;
     if (count > kFew) {
-      own_ = {};
+      own_ = UnsetList<Leaf>();
       make_ = std::move(make);
       held_bytes_ = held;
       blocks_ = Blocks((count + kBlock - 1) / kBlock);
@@ -124,7 +140,8 @@ class WideLeaves {
     }
 
    private:
-    static constexpr std::size_t kSlab = 512;  // blocks: several large pages, which the system gives fast
+    /// Blocks in an array that is large enough to get large pages, which the system gives fast.
+    static constexpr std::size_t kSlab = 2 * kLargeArray / (kBlock * sizeof(Leaf));
 
     std::unique_ptr<std::atomic<Leaf*>[]> firsts_;  // of each block its leaves, or null
     std::size_t count_ = 0;

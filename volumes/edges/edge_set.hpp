@@ -73,8 +73,9 @@ class EdgeRecords {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] EdgeRecord operator[](std::size_t record) const;
   [[nodiscard]] std::uint64_t memory_bytes() const {
-    constexpr std::size_t kKept = sizeof(EdgeSide) + sizeof(mesh::Triangle) + 9;  // of each caster
-    return planes_.size() * kKept + pairs_.size() * sizeof(Pair) + kept_.places.size() * (sizeof(glm::vec3) + 4);
+    constexpr std::size_t kKept = sizeof(mesh::Triangle) + 9;  // of each caster
+    return planes_.size() * sizeof(EdgeSide) + pairs_.size() * sizeof(Pair) + kept_.casters.size() * kKept +
+           kept_.places.size() * (sizeof(glm::vec3) + 4);
   }
   [[nodiscard]] visibility::Bounds box(std::size_t record) const;
   /// n of its sides.

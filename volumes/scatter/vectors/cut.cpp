@@ -136,7 +136,7 @@ vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::Triangle
   const auto source = std::make_shared<Source>(Source{std::move(records), std::move(tree)});
   vectors::WideEdgeTree wide;
   add_nodes(wide, source->tree, source->records, kAllUsed, scale);
-  source->tree.nodes = {};
+  source->tree.nodes = decltype(source->tree.nodes)();  // (= {} would keep the memory)
   wide.leaves.make(
       source->tree.leaves.size(),
       [source, scale](std::size_t number, WideEdges& leaf) {

@@ -191,14 +191,14 @@ class SampleScatter {
 
 // ---- depths to bits ------------------------------------------------------------------------------------------------
 
-/// A bit a lane, from bit `place` on, a multiple of their number.
+/// A bit a lane, from bit `place` on: a multiple of eight, or of fewer lanes.
 template <class Tag>
 void store_bits(Tag d, hn::Mask<Tag> which, std::size_t place, std::uint8_t* bytes) {
-  if constexpr (hn::MaxLanes(Tag()) >= 8) {
-    hn::StoreMaskBits(d, which, bytes + place / 8);
+  std::uint8_t found[8] = {};
+  hn::StoreMaskBits(d, which, found);
+  if (hn::Lanes(d) >= 8) {
+    std::memcpy(bytes + place / 8, found, hn::Lanes(d) / 8);
   } else {
-    std::uint8_t found[8] = {};
-    hn::StoreMaskBits(d, which, found);
     const std::uint32_t before = place % 8 == 0 ? 0U : bytes[place / 8];
     bytes[place / 8] = static_cast<std::uint8_t>(before | std::uint32_t{found[0]} << place % 8);
   }

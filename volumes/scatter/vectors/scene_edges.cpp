@@ -1,5 +1,6 @@
 #include "volumes/scatter/vectors/scene_edges.hpp"
 
+#include "base/parallel.hpp"
 #include "visibility/tree/tree_refit.hpp"
 
 #include <algorithm>
@@ -72,6 +73,7 @@ void SceneEdges::find_bodies(const SceneMesh& mesh) {
     }
   }
   const vectors::WideLeaves<vectors::WideEdges>& leaves = edges_.tree().leaves;
+  mesh::for_each_index(leaves.size(), [&](std::size_t i) { static_cast<void>(leaves[i]); });  // made, on all cores
   for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (std::uint32_t used = leaves[leaf].used; used != 0; used &= used - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(used));

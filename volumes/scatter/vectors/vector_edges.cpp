@@ -33,7 +33,7 @@ void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
   const SceneEdges::Made made = whole_.make({scene, tree(), sides_.casters(), scale()});
   if (made == SceneEdges::Made::built) count_for_mesh("edgesBuilt");
   count_for_mesh(made == SceneEdges::Made::refit ? "edgesRefit" : "edgeTreesBuilt");
-  prepare_triangles();  // after edges, which take the most on their way: half a gigabyte of ten million triangles
+  prepare_triangles();  // after edges, which take the most on their way
   without_body_.reset();
   front_ = &whole_.edges();
 }
