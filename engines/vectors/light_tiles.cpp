@@ -43,7 +43,7 @@ void add_row(LightTiles& tiles, std::span<const glm::vec2> places, std::span<std
 
 /// `right`: the largest X of all samples.
 void add_steps(LightTiles& tiles, float right) {
-  constexpr float kPerCell = 2;
+  constexpr float kPerCell = 4;
   // What is looked up has been rounded twice, and so are the steps' limits here, by 2⁻²⁴ of the way from −½ each.
   const float margin = 0x1p-21F * (right + 1);
   tiles.steps_per_cell = std::min(kPerCell, static_cast<float>(LightTiles::kMostSteps) / (right + 1));

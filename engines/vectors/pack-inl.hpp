@@ -17,8 +17,8 @@ namespace {
 
 /// Writes the lanes that are kept to `to`, which needs room for a whole vector, and gives their number.
 template <class Tag>
-[[maybe_unused]] std::size_t pack(hwy::HWY_NAMESPACE::Vec<Tag> values, hwy::HWY_NAMESPACE::Mask<Tag> kept, Tag tag,
-                                  hwy::HWY_NAMESPACE::TFromD<Tag>* to) {
+[[maybe_unused]] HWY_INLINE std::size_t pack(hwy::HWY_NAMESPACE::Vec<Tag> values, hwy::HWY_NAMESPACE::Mask<Tag> kept,
+                                             Tag tag, hwy::HWY_NAMESPACE::TFromD<Tag>* to) {
   namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
   // Highway's CompressStore is one instruction here, for which AMD's Zen 4 takes more than a hundred cycles.
