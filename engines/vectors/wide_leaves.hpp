@@ -28,7 +28,10 @@ class WideLeaves {
   WideLeaves(const WideLeaves&) = default;
   /// The other one is empty then.
   WideLeaves(WideLeaves&& other) noexcept { *this = std::move(other); }
-  WideLeaves& operator=(const WideLeaves& other) { return *this = WideLeaves(other); }
+  WideLeaves& operator=(const WideLeaves& other) {
+    *this = WideLeaves(other);
+    return *this;
+  }
   WideLeaves& operator=(WideLeaves&& other) noexcept {
     count_ = std::exchange(other.count_, 0);
     own_ = std::move(other.own_);
