@@ -4,6 +4,7 @@
 #include "app/methods.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/pages.hpp"
 #include "compare/beauty.hpp"
 #include "compare/error_picture.hpp"
 #include "compare/machine.hpp"
@@ -19,19 +20,10 @@
 namespace penumbra::app {
 namespace {
 
-/// Rows [tile.first_row, + row_count) as view samples of their own.
-visibility::ViewSamples rows_of(const visibility::ViewSamples& all, const visibility::Tile& tile) {
-  const auto first = static_cast<std::ptrdiff_t>(std::size_t{tile.first_row} * all.width);
-  const auto end = first + static_cast<std::ptrdiff_t>(std::size_t{tile.row_count} * all.width);
-  visibility::ViewSamples rows;
-  rows.width = all.width;
-  rows.height = tile.row_count;
-  rows.triangle.assign(all.triangle.begin() + first, all.triangle.begin() + end);
-  rows.p.assign(all.p.begin() + first, all.p.begin() + end);
-  rows.n.assign(all.n.begin() + first, all.n.begin() + end);
-  rows.depth.assign(all.depth.begin() + first, all.depth.begin() + end);
-  rows.eye = all.eye;
-  return rows;
+std::vector<glm::dvec3> colors_of(std::span<const scenes::Object> objects) {
+  std::vector<glm::dvec3> colors;
+  for (const scenes::Object& object : objects) colors.push_back(object.color);
+  return colors;
 }
 
 }  // namespace
@@ -64,21 +56,14 @@ BeautyAccumulator::BeautyAccumulator(const Session& session, std::span<const vis
     : session_(session),
       lights_(lights),
       whole_of_(wholes_of_pieces(lights)),
+      colors_(colors_of(session.scene.objects)),
       looks_(compare::look_at(session.scene, session.floats, session.samples, session.shading_normals)),
       parts_(whole_lights(lights).size()) {}
 
 void BeautyAccumulator::add(const TileResult& result) {
   // One light at a time: light adds up, and a light's body shows its radiance in its own turn alone.
   std::vector<glm::vec3>& pixels = parts_[whole_of_[result.light]];
-  pixels.resize(session_.pixel_count(), glm::vec3(0));
-  const bool is_all = result.visibility.size() == session_.pixel_count() &&
-                      std::ranges::none_of(result.visibility, [](float v) { return std::isnan(v); });
-  visibility::ViewSamples part;
-  if (!is_all) part = rows_of(session_.samples, result.tile);
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    if (std::isnan(result.visibility[i])) part.triangle[i] = visibility::ViewSamples::kBackground;
-  }
-  const visibility::ViewSamples& rows = is_all ? session_.samples : part;
+  if (pixels.empty()) resize_on_all_cores(pixels, session_.pixel_count());
   compare::LightVisibility seen;
   seen.form_factors = result.form_factors;
   seen.masks = result.masks;
@@ -87,19 +72,15 @@ void BeautyAccumulator::add(const TileResult& result) {
   if (result.masks.empty() && (result.form_factors.empty() || !looks_.normals.empty()))
     seen.visibility = result.visibility;
   const std::size_t first_pixel = std::size_t{result.tile.first_row} * session_.width;
-  const auto rows_from = [&](const auto& all) {
-    return all.empty() ? std::span(all) : std::span(all).subspan(first_pixel, rows.size());
-  };
-  const auto band = compare::integrate_beauty({.scene = session_.floats,
-                                               .samples = rows,
-                                               .colors = {},
-                                               .lights = lights_.subspan(result.light, 1),
-                                               .pixel_colors = rows_from(looks_.colors),
-                                               .normals = rows_from(looks_.normals)},
-                                              {&seen, 1});
-  for (std::size_t i = 0; i < band.size(); ++i) {
-    if (!std::isnan(result.visibility[i])) pixels[first_pixel + i] += band[i];  // what was not evaluated stays as it is
-  }
+  compare::add_beauty({.scene = session_.floats,
+                       .samples = session_.samples,
+                       .colors = colors_,
+                       .lights = lights_.subspan(result.light, 1),
+                       .pixel_colors = looks_.colors,
+                       .normals = looks_.normals,
+                       .first_pixel = first_pixel},
+                      {&seen, 1}, result.visibility,  // what was not evaluated stays as it is
+                      std::span(pixels).subspan(first_pixel, result.visibility.size()));
 }
 
 std::vector<glm::vec3> BeautyAccumulator::sum() const {
@@ -111,15 +92,14 @@ std::vector<glm::vec3> BeautyAccumulator::sum() const {
 }
 
 float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, std::span<const std::uint8_t> lamps) {
-  std::vector<glm::vec3> surfaces;
+  std::vector<std::uint8_t> bodies(beauty.size());
   for (std::size_t i = 0; i < beauty.size(); ++i) {
     const std::int32_t triangle = session.samples.triangle[i];
     const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
     const bool through_body = !lamps.empty() && lamps[i] != 0;
-    if (!body && !through_body) surfaces.push_back(beauty[i]);
+    bodies[i] = body || through_body ? 1 : 0;
   }
-  const bool black = std::ranges::all_of(surfaces, [](const glm::vec3& color) { return color == glm::vec3(0); });
-  return compare::auto_exposure(black ? beauty : std::span<const glm::vec3>(surfaces));
+  return compare::auto_exposure(beauty, bodies);
 }
 
 void check_bits(const visibility::MethodDescription& description, std::span<const visibility::Light> lights) {

@@ -37,6 +37,7 @@ class BeautyAccumulator {
   const Session& session_;
   std::span<const visibility::Light> lights_;
   std::vector<std::size_t> whole_of_;  // each of lights_
+  std::vector<glm::dvec3> colors_;     // of objects
   compare::SurfaceLooks looks_;
   std::vector<std::vector<glm::vec3>> parts_;
 };

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -18,11 +19,14 @@ namespace penumbra {
 
 inline constexpr std::uint32_t kLargestExrSide = 1u << 24;  ///< pixels
 
-/// One channel to write: pixel i's value is values[i · stride], so that a component of interleaved data (an array of
-/// vec3) needs no copy: {"P.Y", {&p[0].y, 3 · pixels − 1}, 3}.
+/// Writes the values of so many pixels from number `first` on, which need not be in memory. All cores call it.
+using ExrValues = std::function<void(std::size_t first, std::span<float> values)>;
+
+/// One channel to write. Of arrays pixel i's value is values[i · stride], so that a component of interleaved data (an
+/// array of vec3) needs no copy: {"P.Y", {&p[0].y, 3 · pixels − 1}, 3}.
 struct ExrChannel {
   std::string name;
-  std::variant<std::span<const float>, std::span<const std::uint32_t>> values;
+  std::variant<std::span<const float>, std::span<const std::uint32_t>, ExrValues> values;
   std::size_t stride = 1;
 };
 

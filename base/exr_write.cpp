@@ -34,10 +34,11 @@ void check_name(const std::filesystem::path& path, const char* what, const std::
   }
 }
 
-/// 32-bit values of pixels, whatever they mean.
+/// 32-bit values of pixels, whatever they mean: in memory, or written when they are needed.
 struct Plane {
-  const std::byte* first;
-  std::size_t stride;  ///< bytes
+  const std::byte* first = nullptr;
+  std::size_t stride = 0;  ///< bytes
+  const ExrValues* values = nullptr;
 };
 
 /// The file as OpenEXR's library sees it: places to write to. What a write throws waits here until C code is left.
@@ -156,8 +157,14 @@ class Packer {
   static std::uint8_t difference(std::uint8_t now, std::uint8_t before) {
     return static_cast<std::uint8_t>(now - before + 128);
   }
-  static void gather(const Plane& plane, std::size_t pixel, std::size_t width, std::uint8_t* to) {
+  void gather(const Plane& plane, std::size_t pixel, std::size_t width, std::uint8_t* to) {
     static_assert(std::endian::native == std::endian::little, "OpenEXR's order of bytes");
+    if (plane.values != nullptr) {
+      values_.resize(width);
+      (*plane.values)(pixel, values_);
+      std::memcpy(to, values_.data(), 4 * width);
+      return;
+    }
     const std::byte* from = plane.first + pixel * plane.stride;
     if (plane.stride == 4) {
       std::memcpy(to, from, 4 * width);
@@ -168,7 +175,24 @@ class Packer {
 
   std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflate_;
   std::vector<std::uint8_t> split_, line_, deflated_;
+  std::vector<float> values_;
 };
+
+/// `channel` must outlive it.
+Plane plane_of(const ExrChannel& channel, std::size_t pixel_count) {
+  return std::visit(
+      [&](const auto& values) -> Plane {
+        if constexpr (std::is_same_v<decltype(values), const ExrValues&>) {
+          return {.values = &values};
+        } else {
+          PENUMBRA_ASSERT(values.size() > (pixel_count - 1) * channel.stride,
+                          "channel {}: {} values for {} pixels with stride {}", channel.name, values.size(),
+                          pixel_count, channel.stride);
+          return {reinterpret_cast<const std::byte*>(values.data()), channel.stride * sizeof(values[0])};
+        }
+      },
+      channel.values);
+}
 
 struct Block {
   std::size_t first_line = 0;
@@ -245,19 +269,11 @@ void write_exr(AtomicFile& file, const ExrImage& image) {
   const std::size_t pixel_count = std::size_t{image.width} * image.height;
   for (const ExrChannel& channel : image.channels) {
     check_name(path, "channel's name", channel.name);
-    std::visit(
-        [&](auto values) {
-          PENUMBRA_ASSERT(values.size() > (pixel_count - 1) * channel.stride,
-                          "channel {}: {} values for {} pixels with stride {}", channel.name, values.size(),
-                          pixel_count, channel.stride);
-          const Plane plane{reinterpret_cast<const std::byte*>(values.data()), channel.stride * sizeof(values[0])};
-          const bool is_new = planes.emplace(channel.name, plane).second;
-          PENUMBRA_ASSERT(is_new, "two channels are called {}", channel.name);
-          constexpr bool kIsFloat = std::is_same_v<decltype(values), std::span<const float>>;
-          writer.check(exr_add_channel(context, 0, channel.name.c_str(), kIsFloat ? EXR_PIXEL_FLOAT : EXR_PIXEL_UINT,
-                                       EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
-        },
-        channel.values);
+    const bool is_new = planes.emplace(channel.name, plane_of(channel, pixel_count)).second;
+    PENUMBRA_ASSERT(is_new, "two channels are called {}", channel.name);
+    const bool is_float = !std::holds_alternative<std::span<const std::uint32_t>>(channel.values);
+    writer.check(exr_add_channel(context, 0, channel.name.c_str(), is_float ? EXR_PIXEL_FLOAT : EXR_PIXEL_UINT,
+                                 EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
   }
   writer.check(exr_write_header(context));
   std::vector<Plane> in_order;

@@ -12,6 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace penumbra::compare {
 namespace {
@@ -47,9 +48,13 @@ bool takes_whole(const VisibleLight& light, const LightVisibility& seen, std::si
   return !dimmed && light.sees_all(seen.masks.subspan(pixel * words, words));
 }
 
-/// Adds one light to the pixels [begin, end).
-void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVisibility& seen, std::size_t begin,
-               std::size_t end, std::span<glm::dvec3> beauty) {
+bool is_unwanted(std::span<const float> wanted, std::size_t asked) {
+  return !wanted.empty() && std::isnan(wanted[asked]);
+}
+
+/// Adds one light to the pixels [begin, end), which are among those that are asked about.
+void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVisibility& seen,
+               std::span<const float> wanted, std::size_t begin, std::size_t end, std::span<glm::dvec3> beauty) {
   const visibility::Light& light = visible.light();
   const std::size_t words = light.words_per_mask();
   const auto add = [&](std::size_t i, const glm::dvec3& form_factor) {
@@ -60,27 +65,28 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
   std::vector<std::uint32_t> wholes;  // pixels, and what their form factors are multiplied with
   std::vector<double> shares;
   for (std::size_t i = begin; i < end; ++i) {
-    if (in.samples.triangle[i] < 0) continue;
+    const std::size_t asked = i - in.first_pixel;
+    if (in.samples.triangle[i] < 0 || is_unwanted(wanted, asked)) continue;
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     if (in.scene.emits[triangle] == light.index) continue;  // V and masks are those of the rule
     if (!is_lit_by(in.scene, light, static_cast<std::uint32_t>(triangle))) continue;
     const bool bent = !in.normals.empty() && in.normals[i] != in.samples.n[i];
     const bool shadowed = in.scene.receives_shadow[triangle] != 0;
     if (shadowed && !seen.form_factors.empty() && (!bent || seen.visibility.empty())) {
-      add(i, seen.form_factors[i]);
+      add(i, seen.form_factors[asked]);
       continue;
     }
-    if (shadowed && seen.masks.empty() && seen.visibility[i] == 0) continue;
-    if (shadowed ? takes_whole(visible, seen, i, words) : !light.texture) {
+    if (shadowed && seen.masks.empty() && seen.visibility[asked] == 0) continue;
+    if (shadowed ? takes_whole(visible, seen, asked, words) : !light.texture) {
       wholes.push_back(static_cast<std::uint32_t>(i));
-      shares.push_back(shadowed && seen.masks.empty() ? double{seen.visibility[i]} : 1.0);
+      shares.push_back(shadowed && seen.masks.empty() ? double{seen.visibility[asked]} : 1.0);
       continue;
     }
-    if (shadowed && !seen.masks.empty() && !visible.sees_any(seen.masks.subspan(i * words, words))) continue;
+    if (shadowed && !seen.masks.empty() && !visible.sees_any(seen.masks.subspan(asked * words, words))) continue;
     const visibility::UnshadowedLight view(light, in.samples.p[i], bent ? in.normals[i] : in.samples.n[i]);
     if (!view.shines()) continue;
     const LitPoint at{view, in.samples.p[i]};
-    add(i, shadowed ? form_factor_of(at, visible, seen, i, words) : visible.unshadowed(at));
+    add(i, shadowed ? form_factor_of(at, visible, seen, asked, words) : visible.unshadowed(at));
   }
   std::vector<double> form_factors(wholes.size());
   visibility::whole_form_factors(light, {in.samples.p, in.normals.empty() ? in.samples.n : in.normals, wholes},
@@ -91,7 +97,15 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
 }  // namespace
 
 std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility) {
-  const std::size_t pixel_count = scene.samples.size();
+  PENUMBRA_ASSERT(scene.first_pixel == 0, "all pixels, not those from {} on", scene.first_pixel);
+  std::vector<glm::vec3> beauty(scene.samples.size(), glm::vec3(0));
+  add_beauty(scene, visibility, {}, beauty);
+  return beauty;
+}
+
+void add_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility, std::span<const float> wanted,
+                std::span<glm::vec3> beauty) {
+  const std::size_t pixel_count = beauty.size();
   PENUMBRA_ASSERT(visibility.size() == scene.lights.size(), "{} visibilities for {} lights", visibility.size(),
                   scene.lights.size());
   for (std::size_t k = 0; k < scene.lights.size(); ++k) {
@@ -106,14 +120,14 @@ std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<cons
   }
 
   const std::vector<VisibleLight> lights(scene.lights.begin(), scene.lights.end());
-  std::vector<glm::vec3> beauty(pixel_count);
   constexpr std::size_t kGrain = 256;  // pixels: enough to drown the cost of a task
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixel_count, kGrain), [&](const auto& range) {
+  const std::size_t first = scene.first_pixel;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(first, first + pixel_count, kGrain), [&](const auto& range) {
     std::vector<glm::dvec3> sum(range.size(), glm::dvec3(0));
-    for (std::size_t k = 0; k < lights.size(); ++k) {
-      add_light(scene, lights[k], visibility[k], range.begin(), range.end(), sum);
-    }
+    for (std::size_t k = 0; k < lights.size(); ++k)
+      add_light(scene, lights[k], visibility[k], wanted, range.begin(), range.end(), sum);
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      if (is_unwanted(wanted, i - first)) continue;
       const std::int32_t triangle = scene.samples.triangle[i];
       const std::int32_t emits = triangle < 0 ? -1 : scene.scene.emits[static_cast<std::size_t>(triangle)];
       if (emits >= 0) {
@@ -123,10 +137,9 @@ std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<cons
             sum[i - range.begin()] += radiance_at(light, scene.samples.p[i]);
         }
       }
-      beauty[i] = glm::vec3(sum[i - range.begin()]);
+      beauty[i - first] += glm::vec3(sum[i - range.begin()]);
     }
   });
-  return beauty;
 }
 
 }  // namespace penumbra::compare

@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,6 +33,7 @@ struct BeautyScene {
   std::span<const visibility::Light> lights;
   std::span<const glm::dvec3> pixel_colors = {};  ///< of each pixel, in place of the objects' (compare/surface.hpp)
   std::span<const glm::vec3> normals = {};        ///< of each pixel, for cosines, in place of the samples' own
+  std::size_t first_pixel = 0;                    ///< what is asked is about pixels from this on
 };
 
 /// The linear beauty of each pixel, for diffuse surfaces lit directly:
@@ -61,5 +63,10 @@ struct BeautyScene {
 ///
 /// Each pixel is summed in double and in one order, so the result does not depend on the number of threads.
 std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility);
+
+/// The same of so many pixels from BeautyScene::first_pixel on, with as many entries in `visibility`, added to what
+/// `beauty` has. `wanted` (empty, or of each of these pixels): those with NaN stay as they are.
+void add_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility, std::span<const float> wanted,
+                std::span<glm::vec3> beauty);
 
 }  // namespace penumbra::compare

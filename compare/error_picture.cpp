@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace penumbra::compare {
@@ -81,16 +84,37 @@ Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<cons
       });
 }
 
-float auto_exposure(std::span<const glm::vec3> linear) {
-  std::vector<float> brightness;
-  for (const glm::vec3& color : linear) {
-    const float largest = std::max({color.r, color.g, color.b});
-    if (largest > 0 && std::isfinite(largest)) brightness.push_back(largest);
+float auto_exposure(std::span<const glm::vec3> linear, std::span<const std::uint8_t> left_out) {
+  // Floats above 0 are in the order of their bits: first those bits' upper half is found, then the lower.
+  constexpr std::uint32_t kHalf = 16;
+  const auto counts_of_halves = [&](std::uint32_t shift, std::uint32_t above) {
+    std::vector<std::size_t> counts(std::size_t{1} << kHalf);
+    for (std::size_t i = 0; i < linear.size(); ++i) {
+      if (!left_out.empty() && left_out[i] != 0) continue;
+      const float largest = std::max({linear[i].r, linear[i].g, linear[i].b});
+      const auto bits = std::bit_cast<std::uint32_t>(largest);
+      if (largest > 0 && std::isfinite(largest) && (shift != 0 || bits >> kHalf == above))
+        ++counts[bits >> shift & ((1u << kHalf) - 1)];
+    }
+    return counts;
+  };
+  const auto find = [](std::span<const std::size_t> counts, std::size_t& place) {
+    std::uint32_t half = 0;
+    for (; place >= counts[half]; ++half) place -= counts[half];
+    return half;
+  };
+  const std::vector<std::size_t> counts = counts_of_halves(kHalf, 0);
+  const std::size_t count = std::reduce(counts.begin(), counts.end());
+  if (count == 0) {
+    const auto is_black = [&](const glm::vec3& color) {
+      return color == glm::vec3(0) || left_out[static_cast<std::size_t>(&color - linear.data())] != 0;
+    };
+    const bool others_are_black = !left_out.empty() && std::ranges::all_of(linear, is_black);
+    return others_are_black ? auto_exposure(linear) : 1;
   }
-  if (brightness.empty()) return 1;
-  const auto place = brightness.begin() + static_cast<std::ptrdiff_t>((brightness.size() - 1) * 99 / 100);
-  std::nth_element(brightness.begin(), place, brightness.end());
-  return 0.9f / *place;
+  std::size_t place = (count - 1) * 99 / 100;
+  const std::uint32_t upper = find(counts, place), lower = find(counts_of_halves(0, upper), place);
+  return 0.9f / std::bit_cast<float>(upper << kHalf | lower);
 }
 
 }  // namespace penumbra::compare

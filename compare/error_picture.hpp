@@ -31,7 +31,8 @@ Image8 error_picture(const visibility::ViewSamples& samples, std::span<const flo
 Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<const float> visibility);
 
 /// A factor for linear colours that makes a picture neither dark nor burnt: the 99th percentile of the largest
-/// component of pixels that are not black becomes 0.9 of white. 1 if all are black.
-float auto_exposure(std::span<const glm::vec3> linear);
+/// component of pixels that are not black becomes 0.9 of white. 1 if all are black. `left_out` (empty, or of each
+/// pixel): not 0 for pixels that do not count, unless all others are black.
+float auto_exposure(std::span<const glm::vec3> linear, std::span<const std::uint8_t> left_out = {});
 
 }  // namespace penumbra::compare

@@ -2,6 +2,7 @@
 #include "compare/surface.hpp"
 
 #include "base/image.hpp"
+#include "base/pages.hpp"
 #include "scenes/texel_number.hpp"
 
 #include <glm/common.hpp>
@@ -77,14 +78,19 @@ glm::vec3 shading_normal(const scenes::VertexLooks& looks, const visibility::Tri
 SurfaceLooks look_at(const scenes::Scene& scene, const visibility::SceneFloats& floats,
                      const visibility::ViewSamples& samples, bool shading_normals) {
   const scenes::VertexLooks& looks = scene.looks;
-  SurfaceLooks all{std::vector<glm::dvec3>(samples.size(), glm::dvec3(0)), {}};
+  const bool painted = !looks.colors.empty() || std::ranges::any_of(scene.objects, [](const scenes::Object& object) {
+    return object.picture.has_value();
+  });
+  SurfaceLooks all;
+  if (painted) resize_on_all_cores(all.colors, samples.size());
   if (shading_normals) all.normals = samples.n;
+  if (!painted && !shading_normals) return all;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 1024), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
       const auto triangle = static_cast<std::uint32_t>(samples.triangle[i]);
       const scenes::Object& object = scene.objects[floats.object[triangle]];
-      all.colors[i] = object.color;
+      if (painted) all.colors[i] = object.color;
       const bool smooth = shading_normals && !looks.normals.empty();
       if (looks.colors.empty() && !object.picture && !smooth) continue;
       const visibility::Triangle& corners = floats.triangles[triangle];

@@ -12,7 +12,8 @@ namespace penumbra::compare {
 
 /// How the surface looks where each pixel sees it.
 struct SurfaceLooks {
-  std::vector<glm::dvec3> colors;  ///< linear base colour: the object's × its picture's × its vertices'; background 0
+  /// Linear base colour: the object's × its picture's × its vertices'; background 0. Empty: only objects have colours.
+  std::vector<glm::dvec3> colors;
   std::vector<glm::vec3> normals;  ///< unit, on the viewer's side of the geometric one; empty: nobody asked
 };
 

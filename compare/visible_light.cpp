@@ -5,6 +5,7 @@
 #include "compare/visible_light.hpp"
 
 #include "base/assert.hpp"
+#include "visibility/lights/part_form_factors.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -50,6 +51,16 @@ std::array<double, kBlock> weigh(const glm::dvec3& p, const glm::dvec3& n, const
     weight[j] = std::max(0.0, n.x * dx + n.y * dy + n.z * dz) / std::max(squared * squared, 1e-300);
   }
   return weight;
+}
+
+/// Bit j: n · d > 0.
+std::uint32_t above_horizon(const glm::dvec3& p, const glm::dvec3& n, const Block& block) {
+  std::array<double, kBlock> height;
+  for (std::size_t j = 0; j < kBlock; ++j)
+    height[j] = n.x * (block.x[j] - p.x) + n.y * (block.y[j] - p.y) + n.z * (block.z[j] - p.z);
+  std::uint32_t bits = 0;
+  for (std::size_t j = 0; j < kBlock; ++j) bits |= std::uint32_t{height[j] > 0} << j;
+  return bits;
 }
 
 double sum_of(const std::array<double, kBlock>& weight, std::uint32_t bits) {
@@ -156,10 +167,14 @@ double VisibleLight::cell_border(std::uint32_t row, std::uint32_t column) const 
 double VisibleLight::of_cells(const UnshadowedLight& seen, Mask mask) const {
   const std::uint32_t columns = light_->columns;
   const auto t = [&](std::uint32_t row) { return 2.0 * row / light_->rows - 1; };
-  double sum = 0;
+  thread_local visibility::FourCorneredParts boxes;
+  boxes.clear();
+  const auto add_box = [&](const glm::dvec2& low, const glm::dvec2& high) {
+    boxes.add({low, {high.x, low.y}, high, {low.x, high.y}});
+  };
   std::uint32_t full = 0;  // rows just before this one in which all is visible: one rectangle
   const auto add_full = [&](std::uint32_t end) {
-    if (full != 0) sum += seen.box({-1, t(end - full)}, {1, t(end)});
+    if (full != 0) add_box({-1, t(end - full)}, {1, t(end)});
     full = 0;
   };
   for (std::uint32_t row = 0; row < light_->rows; ++row) {
@@ -171,20 +186,21 @@ double VisibleLight::of_cells(const UnshadowedLight& seen, Mask mask) const {
     }
     add_full(row);
     for (; from < end; from = find_bit(mask, to, end, true), to = find_bit(mask, from, end, false)) {
-      sum += seen.box({cell_border(row, from - begin), t(row)}, {cell_border(row, to - begin), t(row + 1)});
+      add_box({cell_border(row, from - begin), t(row)}, {cell_border(row, to - begin), t(row + 1)});
     }
   }
   add_full(light_->rows);
-  return sum;
+  return std::max(0.0, visibility::sum_of_parts(seen, boxes));
 }
 
 glm::dvec3 VisibleLight::of_runs(const LitPoint& at, double whole, Mask mask) const {
   if (at.seen.above_horizon()) return glm::dvec3(of_cells(at.seen, mask));
   // No sample below the horizon is visible: its cell does not count, though part of it may be above.
   std::vector<std::uint32_t> above(mask.begin(), mask.end());
-  const glm::dvec3 p(at.p);
-  for (std::size_t j = 0; j < light_->points.size(); ++j) {
-    if (glm::dot(at.seen.normal(), glm::dvec3(light_->points[j]) - p) > 0) above[j / 32] |= 1u << j % 32;
+  for (std::size_t word = 0; word < all_.size(); ++word) {
+    const std::size_t i = word * kBlock;
+    const Block block{&points_.x[i], &points_.y[i], &points_.z[i]};
+    above[word] |= above_horizon(glm::dvec3(at.p), at.seen.normal(), block) & all_[word];
   }
   const double known = of_cells(at.seen, above);
   return glm::dvec3(known > 0 ? whole * (of_cells(at.seen, mask) / known) : 0.0);

@@ -44,48 +44,55 @@ float cryptomatte_id(std::string_view name) {
   return std::bit_cast<float>(id_bits(name));
 }
 
-std::vector<float> Cryptomatte::take_names(std::span<const std::string> names) {
+void Cryptomatte::take_names(std::span<const std::string> names) {
   nlohmann::json manifest = nlohmann::json::object();
-  std::vector<float> numbers;
   for (const std::string& name : names) {
-    numbers.push_back(cryptomatte_id(name));
+    numbers_.push_back(cryptomatte_id(name));
     manifest[name] = fmt::format("{:08x}", id_bits(name));
   }
   manifest_ = manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return numbers;
 }
 
-Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, std::span<const std::uint32_t> of_pixel)
-    : layer_(std::move(layer)), ranks_(2), nothing_(of_pixel.size(), 0.0f) {
-  const std::vector<float> numbers = take_names(names);
-  ranks_[0] = {nothing_, nothing_};
-  for (std::size_t i = 0; i < of_pixel.size(); ++i) {
-    if (of_pixel[i] == Surfaces::kNothing) continue;
-    ranks_[0].ids[i] = numbers[of_pixel[i]];
-    ranks_[0].coverage[i] = 1;
-  }
+Cryptomatte::Cryptomatte(std::string layer, std::span<const std::string> names, NameOf name_of)
+    : layer_(std::move(layer)), name_of_(std::move(name_of)), ranks_(2) {
+  take_names(names);
 }
 
-Cryptomatte::Cryptomatte(std::string layer, const MatteShares& shares)
-    : layer_(std::move(layer)), ranks_(kRanks), nothing_(shares.pixel_count(), 0.0f) {
-  const std::vector<float> numbers = take_names(shares.names());
+Cryptomatte::Cryptomatte(std::string layer, const MatteShares& shares) : layer_(std::move(layer)), ranks_(kRanks) {
+  take_names(shares.names());
+  const std::vector<float> nothing(shares.pixel_count(), 0.0f);
   for (std::size_t i = 0; i < shares.pixel_count(); ++i) {
     const std::vector<MatteShares::Share> here = shares.of_pixel(i);
     for (std::size_t rank = 0; rank < std::min(here.size(), kRanks); ++rank) {
-      if (ranks_[rank].ids.empty()) ranks_[rank] = {nothing_, nothing_};
-      ranks_[rank].ids[i] = numbers[here[rank].name];
+      if (ranks_[rank].ids.empty()) ranks_[rank] = {nothing, nothing};
+      ranks_[rank].ids[i] = numbers_[here[rank].name];
       ranks_[rank].coverage[i] = here[rank].part;
     }
   }
 }
 
+ExrValues Cryptomatte::channel(std::size_t rank, bool is_coverage) const {
+  if (name_of_ && rank == 0) {
+    return [this, is_coverage](std::size_t first, std::span<float> values) {
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::uint32_t name = name_of_(first + i);
+        values[i] = name == Surfaces::kNothing ? 0.0f : is_coverage ? 1.0f : numbers_[name];
+      }
+    };
+  }
+  const std::vector<float>& all = is_coverage ? ranks_[rank].coverage : ranks_[rank].ids;
+  if (all.empty()) return [](std::size_t /*first*/, std::span<float> values) { std::ranges::fill(values, 0.0f); };
+  return [&all](std::size_t first, std::span<float> values) {
+    std::ranges::copy(std::span(all).subspan(first, values.size()), values.begin());
+  };
+}
+
 void Cryptomatte::add_to(ExrImage& image) const {
   for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
-    const auto& [ids, coverage] = ranks_[rank];
     const char* const letters = rank % 2 == 0 ? "RG" : "BA";
     const std::string group = fmt::format("{}{:02}.", layer_, rank / 2);
-    image.channels.push_back({group + letters[0], std::span<const float>(ids.empty() ? nothing_ : ids), 1});
-    image.channels.push_back({group + letters[1], std::span<const float>(ids.empty() ? nothing_ : coverage), 1});
+    image.channels.push_back({group + letters[0], channel(rank, false)});
+    image.channels.push_back({group + letters[1], channel(rank, true)});
   }
   const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", murmur3(layer_)));
   image.attributes[key + "name"] = layer_;

@@ -3,7 +3,9 @@
 #include "app/pictures/matte_shares.hpp"
 #include "base/exr.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,25 +27,31 @@ class Cryptomatte {
  public:
   static constexpr std::size_t kRanks = 6;  ///< of several view samples a pixel, as other renderers have them
 
-  /// One view sample a pixel: rank 0 alone, coverage 1, or 0 where there is nothing; rank 1 is empty. `of_pixel`: for
-  /// each pixel an index into `names`, or Surfaces::kNothing. Equal names are one matte.
-  Cryptomatte(std::string layer, std::span<const std::string> names, std::span<const std::uint32_t> of_pixel);
+  /// Of a pixel an index into names, or Surfaces::kNothing.
+  using NameOf = std::function<std::uint32_t(std::size_t pixel)>;
+
+  /// One view sample a pixel: rank 0 alone, coverage 1, or 0 where there is nothing; rank 1 is empty. `name_of` must
+  /// stay valid as long as this. Equal names are one matte.
+  Cryptomatte(std::string layer, std::span<const std::string> names, NameOf name_of);
   /// The six that have most of each pixel; what else is in it is in no matte.
   Cryptomatte(std::string layer, const MatteShares& shares);
 
-  /// Adds channels, which point into this object, and the attributes that the specification asks for.
+  /// Adds channels, which know this object, and the attributes that the specification asks for.
   void add_to(ExrImage& image) const;
 
  private:
   struct Rank {
-    std::vector<float> ids, coverage;
+    std::vector<float> ids, coverage;  // of each pixel
   };
   /// The numbers of names, which go into the manifest.
-  std::vector<float> take_names(std::span<const std::string> names);
+  void take_names(std::span<const std::string> names);
+  /// One of the two channels of a rank.
+  [[nodiscard]] ExrValues channel(std::size_t rank, bool is_coverage) const;
 
   std::string layer_, manifest_;
-  std::vector<Rank> ranks_;     // an even number; those that are empty are 0 everywhere
-  std::vector<float> nothing_;  // theirs
+  std::vector<float> numbers_;  // of names
+  NameOf name_of_;              // of one view sample a pixel
+  std::vector<Rank> ranks_;     // of several; an even number; those that are empty are 0 everywhere
 };
 
 }  // namespace penumbra::app

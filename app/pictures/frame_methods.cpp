@@ -116,9 +116,10 @@ void FrameRenderer::run_methods(const std::filesystem::path& bits) {
   run_ = run_lights(beauty, bits_ ? &*bits_ : nullptr);
   watch.restart();
   beauty_ = std::move(beauty).parts();
-  alpha_.clear();
-  for (const std::int32_t triangle : lit().samples.triangle)
-    alpha_.push_back(triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f);
+  alpha_.resize(lit().samples.size());
+  std::ranges::transform(lit().samples.triangle, alpha_.begin(), [](std::int32_t triangle) {
+    return triangle == visibility::ViewSamples::kBackground ? 0.0f : 1.0f;
+  });
   beauty_seconds_ += watch.seconds();
   add_panes();
   say_idle_lights();

@@ -13,6 +13,7 @@
 #include "visibility/alpha/panes.hpp"
 
 #include <spdlog/spdlog.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -253,9 +254,14 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
       mean_.emplace(width, height, frame_.filter);
       mattes_ = Mattes{MatteShares(width, height, frame_.filter), MatteShares(width, height, frame_.filter)};
     }
-    const Surfaces surfaces = surfaces_of(lit());
-    mattes_->objects.add(surfaces.objects, surfaces.object, side);
-    mattes_->materials.add(surfaces.materials, surfaces.material, side);
+    const Surfaces surfaces(lit());
+    std::vector<std::uint32_t> shown(lit().samples.size());
+    const auto numbers = [&](auto number) -> std::span<const std::uint32_t> {
+      tbb::parallel_for(std::size_t{0}, shown.size(), [&](std::size_t i) { shown[i] = (surfaces.*number)(i); });
+      return shown;
+    };
+    mattes_->objects.add(surfaces.objects(), numbers(&Surfaces::object), side);
+    mattes_->materials.add(surfaces.materials(), numbers(&Surfaces::material), side);
     const std::vector<std::string> names = whole_names(lit().lights);
     mean_->add(alpha_, names, run_.visibility, beauty_, side);
     beauty_seconds_ += watch.seconds();
@@ -296,13 +302,15 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   const std::vector<std::vector<glm::vec3>> beauty = mean_ ? mean_->beauty(own) : std::move(beauty_);
   const std::vector<std::vector<float>> visibility = mean_ ? mean_->visibility(own) : std::move(run_.visibility);
   const std::vector<float> alpha = mean_ ? mean_->alpha() : std::move(alpha_);
-  std::vector<glm::vec3> sum = sum_of(beauty, session().pixel_count());
+  std::vector<glm::vec3> together;  // none: there is one light
+  if (beauty.size() != 1 || beauty.front().empty() || mean_) together = sum_of(beauty, session().pixel_count());
   if (mean_) {  // lights of other moments alone
     std::vector<std::string> others = mean_->lights();
     std::erase_if(others, [&](const std::string& light) { return std::ranges::find(own, light) != own.end(); });
-    const std::vector<glm::vec3> more = sum_of(mean_->beauty(others), sum.size());
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
+    const std::vector<glm::vec3> more = sum_of(mean_->beauty(others), together.size());
+    for (std::size_t i = 0; i < more.size(); ++i) together[i] += more[i];
   }
+  const std::span<const glm::vec3> sum = together.empty() ? beauty.front() : together;
   float stops = exposure.stops;
   if (exposure.kind == Exposure::Kind::automatic || std::isnan(stops))
     stops = std::log2(auto_exposure(session(), sum, lamps_));
@@ -318,7 +326,7 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
   if (!files.png.empty()) {
     png.emplace(files.png);
     // libpng has one thread; OpenEXR's compress beside it.
-    packed = std::async(std::launch::async, [this, &sum, stops] {
+    packed = std::async(std::launch::async, [this, sum, stops] {
       return encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops)));
     });
   }

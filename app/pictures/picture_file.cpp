@@ -83,12 +83,17 @@ void add_components(ExrImage& image, const std::string& prefix, std::span<const 
   }
 }
 
+/// A channel whose values are made pixel by pixel when its lines are written.
+template <typename ValueOf>
+void add_made(ExrImage& image, const std::string& name, ValueOf value_of) {
+  image.channels.push_back({name, [value_of](std::size_t first, std::span<float> values) {
+                              for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(first + i);
+                            }});
+}
+
 /// The number that the picture has of a name: from 1; 0: nothing.
-std::vector<float> picture_numbers(std::span<const std::uint32_t> indices) {
-  std::vector<float> numbers;
-  for (const std::uint32_t index : indices)
-    numbers.push_back(index == Surfaces::kNothing ? 0.0f : static_cast<float>(index) + 1);
-  return numbers;
+float picture_number(std::uint32_t index) {
+  return index == Surfaces::kNothing ? 0.0f : static_cast<float>(index) + 1;
 }
 
 /// World space to the camera's (X right, Y up, looking along −Z), and on to [−1, 1] over the picture.
@@ -154,26 +159,17 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   const LabelledLights& all = content.lights;
   const MethodLabel& label = all.label(0);
   const visibility::ViewSamples& samples = session.samples;
-  const std::size_t count = session.pixel_count();
-  std::vector<float> alpha(count), depth = samples.depth;
-  std::ranges::copy(content.alpha, alpha.begin());
-  std::vector<std::uint32_t> id(count);
-  std::vector<glm::vec3> world(count, glm::vec3(0));
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool background = samples.triangle[i] == visibility::ViewSamples::kBackground;
-    if (content.alpha.empty()) alpha[i] = background ? 0.0f : 1.0f;
-    id[i] = static_cast<std::uint32_t>(samples.triangle[i]);  // background: 4294967295
-    if (background)
-      depth[i] = kFar;
-    else
-      world[i] = glm::vec3(glm::dvec3(samples.p[i]) + session.floats.origin);
-  }
+  const auto is_background = [&samples](std::size_t i) {
+    return samples.triangle[i] == visibility::ViewSamples::kBackground;
+  };
 
   ExrImage image;
   image.width = session.width;
   image.height = session.height;
   add_components(image, "", content.sum);
-  image.channels.push_back({"A", std::span<const float>(alpha), 1});
+  add_made(image, "A", [&content, is_background](std::size_t i) {
+    return !content.alpha.empty() ? content.alpha[i] : is_background(i) ? 0.0f : 1.0f;
+  });
   image.channels.push_back({"V", std::span<const float>(content.visibility.front()), 1});
   const std::vector<std::string> layers = layer_names(all.lights);
   for (std::size_t light = 0; light < layers.size(); ++light) {
@@ -181,15 +177,22 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
       image.channels.push_back({layers[light] + end, std::span<const float>(content.visibility[light]), 1});
     for (const char* const end : {".", "_light."}) add_components(image, layers[light] + end, content.beauty[light]);
   }
-  add_vector_channels(image, "P", world);
+  for (glm::length_t axis = 0; axis < 3; ++axis) {
+    add_made(image, std::string("P.") + "XYZ"[axis], [&, is_background, axis](std::size_t i) {
+      return is_background(i) ? 0.0f : static_cast<float>(double{samples.p[i][axis]} + session.floats.origin[axis]);
+    });
+  }
   add_vector_channels(image, "Prel", samples.p);
   add_vector_channels(image, "N", samples.n);
-  image.channels.push_back({"Z", std::span<const float>(depth), 1});
-  image.channels.push_back({"id", std::span<const std::uint32_t>(id), 1});
-  const Surfaces surfaces = surfaces_of(session);
-  const std::vector<float> object = picture_numbers(surfaces.object), material = picture_numbers(surfaces.material);
-  image.channels.push_back({"object.X", std::span<const float>(object), 1});
-  image.channels.push_back({"material.X", std::span<const float>(material), 1});
+  add_made(image, "Z", [&, is_background](std::size_t i) { return is_background(i) ? kFar : samples.depth[i]; });
+  // The background's, −1, is 4294967295 there.
+  const auto* const id = reinterpret_cast<const std::uint32_t*>(samples.triangle.data());
+  image.channels.push_back({"id", std::span(id, samples.size()), 1});
+  const Surfaces surfaces(session);
+  const auto object = [&surfaces](std::size_t i) { return surfaces.object(i); };
+  const auto material = [&surfaces](std::size_t i) { return surfaces.material(i); };
+  add_made(image, "object.X", [object](std::size_t i) { return picture_number(object(i)); });
+  add_made(image, "material.X", [material](std::size_t i) { return picture_number(material(i)); });
 
   const CameraMatrices matrices = matrices_of(session);
   image.attributes = {{"penumbra.method", label.description.name},
@@ -199,8 +202,8 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
                       {"penumbra.lightSamples", fmt::format("{}", samples_of(all, whole_lights(all.lights).front()))},
                       {"penumbra.samplePattern", pattern_of(all, whole_lights(all.lights).front()).value_or("null")},
                       {"penumbra.lights", lights_text(session, all, layers)},
-                      {"penumbra.objects", text_of(surfaces.objects)},
-                      {"penumbra.materials", text_of(surfaces.materials)},
+                      {"penumbra.objects", text_of(surfaces.objects())},
+                      {"penumbra.materials", text_of(surfaces.materials())},
                       {"penumbra.camera", session.scene.cameras[session.camera_index].name},
                       {"penumbra.axes", "world: right-handed, Y up; camera: X right, Y up, looking along -Z"},
                       {"penumbra.scene", session.scene.name},
@@ -211,10 +214,9 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   image.matrices = {{"worldToCamera", matrices.to_camera}, {"worldToNDC", matrices.to_picture}};
   const Mattes* const mattes = content.mattes;
   const Cryptomatte objects = mattes != nullptr ? Cryptomatte("CryptoObject", mattes->objects)
-                                                : Cryptomatte("CryptoObject", surfaces.objects, surfaces.object);
-  const Cryptomatte materials = mattes != nullptr
-                                    ? Cryptomatte("CryptoMaterial", mattes->materials)
-                                    : Cryptomatte("CryptoMaterial", surfaces.materials, surfaces.material);
+                                                : Cryptomatte("CryptoObject", surfaces.objects(), object);
+  const Cryptomatte materials = mattes != nullptr ? Cryptomatte("CryptoMaterial", mattes->materials)
+                                                  : Cryptomatte("CryptoMaterial", surfaces.materials(), material);
   objects.add_to(image);
   materials.add_to(image);
   write_exr(file, image);

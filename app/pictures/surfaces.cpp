@@ -1,27 +1,29 @@
 #include "app/pictures/surfaces.hpp"
 
 #include <algorithm>
-#include <cstddef>
 
 namespace penumbra::app {
 
-Surfaces surfaces_of(const Session& session) {
-  Surfaces all;
-  std::vector<std::uint32_t> material_of;
+Surfaces::Surfaces(const Session& session) : session_(&session) {
   for (const scenes::Object& object : session.scene.objects) {
-    all.objects.push_back(object.name);
-    material_of.push_back(Surfaces::kNothing);
+    objects_.push_back(object.name);
+    material_of_.push_back(kNothing);
     if (object.material.empty()) continue;
-    const auto known = std::ranges::find(all.materials, object.material);
-    material_of.back() = static_cast<std::uint32_t>(known - all.materials.begin());
-    if (known == all.materials.end()) all.materials.push_back(object.material);
+    const auto known = std::ranges::find(materials_, object.material);
+    material_of_.back() = static_cast<std::uint32_t>(known - materials_.begin());
+    if (known == materials_.end()) materials_.push_back(object.material);
   }
-  for (const std::int32_t triangle : session.samples.triangle) {
-    const bool background = triangle == visibility::ViewSamples::kBackground;
-    all.object.push_back(background ? Surfaces::kNothing : session.floats.object[static_cast<std::size_t>(triangle)]);
-    all.material.push_back(background ? Surfaces::kNothing : material_of[all.object.back()]);
-  }
-  return all;
+}
+
+std::uint32_t Surfaces::object(std::size_t view_sample) const {
+  const std::int32_t triangle = session_->samples.triangle[view_sample];
+  if (triangle == visibility::ViewSamples::kBackground) return kNothing;
+  return session_->floats.object[static_cast<std::size_t>(triangle)];
+}
+
+std::uint32_t Surfaces::material(std::size_t view_sample) const {
+  const std::uint32_t object = this->object(view_sample);
+  return object == kNothing ? kNothing : material_of_[object];
 }
 
 }  // namespace penumbra::app

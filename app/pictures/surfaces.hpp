@@ -2,20 +2,32 @@
 
 #include "app/session.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace penumbra::app {
 
 /// Which object, and which material, each view sample shows.
-struct Surfaces {
+class Surfaces {
+ public:
   static constexpr std::uint32_t kNothing = 0xffffffffu;
 
-  std::vector<std::string> objects, materials;  ///< names
-  std::vector<std::uint32_t> object, material;  ///< of each view sample, an index into these, or kNothing
-};
+  /// `session` must outlive it.
+  explicit Surfaces(const Session& session);
 
-Surfaces surfaces_of(const Session& session);
+  [[nodiscard]] std::span<const std::string> objects() const { return objects_; }  ///< names
+  [[nodiscard]] std::span<const std::string> materials() const { return materials_; }
+  /// What a view sample shows: an index into these, or kNothing.
+  [[nodiscard]] std::uint32_t object(std::size_t view_sample) const;
+  [[nodiscard]] std::uint32_t material(std::size_t view_sample) const;
+
+ private:
+  const Session* session_;
+  std::vector<std::string> objects_, materials_;
+  std::vector<std::uint32_t> material_of_;  // each object
+};
 
 }  // namespace penumbra::app

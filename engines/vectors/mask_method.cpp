@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +24,8 @@ namespace {
 constexpr std::uint32_t kBlock = 8, kSmallBlock = 4;  // pixels, whose clusters have lists
 constexpr std::uint32_t kRegion = 16;                 // pixels, whose blocks begin their walks at the same roots
 constexpr std::size_t kRegionPixels = std::size_t{kRegion} * kRegion;
-constexpr std::size_t kMostMaskBytes = std::size_t{256} << 20U;  // of a tile
+// Of a tile: plenty for every thread, and no more, since memory that the system gives anew takes longer than masks.
+constexpr std::size_t kMaskBytesOfThread = std::size_t{16} << 20U, kMostMaskBytes = std::size_t{256} << 20U;
 
 /// Where the pixels of a region are: in Z order, so that those that follow one another are neighbours.
 struct Spot {
@@ -178,7 +180,9 @@ MaskMethod::GridShape MaskMethod::grid_shape() const {
 
 std::uint32_t MaskMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
-  const std::size_t fit = kMostMaskBytes / (mask_words(grids_[0]) * 2 * samples_->width);
+  const auto threads = static_cast<std::size_t>(std::max(tbb::this_task_arena::max_concurrency(), 1));
+  const std::size_t fit =
+      std::min(threads * kMaskBytesOfThread, kMostMaskBytes) / (mask_words(grids_[0]) * 2 * samples_->width);
   const std::size_t rows = fit >= kRegion ? fit / kRegion * kRegion : fit;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(rows, 1, samples_->height));
 }

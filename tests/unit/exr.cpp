@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfTestFile.h>
 #include <OpenEXR/ImfVecAttribute.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -97,6 +98,16 @@ TEST_F(Exr, KeepsEveryBit) {
   back.attributes.erase("type");  // OpenEXR's own: "scanlineimage"
   EXPECT_EQ(back.attributes, sample.image.attributes);
   EXPECT_EQ(back.vectors, sample.image.vectors);
+}
+
+TEST_F(Exr, ValuesMadeLineByLineAreThoseOfAnArray) {
+  Sample sample;
+  write_exr(file("array.exr"), sample.image);
+  sample.image.channels[0].values = [&sample](std::size_t first, std::span<float> values) {
+    std::copy_n(sample.v.begin() + static_cast<std::ptrdiff_t>(first), values.size(), values.begin());
+  };
+  write_exr(file("lines.exr"), sample.image);
+  EXPECT_EQ(bytes_of(file("lines.exr")), bytes_of(file("array.exr")));
 }
 
 /// Every other block of 16 lines is noise, which ZIP cannot make smaller: those are stored as they are.

@@ -20,7 +20,16 @@ class FourCorneredParts {
   /// Before set().
   void resize(std::size_t count) {
     size_ = count;
+    if (count + kRoom <= lists_[0].s.size()) return;
     for (List& list : lists_) list.s.resize(count + kRoom), list.t.resize(count + kRoom);
+  }
+  void clear() { size_ = 0; }
+  void add(const Corners& corners) {
+    const std::size_t part = size_;
+    // Lists that grow take twice their length.
+    if (part + 1 + kRoom > lists_[0].s.size()) resize(2 * part + 1);
+    size_ = part + 1;
+    set(part, corners);
   }
   void set(std::size_t part, const Corners& corners) {
     for (std::size_t i = 0; i < corners.size(); ++i) lists_[i].s[part] = corners[i].x, lists_[i].t[part] = corners[i].y;

@@ -271,15 +271,50 @@ TEST(Beauty, BodiesShowTheirOwnLightOnceAndReflectThatOfOthers) {
   EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(3 * reflected));
 }
 
+/// Many points, and a mask of noise for each.
+struct ManyPoints {
+  Floor floor;
+  std::vector<std::uint32_t> masks;
+
+  ManyPoints() : floor(points()), masks(3 * floor.samples.size()) {
+    floor.lights = {rectangle(2, 1, 1, 5, 13)};
+    std::uint32_t state = 1;
+    for (std::uint32_t& word : masks) word = state = state * 1664525u + 1013904223u;
+  }
+  static std::vector<glm::vec3> points() {
+    std::vector<glm::vec3> all;
+    for (int i = 0; i < 5000; ++i)
+      all.emplace_back(0.01f * static_cast<float>(i % 71), 0.0f, 0.01f * static_cast<float>(i % 97));
+    return all;
+  }
+};
+
+TEST(Beauty, OfABandIsAddedWhereItIsWanted) {
+  const ManyPoints all;
+  const Floor& floor = all.floor;
+  const auto expected = floor.shade({{all.masks, {}}});
+  constexpr std::size_t kFirst = 1000, kCount = 700;
+  constexpr float kBefore = 0.25f;
+  std::vector<glm::vec3> band(kCount, glm::vec3(kBefore));
+  std::vector<float> wanted(kCount, 1.0f);
+  for (std::size_t i = 0; i < kCount; i += 3) wanted[i] = std::nanf("");
+  const LightVisibility seen{std::span(all.masks).subspan(3 * kFirst, 3 * kCount)};
+  add_beauty({.scene = floor.scene,
+              .samples = floor.samples,
+              .colors = floor.colors,
+              .lights = floor.lights,
+              .first_pixel = kFirst},
+             {&seen, 1}, wanted, band);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const glm::vec3 added = std::isnan(wanted[i]) ? glm::vec3(0) : expected[kFirst + i];
+    ASSERT_EQ(band[i], glm::vec3(kBefore) + added) << i;
+  }
+}
+
 TEST(Beauty, DoesNotDependOnTheNumberOfThreads) {
-  std::vector<glm::vec3> points;
-  for (int i = 0; i < 5000; ++i)
-    points.emplace_back(0.01f * static_cast<float>(i % 71), 0.0f, 0.01f * static_cast<float>(i % 97));
-  Floor floor(points);
-  floor.lights = {rectangle(2, 1, 1, 5, 13)};
-  std::vector<std::uint32_t> masks(3 * points.size());
-  std::uint32_t state = 1;
-  for (std::uint32_t& word : masks) word = state = state * 1664525u + 1013904223u;
+  const ManyPoints all;
+  const Floor& floor = all.floor;
+  const std::vector<std::uint32_t>& masks = all.masks;
   const auto many = floor.shade({{masks, {}}});
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const auto one = floor.shade({{masks, {}}});

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace penumbra::compare {
 namespace {
@@ -70,6 +72,34 @@ TEST(Exposure, PutsThe99thPercentileBelowWhite) {
   EXPECT_FLOAT_EQ(auto_exposure(linear), 0.009f);
   linear.emplace_back(0, 0, std::nanf(""));
   EXPECT_GT(auto_exposure(linear), 0);
+}
+
+TEST(Exposure, IsThatOfSortedPixels) {
+  constexpr unsigned kSeed = 5;
+  std::mt19937 random(kSeed);
+  for (const std::size_t count : {1, 2, 99, 100, 101, 5000}) {
+    std::vector<glm::vec3> linear;
+    std::vector<std::uint8_t> left_out;
+    std::vector<float> largest;
+    for (std::size_t i = 0; i < count; ++i) {
+      // Of every exponent, some of them equal.
+      const float value = std::ldexp(1 + static_cast<float>(random() % 5) / 8, static_cast<int>(random() % 250) - 125);
+      linear.emplace_back(value / 2, value, value / 4);
+      left_out.push_back(i > 0 && random() % 3 == 0 ? 1 : 0);
+      if (left_out.back() == 0) largest.push_back(value);
+    }
+    std::ranges::sort(largest);
+    EXPECT_EQ(auto_exposure(linear, left_out), 0.9f / largest[(largest.size() - 1) * 99 / 100])
+        << count << " pixels, seed " << kSeed;
+  }
+}
+
+TEST(Exposure, TakesWhatIsLeftOutWhereAllElseIsBlack) {
+  const std::vector<glm::vec3> linear{{0, 3, 0}, {0, 0, 0}};
+  EXPECT_FLOAT_EQ(auto_exposure(linear, std::vector<std::uint8_t>{1, 0}), 0.3f);
+  EXPECT_FLOAT_EQ(auto_exposure(linear, std::vector<std::uint8_t>{1, 1}), 0.3f);
+  const std::vector<glm::vec3> unknown{{0, 3, 0}, {0, std::nanf(""), 0}};
+  EXPECT_EQ(auto_exposure(unknown, std::vector<std::uint8_t>{1, 0}), 1) << "not a number is not black";
 }
 
 }  // namespace

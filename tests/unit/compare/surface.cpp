@@ -53,7 +53,7 @@ struct Surface {
 
 TEST(Surface, ColoursOfVerticesAreLinear) {
   Surface stage({{1, 1, 0}, {0, 0, 0}, {2, 0, 0}});
-  EXPECT_EQ(look_at(stage.scene, stage.floats, stage.samples, false).colors[0], glm::dvec3(1, 0.5, 0.25));
+  EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, false).colors.empty()) << "objects' colours do";
   stage.scene.looks.colors = {{1, 1, 1, 1}, {0, 1, 1, 1}, {0.5f, 0, 1, 1}};
   const auto colors = look_at(stage.scene, stage.floats, stage.samples, false).colors;
   EXPECT_LT(glm::distance(colors[0], glm::dvec3(0.5 + 0.125, 0.5 * 0.75, 0.25)), 1e-15);
