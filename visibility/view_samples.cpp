@@ -4,6 +4,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "base/pages.hpp"
 #include "visibility/pair_truth.hpp"
 #include "visibility/receivers.hpp"
 
@@ -258,9 +259,9 @@ ViewSamples complete_view_samples(const SceneFloats& scene, const PinholeCamera&
   samples.camera = camera;
   samples.eye = glm::vec3(camera.eye);
   samples.triangle = std::move(triangles);
-  samples.p.assign(pixels, glm::vec3(0));
-  samples.n.assign(pixels, glm::vec3(0));
-  samples.depth.assign(pixels, 0.0f);
+  resize_on_all_cores(samples.p, pixels);  // 0 where there is nothing
+  resize_on_all_cores(samples.n, pixels);
+  resize_on_all_cores(samples.depth, pixels);
   samples.facing.assign(pixels, 0);
   for_each_pixel(samples, [&](std::size_t pixel) {
     std::int32_t& triangle = samples.triangle[pixel];

@@ -17,6 +17,7 @@
 
 #include "engines/vectors/scan_boxes.hpp"
 #include "engines/vectors/scan_tile.hpp"
+#include "base/pages.hpp"
 #include "base/size1.hpp"
 
 #include <glm/common.hpp>
@@ -126,8 +127,8 @@ class Scan {
   const Screen screen_;
   const BoxCamera floats_;
   std::uint32_t tiles_x_, tiles_y_;
-  std::vector<double> nearest_;
-  std::vector<std::int64_t> carrier_;
+  UnsetList<double> nearest_;
+  UnsetList<std::int64_t> carrier_;
   std::vector<double> farthest_;  // of each tile: the largest of its pixels' smallest t
 };
 
@@ -140,16 +141,20 @@ Scan::Scan(const SceneFloats& scene, const PinholeCamera& camera)
       tiles_x_((camera.width + kScanTile - 1) / kScanTile),
       tiles_y_((camera.height + kScanTile - 1) / kScanTile) {
   const std::size_t tiles = std::size_t{tiles_x_} * tiles_y_;
-  nearest_.assign(tiles * kScanSlots, -std::numeric_limits<double>::infinity());
-  carrier_.assign(tiles * kScanSlots, visibility::ViewSamples::kBackground);
+  nearest_.resize(tiles * kScanSlots);
+  carrier_.resize(tiles * kScanSlots);
   farthest_.assign(tiles, std::numeric_limits<double>::infinity());
-  for (std::uint32_t y = 0; y < camera.height; ++y) {
-    for (std::uint32_t x = 0; x < camera.width; ++x) {
-      const std::size_t tile = std::size_t{y / kScanTile} * tiles_x_ + x / kScanTile;
-      nearest_[tile * kScanSlots + std::size_t{y % kScanTile} * kScanTile + x % kScanTile] =
-          std::numeric_limits<double>::infinity();
-    }
-  }
+  tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t i) {
+    const auto tile = static_cast<std::uint32_t>(i);
+    const auto nearest = std::span(nearest_).subspan(i * kScanSlots, kScanSlots);
+    std::ranges::fill(nearest, -std::numeric_limits<double>::infinity());  // beyond the picture
+    const std::uint32_t columns = std::min(camera.width - tile % tiles_x_ * kScanTile, kScanTile),
+                        rows = std::min(camera.height - tile / tiles_x_ * kScanTile, kScanTile);
+    for (std::uint32_t row = 0; row < rows; ++row)
+      std::ranges::fill(nearest.subspan(std::size_t{row} * kScanTile, columns),
+                        std::numeric_limits<double>::infinity());
+    std::ranges::fill(std::span(carrier_).subspan(i * kScanSlots, kScanSlots), visibility::ViewSamples::kBackground);
+  });
 }
 
 std::optional<PixelBox> Scan::pixels_in(glm::dvec2 lower, glm::dvec2 upper, double margin, double nearest) const {
