@@ -1,4 +1,5 @@
 # The shadow-volume family. wedges_test needs no device, volumes_test does.
+find_package(hwy REQUIRED)
 penumbra_test(wedges
   SOURCES
   agreement/volumes/coverage_errors.cpp
@@ -23,6 +24,7 @@ penumbra_test(volumes
   agreement/volumes/window_corners.cpp
   agreement/volumes/depth_complexity_scenes.cpp
   agreement/volumes/edge_crop.cpp
+  agreement/volumes/every_width.cpp
   agreement/volumes/exact_rows.cpp agreement/volumes/exact_rows_shapes.cpp
   agreement/volumes/packed_counters_scenes.cpp
   agreement/volumes/soft_volume_blend.cpp
@@ -44,7 +46,8 @@ penumbra_test(volumes
   unit/horizon.cpp
   unit/light_tiles.cpp
   unit/near_casters.cpp
+  unit/pack.cpp
   unit/point_rows.cpp
   unit/wide_leaves.cpp
-  LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes TBB::tbb gmpxx gmp)
+  LIBRARIES penumbra_volumes penumbra_selftest penumbra_vsm penumbra_reference penumbra_scenes hwy::hwy TBB::tbb gmpxx gmp)
 target_compile_definitions(volumes_test PRIVATE PENUMBRA_TEST_LAMPS="${CMAKE_CURRENT_SOURCE_DIR}/lamps")

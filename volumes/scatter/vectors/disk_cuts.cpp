@@ -183,15 +183,25 @@ class FastDiskCuts {
   }
 
  private:
-  /// Numbers of casters for a next step.
+  static constexpr std::size_t kMost = 128;  // that wait for a next step
+  /// With room for a vector beyond what is there.
+  using Column = std::array<double, kMost + 2 * hn::MaxLanes(Doubles())>;
+  /// Numbers of casters.
   struct Waiting {
-    static constexpr std::size_t kMost = 256;
-
     void add(Double which, Which these) { count += pack(which, these, Doubles(), &numbers[count]); }
     [[nodiscard]] bool full() const { return count >= kMost; }
 
-    HWY_ALIGN std::array<double, kMost + 2 * hn::MaxLanes(Doubles())> numbers;
+    HWY_ALIGN Column numbers;
     std::size_t count = 0;
+  };
+  /// x, y and z of three corners.
+  struct Corners {
+    HWY_ALIGN std::array<Column, 9> columns;
+
+    [[nodiscard]] Double3 get(std::size_t corner, std::size_t first) const {
+      const auto load = [&](std::size_t axis) { return hn::LoadU(Doubles(), &columns[3 * corner + axis][first]); };
+      return {load(0), load(1), load(2)};
+    }
   };
   /// Some of them; beyond the last one the first of all casters.
   static Double some(const Waiting& waiting, std::size_t first) {
@@ -203,19 +213,10 @@ class FastDiskCuts {
   static double thin_slab(const LightGrid::Cones& cones) {
     return 2 * static_cast<double>(cones.deviation) + 0x1p-40 * cones.reach;
   }
-  using Rows = hn::Vec<hn::RebindToSigned<Doubles>>;
-  static Rows rows_of(Double numbers) {
+  [[nodiscard]] Double planes_of(Double numbers) const {
     const Double begins = hn::Mul(numbers, number(static_cast<double>(vectors::NearCasters::kRow)));
-    return hn::ConvertTo(hn::RebindToSigned<Doubles>(), begins);
-  }
-  [[nodiscard]] Double gather(Rows rows, std::size_t field) const {
-    return hn::GatherIndex(Doubles(), rows_ + field, rows);
-  }
-  /// The way from p to a corner.
-  [[nodiscard]] Double3 way(std::size_t corner, Rows rows) const {
-    return {hn::Sub(gather(rows, 3 * corner), number(plane_.p.x)),
-            hn::Sub(gather(rows, 3 * corner + 1), number(plane_.p.y)),
-            hn::Sub(gather(rows, 3 * corner + 2), number(plane_.p.z))};
+    return hn::GatherIndex(Doubles(), rows_ + vectors::NearCasters::kPlane,
+                           hn::ConvertTo(hn::RebindToSigned<Doubles>(), begins));
   }
   /// As DiskPlane.
   struct Corner {
@@ -223,9 +224,8 @@ class FastDiskCuts {
     Double height, s, t;
   };
   [[nodiscard]] Double height(const Double3& w) const { return hn::Sub(along(plane_.axis, w), number(plane_.end)); }
-  [[nodiscard]] Corner corner(std::size_t which, Rows rows) const {
-    const Double3 w = way(which, rows);
-    return {w, height(w), along(plane_.u, w), along(plane_.v, w)};
+  [[nodiscard]] Corner corner(const Double3& way) const {
+    return {way, height(way), along(plane_.u, way), along(plane_.v, way)};
   }
   struct Passing {
     Double s, t;
@@ -242,28 +242,39 @@ class FastDiskCuts {
   /// Of those whose spheres are near those that meet the plane, or nearly.
   void pick_meeting() {
     const Doubles d;
+    // Number by number, which takes a fraction of what vectors do that gather.
+    for (std::size_t i = 0; i < spheres_.count; ++i) {
+      const double* row = rows_ + static_cast<std::size_t>(spheres_.numbers[i]) * vectors::NearCasters::kRow;
+      for (std::size_t field = 0; field < corners_.columns.size(); ++field) corners_.columns[field][i] = row[field];
+    }
     for (std::size_t i = 0; i < spheres_.count; i += hn::Lanes(d)) {
-      const Double which = some(spheres_, i);
-      const Rows rows = rows_of(which);
-      const Double a = height(way(0, rows)), b = height(way(1, rows)), c = height(way(2, rows));
-      const Which meets =
-          hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), number(slab_)), hn::Ge(hn::Max(a, hn::Max(b, c)), number(-slab_)));
-      meeting_.add(which, hn::And(meets, hn::FirstN(d, spheres_.count - i)));
+      const Double3 a = way(corners_.get(0, i)), b = way(corners_.get(1, i)), c = way(corners_.get(2, i));
+      const Double high_a = height(a), high_b = height(b), high_c = height(c);
+      const Which meets = hn::And(hn::Le(hn::Min(high_a, hn::Min(high_b, high_c)), number(slab_)),
+                                  hn::Ge(hn::Max(high_a, hn::Max(high_b, high_c)), number(-slab_)));
+      const Which these = hn::And(meets, hn::FirstN(d, spheres_.count - i));
+      if (hn::AllFalse(d, these)) continue;
+      std::size_t field = 0;
+      for (const Double& x : {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z})
+        pack(x, these, d, &ways_.columns[field++][meeting_.count]);
+      meeting_.add(hn::LoadU(d, &spheres_.numbers[i]), these);
       if (meeting_.full()) cut();
     }
     spheres_.count = 0;
   }
+  [[nodiscard]] Double3 way(const Double3& to) const {
+    return {hn::Sub(to.x, number(plane_.p.x)), hn::Sub(to.y, number(plane_.p.y)), hn::Sub(to.z, number(plane_.p.z))};
+  }
 
   void cut() {
     for (std::size_t i = 0; i < meeting_.count; i += hn::Lanes(Doubles()))
-      cut(some(meeting_, i), hn::FirstN(Doubles(), meeting_.count - i));
+      cut(i, some(meeting_, i), hn::FirstN(Doubles(), meeting_.count - i));
     meeting_.count = 0;
   }
 
-  void cut(Double which, Which used) {
+  void cut(std::size_t first, Double which, Which used) {
     const Doubles d;
-    const Rows rows = rows_of(which);
-    const Corner a = corner(0, rows), b = corner(1, rows), c = corner(2, rows);
+    const Corner a = corner(ways_.get(0, first)), b = corner(ways_.get(1, first)), c = corner(ways_.get(2, first));
     const Double zero = hn::Zero(d), slab = number(slab_);
     const Double nearest = hn::Min(hn::Abs(a.height), hn::Min(hn::Abs(b.height), hn::Abs(c.height)));
     const Double side = hn::Neg(product(a.way, {hn::Sub(hn::Mul(b.way.y, c.way.z), hn::Mul(b.way.z, c.way.y)),
@@ -293,7 +304,7 @@ class FastDiskCuts {
       return hn::And(hn::Le(hn::Sub(hn::Min(x, y), wide), number(most_)),
                      hn::Ge(hn::Add(hn::Max(x, y), wide), number(-most_)));
     };
-    const Which own = hn::Eq(gather(rows, vectors::NearCasters::kPlane), number(static_cast<double>(in_.at.plane)));
+    const Which own = hn::Eq(planes_of(which), number(static_cast<double>(in_.at.plane)));
     const Which kept =
         hn::AndNot(own, hn::And(hn::And(used, sure), hn::And(within(from_s, to_s), within(from_t, to_t))));
     const std::size_t more = hn::CountTrue(d, kept);
@@ -341,6 +352,8 @@ class FastDiskCuts {
   Open& open_;
   CrossingTable& out_;
   Waiting spheres_, meeting_;
+  Corners corners_;  // of those that wait as spheres
+  Corners ways_;     // from p, of those that meet the plane
 };
 
 void add_disk_cuts_here(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out) {

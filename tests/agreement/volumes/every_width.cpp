@@ -1,0 +1,55 @@
+// One picture on every vector unit that this processor has: the same bits, so that a test on one of them is about all.
+
+#include "tests/agreement/mask_methods.hpp"
+#include "tests/agreement/support.hpp"
+#include "tests/unit/shipped_scene.hpp"
+
+#include <hwy/targets.h>
+
+#include <bit>
+#include <cstdint>
+
+namespace penumbra {
+namespace {
+
+/// Runs on one of the processor's vector units.
+class OnlyTarget {
+ public:
+  explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  OnlyTarget(const OnlyTarget&) = delete;
+  OnlyTarget& operator=(const OnlyTarget&) = delete;
+  ~OnlyTarget() { hwy::SetSupportedTargetsForTest(0); }
+};
+
+class EveryWidth : public tests::DeviceTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(EveryWidth, HasTheSameMasks) {
+  scenes::Scene scene = tests::shipped_scene("large-penumbra");
+  const scenes::AreaLight& panel = scene.lights.front();
+  const auto& rectangle = std::get<scenes::Rectangle>(panel.shape);
+  const std::string kind = GetParam();
+  if (kind == "disk") scene.lights.front().shape = scenes::Disk{rectangle.center, {0, -1, 0}, 3};
+  if (kind == "sphere") scene.lights.front().shape = scenes::Sphere{rectangle.center, 3};  // it holds casters
+  for (const auto pattern : {visibility::SamplePattern::rows, visibility::SamplePattern::sobol}) {
+    const tests::Stage stage(scene, 24, 24, {200, 0, 0, pattern, 0});
+    for (const auto& method : {tests::kNativeEdgeScatter, tests::kNativeViewSample, tests::kNativeDepthComplexity}) {
+      const auto masks_on = [&](std::int64_t target) {
+        const OnlyTarget only(target);
+        return tests::run(*method.make(device(), {}), stage.floats, stage.light, stage.samples);
+      };
+      std::int64_t targets = hwy::SupportedTargets();
+      const tests::Masks expected = masks_on(targets);
+      for (; targets != 0; targets &= targets - 1) {
+        const std::int64_t target = targets & -targets;
+        EXPECT_EQ(tests::differing_bits(masks_on(target), expected), 0U)
+            << method << ", " << name_of(pattern) << ", " << hwy::TargetName(target);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lights, EveryWidth, testing::Values("rectangle", "disk", "sphere"),
+                         [](const auto& given) { return std::string(given.param); });
+
+}  // namespace
+}  // namespace penumbra
