@@ -30,8 +30,8 @@ template <class Tag>
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
   if constexpr (kBytes == 64 && sizeof(Lane) == 8) {
     const hn::RebindToUnsigned<Tag> bits;
-    return hn::BitCast(tag, hn::VFromD<decltype(bits)>{
-                                _mm512_maskz_compress_epi64(kept.raw, hn::BitCast(bits, values).raw)});
+    return hn::BitCast(
+        tag, hn::VFromD<decltype(bits)>{_mm512_maskz_compress_epi64(kept.raw, hn::BitCast(bits, values).raw)});
   }
 #elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
   [[maybe_unused]] std::uint8_t which = 0;

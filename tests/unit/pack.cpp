@@ -33,7 +33,8 @@ void expect_kept_lanes() {
     for (std::size_t i = 0; i < lanes; ++i) {
       if ((choice >> i & 1) != 0) expected.push_back(values[i]);
     }
-    for (std::size_t byte = 0; byte < (lanes + 7) / 8; ++byte) bits[byte] = static_cast<std::uint8_t>(choice >> 8 * byte);
+    for (std::size_t byte = 0; byte < (lanes + 7) / 8; ++byte)
+      bits[byte] = static_cast<std::uint8_t>(choice >> 8 * byte);
     const auto kept = hn::LoadMaskBits(d, bits.data());
     ASSERT_EQ(pack(hn::LoadU(d, values.data()), kept, d, found.data()), expected.size()) << choice;
     ASSERT_EQ(std::vector<Lane>(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(expected.size())), expected)
