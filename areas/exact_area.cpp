@@ -26,8 +26,11 @@
 #include "visibility/tree/triangle_tree.hpp"
 
 #include <glm/common.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -137,7 +140,17 @@ ExactArea::ExactArea(const SceneFloats& scene) : ExactArea(scene, TriangleTree()
 
 ExactArea::ExactArea(const SceneFloats& scene, const TriangleTree& tree) : data_(std::make_unique<ExactAreaData>()) {
   data_->scene = welded(scene, tree);
-  for (const glm::vec3& position : scene.positions) data_->grid.include(position);
+  using Range = tbb::blocked_range<std::size_t>;
+  data_->grid = tbb::parallel_reduce(
+      Range(0, scene.positions.size(), 4096), IntegerGrid(),
+      [&](const Range& range, IntegerGrid grid) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) grid.include(scene.positions[i]);
+        return grid;
+      },
+      [](IntegerGrid a, const IntegerGrid& b) {
+        a.include(b);
+        return a;
+      });
 }
 
 ExactArea::~ExactArea() = default;

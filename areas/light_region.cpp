@@ -4,7 +4,9 @@
 #include "base/assert.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace penumbra::areas {
 namespace {
@@ -93,11 +95,14 @@ GridBox box_around(const Region& region) {
 
 void IntegerGrid::include(double value) {
   if (value == 0) return;
-  int exponent = 0;
-  double fraction = std::frexp(value, &exponent);  // value = fraction · 2^exponent; count the fraction's bits
-  int bits = 0;
-  for (; fraction != std::trunc(fraction); ++bits) fraction *= 2;
-  bits_ = std::max(bits_, bits - exponent);
+  // value = ± mantissa · 2^(exponent − 1075), as IEEE 754 stores it; the lowest of its bits is worth 2^lowest.
+  constexpr int kMantissa = 52;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const int exponent = static_cast<int>(bits >> kMantissa & 0x7ff);
+  const std::uint64_t above = std::uint64_t{exponent != 0} << kMantissa;  // the bit that is not stored
+  const int lowest =
+      std::max(exponent, 1) - 1075 + std::countr_zero((bits & ((std::uint64_t{1} << kMantissa) - 1)) | above);
+  bits_ = std::max(bits_, -lowest);
 }
 
 void IntegerGrid::include(const glm::vec3& point) {

@@ -2,39 +2,19 @@
 
 #include "areas/sweep_edges.hpp"
 #include "mesh/predicates.hpp"
+#include "mesh/sorted_sides.hpp"
 #include "visibility/pair_truth.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 namespace penumbra::areas {
-namespace {
 
 using visibility::TriangleTree;
 
-/// For each position the first (in lexicographic order, then by index) of those at the same place.
-std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions) {
-  std::vector<std::uint32_t> order(positions.size()), first(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto less = [&](std::uint32_t i, std::uint32_t j) {
-    const glm::vec3 &a = positions[i], &b = positions[j];
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    return a.z < b.z;
-  };
-  std::ranges::sort(order, less);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    first[order[i]] = i > 0 && !less(order[i - 1], order[i]) ? first[order[i - 1]] : order[i];
-  }
-  return first;
-}
-
-}  // namespace
-
 WeldedScene welded(const visibility::SceneFloats& scene, const TriangleTree& tree) {
-  return {&scene, &tree, weld(scene.positions)};
+  return {&scene, &tree, mesh::merge_equal(scene.positions)};
 }
 
 OccluderEdges::OccluderEdges(const WeldedScene& scene, const visibility::Light& light, const Receiver& receiver,

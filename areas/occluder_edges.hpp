@@ -22,7 +22,7 @@ namespace penumbra::areas {
 struct WeldedScene {
   const visibility::SceneFloats* scene = nullptr;
   const visibility::TriangleTree* tree = nullptr;
-  std::vector<std::uint32_t> corner;  ///< for each position, the one that stands for its place
+  std::vector<std::uint32_t> corner;  ///< for each position, the first at its place
 };
 WeldedScene welded(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree);
 
