@@ -110,7 +110,8 @@ std::vector<std::uint32_t> first_of_same(std::size_t count, const HashOf& hash_o
   const auto shift = static_cast<unsigned>(32 - std::countr_zero(good));
   const Parts parts =
       into_parts(count, good, shift, [&](std::size_t i) { return static_cast<std::uint32_t>(hash_of(i) >> 32U); });
-  std::vector<std::uint32_t> first(count);
+  std::vector<std::uint32_t> first;
+  resize_on_all_cores(first, count);
   tbb::enumerable_thread_specific<std::vector<std::uint32_t>> tables;
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const std::span<const Parts::Item> here = parts[part];

@@ -10,6 +10,7 @@
 #include "visibility/plane_ids.hpp"
 
 #include "base/buckets.hpp"
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "visibility/pair_truth.hpp"
 
@@ -202,8 +203,9 @@ bool coplanar_quickly(const std::array<glm::vec3, 3>& carrier, const std::array<
 
 std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
   const std::size_t count = scene.triangles.size();
-  std::vector<std::uint32_t> plane(count, SceneFloats::kNoPlane);
-  std::vector<std::uint64_t> keys(count);
+  std::vector<std::uint32_t> plane;
+  resize_on_all_cores(plane, count);
+  UnsetList<std::uint64_t> keys(count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
     find_keys(scene, static_cast<std::uint32_t>(range.begin()), std::span(keys).subspan(range.begin(), range.size()));
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -219,6 +221,7 @@ std::vector<std::uint32_t> plane_ids(const SceneFloats& scene) {
   tbb::concurrent_vector<std::uint32_t> collided, keyless;
   mesh::for_each_index(count, [&](std::size_t i) {
     const auto triangle = static_cast<std::uint32_t>(i);
+    plane[i] = SceneFloats::kNoPlane;
     if (keys[i] == kFlat) return;
     if (keys[i] == kNoRatio) {
       keyless.push_back(triangle);

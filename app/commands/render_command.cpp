@@ -97,7 +97,8 @@ class RenderCommand : public Command {
       for (const std::string& camera : cameras) {
         const FrameFiles files = files_of(options_, frames[at], camera);
         if (options_.skip_existing && files.all_there()) continue;
-        renderer.render(now.scene,
+        const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
+        renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
                         {frames[at], camera, request_.pixel_side, request_.filter, moments_of(frames[at], moves)},
                         files.bits, now.seconds);
         now.seconds = 0;  // once

@@ -29,6 +29,15 @@ inline void require_room(const ShapeSize& size) {
                  "make it smaller");
 }
 
+/// An empty one with that room.
+inline TriangleSoup soup_with_room(const ShapeSize& size) {
+  require_room(size);
+  TriangleSoup soup;
+  soup.positions.reserve(size.vertices);
+  soup.triangles.reserve(size.triangles);
+  return soup;
+}
+
 inline std::uint32_t add_vertex(TriangleSoup& soup, const glm::dvec3& position) {
   soup.positions.push_back(position);
   return static_cast<std::uint32_t>(soup.positions.size() - 1);

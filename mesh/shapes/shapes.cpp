@@ -69,8 +69,7 @@ ShapeSize shape_size(const GridShape& grid) {
 
 TriangleSoup make_grid(const GridShape& grid) {
   PENUMBRA_ASSERT(grid.cells_u > 0 && grid.cells_v > 0, "{} x {}", grid.cells_u, grid.cells_v);
-  require_room(shape_size(grid));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(grid));
   for (std::uint32_t j = 0; j <= grid.cells_v; ++j) {
     for (std::uint32_t i = 0; i <= grid.cells_u; ++i) {
       const double u = 2.0 * i / grid.cells_u - 1, v = 2.0 * j / grid.cells_v - 1;
@@ -101,8 +100,7 @@ ShapeSize shape_size(const SphereShape& sphere) {
 TriangleSoup make_sphere(const SphereShape& sphere) {
   const std::uint32_t segments = sphere.segments, rings = sphere.rings;
   PENUMBRA_ASSERT(segments >= 3 && rings >= 2, "{} segments, {} rings", segments, rings);
-  require_room(shape_size(sphere));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(sphere));
   const std::uint32_t top = add_vertex(soup, sphere.center + glm::dvec3(0, sphere.radius, 0));
   for (std::uint32_t i = 1; i < rings; ++i) {
     const double latitude = std::numbers::pi * i / rings;  // from the upper pole
@@ -176,8 +174,7 @@ ShapeSize shape_size(const CylinderShape& cylinder) {
 TriangleSoup make_cylinder(const CylinderShape& cylinder) {
   const std::uint32_t segments = cylinder.segments;
   PENUMBRA_ASSERT(segments >= 3, "{}", segments);
-  require_room(shape_size(cylinder));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(cylinder));
   const glm::dvec3 up(0, cylinder.height / 2, 0);
   for (std::uint32_t j = 0; j < segments; ++j) {
     const double angle = kTau * j / segments;
@@ -207,8 +204,7 @@ ShapeSize cone_size(const CylinderShape& cone) {
 TriangleSoup make_cone(const CylinderShape& cone) {
   const std::uint32_t segments = cone.segments;
   PENUMBRA_ASSERT(segments >= 3 && cone.capped, "{}", segments);
-  require_room(cone_size(cone));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(cone_size(cone));
   const glm::dvec3 up(0, cone.height / 2, 0);
   for (std::uint32_t j = 0; j < segments; ++j) {
     const double angle = kTau * j / segments;
@@ -229,8 +225,7 @@ ShapeSize shape_size(const TorusShape& torus) {
 
 TriangleSoup make_torus(const TorusShape& torus) {
   PENUMBRA_ASSERT(torus.segments >= 3 && torus.sides >= 3, "{} x {}", torus.segments, torus.sides);
-  require_room(shape_size(torus));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(torus));
   for (std::uint32_t i = 0; i < torus.segments; ++i) {
     const double around = kTau * i / torus.segments;
     const glm::dvec3 outward(std::cos(around), 0, -std::sin(around));

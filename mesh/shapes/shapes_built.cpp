@@ -16,8 +16,7 @@ ShapeSize shape_size(const FenceShape& fence) {
 
 TriangleSoup make_fence(const FenceShape& fence) {
   PENUMBRA_ASSERT(fence.posts >= 2, "{}", fence.posts);
-  require_room(shape_size(fence));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(fence));
   const double left = fence.base.x - fence.width / 2, half = fence.thickness / 2;
   for (std::uint32_t i = 0; i < fence.posts; ++i) {
     const double x = left + half + (fence.width - fence.thickness) * i / (fence.posts - 1);
@@ -94,8 +93,7 @@ ShapeSize shape_size(const BarsShape& bars) {
 }
 
 TriangleSoup make_bars(const BarsShape& bars) {
-  require_room(shape_size(bars));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(bars));
   TriangleSoup bar =
       make_cylinder({.center = glm::dvec3(0), .radius = bars.radius, .height = bars.length, .segments = bars.segments});
   for (glm::dvec3& position : bar.positions) {  // a quarter turn about X: Y becomes Z

@@ -1,6 +1,7 @@
 #include "mesh/shapes/shape_builder.hpp"
 
 #include "base/assert.hpp"
+#include "base/parallel.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -65,8 +66,7 @@ ShapeSize shape_size(const KnotShape& knot) {
 
 TriangleSoup make_knot(const KnotShape& knot) {
   PENUMBRA_ASSERT(knot.segments >= 3 && knot.sides >= 3, "{} x {}", knot.segments, knot.sides);
-  require_room(shape_size(knot));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(knot));
   const double core = knot.radius * 2 / 3, swing = knot.radius / 3;  // the torus that the knot winds around
   const double turns = knot.turns, windings = knot.windings;
   for (std::uint32_t i = 0; i < knot.segments; ++i) {
@@ -101,7 +101,8 @@ TriangleSoup make_terrain(const TerrainShape& terrain) {
                                  .half_v = {0, 0, -terrain.half_size.y},
                                  .cells_u = terrain.cells.x,
                                  .cells_v = terrain.cells.y});
-  for (glm::dvec3& position : soup.positions) {
+  for_each_index(soup.positions.size(), [&](std::size_t i) {
+    glm::dvec3& position = soup.positions[i];
     // Each octave is twice as fine and half as high; the sum of the heights is 1.
     double height = 0, amplitude = 1, total = 0, frequency = terrain.features / (2 * longer);
     for (std::uint32_t octave = 0; octave < terrain.octaves; ++octave) {
@@ -112,7 +113,7 @@ TriangleSoup make_terrain(const TerrainShape& terrain) {
       frequency *= 2;
     }
     position.y += terrain.height / 2 * height / total;
-  }
+  });
   return soup;
 }
 
@@ -122,8 +123,7 @@ ShapeSize shape_size(const HairShape& hair) {
 
 TriangleSoup make_hair(const HairShape& hair) {
   PENUMBRA_ASSERT(hair.segments >= 1, "{}", hair.segments);
-  require_room(shape_size(hair));
-  TriangleSoup soup;
+  TriangleSoup soup = soup_with_room(shape_size(hair));
   for (std::uint32_t strand = 0; strand < hair.strands; ++strand) {
     const auto draw = [&](std::uint64_t what) { return chance(hair.seed, strand, what); };
     const double place = kTau * draw(0), distance = hair.radius * std::sqrt(draw(1));  // uniform over the disk

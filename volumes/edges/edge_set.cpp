@@ -1,5 +1,6 @@
 #include "volumes/edges/edge_set.hpp"
 
+#include "base/pages.hpp"
 #include "base/parallel.hpp"
 #include "mesh/predicates.hpp"
 #include "mesh/sorted_sides.hpp"
@@ -24,21 +25,27 @@ glm::dvec3 normal_of(const std::array<glm::vec3, 3>& corners) {
   return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
 }
 
-/// Of exactly coplanar triangles the largest: for each plane number.
+/// Of exactly coplanar triangles the largest: for each plane number. `triangles` ascend.
 std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
-  std::vector<double> size(triangles.size());
-  mesh::for_each_index(size.size(), [&](std::size_t i) {
-    const glm::dvec3 n = normal_of(scene.corners(triangles[i]));
-    size[i] = glm::dot(n, n);
-  });
+  const auto size_of = [&](std::uint32_t triangle) {
+    const glm::dvec3 n = normal_of(scene.corners(triangle));
+    return glm::dot(n, n);
+  };
   constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> largest(scene.triangles.size(), kNone);  // an index into `triangles`, until the end
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    std::uint32_t& of_plane = largest[scene.plane[triangles[i]]];
-    if (of_plane == kNone || size[i] > size[of_plane]) of_plane = i;
+  std::vector<std::uint32_t> largest;
+  resize_on_all_cores(largest, scene.triangles.size());
+  mesh::for_each_index(largest.size(), [&](std::size_t plane) { largest[plane] = kNone; });
+  // A plane has the number of the first triangle in it, most often the only one.
+  mesh::for_each_index(triangles.size(), [&](std::size_t i) {
+    if (scene.plane[triangles[i]] == triangles[i]) largest[triangles[i]] = triangles[i];
+  });
+  for (const std::uint32_t triangle : triangles) {
+    if (scene.plane[triangle] == triangle) continue;
+    std::uint32_t& of_plane = largest[scene.plane[triangle]];
+    if (of_plane == kNone || size_of(triangle) > size_of(of_plane)) of_plane = triangle;
   }
   mesh::for_each_index(largest.size(), [&](std::size_t plane) {
-    largest[plane] = largest[plane] == kNone ? 0 : triangles[largest[plane]];
+    if (largest[plane] == kNone) largest[plane] = 0;
   });
   return largest;
 }
