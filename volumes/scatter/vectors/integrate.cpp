@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <optional>
 
 #undef HWY_TARGET_INCLUDE
@@ -86,6 +87,7 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   // The vectors only sort out; what they cannot place is looked at as well.
   const auto special = [&](const SpecialEdges& edges) {
     for_each_lane(edges.which, [&](std::size_t lane) {
+      crossing[kK][crossing.count] = kUnknown;
       crossing[kEdge][crossing.count++] = edges.table[kGroupEdge][edges.first + lane];
     });
   };
@@ -94,7 +96,9 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   for (std::size_t i = 0; i < crossing.count; ++i) {
     const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
     const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
-    rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, in.ends);
+    const float k = crossing[kK][i];
+    rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, in.ends,
+             std::isnan(k) ? std::nullopt : std::optional(static_cast<int>(k)));
     if (rows.is_open()) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {

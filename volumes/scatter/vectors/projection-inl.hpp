@@ -66,8 +66,12 @@ class Projection {
   }
 
  private:
-  /// Without light samples a sign within rounding moves an outline by no more than rounding.
+  /// Without light samples whoever places an edge in double asks for the signs that float leaves open: there k is not a
+  /// number.
   [[nodiscard]] M open_ones(const Multiplicity& m) const { return in_.exact_area ? hn::FirstN(D(), 0) : m.open; }
+  [[nodiscard]] V sure_or_none(const Multiplicity& m) const {
+    return in_.exact_area ? hn::IfThenElse(m.open, set(kUnknown), m.k) : m.k;
+  }
 
   struct Ways {
     V x, y, w;
@@ -106,7 +110,8 @@ class Projection {
       const V far = hn::Add(error, set(at_.far));
       error = hn::Mul(set(1.01F), hn::Max(error_of(place_a, a.w, far), error_of(place_b, b.w, far)));
     }
-    keep_crossing({place_a, place_b, m.k, error, hn::Load(D(), table[kGroupEdge] + i)}, hn::AndNot(open, live));
+    keep_crossing({place_a, place_b, sure_or_none(m), error, hn::Load(D(), table[kGroupEdge] + i)},
+                  hn::AndNot(open, live));
   }
 
   /// Edges that may come near p's height, or go below: as scatter_precisely cuts them. (bound window)
@@ -165,7 +170,7 @@ class Projection {
     const LightPoints place_a = appears(start), place_b = appears(end);
     const V error =
         hn::Mul(set(1.01F), hn::Max(error_of(place_a, start.w, far_start), error_of(place_b, end.w, far_end)));
-    keep_crossing({place_a, place_b, m.k, error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(other, live));
+    keep_crossing({place_a, place_b, sure_or_none(m), error, hn::Or(edge, bits(kUnsettled))}, hn::AndNot(other, live));
   }
 
   [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }

@@ -229,8 +229,9 @@ bool RowSum::cut_to_window(Ways& ways) {
   return true;
 }
 
-std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
-  const int k = multiplicity(leaf, lane);
+std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
+                                            std::optional<int> known) {
+  const int k = known ? *known : multiplicity(leaf, lane);
   if (k == 0 || is_open_) return std::nullopt;
   Ways ways = ways_of(leaf, lane, ends);
   if (!cut_to_window(ways)) return std::nullopt;
@@ -250,8 +251,8 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   return Placed{{from.x, from.y, to.x, to.y, k}, off};
 }
 
-void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) {
-  if (const std::optional<Placed> placed = place(leaf, lane, ends)) add(placed->edge, placed->error);
+void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends, std::optional<int> known) {
+  if (const std::optional<Placed> placed = place(leaf, lane, ends, known)) add(placed->edge, placed->error);
 }
 
 /// `error`: of where its ends appear. What is beside the light whatever rounding does says nothing of it, and counts

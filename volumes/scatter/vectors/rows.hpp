@@ -46,9 +46,11 @@ class RowSum {
     double error = 0;  ///< no end is farther off, along either axis (bound place)
   };
   /// One of the edges that matter to a view sample, again from its stored floats, in double: edges near p appear far
-  /// off by what float rounds. Nothing: it changes nothing on the light, or is_open().
-  [[nodiscard]] std::optional<Placed> place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
-  void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends);
+  /// off by what float rounds. Nothing: it changes nothing on the light, or is_open(). `known`: its multiplicity, if
+  /// that is sure.
+  [[nodiscard]] std::optional<Placed> place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
+                                            std::optional<int> known = std::nullopt);
+  void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends, std::optional<int> known = std::nullopt);
   /// Rounding hides on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
   /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near,

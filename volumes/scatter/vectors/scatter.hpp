@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -63,8 +64,9 @@ using GroupTable = Table<kGroupFields>;
 
 /// Of an edge that matters to one view sample: where its ends appear, k, the group's error, its row in the EdgeTable.
 enum CrossingField : std::size_t { kX0, kY0, kX1, kY1, kK, kError, kEdge, kCrossingFields };
-constexpr std::uint32_t kUnsettled = 0x80000000U;  ///< in kEdge: it may come near p's height
-constexpr std::uint32_t kDiskCut = 0x7fffffffU;    ///< in kEdge: it is no edge of a mesh (disk_cuts.hpp)
+constexpr std::uint32_t kUnsettled = 0x80000000U;                    ///< in kEdge: it may come near p's height
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();  ///< in kK: which float leaves open
+constexpr std::uint32_t kDiskCut = 0x7fffffffU;  ///< in kEdge: it is no edge of a mesh (disk_cuts.hpp)
 using CrossingTable = Table<kCrossingFields>;
 
 struct ScatterInput {
