@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <tuple>
 
 namespace penumbra {
@@ -28,9 +29,11 @@ class MaskLamps : public tests::DeviceTest,
     for (std::uint32_t seed = first; seed < first + count; ++seed) {
       tests::HostileLamp lamp(hostility, seed);
       const visibility::SceneFloats floats = visibility::make_scene_floats(lamp.scene());
-      const visibility::Light rows =
-          visibility::make_light(lamp.scene(), 0, floats.origin, {20, 0, 0, visibility::SamplePattern::rows, 0});
-      const visibility::Light light = under_test.no_rows ? tests::scattered(rows, seed % 2 == 0) : rows;
+      const std::optional<visibility::Light> rows =
+          tests::light_with_area(lamp.scene(), floats.origin, {20, 0, 0, visibility::SamplePattern::rows, 0});
+      refused += rows ? 0 : 1;
+      if (!rows) continue;
+      const visibility::Light light = under_test.no_rows ? tests::scattered(*rows, seed % 2 == 0) : *rows;
       const visibility::ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 5, 5);
       const auto masks =
           tests::unless_too_far_apart(floats, light, [&] { return tests::run(*method, floats, light, samples); });

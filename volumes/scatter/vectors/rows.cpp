@@ -127,7 +127,6 @@ int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) c
   return alike == (at == mesh::Side::front) ? 1 : -1;
 }
 
-/// As seen from the light's front.
 int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
   int k = 0;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -135,7 +134,7 @@ int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
     if (point(leaf.n[side], lane) == glm::dvec3(0)) continue;
     k += side_of(leaf, side, lane);
   }
-  return grid_.side < 0 ? -k : k;
+  return k;
 }
 
 /// (bound way)
@@ -231,7 +230,7 @@ bool RowSum::cut_to_window(Ways& ways) {
 
 std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
                                             std::optional<int> known) {
-  const int k = known ? *known : multiplicity(leaf, lane);
+  const int from_front = known ? *known : multiplicity(leaf, lane), k = grid_.side < 0 ? -from_front : from_front;
   if (k == 0 || is_open_) return std::nullopt;
   Ways ways = ways_of(leaf, lane, ends);
   if (!cut_to_window(ways)) return std::nullopt;

@@ -20,6 +20,7 @@
 #include "engines/vectors/pack-inl.hpp"
 #include "engines/vectors/vectors-inl.hpp"
 #include "volumes/scatter/vectors/projection-inl.hpp"
+#include "volumes/scatter/vectors/special-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
@@ -32,20 +33,8 @@ using namespace vectors::HWY_NAMESPACE;
 void project(const ScatterInput& in, Scratch& scratch, const ClusterSample& at, OpenJudge& judge) {
   scratch.precise.clear();
   const auto special = [&](const SpecialEdges& edges) {
-    HWY_ALIGN float k[hn::MaxLanes(D())];
-    std::uint8_t open[8] = {};
-    hn::Store(edges.multiplicity.k, D(), k);
-    hn::StoreMaskBits(D(), edges.multiplicity.open, open);
-    for_each_lane(edges.which, [&](std::size_t lane) {
-      const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
-      const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
-      const std::optional<float> sure =
-          is_open ? exact_multiplicity(in.edges, edge, at, judge) : std::optional(k[lane]);
-      if (sure) {
-        scratch.precise.push_back({edge, *sure, edges.settled});
-      } else {
-        scratch.open.pixel = true;
-      }
+    for_each_sure(in, at, edges, judge, scratch.open, [&](std::uint32_t edge, float k) {
+      scratch.precise.push_back({edge, k, edges.settled});
     });
   };
   Projection{in, at, scratch.lists, scratch.crossing}(special);

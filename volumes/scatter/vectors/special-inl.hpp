@@ -19,9 +19,11 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
-/// Placed by themselves, they join the others in the table of crossings.
-[[maybe_unused]] void place_special(const ScatterInput& in, Scratch& s, const ClusterSample& at,
-                                    const SpecialEdges& edges, OpenJudge& judge) {
+/// visit(edge, k) of each whose multiplicity is sure, if need be by exact predicates; the view sample is open where
+/// another's is not.
+template <typename Visit>
+[[maybe_unused]] void for_each_sure(const ScatterInput& in, const ClusterSample& at, const SpecialEdges& edges,
+                                    OpenJudge& judge, Open& view_sample, Visit visit) {
   HWY_ALIGN float k[hn::MaxLanes(D())];
   std::uint8_t open[8] = {};
   hn::Store(edges.multiplicity.k, D(), k);
@@ -30,16 +32,23 @@ namespace {
     const auto edge = std::bit_cast<std::uint32_t>(edges.table[kGroupEdge][edges.first + lane]);
     const bool is_open = (open[lane / 8] >> (lane % 8) & 1) != 0;
     const std::optional<float> sure = is_open ? exact_multiplicity(in.edges, edge, at, judge) : std::optional(k[lane]);
-    if (!sure) s.open.pixel = true;
-    if (!sure) return;
-    const auto placed = place_edge({in, at, edge, *sure, edges.settled, std::nullopt}, s.open);
+    if (!sure) view_sample.pixel = true;
+    if (sure) visit(edge, *sure);
+  });
+}
+
+/// Placed by themselves, they join the others in the table of crossings.
+[[maybe_unused]] void place_special(const ScatterInput& in, Scratch& s, const ClusterSample& at,
+                                    const SpecialEdges& edges, OpenJudge& judge) {
+  for_each_sure(in, at, edges, judge, s.open, [&](std::uint32_t edge, float k) {
+    const auto placed = place_edge({in, at, edge, k, edges.settled, std::nullopt}, s.open);
     if (!placed) return;
     CrossingTable& out = s.crossing;
     out[kX0][out.count] = placed->a().x;
     out[kY0][out.count] = placed->a().y;
     out[kX1][out.count] = placed->b().x;
     out[kY1][out.count] = placed->b().y;
-    out[kK][out.count] = *sure;
+    out[kK][out.count] = k;
     out[kError][out.count] = std::max(placed->error_near, placed->error_far);
     out[kEdge][out.count] = std::bit_cast<float>(edges.settled ? edge : edge | kUnsettled);
     ++out.count;
