@@ -181,8 +181,10 @@ MaskMethod::GridShape MaskMethod::grid_shape() const {
 std::uint32_t MaskMethod::max_tile_rows() const {
   PENUMBRA_ASSERT(samples_ != nullptr && light_ != nullptr, "prepare_light and prepare_view come first");
   const auto threads = static_cast<std::size_t>(std::max(tbb::this_task_arena::max_concurrency(), 1));
-  const std::size_t fit =
-      std::min(threads * kMaskBytesOfThread, kMostMaskBytes) / (mask_words(grids_[0]) * 2 * samples_->width);
+  const std::size_t row_bytes = mask_words(grids_[0]) * 2 * samples_->width;
+  // Regions are whole where there is any room for them, however few threads there are.
+  const std::size_t plenty = std::max<std::size_t>(threads * kMaskBytesOfThread / row_bytes, kRegion),
+                    fit = std::min(plenty, kMostMaskBytes / row_bytes);
   const std::size_t rows = fit >= kRegion ? fit / kRegion * kRegion : fit;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(rows, 1, samples_->height));
 }

@@ -34,7 +34,7 @@ struct NearSpheres {
   void make_room(std::size_t casters);
 };
 
-/// All of a light's, in rows of numbers that vectors gather: x, y, z of each corner, and its plane's number.
+/// All of a light's, in rows of numbers: x, y, z of each corner, and its plane's number.
 struct NearCasters {
   static constexpr std::size_t kPlane = 9, kRow = 10;
 

@@ -34,8 +34,9 @@ template <class Tag>
         tag, hn::VFromD<decltype(bits)>{_mm512_maskz_compress_epi64(kept.raw, hn::BitCast(bits, values).raw)});
   }
 #elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4
-  [[maybe_unused]] std::uint8_t which = 0;
-  if constexpr (sizeof(Lane) >= 4) hn::StoreMaskBits(tag, kept, &which);
+  [[maybe_unused]] std::uint8_t bits[8] = {};  // room that Highway asks for
+  if constexpr (sizeof(Lane) >= 4) hn::StoreMaskBits(tag, kept, bits);
+  [[maybe_unused]] const std::size_t which = bits[0];
   if constexpr (kBytes == 16 && sizeof(Lane) >= 4) {
     const std::uint8_t* const order = sizeof(Lane) == 4 ? kBytesOfFour[which].data() : kBytesOfTwo[which].data();
     const hn::Repartition<std::uint8_t, Tag> bytes;

@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 namespace penumbra::volumes {
 namespace {
@@ -35,14 +37,23 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
   std::vector<std::uint32_t> largest;
   resize_on_all_cores(largest, scene.triangles.size());
   mesh::for_each_index(largest.size(), [&](std::size_t plane) { largest[plane] = kNone; });
-  // A plane has the number of the first triangle in it, most often the only one.
+  // A plane has the number of a triangle in it, most often the only one, or else the first.
   mesh::for_each_index(triangles.size(), [&](std::size_t i) {
     if (scene.plane[triangles[i]] == triangles[i]) largest[triangles[i]] = triangles[i];
   });
-  for (const std::uint32_t triangle : triangles) {
-    if (scene.plane[triangle] == triangle) continue;
-    std::uint32_t& of_plane = largest[scene.plane[triangle]];
-    if (of_plane == kNone || size_of(triangle) > size_of(of_plane)) of_plane = triangle;
+  std::vector<std::uint32_t> others;
+  std::ranges::copy_if(triangles, std::back_inserter(others),
+                       [&](std::uint32_t triangle) { return scene.plane[triangle] != triangle; });
+  std::vector<double> sizes(others.size());
+  mesh::for_each_index(others.size(), [&](std::size_t i) { sizes[i] = size_of(others[i]); });
+  std::uint32_t known = kNone;  // the plane of which `size` is that of the largest
+  double size = 0;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const std::uint32_t plane = scene.plane[others[i]];
+    if (plane != std::exchange(known, plane)) size = largest[plane] == kNone ? -1.0 : size_of(largest[plane]);
+    if (!(sizes[i] > size)) continue;
+    largest[plane] = others[i];
+    size = sizes[i];
   }
   mesh::for_each_index(largest.size(), [&](std::size_t plane) {
     if (largest[plane] == kNone) largest[plane] = 0;

@@ -7,6 +7,10 @@
 #include "tests/agreement/panel.hpp"
 #include "tests/agreement/volumes/soft_stage.hpp"
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <numeric>
 #include <optional>
 
@@ -195,6 +199,32 @@ TEST_F(ExactRows, OtherRectangles) {
   }
   EXPECT_EQ(found.wrong, 0U);
   EXPECT_GT(found.partly, 300U);
+}
+
+/// A sphere that a panel reaches into: every view sample asks for the exact area, also while what that takes is made on
+/// all cores. There are more threads than cores here, and those that wait look for other work.
+TEST_F(ExactRows, ManyThreadsAskForExactAreasAtOnce) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
+  tests::add_object(scene, "panel", tests::quad({0.5, 2, 0}, {0.6, 0, 0}, {0, 0.1, -0.6}));
+  std::vector<tests::Corners> aside;  // many more places, which nobody sees
+  for (int i = 0; i < 40000; ++i) {
+    const auto more = tests::quad({100 + 0.01 * (i % 200), 0.01 * (i / 200), 0}, {0.002, 0, 0}, {0, 0.002, 0.001});
+    aside.insert(aside.end(), more.begin(), more.end());
+  }
+  tests::add_object(scene, "aside", aside);
+  scene.lights.push_back({"bulb", scenes::Sphere{{0, 2, 0}, 0.5}, glm::dvec3(1)});
+  scene.cameras.push_back(tests::camera({0, 1.5, 4}, {0, 0.3, 0}, 60));
+  const SoftStage stage(scene, device(), 64, 64);
+  const Answer expected = run(*make(), stage.floats, stage.light, stage.samples);
+  const tbb::global_control more_than_cores(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena crowd(8);
+  for (int round = 0; round < 20; ++round) {
+    const Answer found = crowd.execute([&] { return run(*make(), stage.floats, stage.light, stage.samples); });
+    EXPECT_EQ(found.shares, expected.shares);
+    EXPECT_EQ(found.form_factors, expected.form_factors);
+  }
+  EXPECT_GT(std::ranges::count_if(expected.shares, [](float v) { return v > 0 && v < 1; }), 500);
 }
 
 /// The order of triangles changes the order of a sum, and so its last digit.

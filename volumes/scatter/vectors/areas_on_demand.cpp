@@ -2,6 +2,8 @@
 
 #include "base/assert.hpp"
 
+#include <tbb/task_arena.h>
+
 namespace penumbra::volumes {
 
 void AreasOnDemand::prepare_mesh(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree) {
@@ -21,7 +23,11 @@ areas::ExactView AreasOnDemand::view(const visibility::ViewSamples& samples, std
   if (!is_ready_) {
     const std::lock_guard lock(mutex_);
     if (!is_ready_) {
-      if (!area_) area_.emplace(*scene_, *tree_);
+      // On all cores, but who waits for them does no other view sample meanwhile: that might ask here again, or take
+      // what this one is working with.
+      tbb::this_task_arena::isolate([&] {
+        if (!area_) area_.emplace(*scene_, *tree_);
+      });
       area_->set_light(*light_);
       is_ready_ = true;
     }
