@@ -209,7 +209,8 @@ TEST_F(ExactRows, ManyThreadsAskForExactAreasAtOnce) {
   tests::add_object(scene, "panel", tests::quad({0.5, 2, 0}, {0.6, 0, 0}, {0, 0.1, -0.6}));
   std::vector<tests::Corners> aside;  // many more places, which nobody sees
   for (int i = 0; i < 40000; ++i) {
-    const auto more = tests::quad({100 + 0.01 * (i % 200), 0.01 * (i / 200), 0}, {0.002, 0, 0}, {0, 0.002, 0.001});
+    const int column = i % 200, row = i / 200;
+    const auto more = tests::quad({100 + 0.01 * column, 0.01 * row, 0}, {0.002, 0, 0}, {0, 0.002, 0.001});
     aside.insert(aside.end(), more.begin(), more.end());
   }
   tests::add_object(scene, "aside", aside);
