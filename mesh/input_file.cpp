@@ -1,6 +1,6 @@
 #include "mesh/input_file.hpp"
 
-#include "base/error.hpp"
+#include "base/file_error.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <climits>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 namespace penumbra::mesh {
@@ -18,10 +17,6 @@ namespace {
 
 constexpr int kReadFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK;  // a named pipe without a writer must not stop us
 constexpr int kFolderFlags = O_PATH | O_DIRECTORY | O_CLOEXEC;
-
-std::string reason(int error) {
-  return std::generic_category().message(error);
-}
 
 void require_content(int descriptor, const std::string& shown) {
   if (!require_regular(descriptor, shown)) throw InputError("{}: the file is empty (0 bytes)", shown);
@@ -131,7 +126,7 @@ class Walk {
 
 bool require_regular(int descriptor, const std::string& shown) {
   struct stat info {};
-  if (::fstat(descriptor, &info) != 0) throw InputError("{}: {}", shown, reason(errno));
+  if (::fstat(descriptor, &info) != 0) throw file_error(errno, shown);
   if (S_ISDIR(info.st_mode)) throw InputError("{}: it is a folder, not a file", shown);
   if (!S_ISREG(info.st_mode)) throw InputError("{}: it is not a regular file", shown);
   return info.st_size > 0;
@@ -141,14 +136,14 @@ InputFile open_input(const std::filesystem::path& file) {
   const std::string shown = file.string();
   // Looked at before it is opened: opening a device may do something.
   const Descriptor named(::open(file.c_str(), O_PATH | O_CLOEXEC));
-  if (!named.is_open()) throw InputError("{}: {}", shown, reason(errno));
+  if (!named.is_open()) throw file_error(errno, shown);
   require_regular(named.get(), shown);
   InputFile input{file, Descriptor(::open(file.c_str(), kReadFlags)), {}};
-  if (!input.content.is_open()) throw InputError("{}: {}", shown, reason(errno));
+  if (!input.content.is_open()) throw file_error(errno, shown);
   require_content(input.content.get(), shown);
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   input.folder = Descriptor(::open(folder.c_str(), kFolderFlags));
-  if (!input.folder.is_open()) throw InputError("{}: {}", folder.string(), reason(errno));
+  if (!input.folder.is_open()) throw file_error(errno, folder.string());
   return input;
 }
 
@@ -169,13 +164,13 @@ InputBeneath open_input_beneath(int folder, const std::string& name, const std::
 
 std::string read_content(int descriptor, const std::string& shown) {
   struct stat info {};
-  if (::fstat(descriptor, &info) != 0) throw InputError("{}: {}", shown, reason(errno));
+  if (::fstat(descriptor, &info) != 0) throw file_error(errno, shown);
   std::string content(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t at = 0;
   while (at < content.size()) {
     const ssize_t count = ::pread(descriptor, content.data() + at, content.size() - at, static_cast<off_t>(at));
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw InputError("{}: {}", shown, reason(errno));
+    if (count < 0) throw file_error(errno, shown);
     if (count == 0) throw InputError("{}: only {} of {} bytes could be read", shown, at, content.size());
     at += static_cast<std::size_t>(count);
   }

@@ -14,7 +14,8 @@ struct InputFile {
   Descriptor folder;           ///< what the file names beside itself is looked for there and below
 };
 
-/// Opens what the user names, following links. InputError if it is not a readable regular file, or empty.
+/// Opens what the user names, following links. InputError if it is not a readable regular file, or empty;
+/// what the machine lacks, file_error says, here and below.
 InputFile open_input(const std::filesystem::path& file);
 
 /// What came of open_beneath.

@@ -1,3 +1,4 @@
+#include "mesh/input_file.hpp"
 #include "scenes/formats/package_files.hpp"
 #include "tests/unit/scenes/support.hpp"
 
@@ -5,6 +6,7 @@
 
 #include <string>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 /// Which files a scene may name, and what is said of those that it may not.
@@ -30,6 +32,35 @@ TEST(SceneFiles, MissingSceneFolderAndOtherKinds) {
   expect_error(ExitCode::input, "this is a folder; expected a file", [&] { read_scene(folder / "folder.json"); });
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
   expect_error(ExitCode::input, "not a regular file", [&] { read_scene(folder / "pipe.json"); });
+}
+
+/// While it lives, no file can be opened: every number is beyond the limit.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+  }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+  ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(SceneFiles, WhatTheMachineLacksIsNoBadInput) {
+  const TemporaryFolder folder;
+  const auto scene = folder.write("scene.json", scene_text());
+  const auto mesh = folder.write("mesh.obj", kTriangle);
+  (void)folder.write("dpkg/one.list", "/usr/share/mesh.obj\n");
+  const NoDescriptors none;
+  const std::string reason = ": Too many open files";
+  expect_error(ExitCode::resource, scene.string() + ": cannot be read" + reason, [&] { read_scene(scene); });
+  expect_error(ExitCode::resource, mesh.string() + reason, [&] { mesh::open_input(mesh); });
+  expect_error(ExitCode::resource, (folder / "dpkg").string() + reason,
+               [&] { find_package_file("one", "mesh.obj", folder / "dpkg"); });
 }
 
 TEST(SceneFiles, MeshBesideTheSceneIsRead) {
