@@ -26,6 +26,7 @@ penumbra_test(volumes
   agreement/volumes/edge_crop.cpp
   agreement/volumes/every_width.cpp
   agreement/volumes/exact_rows.cpp agreement/volumes/exact_rows_shapes.cpp
+  agreement/volumes/exact_rows_spheres.cpp
   agreement/volumes/packed_counters_scenes.cpp
   agreement/volumes/soft_volume_blend.cpp
   agreement/volumes/soft_volume_exact.cpp

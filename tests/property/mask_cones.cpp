@@ -1,6 +1,7 @@
 // Spheres and suns, which every view sample sees otherwise, where nothing is in general position: every bit of the
 // methods that do them is the exact decision on the light points of its view sample, without tolerance.
 
+#include "tests/agreement/cracked_ball.hpp"
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/property/lattice_truth.hpp"
 #include "visibility/receivers.hpp"
@@ -9,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <random>
 #include <string>
 #include <tuple>
@@ -196,19 +196,7 @@ TEST_P(AimedSpheres, FewPairsAreOpenWhereASphereHoldsCasters) {
     scene.lights.push_back(tests::rectangle_light({0, 4, 0}, {1, 0, 0}, {0, 0, 1}));
     scene.lights[0].shape = scenes::Sphere{{0.2 * real(random), 2.5, 0.2 * real(random)}, 1.2};
     const glm::dvec3 middle(0.5 * real(random), 1.6 + 0.4 * real(random), 0.5 * real(random));
-    const auto on_ball = [&](int i, int j) {
-      const double a = i * std::numbers::pi / 8, b = j * std::numbers::pi / 8;
-      return middle + 0.6 * glm::dvec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b));
-    };
-    std::vector<tests::Corners> ball;
-    for (int i = 0; i < 8; ++i) {
-      for (int j = 0; j < 16; ++j) {
-        if (random() % 16 == 0) continue;
-        ball.push_back({on_ball(i, j), on_ball(i + 1, j), on_ball(i + 1, j + 1)});
-        ball.push_back({on_ball(i, j), on_ball(i + 1, j + 1), on_ball(i, j + 1)});
-      }
-    }
-    tests::add_object(scene, "ball", ball);
+    tests::add_object(scene, "ball", tests::cracked_ball(middle, 0.6, random));
     const visibility::SceneFloats floats = visibility::make_scene_floats(scene);
     ASSERT_EQ(floats.origin, floor.origin);
     const visibility::Light light = visibility::make_light(scene, 0, floats.origin, kSamples[seed % 3]);

@@ -79,6 +79,7 @@ class VectorEdgeRows final : public VectorEdges {
 
  private:
   [[nodiscard]] bool asks_for_light_samples() const override { return false; }
+  [[nodiscard]] bool cuts_casters() const override { return true; }
   /// A sun of one direction has no area.
   [[nodiscard]] bool is_hard() const { return light().sun && light().sun->tangent == 0; }
   /// Cells that have nothing to do with light samples.

@@ -81,7 +81,8 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   if (scratch.lists.triangles.count > 0) {
     const bool edges = scratch.lists.settled.count + scratch.lists.unsettled.count > 0;
     depth = static_cast<std::int32_t>(count_to_corner(
-        {in.grid, in.tree, scratch.lists.triangles, at, !edges && !at.straddles, in.light_plane}, open));
+        {in.grid, in.tree, scratch.lists.triangles, at, !edges && !at.straddles && !at.meets_end, in.light_plane},
+        open));
   }
   CrossingTable& crossing = scratch.crossing;
   // The vectors only sort out; what they cannot place is looked at as well.
@@ -93,6 +94,7 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   };
   Projection{in, at, scratch.lists, crossing}(special);
   rows.set_view_sample(at);
+  if (at.meets_end) rows.cut_at_disk();
   for (std::size_t i = 0; i < crossing.count; ++i) {
     const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
     const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
@@ -102,6 +104,7 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
     if (rows.is_open()) return std::nullopt;
   }
   if (open.corner || rows.corner_is_open()) {
+    if (at.meets_end) return std::nullopt;  // a light sample's place is off the disk by more than casters may be
     const std::optional<std::int32_t> found = in.grid.cones ? depth_by_light_sample(input, rows, at, judge)
                                                             : depth_by_other_place(in, all.window, rows, at, judge);
     if (!found) return std::nullopt;
@@ -109,7 +112,7 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   }
   if (at.straddles) {
     rows.add_horizon(judge.horizon(at));
-  } else if (scratch.crossing.count == 0) {
+  } else if (scratch.crossing.count == 0 && !at.meets_end) {
     if (rows.is_open()) return std::nullopt;
     return depth == 0 ? 1 : 0;
   }

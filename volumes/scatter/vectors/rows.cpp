@@ -1,5 +1,6 @@
 #include "volumes/scatter/vectors/rows.hpp"
 
+#include "engines/vectors/disk_plane.hpp"
 #include "mesh/predicates.hpp"
 #include "volumes/edges/plane_normal.hpp"
 
@@ -79,7 +80,7 @@ void RowSum::set_view_sample(const GridSample& at) {
   left_.clear();
   at_corner_ = 0;
   error_ = largest_error_ = 0;
-  corner_is_open_ = is_open_ = false;
+  corner_is_open_ = is_open_ = cuts_at_disk_ = false;
   p_ = glm::dvec3(at.p);
   plane_ = at.plane;
   if (grid_.cones) return see_cone(grid_.cones->of[at.cone]);
@@ -165,7 +166,10 @@ RowSum::Way RowSum::way_to(const CutEnd& end) const {
 
 RowSum::Ways RowSum::ways_of(const WideEdges& leaf, std::size_t lane, const CutEnds* ends) const {
   const std::uint32_t cut = leaf.cut[lane];
-  if (cut == 0 || ends == nullptr) return {way_to(point(leaf.a, lane)), way_to(point(leaf.b, lane))};
+  if (cut == 0 || ends == nullptr) {
+    const glm::dvec3 a = point(leaf.a, lane), b = point(leaf.b, lane);
+    return {way_to(a), way_to(b), vectors::comes_first(b, a)};
+  }
   const CutEnds::Edge& edge = (*ends)[cut];
   return {way_to(edge.a), way_to(edge.b)};
 }
@@ -180,7 +184,7 @@ double RowSum::error_inside(const Way& way, int axis) const {
 /// An edge that is outside of one side of the window after the other: it passes by, unless it passes p within rounding.
 /// No nearer than that, whatever of it is on the light is so high over p that no error can have hidden it. (bound apex)
 bool RowSum::may_pass_p(const Ways& ways) const {
-  const auto& [a, b] = ways;
+  const Way &a = ways.a, &b = ways.b;
   const double error = std::max({error_inside(a, 0), error_inside(a, 1), error_inside(b, 0), error_inside(b, 1)});
   const glm::dvec2 lengths = glm::dvec2(1 / per_length_);
   const glm::dvec3 near_a(glm::dvec2(a.to) * lengths, a.to.z), near_b(glm::dvec2(b.to) * lengths, b.to.z);
@@ -191,7 +195,7 @@ bool RowSum::may_pass_p(const Ways& ways) const {
 /// The part of an edge that appears in a window of about twice the light, before any division. (bound window) False:
 /// nothing of it is on the light.
 bool RowSum::cut_to_window(Ways& ways) {
-  auto& [a, b] = ways;
+  Way &a = ways.a, &b = ways.b;
   const glm::dvec2 middle(grid_.half_cells), window = 2.0 * middle + 2.0;
   double from = 0, to = 1;
   const auto cut = [&](double inside_a, double inside_b) {
@@ -213,9 +217,18 @@ bool RowSum::cut_to_window(Ways& ways) {
       cut(inside_a, inside_b);
     }
   }
+  bool starts_at_disk = false, ends_at_disk = false;
   if (grid_.cones && grid_.cones->end) {  // (bound ends)
+    const int side_a = cuts_at_disk_ ? side_of_disk(a) : 0, side_b = cuts_at_disk_ ? side_of_disk(b) : 0;
+    if (cuts_at_disk_ && side_a * side_b == 0) {
+      is_open_ = true;
+      return false;
+    }
     if (a.to.z > height_ && b.to.z > height_) return false;
     cut(height_ - a.to.z, height_ - b.to.z);
+    const double there = (height_ - a.to.z) / (b.to.z - a.to.z);
+    starts_at_disk = side_a > 0 && from == there;
+    ends_at_disk = side_b > 0 && to == there;
   }
   if (from > to) {
     is_open_ = is_open_ || may_pass_p(ways);
@@ -223,9 +236,17 @@ bool RowSum::cut_to_window(Ways& ways) {
   }
   if (from == 0 && to == 1) return true;
   const glm::dvec3 start = from > 0 ? glm::mix(a.to, b.to, from) : a.to, end = to < 1 ? glm::mix(a.to, b.to, to) : b.to;
-  a.to = start;
-  b.to = end;
+  if (starts_at_disk || ends_at_disk) (starts_at_disk ? a : b) = ways.b_first ? pass_disk(b, a) : pass_disk(a, b);
+  if (!starts_at_disk) a.to = start;
+  if (!ends_at_disk) b.to = end;
   return true;
+}
+
+/// Of ends of which the lower one is that high over p, that are off so far aside and up, and appear so far from the
+/// foot. (bound place)
+double RowSum::placing_error(double lowest, double error, double error_up, double far) const {
+  return 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
+              8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
 }
 
 std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
@@ -234,7 +255,7 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   if (k == 0 || is_open_) return std::nullopt;
   Ways ways = ways_of(leaf, lane, ends);
   if (!cut_to_window(ways)) return std::nullopt;
-  const auto& [a, b] = ways;
+  const Way &a = ways.a, &b = ways.b;
   const double lowest = std::min(a.to.z, b.to.z), error = std::max(a.error, b.error),
                error_up = std::max(a.error_up, b.error_up);
   if (!(lowest > 8 * error_up)) {  // it passes through p within rounding
@@ -243,11 +264,8 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   }
   const glm::dvec2 place_a = height_ / a.to.z * glm::dvec2(a.to), place_b = height_ / b.to.z * glm::dvec2(b.to);
   const double far = std::max(std::abs(place_a.x) + std::abs(place_a.y), std::abs(place_b.x) + std::abs(place_b.y));
-  // (bound place)
-  const double off = 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
-                          8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
   const glm::dvec2 from = foot_ + place_a, to = foot_ + place_b;
-  return Placed{{from.x, from.y, to.x, to.y, k}, off};
+  return Placed{{from.x, from.y, to.x, to.y, k}, placing_error(lowest, error, error_up, far)};
 }
 
 void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends, std::optional<int> known) {

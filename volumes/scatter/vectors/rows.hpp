@@ -51,6 +51,9 @@ class RowSum {
   [[nodiscard]] std::optional<Placed> place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
                                             std::optional<int> known = std::nullopt);
   void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends, std::optional<int> known = std::nullopt);
+  /// Casters may reach into the sphere that is the light: edges that are added from now on end at the disk that the
+  /// view sample sees of it, and each caster that passes through the disk has an edge there. (bound pass)
+  void cut_at_disk();
   /// Rounding hides on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
   /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near,
@@ -71,6 +74,7 @@ class RowSum {
   };
   struct Ways {
     Way a, b;
+    bool b_first = false;  ///< lexicographically
   };
   void see_cone(const LightCone& cone);
   [[nodiscard]] Way way_to(const glm::dvec3& point) const;
@@ -81,6 +85,12 @@ class RowSum {
   [[nodiscard]] double error_inside(const Way& way, int axis) const;
   [[nodiscard]] bool may_pass_p(const Ways& ways) const;
   [[nodiscard]] bool cut_to_window(Ways& ways);
+  [[nodiscard]] double placing_error(double lowest, double error, double error_up, double far) const;
+  // At a sphere's disk (rows_at_disk.cpp).
+  [[nodiscard]] double error_over_disk(const Way& way) const;
+  [[nodiscard]] int side_of_disk(const Way& way) const;
+  [[nodiscard]] Way pass_disk(const Way& first, const Way& second) const;
+  void add_disk_cut(std::size_t caster);
   void add(RowEdge edge, double error);
   void add_outline();
 
@@ -100,7 +110,7 @@ class RowSum {
   std::vector<RowEdge> edges_;
   std::vector<RowStep> left_;  // of the depth at the light's left side
   double error_ = 0, largest_error_ = 0;
-  bool corner_is_open_ = false, is_open_ = false;
+  bool corner_is_open_ = false, is_open_ = false, cuts_at_disk_ = false;
   std::int32_t at_corner_ = 0;  // what add_horizon and add_outline add
 };
 
