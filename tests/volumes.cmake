@@ -39,6 +39,7 @@ penumbra_test(volumes
   property/volumes/edge_cones.cpp
   property/volumes/hard_volume_exact.cpp
   property/volumes/packed_counters.cpp
+  property/volumes/disk_bounds.cpp
   property/volumes/row_bounds.cpp
   property/volumes/row_sweep.cpp
   property/volumes/silhouette_pass.cpp

@@ -22,33 +22,40 @@ namespace penumbra::tests {
 /// disks 10⁻¹⁰: 64 · 2⁻⁵³ for each of a few thousand trapezoids at the rim.
 constexpr double kExactRowsTolerance = 2 * 0x1p-25 + 0x1p-26 + 1e-10;
 
+/// What a method of output radiance says.
+struct RowsAnswer {
+  std::vector<float> shares;
+  std::vector<glm::dvec3> form_factors;
+};
+inline RowsAnswer run_exact_rows(visibility::Method& method, const visibility::SceneFloats& floats,
+                                 const visibility::Light& light, const visibility::ViewSamples& samples) {
+  method.prepare_mesh(floats);
+  method.prepare_light(light);
+  method.prepare_view(samples);
+  RowsAnswer result{std::vector<float>(samples.size()), {}};
+  const std::uint32_t rows = method.max_tile_rows();
+  for (std::uint32_t first = 0; first < samples.height; first += rows) {
+    const visibility::Tile tile{first, std::min(rows, samples.height - first)};
+    method.evaluate(tile);
+    const std::size_t pixels = std::size_t{tile.row_count} * samples.width;
+    method.read_visibility(std::span(result.shares).subspan(std::size_t{first} * samples.width, pixels));
+    std::vector<glm::dvec3> form_factors(pixels);
+    method.read_form_factors(form_factors);
+    result.form_factors.insert(result.form_factors.end(), form_factors.begin(), form_factors.end());
+  }
+  return result;
+}
+
 class ExactRows : public DeviceTest {
  protected:
   static std::unique_ptr<visibility::Method> make() {
     return volumes::make_edge_scatter(device(), {{"rows", "exact"}});
   }
 
-  struct Answer {
-    std::vector<float> shares;
-    std::vector<glm::dvec3> form_factors;
-  };
+  using Answer = RowsAnswer;
   static Answer run(visibility::Method& method, const visibility::SceneFloats& floats, const visibility::Light& light,
                     const visibility::ViewSamples& samples) {
-    method.prepare_mesh(floats);
-    method.prepare_light(light);
-    method.prepare_view(samples);
-    Answer result{std::vector<float>(samples.size()), {}};
-    const std::uint32_t rows = method.max_tile_rows();
-    for (std::uint32_t first = 0; first < samples.height; first += rows) {
-      const visibility::Tile tile{first, std::min(rows, samples.height - first)};
-      method.evaluate(tile);
-      const std::size_t pixels = std::size_t{tile.row_count} * samples.width;
-      method.read_visibility(std::span(result.shares).subspan(std::size_t{first} * samples.width, pixels));
-      std::vector<glm::dvec3> form_factors(pixels);
-      method.read_form_factors(form_factors);
-      result.form_factors.insert(result.form_factors.end(), form_factors.begin(), form_factors.end());
-    }
-    return result;
+    return run_exact_rows(method, floats, light, samples);
   }
 
   struct Found {

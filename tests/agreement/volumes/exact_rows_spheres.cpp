@@ -17,6 +17,7 @@ namespace {
 using tests::ExactRows;
 using visibility::Light;
 using visibility::SceneFloats;
+using visibility::ViewSamples;
 
 class SpheresThatHold : public ExactRows {
  protected:
@@ -128,6 +129,104 @@ TEST_F(SpheresThatHold, Walls) {
   }
   expect_right("walls", found);
   EXPECT_LE(found.unproven, found.pixels / 50);
+}
+
+/// All on multiples of a half: the sphere, what it holds and p.
+scenes::Scene halves_in_a_sphere(std::mt19937& random) {
+  const auto half = [&](int low, int high) {
+    return 0.5 * (low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1)));
+  };
+  scenes::Scene scene;
+  scene.origin = glm::dvec3(0);
+  tests::add_object(scene, "floor", tests::quad({0, -1, 0}, {2, 0, 0}, {0, 0, -2}));
+  scene.lights.push_back(tests::rectangle_light({0, 0, 0}, {1, 0, 0}, {0, 0, 1}));
+  scene.lights[0].shape =
+      scenes::Sphere{{half(-1, 1), half(1, 3), half(-1, 1)}, 0.5 * static_cast<double>(1 + random() % 2)};
+  std::vector<tests::Corners> casters;
+  const auto corner = [&] { return glm::dvec3(half(-2, 2), half(0, 4), half(-2, 2)); };
+  for (int i = 0; i < 6; ++i) {
+    const glm::dvec3 a = corner(), b = corner(), c = corner();
+    casters.push_back({a, b, c});
+  }
+  tests::add_object(scene, "casters", casters);
+  return scene;
+}
+ViewSamples on_halves(const SceneFloats& floats, std::mt19937& random) {
+  ViewSamples samples = tests::samples_on_triangles(floats, 8, 2, random, 0U);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.triangle[i] != ViewSamples::kBackground) samples.p[i] = 0.25F * glm::round(4.0F * samples.p[i]) + 0.0F;
+  }
+  return samples;
+}
+
+TEST_F(SpheresThatHold, Halves) {
+  Found found;
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+    std::mt19937 random(seed);
+    const scenes::Scene scene = halves_in_a_sphere(random);
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light = visibility::make_light(scene, 0, floats.origin, {});
+    SCOPED_TRACE(seed);
+    compare(floats, light, on_halves(floats, random), tests::kExactRowsTolerance, found);
+  }
+  expect_right("halves", found);
+}
+
+/// What is found for a view sample alone is what is found for it among others: neither lists nor what they leave out
+/// show.
+TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
+  std::size_t partly = 0;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    const scenes::Scene scene = halves_in_a_sphere(random);
+    const SceneFloats floats = visibility::make_scene_floats(scene);
+    const Light light = visibility::make_light(scene, 0, floats.origin, {});
+    const ViewSamples samples = on_halves(floats, random);
+    const auto method = make();
+    const Answer together = run(*method, floats, light, samples);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      ViewSamples one;
+      one.width = one.height = 1;
+      one.triangle = {samples.triangle[i]};
+      one.p = {samples.p[i]};
+      one.n = {samples.n[i]};
+      one.depth = {samples.depth[i]};
+      one.facing = {samples.facing[i]};
+      const Answer alone = run(*method, floats, light, one);
+      EXPECT_EQ(alone.shares[0], together.shares[i]) << seed << " " << i;
+      EXPECT_EQ(alone.form_factors[0], together.form_factors[i]) << seed << " " << i;
+      partly += alone.shares[0] > 0 && alone.shares[0] < 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(partly, 200U);
+}
+
+/// Where an edge ends at the disk and where its caster's cut does were an ulp apart, on either side of the window's
+/// left side: 0.44 in place of 0.96.
+TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
+  scenes::Scene scene;
+  scene.origin = glm::dvec3(0);
+  scenes::Object& anchor =
+      tests::add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}});
+  anchor.casts_shadow = anchor.receives_shadow = false;
+  tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}));
+  tests::add_object(
+      scene, "caster",
+      {{glm::dvec3(-0.713833332F, 0.0435807705F, 2.13435411F), glm::dvec3(0.322484528F, -0.252617111F, 0.259244204F),
+        glm::dvec3(0.422728151F, -0.455461264F, 1.70074689F)}});
+  scene.lights.push_back(tests::rectangle_light({0, 0, 2.5}, {1, 0, 0}, {0, 1, 0}));
+  scene.lights[0].shape = scenes::Sphere{{0, 0, 2.5}, 0.8};
+  const SceneFloats floats = visibility::make_scene_floats(scene);
+  const Light light = visibility::make_light(scene, 0, floats.origin, {});
+  std::mt19937 random(1);
+  ViewSamples samples = tests::samples_on_triangles(floats, 8, 1, random, 1U);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.triangle[i] != ViewSamples::kBackground) samples.p[i] = {0.37F, -0.23F, 0};
+  }
+  Found found;
+  compare(floats, light, samples, tests::kExactRowsTolerance, found);
+  expect_right("left side", found);
+  EXPECT_EQ(found.unproven, 0U);
 }
 
 }  // namespace

@@ -94,15 +94,9 @@ std::optional<double> share_of(const IntegralInput& input, Scratch& scratch, con
   };
   Projection{in, at, scratch.lists, crossing}(special);
   rows.set_view_sample(at);
-  if (at.meets_end) rows.cut_at_disk();
-  for (std::size_t i = 0; i < crossing.count; ++i) {
-    const std::uint32_t edge = std::bit_cast<std::uint32_t>(crossing[kEdge][i]) & ~kUnsettled;
-    const auto slot = std::bit_cast<std::uint32_t>(in.edges[kEdgeSlot][edge]);
-    const float k = crossing[kK][i];
-    rows.add(in.edge_tree.leaves[slot / kWide], slot % kWide, in.ends,
-             std::isnan(k) ? std::nullopt : std::optional(static_cast<int>(k)));
-    if (rows.is_open()) return std::nullopt;
-  }
+  if (at.meets_end) rows.cut_at_disk(at);
+  rows.add(crossing, in);
+  if (rows.is_open()) return std::nullopt;
   if (open.corner || rows.corner_is_open()) {
     if (at.meets_end) return std::nullopt;  // a light sample's place is off the disk by more than casters may be
     const std::optional<std::int32_t> found = in.grid.cones ? depth_by_light_sample(input, rows, at, judge)

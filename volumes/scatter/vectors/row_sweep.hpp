@@ -54,14 +54,15 @@ class RowSweep {
     double visible = 0;     ///< of depth 0, weighed
     double impossible = 0;  ///< of less than that
     std::size_t parts = 0;  ///< of depth 0, that were weighed one by one
-    double disorder = 0;    ///< of gaps whose left side is right of their right side: there, depths may be wrong
+    double disorder =
+        0;  ///< what of gaps may have their left side right of their right side: there, depths may be wrong
   };
   Area operator()(const Input& input);
 
  private:
   struct Line {
     double x = 0, y = 0, slope = 0, end = 0, last_x = 0;
-    std::int32_t k = 0;
+    std::int64_t k = 0;  // 64 bits, so that a line is copied in pieces that loads do not straddle
 
     [[nodiscard]] double at(double height) const { return x + (height - y) * slope; }
   };
@@ -69,18 +70,21 @@ class RowSweep {
   struct Gap {
     double since = 0, left = 0, right = 0;  // and its sides there
     std::int32_t depth = 0;
-    bool is_apart = false;  // by more than rounding: its sides are in order as long as both last
-    bool is_new = false;    // its sides have become neighbours: neither crossing nor depth is known
+    bool is_in_order = false;  // its sides, when they became neighbours
+    bool is_new = false;       // its sides have become neighbours: neither crossing nor depth is known
   };
   static Line line_of(const RowEdge& edge);
+  void sort_edges();
   static constexpr std::size_t kUnknown = ~std::size_t{0};
-  [[nodiscard]] double next_row();
+  [[nodiscard]] double next_row() const;
   void find_first_crossing();
+  void find_first_end();
   void end_gap(std::size_t gap, double y);
+  void measure_gap(std::size_t gap, double y);
   void begin_gap(std::size_t gap, double y);
   void change_places(std::size_t gap, double y);
   void change_lines(double y);
-  [[nodiscard]] bool hand_over(std::size_t ended, double y);
+  [[nodiscard]] bool hand_over(double y);
   void remove(std::size_t line, double y);
   void insert(const RowEdge& edge, double y);
   void renew_gaps(double y);
@@ -89,15 +93,16 @@ class RowSweep {
   Input in_;
   Area area_;
   std::vector<Line> lines_;        // in order, between the light's two sides
+  std::vector<double> ends_;       // of lines; with kRoom more, as crossings_
   std::vector<Gap> gaps_;          // [0] is none
   std::vector<double> crossings_;  // where a gap's two sides cross
   std::vector<RowEdge> begin_;
-  std::vector<double> ends_;  // of all edges, ascending
-  std::vector<RowEdge> edges_by_bucket_;
-  std::vector<double> ends_by_bucket_;
+  std::vector<RowEdge> by_bucket_;
   std::vector<std::uint32_t> buckets_;
-  std::size_t next_edge_ = 0, next_step_ = 0, next_end_ = 0;
-  double rounding_ = 0;    // of the distance of two lines
+  std::size_t next_edge_ = 0, next_step_ = 0;
+  std::size_t ends_in_order_ = 0;  // of gaps of depth > 0 that began so
+  double soonest_end_ = 0;         // of the lines, and the leftmost that has it
+  std::size_t first_end_ = 0;
   double soonest_ = 0;     // no gap's sides cross before
   std::size_t first_ = 0;  // the leftmost gap whose sides do there; kUnknown
 };

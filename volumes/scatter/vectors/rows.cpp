@@ -202,6 +202,7 @@ bool RowSum::cut_to_window(Ways& ways) {
     const double t = inside_a / (inside_a - inside_b);
     if (inside_a < 0) from = std::max(from, t);
     if (inside_b < 0) to = std::min(to, t);
+    return t;
   };
   for (int axis = 0; axis < 2; ++axis) {
     const double off = foot_[axis] - middle[axis];
@@ -220,15 +221,17 @@ bool RowSum::cut_to_window(Ways& ways) {
   bool starts_at_disk = false, ends_at_disk = false;
   if (grid_.cones && grid_.cones->end) {  // (bound ends)
     const int side_a = cuts_at_disk_ ? side_of_disk(a) : 0, side_b = cuts_at_disk_ ? side_of_disk(b) : 0;
-    if (cuts_at_disk_ && side_a * side_b == 0) {
-      is_open_ = true;
-      return false;
+    ways.is_unsure = cuts_at_disk_ && side_a * side_b == 0;
+    if (ways.is_unsure && std::max(side_a, side_b) > 0) {  // no more than one end of it may be before the disk
+      (side_a > 0 ? a : b) = side_a > 0 ? b : a;
+      return true;
     }
-    if (a.to.z > height_ && b.to.z > height_) return false;
-    cut(height_ - a.to.z, height_ - b.to.z);
-    const double there = (height_ - a.to.z) / (b.to.z - a.to.z);
-    starts_at_disk = side_a > 0 && from == there;
-    ends_at_disk = side_b > 0 && to == there;
+    if (!ways.is_unsure) {
+      if (a.to.z > height_ && b.to.z > height_) return false;
+      const double there = cut(height_ - a.to.z, height_ - b.to.z);
+      starts_at_disk = side_a > 0 && from == there;
+      ends_at_disk = side_b > 0 && to == there;
+    }
   }
   if (from > to) {
     is_open_ = is_open_ || may_pass_p(ways);
@@ -242,11 +245,11 @@ bool RowSum::cut_to_window(Ways& ways) {
   return true;
 }
 
-/// Of ends of which the lower one is that high over p, that are off so far aside and up, and appear so far from the
-/// foot. (bound place)
-double RowSum::placing_error(double lowest, double error, double error_up, double far) const {
-  return 2 * (error_foot_ + height_ / lowest * error + far * (error_height_ / height_ + error_up / lowest) +
-              8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y) + far));
+/// Of ends that are off so far aside and up, of which the lower one is `stretch` times nearer to p's height than the
+/// light, and that appear so far from the foot. (bound place)
+double RowSum::placing_error(double stretch, double error, double error_up, double far) const {
+  return 2 * (error_foot_ + stretch * error + far * ((error_height_ + stretch * error_up) / height_ + 8 * kUnit) +
+              8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y)));
 }
 
 std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
@@ -262,30 +265,47 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
     is_open_ = true;
     return std::nullopt;
   }
-  const glm::dvec2 place_a = height_ / a.to.z * glm::dvec2(a.to), place_b = height_ / b.to.z * glm::dvec2(b.to);
+  const double stretch_a = height_ / a.to.z, stretch_b = height_ / b.to.z;
+  const glm::dvec2 place_a = stretch_a * glm::dvec2(a.to), place_b = stretch_b * glm::dvec2(b.to);
   const double far = std::max(std::abs(place_a.x) + std::abs(place_a.y), std::abs(place_b.x) + std::abs(place_b.y));
   const glm::dvec2 from = foot_ + place_a, to = foot_ + place_b;
-  return Placed{{from.x, from.y, to.x, to.y, k}, placing_error(lowest, error, error_up, far)};
+  const Placed placed{{from.x, from.y, to.x, to.y, k},
+                      placing_error(std::max(stretch_a, stretch_b), error, error_up, far)};
+  if (!ways.is_unsure) return placed;
+  is_open_ = is_open_ || !is_beside(placed.edge, kUnsure * placed.error);
+  return std::nullopt;
 }
 
-void RowSum::add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends, std::optional<int> known) {
-  if (const std::optional<Placed> placed = place(leaf, lane, ends, known)) add(placed->edge, placed->error);
+/// Errors are rounded up to multiples of 2⁻⁵², whose sums up to 2 are exact, in whatever order.
+void RowSum::count_error(double error) {
+  error_ += std::ceil(error * 0x1p52) * 0x1p-52;
+  largest_error_ = std::max(largest_error_, error);
 }
 
-/// `error`: of where its ends appear. What is beside the light whatever rounding does says nothing of it, and counts
-/// nowhere, since not every hierarchy would have listed it; and errors are rounded up to multiples of 2⁻⁵², whose sums
-/// up to 2 are exact. So nothing depends on which edges a hierarchy listed, or in what order.
-void RowSum::add(RowEdge edge, double error) {
+/// A lower one has a slope that is more than 2¹³ (columns) times this, and products with it overflow; without it areas
+/// change by less than columns times this.
+void RowSum::keep(const RowEdge& edge) {
+  constexpr double kLevel = 0x1p-900;
+  if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
+}
+
+/// The light, whatever rounding does.
+bool RowSum::is_beside(const RowEdge& edge, double error) const {
   const auto beside = [&](double from, double to, double size) {
     return std::max(from, to) < -2 * error || std::min(from, to) > size + 2 * error;
   };
-  if (beside(edge.x0, edge.x1, grid_.columns) || beside(edge.y0, edge.y1, grid_.rows)) return;
+  return beside(edge.x0, edge.x1, grid_.columns) || beside(edge.y0, edge.y1, grid_.rows);
+}
+
+/// `error`: of where its ends appear. What is beside the light says nothing of it, and counts nowhere, since not every
+/// hierarchy would have listed it. So nothing depends on which edges a hierarchy listed.
+void RowSum::add(RowEdge edge, double error) {
+  if (is_beside(edge, error)) return;
   if (!(error < 0.5)) {
     is_open_ = true;
     return;
   }
-  error_ += std::ceil(error * 0x1p52) * 0x1p-52;
-  largest_error_ = std::max(largest_error_, error);
+  count_error(error);
   if (passes_corner(edge, 2 * error)) corner_is_open_ = true;
   const double width = grid_.columns, height = grid_.rows;
   if (edge.y0 > edge.y1) edge = {edge.x1, edge.y1, edge.x0, edge.y0, -edge.k};
@@ -313,10 +333,7 @@ void RowSum::add(RowEdge edge, double error) {
     edge.x1 = at_height(whole, height);
     edge.y1 = height;
   }
-  // A lower one has a slope that is more than 2¹³ (columns) times this, and products with it overflow; without it areas
-  // change by less than columns times this.
-  constexpr double kLevel = 0x1p-900;
-  if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
+  keep(edge);
 }
 
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place, double off) const {

@@ -3,8 +3,8 @@
 #include "volumes/edges/light_window.hpp"
 #include "volumes/scatter/vectors/light_measure.hpp"
 #include "volumes/scatter/vectors/row_sweep.hpp"
-
 #include "volumes/scatter/vectors/scatter.hpp"
+#include "volumes/scatter/vectors/wide_places.hpp"
 
 #include <array>
 #include <cstdint>
@@ -50,10 +50,16 @@ class RowSum {
   /// that is sure.
   [[nodiscard]] std::optional<Placed> place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
                                             std::optional<int> known = std::nullopt);
-  void add(const WideEdges& leaf, std::size_t lane, const CutEnds* ends, std::optional<int> known = std::nullopt);
+  /// For place_side_by_side.
+  [[nodiscard]] PlacesFrame frame() const;
+  /// All of a table; stops where is_open().
+  void add(const CrossingTable& crossing, const ScatterInput& of);
   /// Casters may reach into the sphere that is the light: edges that are added from now on end at the disk that the
-  /// view sample sees of it, and each caster that passes through the disk has an edge there. (bound pass)
-  void cut_at_disk();
+  /// view sample (set_view_sample's) sees of it, and each caster that passes through the disk has an edge there. (bound
+  /// pass)
+  void cut_at_disk(const GridSample& at);
+  /// Where one of the casters near the disk passes through it. Nothing: it does not, or is_open().
+  [[nodiscard]] std::optional<Placed> place_disk_cut(std::size_t caster);
   /// Rounding hides on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
   /// The depth at a place of the light (in cells from its corner) less that at the corner; nothing: an edge is near,
@@ -74,7 +80,8 @@ class RowSum {
   };
   struct Ways {
     Way a, b;
-    bool b_first = false;  ///< lexicographically
+    bool b_first = false;    ///< lexicographically
+    bool is_unsure = false;  ///< an end is at a sphere's disk within rounding
   };
   void see_cone(const LightCone& cone);
   [[nodiscard]] Way way_to(const glm::dvec3& point) const;
@@ -85,14 +92,24 @@ class RowSum {
   [[nodiscard]] double error_inside(const Way& way, int axis) const;
   [[nodiscard]] bool may_pass_p(const Ways& ways) const;
   [[nodiscard]] bool cut_to_window(Ways& ways);
-  [[nodiscard]] double placing_error(double lowest, double error, double error_up, double far) const;
+  [[nodiscard]] double placing_error(double stretch, double error, double error_up, double far) const;
   // At a sphere's disk (rows_at_disk.cpp).
   [[nodiscard]] double error_over_disk(const Way& way) const;
   [[nodiscard]] int side_of_disk(const Way& way) const;
   [[nodiscard]] Way pass_disk(const Way& first, const Way& second) const;
-  void add_disk_cut(std::size_t caster);
+  [[nodiscard]] bool is_beside(const RowEdge& edge, double error) const;
   void add(RowEdge edge, double error);
+  void add(const std::optional<Placed>& placed) {
+    if (placed) add(placed->edge, placed->error);
+  }
+  void add_side_by_side(const PlacesFrame& here, const ScatterInput& of);
+  void count_error(double error);
+  void keep(const RowEdge& edge);
   void add_outline();
+
+  /// Of what is within rounding of a disk, how much more than its error it may be off: side_of_disk takes heights four
+  /// times as unsure as they are.
+  static constexpr double kUnsure = 8;
 
   const LightGrid& grid_;
   const LightRegion& region_;
@@ -107,6 +124,7 @@ class RowSum {
   double height_ = 0, error_foot_ = 0, error_height_ = 0, steepness_ = 0;
 
   RowSweep sweep_;
+  WidePlaces places_;
   std::vector<RowEdge> edges_;
   std::vector<RowStep> left_;  // of the depth at the light's left side
   double error_ = 0, largest_error_ = 0;

@@ -7,7 +7,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -41,62 +40,73 @@ RowSum::Way RowSum::pass_disk(const Way& first, const Way& second) const {
                error_up = std::max(error_over_disk(first), error_over_disk(second));
   return {{to.x, to.y, height_},
           2 * (std::max(first.error, second.error) + size * error_up / std::abs(across)),
-          0,
+          std::max(first.error_up, second.error_up),
           std::max(first.length, second.length)};
 }
 
-void RowSum::cut_at_disk() {
+void RowSum::cut_at_disk(const GridSample& at) {
   cuts_at_disk_ = true;
+  const LightCone& cone = grid_.cones->of[at.cone];
+  // A sphere that does not reach the square around the disk passes through it nowhere, whoever else is near to it: so
+  // nothing depends on what was near to other view samples.
+  const double to_corner = 1.5 * std::max(glm::length(cone.u), glm::length(cone.v));
   const NearSpheres& near = *grid_.cones->near;
   const auto column = [&](std::size_t field) { return near.columns[field].data(); };
   const double *x = column(NearSpheres::kMiddle), *y = column(NearSpheres::kMiddle + 1),
                *z = column(NearSpheres::kMiddle + 2), *radius = column(NearSpheres::kRadius),
                *number = column(NearSpheres::kNumber);
-  // A sphere that is off the plane by a thousandth of its radius, or of its distance, is on that side of it for sure:
-  // rounding is far less, as long as p is not on the light (is_open_).
+  // A sphere that is off the plane by more than a thousandth of its radius and of its distance is on that side of it:
+  // rounding is less than 2⁻⁴⁰ of either, since no cone is flatter than tan⁻¹ 256.
   for (std::size_t i = 0; i < near.count && !is_open_; ++i) {
     const glm::dvec3 from = glm::dvec3(x[i], y[i], z[i]) - p_;
     const double over = std::abs(glm::dot(axes_[2], from) + height_);
     if (over > radius[i] + 0.001 * (radius[i] + height_)) continue;
-    add_disk_cut(static_cast<std::size_t>(number[i]));
+    if (glm::length(from - cone.middle) > radius[i] + to_corner) continue;
+    add(place_disk_cut(static_cast<std::size_t>(number[i])));
   }
 }
 
-void RowSum::add_disk_cut(std::size_t caster) {
+std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   const double* row = &grid_.cones->casters->rows[caster * NearCasters::kRow];
-  if (row[NearCasters::kPlane] == static_cast<double>(plane_)) return;  // its own plane hides nothing
+  if (row[NearCasters::kPlane] == static_cast<double>(plane_)) return std::nullopt;  // its own plane hides nothing
   std::array<glm::dvec3, 3> corners;
   std::array<Way, 3> ways;
   std::array<int, 3> sides{};
-  glm::dvec2 low(INFINITY), high(-INFINITY);
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
     ways[i] = way_to(corners[i]);
     sides[i] = side_of_disk(ways[i]);
-    low = glm::min(low, glm::dvec2(ways[i].to));
-    high = glm::max(high, glm::dvec2(ways[i].to));
   }
-  if (std::abs(sides[0] + sides[1] + sides[2]) == 3) return;
-  // A way that ends at the plane appears as far aside of the foot as it goes. One more cell has room for rounding.
-  if (glm::any(glm::lessThan(foot_ + high, glm::dvec2(-1))) ||
-      glm::any(glm::greaterThan(foot_ + low, 2.0 * glm::dvec2(grid_.half_cells) + 1.0)))
-    return;
-  if (sides[0] * sides[1] * sides[2] == 0) {
-    is_open_ = true;
-    return;
-  }
-  const mesh::Side turn = mesh::side_of_plane(corners[0], corners[1], corners[2], p_);
-  if (turn == mesh::Side::on) return;
+  if (std::abs(sides[0] + sides[1] + sides[2]) == 3) return std::nullopt;
   // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
   Way from, to;
+  glm::dvec2 low(INFINITY), high(-INFINITY);  // of all that may be in the plane
+  double error = 0, error_up = 0, far = 0;
+  const auto meets = [&](const Way& at) {
+    const glm::dvec2 aside(at.to);
+    low = glm::min(low, foot_ + aside);
+    high = glm::max(high, foot_ + aside);
+    far = std::max(far, std::abs(aside.x) + std::abs(aside.y));
+    error = std::max(error, at.error);
+    error_up = std::max(error_up, at.error_up);
+  };
   for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
-    if (sides[i] == sides[next]) continue;
-    (sides[i] < 0 ? from : to) = pass_disk(ways[std::min(i, next)], ways[std::max(i, next)]);
+    if (sides[i] == 0) meets(ways[i]);
+    if (sides[i] * sides[next] >= 0) continue;
+    Way& at = sides[i] < 0 ? from : to;
+    at = pass_disk(ways[std::min(i, next)], ways[std::max(i, next)]);
+    meets(at);
   }
-  const glm::dvec2 a = glm::dvec2(from.to), b = glm::dvec2(to.to), place_a = foot_ + a, place_b = foot_ + b;
-  const double far = std::max(std::abs(a.x) + std::abs(a.y), std::abs(b.x) + std::abs(b.y));
-  add({place_a.x, place_a.y, place_b.x, place_b.y, turn == mesh::Side::front ? 1 : -1},
-      placing_error(height_, std::max(from.error, to.error), 0, far));
+  const double off = placing_error(1, error, error_up, far);
+  if (is_beside({low.x, low.y, high.x, high.y}, kUnsure * off)) return std::nullopt;
+  if (sides[0] * sides[1] * sides[2] == 0) {
+    is_open_ = true;
+    return std::nullopt;
+  }
+  const mesh::Side turn = mesh::side_of_plane(corners[0], corners[1], corners[2], p_);
+  if (turn == mesh::Side::on) return std::nullopt;
+  const glm::dvec2 a = foot_ + glm::dvec2(from.to), b = foot_ + glm::dvec2(to.to);
+  return Placed{{a.x, a.y, b.x, b.y, turn == mesh::Side::front ? 1 : -1}, off};
 }
 
 }  // namespace penumbra::volumes
