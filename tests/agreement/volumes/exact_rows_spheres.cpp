@@ -229,5 +229,36 @@ TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   EXPECT_EQ(found.unproven, 0U);
 }
 
+/// A panel all but in the disk's plane, with a corner within rounding of it: where it passes through is anywhere along
+/// its sides.
+TEST_F(SpheresThatHold, PanelsInTheDisk) {
+  for (const double below : {-1e-12, -3e-13, -2.5e-13, -1e-13, 0.0, 2e-13}) {
+    for (const double above : {4e-13, 5e-13, 1e-12, 1e-9, 0.0}) {
+      scenes::Scene scene;
+      scene.origin = glm::dvec3(0);
+      scenes::Object& anchor =
+          tests::add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}});
+      anchor.casts_shadow = anchor.receives_shadow = false;
+      tests::add_object(scene, "floor", tests::quad({0, -3, 0}, {2, 0, 0}, {0, 0, -2}));
+      tests::add_object(scene, "panel",
+                        {{glm::dvec3(-2, below, 0), glm::dvec3(2.5, above, -1.5), glm::dvec3(2.5, above, 1.5)}});
+      scene.lights.push_back(tests::rectangle_light({0, 1, 0}, {1, 0, 0}, {0, 0, 1}));
+      scene.lights[0].shape = scenes::Sphere{{0, 1, 0}, 2};
+      const SceneFloats floats = visibility::make_scene_floats(scene);
+      const Light light = visibility::make_light(scene, 0, floats.origin, {});
+      std::mt19937 random(1);
+      ViewSamples samples = tests::samples_on_triangles(floats, 8, 1, random, 1U);
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (samples.triangle[i] != ViewSamples::kBackground) samples.p[i] = {0, -3, 0};
+      }
+      Found found;
+      SCOPED_TRACE(fmt::format("{} {}", below, above));
+      compare(floats, light, samples, tests::kExactRowsTolerance, found);
+      EXPECT_EQ(found.wrong, 0U);
+      EXPECT_GT(found.pixels, 0U);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::volumes

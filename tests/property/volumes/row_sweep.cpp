@@ -2,6 +2,7 @@
 
 #include "volumes/scatter/vectors/row_sweep.hpp"
 
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <gtest/gtest.h>
 
@@ -102,6 +103,42 @@ TEST(RowSweep, TheOrderOfEdgesDoesNotMatter) {
       EXPECT_EQ(other.of_parts, first.of_parts) << round;
     }
   }
+}
+
+/// Edges on one line, which rounding tells from one another in their last digits alone: where they cross is anywhere,
+/// also below where they begin.
+TEST(RowSweep, EdgesOnOneLine) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int round = 0; round < 200'000; ++round) {
+    const auto place = [&] { return kSide * glm::dvec2(share(random), share(random)); };
+    const glm::dvec2 from = place(), to = place();
+    const auto on_line = [&] { return glm::mix(from, to, share(random)); };
+    std::vector<Triangle> triangles(2 + static_cast<std::size_t>(round) % 3);
+    for (Triangle& triangle : triangles) {
+      triangle = {on_line(), on_line(), place()};
+      if (round % 2 == 0) triangle[0] = from;
+    }
+    const Measured first = measure(triangles);
+    const Measured turned = measure(quarter_turned(triangles));
+    ASSERT_NEAR(turned.area.visible, first.area.visible, 1e-10) << round;
+    ASSERT_NEAR(first.of_parts, first.area.visible, 1e-10) << round;
+  }
+}
+
+/// Of these, two lines crossed far below where they begin, by the quotient of two roundings: 73.08 in place of 63.97.
+TEST(RowSweep, LinesThatCrossedLongAgo) {
+  std::vector<RowEdge> edges{
+      {0x1.9bb14642ea861p+2, 0x1.c905bb0a32929p+2, 0x1.b76300bbcf031p+2, 0x1.e6e8a4ae8fd7cp+2, 1},
+      {0x1.36855427c3a49p+1, 0x1.6895c90f1f05fp+1, 0x1.9bb14642ea861p+2, 0x1.c905bb0a32929p+2, 1},
+      {0x1.36855427c3a49p+1, 0x1.6895c90f1f05fp+1, 0x1.b76300bbcf031p+2, 0x1.e6e8a4ae8fd7cp+2, -1},
+      {0x1.f106766de17a8p+1, 0x1.18ed14f83b72cp+2, 0x1.021500c33bd11p+2, 0x1.2340c39fd16d3p+2, -1},
+      {0x1p+1, 0x1p+1, 0x1.021500c33bd11p+2, 0x1.2340c39fd16d3p+2, 1},
+      {0x1p+1, 0x1p+1, 0x1.f106766de17a8p+1, 0x1.18ed14f83b72cp+2, -1}};
+  RowSweep sweep;
+  const RowSweep::Area area = sweep({kSide, kSide, edges, {}, 0, nullptr});
+  EXPECT_NEAR(area.visible, 63.9733, 1e-4);
+  EXPECT_LT(area.disorder, 1e-11);
 }
 
 TEST(RowSweep, OneTriangleLeavesTheRest) {

@@ -112,7 +112,9 @@ void RowSweep::begin_gap(std::size_t number, double y) {
   forget(number);
   crossing = kNever;
   if (last >= 0 || number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
-  crossing = apart > 0 ? std::min(y + apart / (left.slope - right.slope), end) : y;
+  // Of lines that are one but for rounding the slopes may say that they crossed long ago: then where one ends.
+  const double closing = left.slope - right.slope;
+  crossing = apart <= 0 ? y : closing > 0 ? std::min(y + apart / closing, end) : end;
   if (crossing < soonest_) {
     soonest_ = crossing;
     first_ = number;

@@ -222,10 +222,6 @@ bool RowSum::cut_to_window(Ways& ways) {
   if (grid_.cones && grid_.cones->end) {  // (bound ends)
     const int side_a = cuts_at_disk_ ? side_of_disk(a) : 0, side_b = cuts_at_disk_ ? side_of_disk(b) : 0;
     ways.is_unsure = cuts_at_disk_ && side_a * side_b == 0;
-    if (ways.is_unsure && std::max(side_a, side_b) > 0) {  // no more than one end of it may be before the disk
-      (side_a > 0 ? a : b) = side_a > 0 ? b : a;
-      return true;
-    }
     if (!ways.is_unsure) {
       if (a.to.z > height_ && b.to.z > height_) return false;
       const double there = cut(height_ - a.to.z, height_ - b.to.z);
@@ -272,7 +268,7 @@ std::optional<RowSum::Placed> RowSum::place(const WideEdges& leaf, std::size_t l
   const Placed placed{{from.x, from.y, to.x, to.y, k},
                       placing_error(std::max(stretch_a, stretch_b), error, error_up, far)};
   if (!ways.is_unsure) return placed;
-  is_open_ = is_open_ || !is_beside(placed.edge, kUnsure * placed.error);
+  is_open_ = is_open_ || !passes_by(placed.edge, kUnsure * placed.error);
   return std::nullopt;
 }
 
@@ -295,6 +291,15 @@ bool RowSum::is_beside(const RowEdge& edge, double error) const {
     return std::max(from, to) < -2 * error || std::min(from, to) > size + 2 * error;
   };
   return beside(edge.x0, edge.x1, grid_.columns) || beside(edge.y0, edge.y1, grid_.rows);
+}
+
+/// No part of it is on the light, whatever rounding does: it is beside, or the light is on one side of it.
+bool RowSum::passes_by(const RowEdge& edge, double error) const {
+  const double width = grid_.columns, height = grid_.rows, along_x = edge.x1 - edge.x0, along_y = edge.y1 - edge.y0;
+  const auto side = [&](double x, double y) { return along_x * (y - edge.y0) - along_y * (x - edge.x0); };
+  const auto [least, most] = std::minmax({side(0, 0), side(width, 0), side(0, height), side(width, height)});
+  const double off = 2 * error * (std::abs(along_x) + std::abs(along_y));
+  return is_beside(edge, error) || least > off || most < -off;
 }
 
 /// `error`: of where its ends appear. What is beside the light says nothing of it, and counts nowhere, since not every

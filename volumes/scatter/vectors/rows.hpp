@@ -98,6 +98,7 @@ class RowSum {
   [[nodiscard]] int side_of_disk(const Way& way) const;
   [[nodiscard]] Way pass_disk(const Way& first, const Way& second) const;
   [[nodiscard]] bool is_beside(const RowEdge& edge, double error) const;
+  [[nodiscard]] bool passes_by(const RowEdge& edge, double error) const;
   void add(RowEdge edge, double error);
   void add(const std::optional<Placed>& placed) {
     if (placed) add(placed->edge, placed->error);

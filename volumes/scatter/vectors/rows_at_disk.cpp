@@ -72,40 +72,38 @@ std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   std::array<glm::dvec3, 3> corners;
   std::array<Way, 3> ways;
   std::array<int, 3> sides{};
+  RowEdge box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};  // around its corners, in the direction of the plane
+  double error = 0, error_up = 0, far = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
     ways[i] = way_to(corners[i]);
     sides[i] = side_of_disk(ways[i]);
+    const glm::dvec2 aside(ways[i].to);
+    box = {std::min(box.x0, foot_.x + aside.x), std::min(box.y0, foot_.y + aside.y),
+           std::max(box.x1, foot_.x + aside.x), std::max(box.y1, foot_.y + aside.y), 0};
+    far = std::max(far, std::abs(aside.x) + std::abs(aside.y));
+    error = std::max(error, ways[i].error);
+    error_up = std::max(error_up, ways[i].error_up);
   }
   if (std::abs(sides[0] + sides[1] + sides[2]) == 3) return std::nullopt;
-  // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
-  Way from, to;
-  glm::dvec2 low(INFINITY), high(-INFINITY);  // of all that may be in the plane
-  double error = 0, error_up = 0, far = 0;
-  const auto meets = [&](const Way& at) {
-    const glm::dvec2 aside(at.to);
-    low = glm::min(low, foot_ + aside);
-    high = glm::max(high, foot_ + aside);
-    far = std::max(far, std::abs(aside.x) + std::abs(aside.y));
-    error = std::max(error, at.error);
-    error_up = std::max(error_up, at.error_up);
-  };
-  for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
-    if (sides[i] == 0) meets(ways[i]);
-    if (sides[i] * sides[next] >= 0) continue;
-    Way& at = sides[i] < 0 ? from : to;
-    at = pass_disk(ways[std::min(i, next)], ways[std::max(i, next)]);
-    meets(at);
-  }
-  const double off = placing_error(1, error, error_up, far);
-  if (is_beside({low.x, low.y, high.x, high.y}, kUnsure * off)) return std::nullopt;
   if (sides[0] * sides[1] * sides[2] == 0) {
-    is_open_ = true;
+    // Wherever it passes through the plane, it does so at a place between those of its corners.
+    is_open_ = is_open_ || !is_beside(box, kUnsure * placing_error(1, error, error_up, far));
     return std::nullopt;
   }
+  // Around what is before the plane, the corners in their order: out of it at `from`, back at `to`.
+  Way from, to;
+  for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
+    if (sides[i] != sides[next])
+      (sides[i] < 0 ? from : to) = pass_disk(ways[std::min(i, next)], ways[std::max(i, next)]);
+  }
+  const glm::dvec2 a = foot_ + glm::dvec2(from.to), b = foot_ + glm::dvec2(to.to);
+  const RowEdge edge{a.x, a.y, b.x, b.y, 0};
+  far = std::max(std::abs(from.to.x) + std::abs(from.to.y), std::abs(to.to.x) + std::abs(to.to.y));
+  const double off = placing_error(1, std::max(from.error, to.error), std::max(from.error_up, to.error_up), far);
+  if (is_beside(edge, off)) return std::nullopt;
   const mesh::Side turn = mesh::side_of_plane(corners[0], corners[1], corners[2], p_);
   if (turn == mesh::Side::on) return std::nullopt;
-  const glm::dvec2 a = foot_ + glm::dvec2(from.to), b = foot_ + glm::dvec2(to.to);
   return Placed{{a.x, a.y, b.x, b.y, turn == mesh::Side::front ? 1 : -1}, off};
 }
 
