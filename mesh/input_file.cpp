@@ -126,7 +126,7 @@ class Walk {
 
 bool require_regular(int descriptor, const std::string& shown) {
   struct stat info {};
-  if (::fstat(descriptor, &info) != 0) throw file_error(errno, shown);
+  if (::fstat(descriptor, &info) != 0) throw_file_error(errno, shown);
   if (S_ISDIR(info.st_mode)) throw InputError("{}: it is a folder, not a file", shown);
   if (!S_ISREG(info.st_mode)) throw InputError("{}: it is not a regular file", shown);
   return info.st_size > 0;
@@ -136,14 +136,14 @@ InputFile open_input(const std::filesystem::path& file) {
   const std::string shown = file.string();
   // Looked at before it is opened: opening a device may do something.
   const Descriptor named(::open(file.c_str(), O_PATH | O_CLOEXEC));
-  if (!named.is_open()) throw file_error(errno, shown);
+  if (!named.is_open()) throw_file_error(errno, shown);
   require_regular(named.get(), shown);
   InputFile input{file, Descriptor(::open(file.c_str(), kReadFlags)), {}};
-  if (!input.content.is_open()) throw file_error(errno, shown);
+  if (!input.content.is_open()) throw_file_error(errno, shown);
   require_content(input.content.get(), shown);
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   input.folder = Descriptor(::open(folder.c_str(), kFolderFlags));
-  if (!input.folder.is_open()) throw file_error(errno, folder.string());
+  if (!input.folder.is_open()) throw_file_error(errno, folder.string());
   return input;
 }
 
@@ -164,13 +164,13 @@ InputBeneath open_input_beneath(int folder, const std::string& name, const std::
 
 std::string read_content(int descriptor, const std::string& shown) {
   struct stat info {};
-  if (::fstat(descriptor, &info) != 0) throw file_error(errno, shown);
+  if (::fstat(descriptor, &info) != 0) throw_file_error(errno, shown);
   std::string content(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t at = 0;
   while (at < content.size()) {
     const ssize_t count = ::pread(descriptor, content.data() + at, content.size() - at, static_cast<off_t>(at));
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw file_error(errno, shown);
+    if (count < 0) throw_file_error(errno, shown);
     if (count == 0) throw InputError("{}: only {} of {} bytes could be read", shown, at, content.size());
     at += static_cast<std::size_t>(count);
   }

@@ -15,7 +15,7 @@ struct InputFile {
 };
 
 /// Opens what the user names, following links. InputError if it is not a readable regular file, or empty;
-/// what the machine lacks, file_error says, here and below.
+/// what the machine lacks, throw_file_error says, here and below.
 InputFile open_input(const std::filesystem::path& file);
 
 /// What came of open_beneath.

@@ -169,7 +169,7 @@ std::string read_text_file(const std::filesystem::path& file) {
   // A pipe or a device might never end.
   if (!std::filesystem::is_regular_file(status)) throw InputError("{}: not a regular file", file.string());
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw file_error(errno, file.string() + ": cannot be read");
+  if (!stream) throw_file_error(errno, file.string() + ": cannot be read");
   const std::uintmax_t size = std::filesystem::file_size(file);
   // The text, its values (a number of eight characters takes sixteen bytes), and what is made of them.
   require_memory(3 * size, fmt::format("{}: a text of {}", file.string(), in_bytes(size)),

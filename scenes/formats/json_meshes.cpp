@@ -202,14 +202,14 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
   }
   const std::filesystem::path home = folder.empty() ? "." : folder;
   const Descriptor opened(::open(home.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-  if (!opened.is_open()) throw file_error(errno, place.str() + ": the scene's folder cannot be opened");
+  if (!opened.is_open()) throw_file_error(errno, place.str() + ": the scene's folder cannot be opened");
   mesh::InputBeneath file = at_place(place, [&] { return mesh::open_input_beneath(opened.get(), name, path); });
   if (file.error == EXDEV) {
     throw InputError("{}: \"{}\" leads outside the scene's folder; move it there or pass --allow-outside", place.str(),
                      name);
   }
   if (file.error == ENOENT) throw missing();
-  if (file.error != 0) throw file_error(file.error, fmt::format("{}: \"{}\"", place.str(), name));
+  if (file.error != 0) throw_file_error(file.error, fmt::format("{}: \"{}\"", place.str(), name));
   return {std::move(file.input), home / file.path};
 }
 

@@ -34,7 +34,7 @@ std::vector<std::filesystem::path> package_lists(std::string_view package, const
     const std::string stem = path.stem().string();
     if (stem == package || stem.starts_with(prefix)) lists.push_back(path);
   }
-  if (error && error.value() != ENOENT) throw file_error(error.value(), dpkg_info.string());
+  if (error && error.value() != ENOENT) throw_file_error(error.value(), dpkg_info.string());
   std::sort(lists.begin(), lists.end());
   return lists;
 }
@@ -44,7 +44,7 @@ std::set<std::string> listed_files(const std::vector<std::filesystem::path>& lis
   std::set<std::string> files;
   for (const std::filesystem::path& list : lists) {
     std::ifstream lines(list);
-    if (!lines) throw file_error(errno, list.string());
+    if (!lines) throw_file_error(errno, list.string());
     for (std::string line; std::getline(lines, line);) files.insert(line);
   }
   return files;
@@ -62,10 +62,10 @@ mesh::InputFile open_package_file(std::string_view package, std::string_view fil
                                   const std::filesystem::path& dpkg_info) {
   const std::filesystem::path path = find_package_file(package, file, dpkg_info);
   const Descriptor root(::open("/", O_PATH | O_DIRECTORY | O_CLOEXEC));
-  if (!root.is_open()) throw file_error(errno, "/");
+  if (!root.is_open()) throw_file_error(errno, "/");
   mesh::InputBeneath opened = mesh::open_input_beneath(root.get(), path.string(), path);
   if (opened.error != 0) {
-    throw file_error(opened.error, fmt::format("{}, which the package \"{}\" lists", path.string(), package));
+    throw_file_error(opened.error, fmt::format("{}, which the package \"{}\" lists", path.string(), package));
   }
   if (!is_listed(listed_files(package_lists(package, dpkg_info)), "/" + opened.path)) {
     throw InputError("{}: a link leads to /{}, which is no file of the package \"{}\"", path.string(), opened.path,
