@@ -106,7 +106,8 @@ TEST(RowSweep, TheOrderOfEdgesDoesNotMatter) {
 }
 
 /// Edges on one line, which rounding tells from one another in their last digits alone: where they cross is anywhere,
-/// also below where they begin.
+/// also below where they begin. Each end of a gap is off by 24 · 2⁻⁵³ of the square at most (RowSweep); twelve edges
+/// have up to 66 crossings and 24 ends, at each of which three gaps end, and both ways are measured: 9.2e-11.
 TEST(RowSweep, EdgesOnOneLine) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> share(0, 1);

@@ -48,7 +48,8 @@ void RowSum::cut_at_disk(const GridSample& at) {
   cuts_at_disk_ = true;
   const LightCone& cone = grid_.cones->of[at.cone];
   // A sphere that does not reach the square around the disk passes through it nowhere, whoever else is near to it: so
-  // nothing depends on what was near to other view samples.
+  // nothing depends on what was near to other view samples. (Its corners are √2 of the axes away; more is room for
+  // rounding.)
   const double to_corner = 1.5 * std::max(glm::length(cone.u), glm::length(cone.v));
   const NearSpheres& near = *grid_.cones->near;
   const auto column = [&](std::size_t field) { return near.columns[field].data(); };
