@@ -6,6 +6,7 @@
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/parallel.hpp"
 #include "scenes/picture_size.hpp"
 
 #include <fmt/ranges.h>
@@ -65,8 +66,10 @@ bool same_mesh(const scenes::Scene& a, const scenes::Scene& b) {
       a.objects, [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; });
   if (filters && (a.looks.places != b.looks.places || a.looks.colors != b.looks.colors || a.pictures != b.pictures))
     return false;
-  return a.origin == b.origin && a.soup.positions == b.soup.positions && a.soup.triangles == b.soup.triangles &&
-         a.soup.object == b.soup.object && std::ranges::equal(a.objects, b.objects, alike);
+  return a.origin == b.origin && std::ranges::equal(a.objects, b.objects, alike) &&
+         mesh::equal_on_all_cores(a.soup.positions, b.soup.positions) &&
+         mesh::equal_on_all_cores(a.soup.triangles, b.soup.triangles) &&
+         mesh::equal_on_all_cores(a.soup.object, b.soup.object);
 }
 
 /// For each light, whom its own scene leaves out (Light::unshaded_by).
@@ -112,9 +115,9 @@ SessionMaker::SessionMaker(const RunOptions& options, DeviceSource& devices)
 }
 
 void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress) {
+  Stopwatch load;
   const bool first = session_.floats.triangles.empty();
   const bool changed = first || !same_mesh(session_.scene, scene);
-  Stopwatch load;
   session_.scene = std::move(scene);
   session_.warnings = session_.scene.warnings;
   const std::string scene_name = options_.scene.string();

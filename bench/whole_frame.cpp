@@ -3,6 +3,7 @@
 #include "app/pictures/frame_render.hpp"
 #include "app/process/progress.hpp"
 #include "app/process/stopwatch.hpp"
+#include "base/assert.hpp"
 #include "base/error.hpp"
 #include "bench/adaptive_rays.hpp"
 #include "bench/cpu.hpp"
@@ -13,28 +14,74 @@
 #include "visibility/view_samples.hpp"
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <variant>
 
 namespace penumbra::bench {
 namespace {
 
+using Seconds = std::map<std::string, double>;
+
+/// Of two frames, the second's light having moved: seconds of each phase.
+struct TwoFrames {
+  Seconds first, second;
+};
+
+/// As far as a light moves from one frame to the next that crosses its own width in a dozen frames.
+constexpr double kShare = 1.0 / 12;
+
+/// Moves a light by that share of its width; of one that is in pieces, all of them by as much as suits the first.
+void move(scenes::LightShape& shape) {
+  const auto way = [](const auto& light) -> glm::dvec3 {
+    if constexpr (requires { light.half_u; }) return 2 * kShare * light.half_u;
+    if constexpr (requires { light.vertices; }) return kShare * (light.vertices.at(2) - light.vertices.at(0));
+    if constexpr (requires { light.radius; }) return {2 * kShare * light.radius, 0, 0};
+    return {};
+  };
+  const auto move_by = [](auto& light, const glm::dvec3& by) {
+    if constexpr (requires { light.center; }) light.center += by;
+    if constexpr (requires { light.vertices; })
+      for (glm::dvec3& vertex : light.vertices) vertex += by;
+  };
+  if (auto* const sun = std::get_if<scenes::Sun>(&shape)) {
+    const glm::dvec3& from = sun->direction;
+    const glm::dvec3 aside = glm::cross(from, std::abs(from.y) < 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
+    sun->direction = glm::normalize(from + kShare * glm::radians(sun->angle) * glm::normalize(aside));
+  } else if (auto* const cut = std::get_if<scenes::Pieces>(&shape)) {
+    const glm::dvec3 by = std::visit(way, cut->pieces.front());
+    for (auto& piece : cut->pieces) std::visit([&](auto& one) { move_by(one, by); }, piece);
+  } else {
+    std::visit([&](auto& one) { move_by(one, way(one)); }, shape);
+  }
+}
+
+scenes::Scene with_light_moved(scenes::Scene scene) {
+  move(scene.lights.front().shape);
+  return scene;
+}
+
 /// The program on Embree.
 class PlainProgram {
  public:
-  PlainProgram(const scenes::Scene& scene, const Subject& subject, std::uint32_t samples)
+  PlainProgram(const scenes::Scene& scene, const scenes::Scene& next, const Subject& subject, std::uint32_t samples)
       : floats_(visibility::make_scene_floats(scene)),
         camera_(visibility::make_camera(scene.cameras.at(0), floats_.origin, subject.size, subject.size)),
         light_(light_with(scene, samples, subject.pattern)),
-        adaptive_(light_with(scene, AdaptiveRays::kFew, subject.pattern)) {
+        next_light_(light_with(next, samples, subject.pattern)),
+        adaptive_(light_with(scene, AdaptiveRays::kFew, subject.pattern)),
+        next_adaptive_(light_with(next, AdaptiveRays::kFew, subject.pattern)) {
     double best = std::numeric_limits<double>::infinity();
     for (const int packet : {4, 8, 16}) {
       packet_ = packet;
-      std::map<std::string, double> seconds = run();
+      Seconds seconds = run().first;
       const double sum = seconds["view"] + seconds["evaluate"];
       if (sum < best) {
         best = sum;
@@ -44,19 +91,13 @@ class PlainProgram {
     packet_ = fastest_;
   }
 
-  std::map<std::string, double> run() {
-    std::map<std::string, double> seconds;
-    app::Stopwatch watch;
+  TwoFrames run() {
+    const app::Stopwatch watch;
     reference::PlainRays rays({.width = packet_, .one_frame = true});
     rays.prepare_mesh(floats_);
-    seconds["mesh"] = watch.seconds();
-    watch.restart();
-    visibility::ViewSamples samples = rays.look(camera_);
-    seconds["view"] = watch.seconds();
-    visibility_.resize(samples.size());
-    const AdaptiveRays::Seconds spent = adaptive_.run(rays, samples, light_, visibility_);
-    seconds["light"] = spent.light;
-    seconds["evaluate"] = spent.evaluate;
+    const double mesh = watch.seconds();
+    TwoFrames seconds{look(rays, light_, adaptive_), look(rays, next_light_, next_adaptive_)};
+    seconds.first["mesh"] = mesh;
     return seconds;
   }
 
@@ -69,10 +110,22 @@ class PlainProgram {
     return visibility::make_light(scene, 0, floats_.origin, request);
   }
 
+  Seconds look(reference::PlainRays& rays, const visibility::Light& light, AdaptiveRays& adaptive) {
+    Seconds seconds;
+    const app::Stopwatch watch;
+    visibility::ViewSamples samples = rays.look(camera_);
+    seconds["view"] = watch.seconds();
+    visibility_.resize(samples.size());
+    const AdaptiveRays::Seconds spent = adaptive.run(rays, samples, light, visibility_);
+    seconds["light"] = spent.light;
+    seconds["evaluate"] = spent.evaluate;
+    return seconds;
+  }
+
   visibility::SceneFloats floats_;
   visibility::PinholeCamera camera_;
-  visibility::Light light_;
-  AdaptiveRays adaptive_;
+  visibility::Light light_, next_light_;
+  AdaptiveRays adaptive_, next_adaptive_;
   std::vector<float> visibility_;
   int packet_ = 0, fastest_ = 0;
 };
@@ -88,29 +141,36 @@ class MethodFrame {
     run_.sample_pattern = visibility::name_of(subject.pattern);
   }
 
-  std::map<std::string, double> run(const scenes::Scene& scene, const Folder& folder) {
+  TwoFrames run(const scenes::Scene& scene, const scenes::Scene& next, const Folder& folder) {
     run_.lights = {scene.lights.front().name};
     app::Progress progress(false);
     app::FrameRenderer renderer(run_, wish_, devices_, progress);
-    renderer.render(scene, {}, {}, 0);
-    app::Exposure exposure;
-    const compare::Seconds seconds =
-        renderer.write({.picture = folder / "a.exr", .stats = {}, .png = folder / "a.png", .bits = {}}, exposure)
-            .seconds;
+    const auto stats_of = [&](const scenes::Scene& shown) {
+      renderer.render(shown, {}, {}, 0);
+      app::Exposure exposure;
+      return renderer.write({.picture = folder / "a.exr", .stats = {}, .png = folder / "a.png", .bits = {}}, exposure);
+    };
+    const compare::Stats first = stats_of(scene), second = stats_of(next);
+    PENUMBRA_ASSERT(second.counters.contains("meshesKept"), "{}: a light that moves leaves the mesh", wish_.method);
+    return {phases_of(first.seconds), phases_of(second.seconds)};
+  }
+
+ private:
+  static Seconds phases_of(const compare::Seconds& seconds) {
     return {{"floats", seconds.load.value_or(0)},       {"mesh", seconds.mesh.value_or(0)},
             {"view", seconds.view.value_or(0)},         {"light", seconds.light.value_or(0)},
             {"evaluate", seconds.evaluate.value_or(0)}, {"beauty", seconds.beauty.value_or(0)},
             {"write", seconds.write.value_or(0)}};
   }
 
- private:
   app::DeviceSource& devices_;
   app::MethodWish wish_;
   app::RunOptions run_;
 };
 
-void add_run(FrameTimes& times, const std::map<std::string, double>& seconds) {
-  for (const auto& [phase, spent] : seconds) times.phases[phase].push_back(spent);
+void add_run(FrameTimes& times, const TwoFrames& seconds) {
+  for (const auto& [phase, spent] : seconds.first) times.phases[phase].push_back(spent);
+  for (const auto& [phase, spent] : seconds.second) times.next_phases[phase].push_back(spent);
 }
 
 void require_plain(const scenes::Scene& scene) {
@@ -124,8 +184,8 @@ void require_plain(const scenes::Scene& scene) {
       scene.name);
 }
 
-FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, std::uint32_t samples,
-                       const Options& options, app::DeviceSource& devices) {
+FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, const scenes::Scene& next,
+                       std::uint32_t samples, const Options& options, app::DeviceSource& devices) {
   const Folder folder;
   FrameEntry entry;
   entry.subject = subject.name;
@@ -134,17 +194,17 @@ FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, std::
   entry.samples = samples;
   entry.size = subject.size;
   entry.load_before = load_of_machine();
-  PlainProgram plain(scene, subject, samples);
+  PlainProgram plain(scene, next, subject, samples);
   std::vector<MethodFrame> pictures;
-  entry.contestants.push_back({"embree", {}});
+  entry.contestants.push_back({"embree", {}, {}});
   for (const app::MethodEntry& method : options.methods) {
     pictures.emplace_back(method, subject, samples, devices);
-    entry.contestants.push_back({method.label, {}});
+    entry.contestants.push_back({method.label, {}, {}});
   }
   for (std::uint32_t run = 0; run <= options.runs; ++run) {
     const bool timed = run > 0;  // the first is discarded
     for (std::size_t i = 0; i < entry.contestants.size(); ++i) {
-      const auto seconds = i == 0 ? plain.run() : pictures[i - 1].run(scene, folder);
+      const auto seconds = i == 0 ? plain.run() : pictures[i - 1].run(scene, next, folder);
       if (timed) add_run(entry.contestants[i], seconds);
     }
   }
@@ -153,7 +213,7 @@ FrameEntry measure_one(const Subject& subject, const scenes::Scene& scene, std::
 
 }  // namespace
 
-std::vector<double> FrameTimes::sum_of(const std::vector<std::string>& names) const {
+std::vector<double> FrameTimes::sum_of(const Phases& phases, const std::vector<std::string>& names) {
   std::vector<double> sums;
   for (const std::string& one : names) {
     const auto phase = phases.find(one);
@@ -164,21 +224,14 @@ std::vector<double> FrameTimes::sum_of(const std::vector<std::string>& names) co
   return sums;
 }
 
-std::vector<double> FrameTimes::frame() const {
-  return sum_of({"floats", "mesh", "view", "light", "evaluate"});
-}
-
-std::vector<double> FrameTimes::next() const {
-  return sum_of({"view", "light", "evaluate"});
-}
-
 void measure_whole_frames(const Options& options, app::DeviceSource& devices,
                           const std::function<void(const FrameEntry&)>& sink) {
   for (const Subject& subject : options.subjects) {
     const scenes::Scene scene = read_subject(subject);
     require_plain(scene);
+    const scenes::Scene next = with_light_moved(scene);
     for (const std::uint32_t samples : options.light_samples) {
-      sink(measure_one(subject, scene, samples, options, devices));
+      sink(measure_one(subject, scene, next, samples, options, devices));
     }
   }
 }

@@ -13,17 +13,26 @@ namespace penumbra::bench {
 
 /// One contestant's whole frames: seconds of each phase, run by run.
 struct FrameTimes {
+  using Phases = std::map<std::string, std::vector<double>>;
+
   std::string name;
   /// `floats` (double to float, planes), `mesh`, `view`, `light`, `evaluate`, `beauty`, `write`; rays have no `floats`
   /// and nothing after `evaluate`.
-  std::map<std::string, std::vector<double>> phases;
+  Phases phases;
+  /// The same of the frame after it, in which the light has moved.
+  Phases next_phases;
+
+  /// From a scene in memory to V of each pixel.
+  [[nodiscard]] std::vector<double> frame() const { return until_evaluate(phases); }
+  [[nodiscard]] std::vector<double> next() const { return until_evaluate(next_phases); }
 
   /// Run by run, all of these that there are.
-  [[nodiscard]] std::vector<double> sum_of(const std::vector<std::string>& names) const;
-  /// From a scene in memory to V of each pixel.
-  [[nodiscard]] std::vector<double> frame() const;
-  /// The same of a frame whose mesh is that of the frame before: light or camera moves.
-  [[nodiscard]] std::vector<double> next() const;
+  [[nodiscard]] static std::vector<double> sum_of(const Phases& phases, const std::vector<std::string>& names);
+
+ private:
+  [[nodiscard]] static std::vector<double> until_evaluate(const Phases& phases) {
+    return sum_of(phases, {"floats", "mesh", "view", "light", "evaluate"});
+  }
 };
 
 struct FrameEntry {
@@ -35,8 +44,8 @@ struct FrameEntry {
 };
 
 /// Whole pictures, each from a scene in memory, as `penumbra render` makes them, beside a plain program on Embree:
-/// hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where they disagree. They
-/// take turns; the first run of each is discarded.
+/// hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where they disagree; each
+/// followed by a frame in which the light has moved. They take turns; the first run of each is discarded.
 void measure_whole_frames(const Options& options, app::DeviceSource& devices,
                           const std::function<void(const FrameEntry&)>& sink);
 

@@ -50,11 +50,13 @@ std::string frame_table_rows(const FrameEntry& entry) {
     rows += fmt::format("| {:<52} |", entry.name + "/" + times.name);
     for (const char* phase : kFramePhases) rows += fmt::format(" {:>7} |", cell(times, phase));
     const Timing frame = timing_of(times.frame());
-    rows += fmt::format(" {:>7.3f} | {:>7.0f} | {:>7.3g} | {:>7.3g} | {:>7.3g} | {:>7.3g} | {:>7.1f} |\n", frame.median,
-                        50 * frame.spread(), times_faster(plain.frame(), times.frame()),
-                        times_faster(plain.next(), times.next()),
-                        1 / times_faster(plain.sum_of({"mesh"}), times.sum_of({"floats", "mesh"})),
-                        1 / times_faster(plain.sum_of({"view"}), times.sum_of({"view"})), entry.load_before);
+    rows += fmt::format(
+        " {:>7.3f} | {:>7.0f} | {:>7.3g} | {:>7.3g} | {:>7.3g} | {:>7.3g} | {:>7.1f} |\n", frame.median,
+        50 * frame.spread(), times_faster(plain.frame(), times.frame()), times_faster(plain.next(), times.next()),
+        1 / times_faster(FrameTimes::sum_of(plain.phases, {"mesh"}),
+                         FrameTimes::sum_of(times.phases, {"floats", "mesh"})),
+        1 / times_faster(FrameTimes::sum_of(plain.phases, {"view"}), FrameTimes::sum_of(times.phases, {"view"})),
+        entry.load_before);
   }
   return rows;
 }
@@ -79,12 +81,18 @@ std::string frame_json_lines(const FrameEntry& entry, const Options& options) {
       if (const auto found = times.phases.find(phase); found != times.phases.end())
         line["seconds"][phase] = timing_json(found->second);
     }
+    for (const char* phase : kFramePhases) {
+      if (const auto found = times.next_phases.find(phase); found != times.next_phases.end())
+        line["nextSeconds"][phase] = timing_json(found->second);
+    }
     line["frame"] = timing_json(times.frame());
     line["nextFrame"] = timing_json(times.next());
     line["timesFasterThanEmbree"] = times_faster(plain.frame(), times.frame());
     line["nextTimesFasterThanEmbree"] = times_faster(plain.next(), times.next());
-    line["meshOverEmbreeBuild"] = 1 / times_faster(plain.sum_of({"mesh"}), times.sum_of({"floats", "mesh"}));
-    line["viewOverEmbreeRays"] = 1 / times_faster(plain.sum_of({"view"}), times.sum_of({"view"}));
+    line["meshOverEmbreeBuild"] = 1 / times_faster(FrameTimes::sum_of(plain.phases, {"mesh"}),
+                                                   FrameTimes::sum_of(times.phases, {"floats", "mesh"}));
+    line["viewOverEmbreeRays"] =
+        1 / times_faster(FrameTimes::sum_of(plain.phases, {"view"}), FrameTimes::sum_of(times.phases, {"view"}));
     lines += line.dump() + "\n";
   }
   return lines;

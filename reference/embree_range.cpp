@@ -3,9 +3,12 @@
 #include "base/error.hpp"
 
 #include <glm/common.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace penumbra::reference {
 namespace {
@@ -25,19 +28,25 @@ EmbreeRange::EmbreeRange(const visibility::SceneFloats& scene, std::span<const s
   const double size = std::max(largest_component(scene.lower), largest_component(scene.upper));
   if (size > 0) scale_ = std::ldexp(1.0, kMeshExponent - 1 - std::ilogb(size));
 
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t triangle : casting) {
+  const auto edges_of = [&](std::uint32_t triangle) {
     const auto [a, b, c] = scene.corners(triangle);
-    const double edges =
-        std::max(largest_component(glm::dvec3(b) - glm::dvec3(a)), largest_component(glm::dvec3(c) - glm::dvec3(a)));
-    if (edges * scale_ < kSmallest) {
-      throw InputError(
-          "rays: triangle {} measures {} in a scene of {}: Embree's float32 cannot hold both; exact and view-sample "
-          "can "
-          "(compare: --reference exact)",
-          triangle, edges, size);
-    }
-    smallest = std::min(smallest, edges * scale_);
+    return std::max(largest_component(glm::dvec3(b) - glm::dvec3(a)), largest_component(glm::dvec3(c) - glm::dvec3(a)));
+  };
+  const double smallest = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, casting.size(), 4096), std::numeric_limits<double>::infinity(),
+      [&](const tbb::blocked_range<std::size_t>& range, double least) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          least = std::min(least, edges_of(casting[i]) * scale_);
+        return least;
+      },
+      [](double x, double y) { return std::min(x, y); });
+  if (smallest < kSmallest) {
+    const auto first =
+        std::ranges::find_if(casting, [&](std::uint32_t triangle) { return edges_of(triangle) * scale_ < kSmallest; });
+    throw InputError(
+        "rays: triangle {} measures {} in a scene of {}: Embree's float32 cannot hold both; exact and view-sample can "
+        "(compare: --reference exact)",
+        *first, edges_of(*first), size);
   }
   shortest_ray_ = static_cast<float>(kLeastTerm / (smallest * smallest));
 }

@@ -1,6 +1,8 @@
 #include "reference/embree_scene.hpp"
 
 #include "base/error.hpp"
+#include "base/pages.hpp"
+#include "base/parallel.hpp"
 
 #include <embree3/rtcore.h>
 
@@ -15,6 +17,9 @@ struct EmbreeScene::Parts {
   RTCScene scene = nullptr;
   std::vector<std::uint32_t> triangles;
   EmbreeRange range;
+  // Embree reads from these; its own arrays would be filled a small page at a time.
+  UnsetList<glm::vec3> positions;
+  UnsetList<mesh::Triangle> corners;
   std::atomic<std::int64_t> bytes = 0, peak_bytes = 0;
 
   Parts(const visibility::SceneFloats& floats, std::vector<std::uint32_t> chosen)
@@ -66,18 +71,19 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
 
   if (!parts.triangles.empty()) {
     RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), scene.positions.size()));
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), parts.triangles.size()));
-    if (positions != nullptr && indices != nullptr) {
-      for (const glm::vec3& position : scene.positions) {
-        const glm::vec3 scaled = parts.range.scaled(position);
-        for (int axis = 0; axis < 3; ++axis) *positions++ = scaled[axis];
-      }
-      for (const std::uint32_t triangle : parts.triangles) {
-        for (const std::uint32_t vertex : scene.triangles[triangle]) *indices++ = vertex;
-      }
+    const std::size_t vertices = scene.positions.size(), count = parts.triangles.size();
+    parts.positions.resize(vertices + 1);  // Embree reads the last one's sixteen bytes
+    parts.positions.back() = glm::vec3(0);
+    parts.corners.resize(count);
+    mesh::for_each_index(vertices, [&](std::size_t i) { parts.positions[i] = parts.range.scaled(scene.positions[i]); });
+    mesh::for_each_index(count, [&](std::size_t i) { parts.corners[i] = scene.triangles[parts.triangles[i]]; });
+    Parts::count_memory(&parts, static_cast<ssize_t>(vertices * sizeof(glm::vec3) + count * sizeof(mesh::Triangle)),
+                        false);
+    if (geometry != nullptr) {
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, parts.positions.data(), 0,
+                                 sizeof(glm::vec3), vertices);
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, parts.corners.data(), 0,
+                                 sizeof(mesh::Triangle), count);
       rtcSetGeometryBuildQuality(geometry, quality);
       rtcCommitGeometry(geometry);
       rtcAttachGeometry(parts.scene, geometry);

@@ -47,6 +47,7 @@ PlainRays::PlainRays(const Options& options) : options_(options) {
 
 void PlainRays::build(std::int32_t without_light) {
   std::vector<std::uint32_t> casting;
+  casting.reserve(scene_->triangles.size());
   for (std::uint32_t i = 0; i < scene_->triangles.size(); ++i) {
     const bool own_body = without_light >= 0 && scene_->emits[i] == without_light;
     if (scene_->casts_shadow[i] != 0 && !own_body) casting.push_back(i);

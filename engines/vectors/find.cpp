@@ -2,8 +2,6 @@
 
 #include "engines/vectors/find.hpp"
 
-#include <limits>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engines/vectors/find.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -208,18 +206,28 @@ void find_edge_roots_here(const EdgeInput& in, EdgeTable& table, std::vector<std
 }
 
 bool find_more_edges_here(const EdgeInput& in, std::vector<std::uint32_t>& stack, EdgeTable& edges, std::size_t most) {
-  go_on<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree.nodes, stack, [&](std::uint32_t leaf) {
+  go_on<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree, stack, [&](std::uint32_t leaf) {
     add_edges(in, leaf, edges);
     return edges.count <= most;
   });
   return edges.count <= most;
 }
 
+void find_edges_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
+                     EdgeTable& edges) {
+  edges.count = 0;
+  walk<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree, roots, stack,
+             [&](std::uint32_t leaf) { add_edges(in, leaf, edges); });
+}
+
 std::size_t count_edge_leaves_here(const EdgeInput& in, const std::vector<std::uint32_t>& roots,
                                    std::vector<std::uint32_t>& stack) {
   std::size_t leaves = 0;
-  walk<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree.nodes, roots, stack,
-             [&](std::uint32_t) { ++leaves; });
+  stack = roots;
+  go_on<true>({in.grid, in.cluster, in.alone}, in.cluster.whole, in.tree, stack, [&](std::uint32_t) {
+    ++leaves;
+    return true;
+  });
   return leaves;
 }
 
@@ -239,16 +247,15 @@ void find_triangle_roots_here(const TriangleInput& in, TriangleTable& table, std
 std::size_t count_leaves_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
                               std::vector<std::uint32_t>& stack, std::size_t most) {
   std::size_t leaves = 0;
-  walk<false>({in.grid, in.cluster}, in.shaft, in.tree.nodes, roots, stack, [&](std::uint32_t) {
-    if (++leaves == most) stack.clear();
-  });
+  stack = roots;
+  go_on<false>({in.grid, in.cluster}, in.shaft, in.tree, stack, [&](std::uint32_t) { return ++leaves < most; });
   return leaves;
 }
 
 void find_triangles_here(const TriangleInput& in, const std::vector<std::uint32_t>& roots,
                          std::vector<std::uint32_t>& stack, TriangleTable& triangles) {
   triangles.count = 0;
-  walk<false>({in.grid, in.cluster}, in.shaft, in.tree.nodes, roots, stack,
+  walk<false>({in.grid, in.cluster}, in.shaft, in.tree, roots, stack,
               [&](std::uint32_t leaf) { add_triangles(in, leaf, triangles); });
 }
 
@@ -260,6 +267,7 @@ HWY_AFTER_NAMESPACE();
 namespace penumbra::vectors {
 
 HWY_EXPORT(find_edge_roots_here);
+HWY_EXPORT(find_edges_here);
 HWY_EXPORT(find_more_edges_here);
 HWY_EXPORT(count_edge_leaves_here);
 HWY_EXPORT(narrow_edge_roots_here);
@@ -274,9 +282,7 @@ void find_edge_roots(const EdgeInput& input, EdgeTable& edges, std::vector<std::
 
 void find_edges(const EdgeInput& input, const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack,
                 EdgeTable& edges) {
-  stack = roots;
-  edges.count = 0;
-  static_cast<void>(find_more_edges(input, stack, edges, std::numeric_limits<std::size_t>::max()));
+  HWY_DYNAMIC_DISPATCH(find_edges_here)(input, roots, stack, edges);
 }
 
 bool find_more_edges(const EdgeInput& input, std::vector<std::uint32_t>& stack, EdgeTable& edges, std::size_t most) {

@@ -12,6 +12,7 @@
 #include "engines/vectors/trees.hpp"
 
 #include <glm/common.hpp>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <bit>
@@ -172,9 +173,8 @@ std::uint32_t children_met(const WalkInput& in, const Shaft& shaft, const WideNo
 }
 
 /// Calls `leaf` for each leaf whose box meets the shaft, of the subtrees on the stack; until one call returns false.
-template <bool kCones, typename Leaf>
-void go_on(const WalkInput& in, const Shaft& shaft, const UnsetList<WideNode>& nodes, std::vector<std::uint32_t>& stack,
-           Leaf leaf) {
+template <bool kCones, typename Tree, typename Leaf>
+void go_on(const WalkInput& in, const Shaft& shaft, const Tree& tree, std::vector<std::uint32_t>& stack, Leaf leaf) {
   while (!stack.empty()) {
     const std::uint32_t next = stack.back();
     stack.pop_back();
@@ -182,22 +182,49 @@ void go_on(const WalkInput& in, const Shaft& shaft, const UnsetList<WideNode>& n
       if (!leaf(next & ~kLeafBit)) return;
       continue;
     }
-    const WideNode& node = nodes[next];
+    const WideNode& node = tree.nodes[next];
     for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0; hits &= hits - 1) {
       stack.push_back(node.reference[static_cast<std::size_t>(std::countr_zero(hits))]);
     }
   }
 }
 
-/// Calls `leaf` for each leaf whose box meets the shaft.
-template <bool kCones, typename Leaf>
-void walk(const WalkInput& in, const Shaft& shaft, const UnsetList<WideNode>& nodes,
-          const std::vector<std::uint32_t>& roots, std::vector<std::uint32_t>& stack, Leaf leaf) {
-  stack = roots;
-  go_on<kCones>(in, shaft, nodes, stack, [&](std::uint32_t next) {
-    leaf(next);
-    return true;
-  });
+/// Asks for a node or a leaf before a walk comes to it: hierarchies of millions are in no cache.
+template <typename Tree>
+HWY_INLINE void fetch(const Tree& tree, std::uint32_t reference) {
+  if ((reference & kLeafBit) != 0) return tree.leaves.fetch(reference & ~kLeafBit);
+  const auto* const lines = reinterpret_cast<const std::byte*>(&tree.nodes[reference]);
+  for (std::size_t line = 0; line < sizeof(WideNode); line += 64) hwy::Prefetch(lines + line);
+}
+
+/// Calls `leaf` for each leaf whose box meets the shaft, in the order of go_on; but goes down level by level, so that
+/// memory has time to bring what comes next.
+template <bool kCones, typename Tree, typename Leaf>
+void walk(const WalkInput& in, const Shaft& shaft, const Tree& tree, const std::vector<std::uint32_t>& roots,
+          std::vector<std::uint32_t>& levels, Leaf leaf) {
+  levels.assign(roots.rbegin(), roots.rend());
+  const auto is_leaf = [](std::uint32_t reference) { return (reference & kLeafBit) != 0; };
+  std::size_t begin = 0;  // of the last level
+  for (bool ends = false; !ends;) {
+    const std::size_t end = levels.size();
+    ends = true;
+    for (; begin < end; ++begin) {
+      const std::uint32_t next = levels[begin];
+      if (is_leaf(next)) {
+        levels.push_back(next);
+        continue;
+      }
+      ends = false;
+      const WideNode& node = tree.nodes[next];
+      for (std::uint32_t hits = children_met<kCones>(in, shaft, node); hits != 0;) {
+        const auto last = static_cast<std::uint32_t>(std::bit_width(hits)) - 1;
+        hits ^= 1U << last;
+        levels.push_back(node.reference[last]);
+        fetch(tree, levels.back());
+      }
+    }
+  }
+  for (; begin < levels.size(); ++begin) leaf(levels[begin] & ~kLeafBit);
 }
 
 /// Puts children in place of each root as long as there are not too many.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/assert.hpp"
+#include "base/kept_arrays.hpp"
 #include "base/pages.hpp"
 #include "base/parallel.hpp"
 
@@ -82,6 +83,20 @@ class WideLeaves {
     const Leaf* const block = blocks_.made(number / kBlock);
     return (block != nullptr ? block : make_block(number / kBlock))[number % kBlock];
   }
+  /// Asks for a leaf's first lines and its last, if it is made, before somebody looks at them.
+  void fetch(std::size_t number) const {
+    const Leaf* leaf = nullptr;
+    if (number >= count_) return;
+    if (blocks_.empty()) {
+      leaf = &own_[number];
+    } else {
+      leaf = blocks_.made(number / kBlock);
+      if (leaf == nullptr) return;
+      leaf += number % kBlock;
+    }
+    const auto* const lines = reinterpret_cast<const std::byte*>(leaf);
+    for (std::size_t line = 0; line < sizeof(Leaf); line += 64) __builtin_prefetch(lines + line);
+  }
   [[nodiscard]] Leaf& operator[](std::size_t number) { return const_cast<Leaf&>(std::as_const(*this)[number]); }
 
   void append(const WideLeaves& more) {
@@ -144,7 +159,7 @@ class WideLeaves {
 
    private:
     /// Blocks in an array that is large enough to get large pages, which the system gives fast.
-    static constexpr std::size_t kSlab = 2 * kLargeArray / (kBlock * sizeof(Leaf));
+    static constexpr std::size_t kSlab = (KeptArrays::kLeast - 1) / (kBlock * sizeof(Leaf)) + 1;
 
     std::unique_ptr<std::atomic<Leaf*>[]> firsts_;  // of each block its leaves, or null
     std::size_t count_ = 0;

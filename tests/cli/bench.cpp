@@ -166,6 +166,11 @@ TEST_F(Bench, WholeFrames) {
     for (const char* phase : {"floats", "mesh", "view", "light", "evaluate"})
       sum += seconds.contains(phase) ? seconds.at(phase).at("median").get<double>() : 0;
     EXPECT_DOUBLE_EQ(line.at("frame").at("median"), sum) << line;  // of one run
+    double next_sum = 0;
+    for (const char* phase : {"floats", "mesh", "view", "light", "evaluate"})
+      next_sum +=
+          line.at("nextSeconds").contains(phase) ? line.at("nextSeconds").at(phase).at("median").get<double>() : 0;
+    EXPECT_DOUBLE_EQ(line.at("nextFrame").at("median"), next_sum) << line;
     EXPECT_EQ(seconds.contains("write"), line.at("method") != "embree") << line;
     EXPECT_DOUBLE_EQ(line.at("timesFasterThanEmbree"),
                      all[0].at("frame").at("median").get<double>() / line.at("frame").at("median").get<double>());
