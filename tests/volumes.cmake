@@ -47,6 +47,7 @@ penumbra_test(volumes
   property/volumes/wedge_builder.cpp
   unit/horizon.cpp
   unit/light_tiles.cpp
+  unit/known_normals.cpp
   unit/near_casters.cpp
   unit/pack.cpp
   unit/point_rows.cpp

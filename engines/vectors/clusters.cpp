@@ -2,11 +2,13 @@
 
 #include "base/size1.hpp"
 #include "visibility/receivers.hpp"
+#include "visibility/tree/tree_texels.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace penumbra::vectors {
@@ -38,8 +40,18 @@ std::size_t split(std::span<GridSample> samples) {
 
 }  // namespace
 
+bool KnownNormals::is_known(std::uint32_t triangle) const {
+  const std::atomic_ref answer(answers_[triangle]);
+  Answer found = answer.load(std::memory_order_relaxed);
+  if (found == Answer::not_asked) {  // of two threads that ask at once, both find the same
+    found = visibility::normal_is_known(scene_->corners(triangle)) ? Answer::known : Answer::unknown;
+    answer.store(found, std::memory_order_relaxed);
+  }
+  return found == Answer::known;
+}
+
 SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at) {
-  const auto& [scene, samples, light, grid, normal_is_known, scale] = view;
+  const auto& [scene, samples, light, grid, normals, scale] = view;
   if (!visibility::is_receiver(scene, static_cast<std::int32_t>(grid.light), samples, pixel))
     return SampleClass::all_visible;
   const auto triangle = static_cast<std::uint32_t>(samples.triangle[pixel]);
@@ -54,7 +66,7 @@ SampleClass classify(const ViewInput& view, std::uint32_t pixel, GridSample& at)
   if (at.height < 0) return SampleClass::other_side;
   at.foot = glm::vec2(glm::dot(grid.across, from), glm::dot(grid.along, from)) + grid.first_cell;
   // (bound horizon)
-  const glm::vec3 normal = normal_is_known[triangle] != 0 ? samples.n[pixel] : glm::vec3(0);
+  const glm::vec3 normal = normals.is_known(triangle) ? samples.n[pixel] : glm::vec3(0);
   at.above = {glm::dot(normal, light.u), glm::dot(normal, light.v), -glm::dot(normal, from)};
   at.above_error = 16 * kRound * (size1(from) + size1(light.u) + size1(light.v) + size1(at.p)) + grid.deviation;
   const float span = std::abs(at.above.x) + std::abs(at.above.y);

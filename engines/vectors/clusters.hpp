@@ -20,12 +20,30 @@ enum class SampleClass : std::uint8_t {
   other_side,    ///< p is on the light's other side
 };
 
+/// Of which triangles the normal is known (visibility::normal_is_known): each is looked at when somebody asks, since of
+/// a large mesh few are seen. Any thread may ask.
+class KnownNormals {
+ public:
+  KnownNormals() = default;
+  /// The scene must outlive it, or the next one that it is of.
+  explicit KnownNormals(const visibility::SceneFloats& scene) : scene_(&scene), answers_(scene.triangles.size()) {}
+
+  [[nodiscard]] bool is_known(std::uint32_t triangle) const;
+  [[nodiscard]] std::uint64_t memory_bytes() const { return answers_.size() * sizeof(answers_[0]); }
+
+ private:
+  enum class Answer : std::uint8_t { not_asked, known, unknown };
+
+  const visibility::SceneFloats* scene_ = nullptr;
+  mutable std::vector<Answer> answers_;  // of each triangle; std::atomic_ref
+};
+
 struct ViewInput {
   const visibility::SceneFloats& scene;
   const visibility::ViewSamples& samples;
   const visibility::DeviceLight& light;
   const LightGrid& grid;
-  std::span<const std::uint8_t> normal_is_known;  ///< of each triangle
+  const KnownNormals& normals;
   float scale;
 };
 /// Fills `at` if the answer is in_front or open.

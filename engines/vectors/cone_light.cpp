@@ -132,7 +132,7 @@ SampleClass ConeLight::classify(const ViewInput& view, std::uint32_t pixel, Grid
       return SampleClass::open;
   }
   // (bound horizon)
-  const glm::dvec3 n = view.normal_is_known[triangle] != 0 ? glm::dvec3(view.samples.n[pixel]) : glm::dvec3(0);
+  const glm::dvec3 n = view.normals.is_known(triangle) ? glm::dvec3(view.samples.n[pixel]) : glm::dvec3(0);
   const glm::dvec3 above(glm::dot(n, cone.u), glm::dot(n, cone.v), glm::dot(n, cone.middle));
   const double from_p = light_.sun ? 0 : size1(glm::dvec3(at.p));
   const double error = 16 * kRoundingOf * (size1(cone.middle) + size1(cone.u) + size1(cone.v) + from_p) + deviation_;

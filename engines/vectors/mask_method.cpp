@@ -119,10 +119,7 @@ void MaskMethod::prepare_tree(const visibility::SceneFloats& scene) {
 
 void MaskMethod::prepare_triangles() {
   triangles_ = wide_triangle_tree(*scene_, tree_, scale_, std::move(triangles_));
-  normal_is_known_.resize(scene_->triangles.size());
-  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(scene_->triangles.size()), [&](std::uint32_t i) {
-    normal_is_known_[i] = visibility::normal_is_known(scene_->corners(i)) ? 1 : 0;
-  });
+  normals_ = KnownNormals(*scene_);
 }
 
 bool MaskMethod::refit_tree() {
@@ -230,7 +227,7 @@ LightGrid& MaskMethod::turned_grid() const {
 void MaskMethod::do_region(const LightGrid& grid, std::uint32_t left, std::uint32_t top) {
   const visibility::PairJudge pairs{*scene_, tree_, *samples_, *light_};
   ExactOpenJudge judge(pairs, grid);
-  const ViewInput view{*scene_, *samples_, device_light_, grid, normal_is_known_, scale_};
+  const ViewInput view{*scene_, *samples_, device_light_, grid, normals_, scale_};
   std::vector<GridSample>& samples = buffers().samples;
   std::array<std::size_t, kRegionPixels / (std::size_t{kSmallBlock} * kSmallBlock)> ends{};  // of its small blocks
   samples.resize(kRegionPixels);
@@ -352,7 +349,7 @@ std::vector<visibility::PassTime> MaskMethod::take_pass_times() {
 }
 
 std::uint64_t MaskMethod::memory_bytes() const {
-  return bytes_of(triangles_) + bytes_of(tree_) + normal_is_known_.size() + masks_.size() * sizeof(masks_[0]) +
+  return bytes_of(triangles_) + bytes_of(tree_) + normals_.memory_bytes() + masks_.size() * sizeof(masks_[0]) +
          visible_.size() * sizeof(visible_[0]);
 }
 

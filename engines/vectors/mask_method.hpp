@@ -124,7 +124,7 @@ class MaskMethod : public visibility::Method {
   visibility::TriangleTree tree_;
   double built_cost_ = 0;  // visibility::tree_cost when it was built, where frames are expected
   WideTriangleTree triangles_;
-  std::vector<std::uint8_t> normal_is_known_;  // of each triangle
+  KnownNormals normals_;
   const visibility::Light* light_ = nullptr;
   visibility::DeviceLight device_light_;
   std::vector<LightGrid> grids_;    // one a side that it emits to

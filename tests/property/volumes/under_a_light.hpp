@@ -53,7 +53,7 @@ struct UnderALight {
       samples.depth.push_back(1);
       samples.facing.push_back(static_cast<std::int8_t>(front ? 1 : -1));
     }
-    const std::vector<std::uint8_t> known(floats.triangles.size(), 1);
+    const vectors::KnownNormals known(floats);
     const vectors::ViewInput view{floats, samples, device_light, grid, known, scale};
     std::vector<vectors::GridSample> placed(points.size());
     for (std::uint32_t i = 0; i < placed.size(); ++i) {
