@@ -8,17 +8,15 @@
 #include "bench/adaptive_rays.hpp"
 #include "bench/cpu.hpp"
 #include "bench/folder.hpp"
+#include "bench/moved_light.hpp"
 #include "reference/plain_rays.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/scene_floats.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -35,36 +33,8 @@ struct TwoFrames {
   Seconds first, second;
 };
 
-/// As far as a light moves from one frame to the next that crosses its own width in a dozen frames.
-constexpr double kShare = 1.0 / 12;
-
-/// Moves a light by that share of its width; of one that is in pieces, all of them by as much as suits the first.
-void move(scenes::LightShape& shape) {
-  const auto way = [](const auto& light) -> glm::dvec3 {
-    if constexpr (requires { light.half_u; }) return 2 * kShare * light.half_u;
-    if constexpr (requires { light.vertices; }) return kShare * (light.vertices.at(2) - light.vertices.at(0));
-    if constexpr (requires { light.radius; }) return {2 * kShare * light.radius, 0, 0};
-    return {};
-  };
-  const auto move_by = [](auto& light, const glm::dvec3& by) {
-    if constexpr (requires { light.center; }) light.center += by;
-    if constexpr (requires { light.vertices; })
-      for (glm::dvec3& vertex : light.vertices) vertex += by;
-  };
-  if (auto* const sun = std::get_if<scenes::Sun>(&shape)) {
-    const glm::dvec3& from = sun->direction;
-    const glm::dvec3 aside = glm::cross(from, std::abs(from.y) < 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
-    sun->direction = glm::normalize(from + kShare * glm::radians(sun->angle) * glm::normalize(aside));
-  } else if (auto* const cut = std::get_if<scenes::Pieces>(&shape)) {
-    const glm::dvec3 by = std::visit(way, cut->pieces.front());
-    for (auto& piece : cut->pieces) std::visit([&](auto& one) { move_by(one, by); }, piece);
-  } else {
-    std::visit([&](auto& one) { move_by(one, way(one)); }, shape);
-  }
-}
-
 scenes::Scene with_light_moved(scenes::Scene scene) {
-  move(scene.lights.front().shape);
+  scene.lights.front().shape = moved_light(scene.lights.front().shape);
   return scene;
 }
 
@@ -177,10 +147,14 @@ void require_plain(const scenes::Scene& scene) {
   const auto casts = [](const scenes::Object& object) {
     return object.casts_shadow && object.alpha.mode == scenes::Alpha::Mode::opaque;
   };
-  if (std::ranges::all_of(scene.objects, casts) && !scene.cameras.at(0).height) return;
+  const auto is_of_the_light = [](const scenes::Object& object) { return object.emits == 0; };
+  const bool in_pieces = std::holds_alternative<scenes::Pieces>(scene.lights.at(0).shape);
+  if (std::ranges::all_of(scene.objects, casts) && std::ranges::none_of(scene.objects, is_of_the_light) && !in_pieces &&
+      !scene.cameras.at(0).height)
+    return;
   throw UsageError(
-      "{}: --frame needs a perspective camera and meshes that all cast shadow, without holes: the plain program has "
-      "one hierarchy for all its rays",
+      "{}: --frame needs a perspective camera, meshes that all cast shadow, without holes, and a first light in one "
+      "piece that is no mesh: the plain program has one hierarchy for all its rays",
       scene.name);
 }
 

@@ -7,6 +7,7 @@
 #include <embree3/rtcore.h>
 
 #include <atomic>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -40,13 +41,14 @@ struct EmbreeScene::Parts {
     return true;  // false would make Embree stop with an out-of-memory error
   }
 
+  [[noreturn]] void throw_out_of_memory() const {
+    throw ResourceError("Embree ran out of memory at {} MiB for {} triangles; free memory or simplify the scene",
+                        bytes >> 20, triangles.size());
+  }
   void check(RTCDevice from) const {
     const RTCError error = rtcGetDeviceError(from);
     if (error == RTC_ERROR_NONE) return;
-    if (error == RTC_ERROR_OUT_OF_MEMORY) {
-      throw ResourceError("Embree ran out of memory at {} MiB for {} triangles; free memory or simplify the scene",
-                          bytes >> 20, triangles.size());
-    }
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw_out_of_memory();
     throw ResourceError("Embree failed with error {}{}; check that libembree3 and this processor fit",
                         static_cast<int>(error), error == RTC_ERROR_UNSUPPORTED_CPU ? " (unsupported processor)" : "");
   }
@@ -70,15 +72,19 @@ EmbreeScene::EmbreeScene(const visibility::SceneFloats& scene, std::vector<std::
   rtcSetSceneBuildQuality(parts.scene, quality);
 
   if (!parts.triangles.empty()) {
-    RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t vertices = scene.positions.size(), count = parts.triangles.size();
-    parts.positions.resize(vertices + 1);  // Embree reads the last one's sixteen bytes
+    try {
+      parts.positions.resize(vertices + 1);  // Embree reads the last one's sixteen bytes
+      parts.corners.resize(count);
+    } catch (const std::bad_alloc&) {
+      parts.throw_out_of_memory();
+    }
     parts.positions.back() = glm::vec3(0);
-    parts.corners.resize(count);
     mesh::for_each_index(vertices, [&](std::size_t i) { parts.positions[i] = parts.range.scaled(scene.positions[i]); });
     mesh::for_each_index(count, [&](std::size_t i) { parts.corners[i] = scene.triangles[parts.triangles[i]]; });
     Parts::count_memory(&parts, static_cast<ssize_t>(vertices * sizeof(glm::vec3) + count * sizeof(mesh::Triangle)),
                         false);
+    RTCGeometry geometry = rtcNewGeometry(parts.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (geometry != nullptr) {
       rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, parts.positions.data(), 0,
                                  sizeof(glm::vec3), vertices);

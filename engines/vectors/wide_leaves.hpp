@@ -83,7 +83,7 @@ class WideLeaves {
     const Leaf* const block = blocks_.made(number / kBlock);
     return (block != nullptr ? block : make_block(number / kBlock))[number % kBlock];
   }
-  /// Asks for a leaf's first lines and its last, if it is made, before somebody looks at them.
+  /// Asks memory for a leaf, if it is made, before somebody looks at it.
   void fetch(std::size_t number) const {
     const Leaf* leaf = nullptr;
     if (number >= count_) return;
@@ -154,11 +154,12 @@ class WideLeaves {
       return firsts_[block].compare_exchange_strong(first, leaves) ? leaves : first;
     }
     [[nodiscard]] std::uint64_t memory_bytes() const {
-      return count_ * sizeof(firsts_[0]) + slabs_.size() * kSlab * kBlock * sizeof(Leaf);
+      const std::size_t blocks = slabs_.empty() ? 0 : (slabs_.size() - 1) * kSlab + taken_;
+      return count_ * sizeof(firsts_[0]) + blocks * kBlock * sizeof(Leaf);
     }
 
    private:
-    /// Blocks in an array that is large enough to get large pages, which the system gives fast.
+    /// Blocks in an array that is kept for the next frame's, since the system gives memory slowly.
     static constexpr std::size_t kSlab = (KeptArrays::kLeast - 1) / (kBlock * sizeof(Leaf)) + 1;
 
     std::unique_ptr<std::atomic<Leaf*>[]> firsts_;  // of each block its leaves, or null

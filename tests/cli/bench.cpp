@@ -172,6 +172,7 @@ TEST_F(Bench, WholeFrames) {
           line.at("nextSeconds").contains(phase) ? line.at("nextSeconds").at(phase).at("median").get<double>() : 0;
     EXPECT_DOUBLE_EQ(line.at("nextFrame").at("median"), next_sum) << line;
     EXPECT_EQ(seconds.contains("write"), line.at("method") != "embree") << line;
+    EXPECT_EQ(line.at("nextSeconds").contains("mesh"), line.at("method") != "embree") << "its hierarchy stays";
     EXPECT_DOUBLE_EQ(line.at("timesFasterThanEmbree"),
                      all[0].at("frame").at("median").get<double>() / line.at("frame").at("median").get<double>());
   }
