@@ -89,44 +89,51 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--normals", options.normals,
-          "of the beauty: geometric (facets), or shading (the file's smooth ones); visibility is the triangles' "
-          "(default: geometric)")
+          "of the beauty: shading (the file's smooth ones, where it has any) or geometric (facets); visibility is the "
+          "triangles' (default: shading)")
       ->type_name("NAME");
   add_lenient(command, options.lenient);
-  add_lamp_options(command, options.lamps);
+  add_gltf_options(command, options.gltf);
 }
 
-void add_lamp_options(CLI::App& command, LampSizes& lamps) {
+void add_gltf_options(CLI::App& command, GltfOptions& gltf) {
   command
-      .add_option("--lamp-radius", lamps.radius,
+      .add_option("--lamp-radius", gltf.radius,
                   "glTF: radius of point and spot lamps whose file gives none (default: 0.1)")
       ->type_name("R");
   command
-      .add_option("--sun-angle", lamps.sun_angle,
+      .add_option("--sun-angle", gltf.sun_angle,
                   "glTF: apparent diameter in degrees of sun lamps whose file gives none (default: 0.53)")
       ->type_name("DEGREES");
   command
-      .add_option("--lumens-per-watt", lamps.lumens_per_watt,
+      .add_option("--lumens-per-watt", gltf.lumens_per_watt,
                   "glTF: by what lamps' intensities are divided (default: 683 in files of Blender's exporter, which "
-                  "multiplies by that, else 1)")
+                  "multiplies by that, before version 3.4.36 4 pi, of suns 1; else 1)")
       ->type_name("N");
+  command
+      .add_option("--clip", gltf.clips,
+                  "glTF: play this animation alone, by its name or its number from 0; may be given again (default: all "
+                  "that can be played at once, of several that move the same thing the first)")
+      ->type_name("NAME|N")
+      ->allow_extra_args(false);
 }
 
-scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside) {
-  if (lamps.radius && !(*lamps.radius > 0 && *lamps.radius <= scenes::kLargestCoordinate)) {
-    throw UsageError("--lamp-radius {}: expected a length above 0", *lamps.radius);
+scenes::ReadOptions read_options(const GltfOptions& gltf, bool allow_outside) {
+  if (gltf.radius && !(*gltf.radius > 0 && *gltf.radius <= scenes::kLargestCoordinate)) {
+    throw UsageError("--lamp-radius {}: expected a length above 0", *gltf.radius);
   }
-  if (lamps.sun_angle && !(*lamps.sun_angle >= 0 && *lamps.sun_angle < 180)) {
-    throw UsageError("--sun-angle {}: expected degrees from 0 to less than 180", *lamps.sun_angle);
+  if (gltf.sun_angle && !(*gltf.sun_angle >= 0 && *gltf.sun_angle < 180)) {
+    throw UsageError("--sun-angle {}: expected degrees from 0 to less than 180", *gltf.sun_angle);
   }
-  if (lamps.lumens_per_watt && !(*lamps.lumens_per_watt > 0 && *lamps.lumens_per_watt <= 1e6)) {
-    throw UsageError("--lumens-per-watt {}: expected a number above 0, such as 683", *lamps.lumens_per_watt);
+  if (gltf.lumens_per_watt && !(*gltf.lumens_per_watt > 0 && *gltf.lumens_per_watt <= 1e6)) {
+    throw UsageError("--lumens-per-watt {}: expected a number above 0, such as 683", *gltf.lumens_per_watt);
   }
   scenes::ReadOptions read;
   read.allow_outside = allow_outside;
-  read.lamp_radius = lamps.radius;
-  read.sun_angle = lamps.sun_angle;
-  read.lumens_per_watt = lamps.lumens_per_watt;
+  read.lamp_radius = gltf.radius;
+  read.sun_angle = gltf.sun_angle;
+  read.lumens_per_watt = gltf.lumens_per_watt;
+  read.clips = gltf.clips;
   return read;
 }
 
@@ -158,7 +165,7 @@ visibility::SampleRequest parse_light_samples(const RunOptions& options) {
 bool parse_normals(const std::string& text) {
   if (!text.empty() && text != "geometric" && text != "shading")
     throw UsageError("--normals {}: expected geometric or shading", text);
-  return text == "shading";
+  return text != "geometric";
 }
 
 std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text) {

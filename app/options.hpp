@@ -18,9 +18,10 @@ class App;
 
 namespace penumbra::app {
 
-/// Of glTF lamps: sizes where the file gives none, and what its intensities are in.
-struct LampSizes {
+/// How a glTF file is taken: sizes of lamps where it gives none, what their intensities are in, which clips are played.
+struct GltfOptions {
   std::optional<double> radius, sun_angle, lumens_per_watt;
+  std::vector<std::string> clips;  ///< names or numbers; empty: all that can be played at once
 };
 
 /// What `render` and `compare` have in common, as the user gave it.
@@ -35,17 +36,17 @@ struct RunOptions {
   std::vector<std::string> method_options;
   bool allow_outside = false;
   bool lenient = false;
-  std::string normals;  ///< empty: geometric
-  LampSizes lamps;
+  std::string normals;  ///< empty: shading
+  GltfOptions gltf;
 };
 
-/// Adds --lamp-radius, --sun-angle and --lumens-per-watt.
-void add_lamp_options(CLI::App& command, LampSizes& lamps);
+/// Adds --lamp-radius, --sun-angle, --lumens-per-watt and --clip.
+void add_gltf_options(CLI::App& command, GltfOptions& gltf);
 /// Adds the options of RunOptions that mean the same in `render` and in `compare`.
 void add_run_options(CLI::App& command, RunOptions& options);
 
 /// How a scene's file is to be read. Throws UsageError for sizes of lamps that are none.
-scenes::ReadOptions read_options(const LampSizes& lamps, bool allow_outside);
+scenes::ReadOptions read_options(const GltfOptions& gltf, bool allow_outside);
 /// "256" or "16x16"; 1 … 4096 samples. All parsers here throw UsageError that says what would be right.
 visibility::SampleRequest parse_light_samples(const RunOptions& options);
 /// --normals: shading ones?

@@ -210,7 +210,7 @@ void SessionMaker::classify() {
 }
 
 scenes::Scene read_session_scene(const RunOptions& options, std::optional<double> time) {
-  scenes::ReadOptions reading = read_options(options.lamps, options.allow_outside);
+  scenes::ReadOptions reading = read_options(options.gltf, options.allow_outside);
   reading.time = time;
   reading.lenient = options.lenient;
   return scenes::read_scene(options.scene, reading);

@@ -70,6 +70,11 @@ glm::vec3 shading_normal(const scenes::VertexLooks& looks, const visibility::Tri
   const double length = glm::length(normal);
   if (!(length > 0)) return geometric;
   const glm::dvec3 unit = normal / length;
+  // Exporters write the normals of facets, too, turned in single precision, and the facet's own comes from corners that
+  // were rounded: a tenth of a milliradian is far above what either is off by in a triangle that anyone can see, and
+  // changes a cosine by less than a ten-thousandth. There the facet's own is exact.
+  constexpr double kSame = 1e-4;
+  if (glm::length(glm::cross(unit, glm::dvec3(geometric))) <= kSame) return geometric;
   return glm::vec3(glm::dot(unit, glm::dvec3(geometric)) < 0 ? -unit : unit);
 }
 
@@ -83,15 +88,15 @@ SurfaceLooks look_at(const scenes::Scene& scene, const visibility::SceneFloats& 
   });
   SurfaceLooks all;
   if (painted) resize_on_all_cores(all.colors, samples.size());
-  if (shading_normals) all.normals = samples.n;
-  if (!painted && !shading_normals) return all;
+  const bool smooth = shading_normals && !looks.normals.empty();
+  if (smooth) all.normals = samples.n;
+  if (!painted && !smooth) return all;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 1024), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       if (samples.triangle[i] == visibility::ViewSamples::kBackground) continue;
       const auto triangle = static_cast<std::uint32_t>(samples.triangle[i]);
       const scenes::Object& object = scene.objects[floats.object[triangle]];
       if (painted) all.colors[i] = object.color;
-      const bool smooth = shading_normals && !looks.normals.empty();
       if (looks.colors.empty() && !object.picture && !smooth) continue;
       const visibility::Triangle& corners = floats.triangles[triangle];
       const glm::dvec3 shares = barycentric(floats.corners(triangle), samples.p[i]);

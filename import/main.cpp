@@ -75,6 +75,10 @@ bool parse(int argc, char** argv, Arguments& arguments) {
         parse_number(flag, "--time=", arguments.options.time)) {
       continue;
     }
+    if (constexpr std::string_view kClip = "--clip="; flag.starts_with(kClip)) {
+      arguments.options.clips.emplace_back(flag.substr(kClip.size()));
+      continue;
+    }
     if (flag != "--allow-outside" && flag != "--without-light" && flag != "--lenient") return false;
     arguments.options.allow_outside |= flag == "--allow-outside";
     arguments.options.lenient |= flag == "--lenient";

@@ -8,8 +8,8 @@ namespace penumbra::scenes {
 
 void Losses::add(std::vector<Loss>& losses, const std::string& what, const std::string& object) {
   auto loss = std::ranges::find(losses, what, &Loss::what);
-  if (loss == losses.end()) loss = losses.insert(losses.end(), {what, {}});
-  if (std::ranges::find(loss->objects, object) == loss->objects.end()) loss->objects.push_back(object);
+  if (loss == losses.end()) loss = losses.insert(losses.end(), {.what = what, .objects = {}});
+  if (loss->known.insert(object).second) loss->objects.push_back(object);
 }
 
 std::string Losses::text_of(const Loss& loss) {

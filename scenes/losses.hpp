@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace penumbra::scenes {
@@ -26,7 +27,8 @@ class Losses {
  private:
   struct Loss {
     std::string what;
-    std::vector<std::string> objects;
+    std::vector<std::string> objects;         ///< each once, in the order in which they came
+    std::unordered_set<std::string> known{};  ///< the same: a file may lose a hundred thousand
   };
   static void add(std::vector<Loss>& losses, const std::string& what, const std::string& object);
   static std::string text_of(const Loss& loss);

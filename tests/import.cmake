@@ -6,6 +6,7 @@ penumbra_test(import FULL ImportCorpus.*
   unit/import/emitter.cpp
   unit/import/flat_light.cpp
   unit/import/gltf_animation.cpp
+  unit/import/gltf_as_written.cpp
   unit/import/gltf_lamps.cpp
   unit/import/gltf_reader.cpp
   unit/import/gltf_surfaces.cpp

@@ -29,7 +29,7 @@ class ConvertCommand : public Command {
         ->type_name("FILE");
     add_allow_outside(cli_, allow_outside_);
     add_lenient(cli_, lenient_);
-    add_lamp_options(cli_, lamps_);
+    add_gltf_options(cli_, gltf_);
   }
 
   int run(const GlobalOptions&) override {
@@ -37,8 +37,9 @@ class ConvertCommand : public Command {
     if (std::ranges::find(kExtensions, out_.extension()) == kExtensions.end()) {
       throw UsageError("-o {}: expected a name that ends in .json, .glb or .obj", out_.string());
     }
-    scenes::ReadOptions reading = read_options(lamps_, allow_outside_);
+    scenes::ReadOptions reading = read_options(gltf_, allow_outside_);
     reading.lenient = lenient_;
+    reading.needs_light = out_.extension() != ".obj";  // which holds none
     OutputFiles outputs;
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});
@@ -60,7 +61,7 @@ class ConvertCommand : public Command {
  private:
   std::filesystem::path scene_, out_;
   bool allow_outside_ = false, lenient_ = false;
-  LampSizes lamps_;
+  GltfOptions gltf_;
 };
 
 }  // namespace

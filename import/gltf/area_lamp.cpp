@@ -37,11 +37,15 @@ bool is_round(const glm::dvec3& u, const glm::dvec3& v) {
 
 }  // namespace
 
-std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed) {
+std::optional<AreaLight> area_lamp_of(const tinygltf::Node& node, const PlacedNode& placed, Losses& losses) {
   if (!node.extras.IsObject() || !node.extras.Has("areaLamp")) return std::nullopt;
   const std::string place = fmt::format("/nodes/{}/extras/areaLamp", placed.number);
   const tinygltf::Value& lamp = node.extras.Get("areaLamp");
-  if (!lamp.IsObject()) throw InputError("{}: expected an object with shape, size and radiance", place);
+  if (!lamp.IsObject() || !lamp.Has("shape") || !lamp.Has("size") || !lamp.Has("radiance")) {
+    losses.mention("has extras \"areaLamp\" of another tool (no shape, size and radiance), which are left out",
+                   node.name);
+    return std::nullopt;
+  }
   const auto size = numbers<2>(lamp, "size", 0, place);
   const auto radiance = numbers<3>(lamp, "radiance", 0, place);
   const glm::dvec3 center(placed.to_world[3]);

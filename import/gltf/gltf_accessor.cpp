@@ -170,7 +170,8 @@ std::size_t number_count(const tinygltf::Accessor& accessor, std::size_t compone
 
 }  // namespace
 
-Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_list<int> types, const char* what) {
+Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_list<int> types, const char* what,
+                     NotFinite not_finite) {
   const tinygltf::Accessor& accessor = find_accessor(model, number);
   const std::string place = fmt::format("/accessors/{}", number);
   if (std::ranges::find(types, accessor.type) == types.end()) {
@@ -206,18 +207,17 @@ Numbers read_numbers(const tinygltf::Model& model, int number, std::initializer_
     }
   }
   apply_sparse(model, place, accessor, element_bytes, store);
-  for (std::size_t i = 0; i < numbers.values.size(); ++i) {
+  for (std::size_t i = 0; not_finite == NotFinite::refuse && i < numbers.values.size(); ++i) {
     if (std::isfinite(numbers.values[i])) continue;
     const std::size_t element = i / numbers.components;
     const auto all = std::span(numbers.values).subspan(element * numbers.components, numbers.components);
-    throw InputError("{}: {} {} is not finite: ({})", place, accessor.type == TINYGLTF_TYPE_VEC3 ? "vertex" : what,
-                     element, fmt::join(all, ", "));
+    throw InputError("{}: {}: number {} is not finite: ({})", place, what, element, fmt::join(all, ", "));
   }
   return numbers;
 }
 
 std::vector<glm::dvec3> read_positions(const tinygltf::Model& model, int number) {
-  const Numbers numbers = read_numbers(model, number, {TINYGLTF_TYPE_VEC3}, "positions");
+  const Numbers numbers = read_numbers(model, number, {TINYGLTF_TYPE_VEC3}, "positions", NotFinite::keep);
   std::vector<glm::dvec3> positions(numbers.count());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const double* from = &numbers.values[3 * i];

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -25,7 +24,7 @@ struct Channel {
   std::string place;
   bool rotates = false;
   Interpolation interpolation = Interpolation::linear;
-  std::vector<double> times;   ///< ascending
+  std::vector<double> times;   ///< ascending, or equal at a jump
   std::vector<double> values;  ///< `width` numbers a key; cubic: in-tangent, value and out-tangent a key
   std::size_t width = 0;
 };
@@ -48,9 +47,10 @@ std::vector<double> key_times(const tinygltf::Model& model, int accessor, const 
   std::vector<double> times = read_numbers(model, accessor, {TINYGLTF_TYPE_SCALAR}, "key times").values;
   if (times.empty()) throw InputError("{}/input: there are no keys", place);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    if (!(times[i] > times[i - 1]))
-      throw InputError("{}/input: key {} at {} s does not follow the one at {} s; times must ascend", place, i,
-                       times[i], times[i - 1]);
+    // Two keys at one time are a jump: the later one holds from then on.
+    if (times[i] < times[i - 1])
+      throw InputError("{}/input: key {} at {} s is before the one at {} s; times must ascend", place, i, times[i],
+                       times[i - 1]);
   }
   return times;
 }
@@ -131,12 +131,11 @@ std::vector<double> value_at(const Channel& channel, double seconds) {
 
 }  // namespace
 
-std::optional<Motion> motion_of(const tinygltf::Model& model) {
+std::optional<Motion> motion_of(const tinygltf::Model& model, const std::vector<std::size_t>& played) {
   std::optional<Motion> motion;
-  for (std::size_t a = 0; a < model.animations.size(); ++a) {
+  for (const std::size_t a : played) {
     const tinygltf::Animation& animation = model.animations[a];
     for (const tinygltf::AnimationChannel& channel : animation.channels) {
-      if (channel.target_node < 0) continue;  // glTF 2.0, 3.11: to be ignored
       const std::string place = fmt::format("/animations/{}/samplers/{}", a, channel.sampler);
       const auto& sampler = element(animation.samplers, channel.sampler, place, "sampler");
       const std::vector<double> times = key_times(model, sampler.input, place);
@@ -147,13 +146,11 @@ std::optional<Motion> motion_of(const tinygltf::Model& model) {
   return motion;
 }
 
-void pose_model(tinygltf::Model& model, double seconds, std::vector<std::string>& warnings) {
-  std::set<std::pair<int, std::string>> moved;
-  for (std::size_t a = 0; a < model.animations.size(); ++a) {
+void pose_model(tinygltf::Model& model, double seconds, const std::vector<std::size_t>& played) {
+  for (const std::size_t a : played) {
     const tinygltf::Animation& animation = model.animations[a];
     for (std::size_t c = 0; c < animation.channels.size(); ++c) {
       const tinygltf::AnimationChannel& source = animation.channels[c];
-      if (source.target_node < 0) continue;
       const std::string target = fmt::format("/animations/{}/channels/{}/target", a, c);
       element(model.nodes, source.target_node, target, "node");
       tinygltf::Node& node = model.nodes[static_cast<std::size_t>(source.target_node)];
@@ -170,10 +167,6 @@ void pose_model(tinygltf::Model& model, double seconds, std::vector<std::string>
       const std::string place = fmt::format("/animations/{}/samplers/{}", a, source.sampler);
       const Channel channel = read_channel(model, element(animation.samplers, source.sampler, place, "sampler"), place,
                                            width, source.target_path == "rotation");
-      if (!moved.emplace(source.target_node, source.target_path).second) {
-        warnings.push_back(fmt::format("several animations move the {} of '{}'; the last in the file is shown",
-                                       source.target_path, node.name));
-      }
       std::vector<double> value = value_at(channel, seconds);
       (source.target_path == "translation" ? node.translation
        : channel.rotates                   ? node.rotation

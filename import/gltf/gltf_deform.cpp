@@ -62,14 +62,15 @@ void morph(const tinygltf::Model& model, const tinygltf::Node& node, const tinyg
   }
 }
 
-std::optional<std::vector<glm::dmat4>> skin(const tinygltf::Model& model, const tinygltf::Node& node,
-                                            const tinygltf::Primitive& primitive, const std::string& place,
-                                            std::span<const std::optional<glm::dmat4>> to_world) {
+std::optional<Skinned> skin(const tinygltf::Model& model, const MeshNode& owner, const tinygltf::Primitive& primitive,
+                            const std::string& place, std::span<const std::optional<glm::dmat4>> to_world) {
+  const tinygltf::Node& node = owner.node;
   if (node.skin >= 0 && static_cast<std::size_t>(node.skin) >= model.skins.size())
     throw InputError("/skins/{}: it does not exist; there are {}", node.skin, model.skins.size());
   if (node.skin < 0 || !primitive.attributes.contains("JOINTS_0")) return std::nullopt;
   const std::vector<glm::dmat4> joints = joint_matrices(model, node.skin, to_world);
-  std::vector<glm::dmat4> vertices;
+  Skinned skinned;
+  std::vector<glm::dmat4>& vertices = skinned.vertices;
   std::vector<double> sums;
   for (int set = 0;; ++set) {
     const auto number = primitive.attributes.find(fmt::format("JOINTS_{}", set));
@@ -97,10 +98,14 @@ std::optional<std::vector<glm::dmat4>> skin(const tinygltf::Model& model, const 
     }
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (!(sums[i] > 0)) throw InputError("{}/attributes/WEIGHTS_0: no joint moves vertex {}", place, i);
-    vertices[i] /= sums[i];
+    if (sums[i] > 0) {
+      vertices[i] /= sums[i];
+    } else {
+      vertices[i] = owner.to_world;
+      ++skinned.without_weights;
+    }
   }
-  return vertices;
+  return skinned;
 }
 
 }  // namespace penumbra::scenes

@@ -1,8 +1,8 @@
 #include "import/gltf/gltf_extras.hpp"
 
-#include "base/error.hpp"
-
 #include <tiny_gltf.h>
+
+#include <fmt/format.h>
 
 #include <optional>
 #include <string>
@@ -11,36 +11,56 @@
 namespace penumbra::scenes {
 namespace {
 
-std::optional<bool> flag(const tinygltf::Value& extras, const char* key, const std::string& owner) {
-  if (!extras.IsObject() || !extras.Has(key)) return std::nullopt;
-  const tinygltf::Value& value = extras.Get(key);
-  if (value.IsBool()) return value.Get<bool>();
-  const double number = value.IsNumber() ? value.GetNumberAsDouble() : -1;
-  if (number != 0 && number != 1) throw InputError("{}: extras/{}: expected true or false, or 1 or 0", owner, key);
-  return number == 1;
+/// The entry; nothing if there is none.
+const tinygltf::Value* entry(const tinygltf::Value& extras, const char* key) {
+  return extras.IsObject() && extras.Has(key) ? &extras.Get(key) : nullptr;
 }
 
-std::string text(const tinygltf::Value& extras, const char* key, const std::string& owner) {
-  if (!extras.IsObject() || !extras.Has(key)) return {};
-  const tinygltf::Value& value = extras.Get(key);
-  if (!value.IsString()) throw InputError("{}: extras/{}: expected a name", owner, key);
-  return value.Get<std::string>();
+void mention_foreign(const char* key, const char* expected, const std::string& owner, Losses& losses) {
+  losses.mention(fmt::format("has extras \"{}\" of another tool (no {}), which are left out", key, expected), owner);
+}
+
+std::optional<bool> flag(const tinygltf::Value& extras, const char* key, const std::string& owner, Losses& losses) {
+  const tinygltf::Value* const value = entry(extras, key);
+  if (value == nullptr) return std::nullopt;
+  if (value->IsBool()) return value->Get<bool>();
+  const double number = value->IsNumber() ? value->GetNumberAsDouble() : -1;
+  if (number == 0 || number == 1) return number == 1;
+  mention_foreign(key, "true or false, or 1 or 0", owner, losses);
+  return std::nullopt;
+}
+
+std::string text(const tinygltf::Value& extras, const char* key, const std::string& owner, Losses& losses) {
+  const tinygltf::Value* const value = entry(extras, key);
+  if (value == nullptr) return {};
+  if (value->IsString()) return value->Get<std::string>();
+  mention_foreign(key, "name", owner, losses);
+  return {};
 }
 
 }  // namespace
 
-ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh) {
+ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Losses& losses) {
   const auto read = [&](const char* key) {
-    const auto own = flag(node.extras, key, fmt::format("node \"{}\"", node.name));
-    return own ? *own : flag(mesh.extras, key, fmt::format("mesh \"{}\"", mesh.name)).value_or(true);
+    const auto own = flag(node.extras, key, node.name, losses);
+    return own ? *own : flag(mesh.extras, key, mesh.name, losses).value_or(true);
   };
-  std::string light = text(node.extras, "lightName", fmt::format("node \"{}\"", node.name));
-  if (light.empty()) light = text(mesh.extras, "lightName", fmt::format("mesh \"{}\"", mesh.name));
+  std::string light = text(node.extras, "lightName", node.name, losses);
+  if (light.empty()) light = text(mesh.extras, "lightName", mesh.name, losses);
   return {read("castsShadow"), read("receivesShadow"), read("body"), std::move(light)};
 }
 
-bool lamp_casts_shadows(const tinygltf::Node& node) {
-  return flag(node.extras, "castsShadow", fmt::format("node \"{}\"", node.name)).value_or(true);
+bool lamp_casts_shadows(const tinygltf::Node& node, Losses& losses) {
+  return flag(node.extras, "castsShadow", node.name, losses).value_or(true);
+}
+
+std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
+                                       Losses& losses) {
+  const tinygltf::Value* const value = entry(extras, key);
+  if (value == nullptr) return std::nullopt;
+  if (value->IsNumber()) return value->GetNumberAsDouble();
+  mention_foreign(key, "number", owner, losses);
+  return std::nullopt;
 }
 
 }  // namespace penumbra::scenes

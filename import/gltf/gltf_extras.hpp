@@ -1,9 +1,13 @@
 #pragma once
 
+#include "scenes/losses.hpp"
+
+#include <optional>
 #include <string>
 
 namespace tinygltf {
 class Node;
+class Value;
 struct Mesh;
 }  // namespace tinygltf
 
@@ -18,10 +22,14 @@ struct ObjectFlags {
   std::string light_name;       ///< "lightName", of an emissive mesh's light; empty: the mesh's own
 };
 
-/// Throws InputError for an entry of these names that is not of its kind.
-ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh);
+/// An entry of these names that is of another kind is another tool's: it counts as not there, and goes to the losses.
+ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Losses& losses);
 
-/// Does a lamp cast shadows? "castsShadow" of its node; throws likewise.
-bool lamp_casts_shadows(const tinygltf::Node& node);
+/// Does a lamp cast shadows? "castsShadow" of its node, read likewise.
+bool lamp_casts_shadows(const tinygltf::Node& node, Losses& losses);
+
+/// A number of extras, read likewise; `owner` is whose they are.
+std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
+                                       Losses& losses);
 
 }  // namespace penumbra::scenes

@@ -81,11 +81,13 @@ std::optional<glm::dvec3> hidden_light(const tinygltf::Model& model, int number,
       const auto attribute = primitives[i].attributes.find("POSITION");
       std::vector<glm::dvec3> positions;
       if (attribute != primitives[i].attributes.end()) positions = read_positions(model, attribute->second);
-      const auto skinned = skin(model, node, primitives[i], place, places);
+      const auto skinned = skin(model, {node, places[index].value()}, primitives[i], place, places);
       for (std::size_t vertex = 0; vertex < positions.size(); ++vertex) {
-        const glm::dmat4& to_world = skinned && vertex < skinned->size() ? (*skinned)[vertex] : places[index].value();
+        const glm::dmat4& to_world =
+            skinned && vertex < skinned->vertices.size() ? skinned->vertices[vertex] : places[index].value();
         positions[vertex] = glm::dvec3(to_world * glm::dvec4(positions[vertex], 1));
       }
+      std::erase_if(positions, [](const glm::dvec3& p) { return !std::isfinite(p.x + p.y + p.z); });  // of no triangle
       return positions;
     };
     const bool emissive = is_emissive(model, primitives[i]);

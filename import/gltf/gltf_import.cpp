@@ -1,19 +1,24 @@
 #include "import/gltf/gltf_import.hpp"
 
+#include "base/assert.hpp"
 #include "base/error.hpp"
 #include "import/gltf/area_lamp.hpp"
-#include "import/gltf/emitters/emitter.hpp"
 #include "import/gltf/gltf_animation.hpp"
 #include "import/gltf/gltf_camera.hpp"
+#include "import/gltf/gltf_clips.hpp"
 #include "import/gltf/gltf_deform.hpp"
+#include "import/gltf/gltf_emission.hpp"
+#include "import/gltf/gltf_extensions.hpp"
 #include "import/gltf/gltf_extras.hpp"
 #include "import/gltf/gltf_hidden.hpp"
+#include "import/gltf/gltf_instances.hpp"
 #include "import/gltf/gltf_load.hpp"
 #include "import/gltf/gltf_nodes.hpp"
 #include "import/gltf/gltf_primitive.hpp"
 #include "import/gltf/gltf_surface.hpp"
 #include "import/gltf/gltf_triangles.hpp"
 #include "import/gltf/punctual_lights.hpp"
+#include "import/gltf/unique_names.hpp"
 
 #include <tiny_gltf.h>
 
@@ -22,37 +27,14 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 
 namespace penumbra::scenes {
 namespace {
-
-/// A name that nobody has yet: `wanted`, or `wanted.2`, `wanted.3` …
-std::string unique_name(std::set<std::string>& taken, const std::string& wanted) {
-  std::string name = wanted;
-  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}.{}", wanted, i);
-  return name;
-}
-
-constexpr std::array<std::string_view, 5> kUnderstood{"KHR_materials_emissive_strength", "KHR_materials_transmission",
-                                                      "KHR_lights_punctual", "KHR_mesh_quantization",
-                                                      "KHR_texture_transform"};
-/// What these say changes no diffuse surface; Blender writes some of them into every file.
-constexpr std::array<std::string_view, 9> kWithoutEffect{
-    "KHR_materials_specular",   "KHR_materials_ior",         "KHR_materials_clearcoat",
-    "KHR_materials_sheen",      "KHR_materials_iridescence", "KHR_materials_anisotropy",
-    "KHR_materials_dispersion", "KHR_materials_volume",      "KHR_xmp_json_ld"};
-
-bool is_understood(const std::string& extension) {
-  return std::ranges::find(kUnderstood, extension) != kUnderstood.end() ||
-         std::ranges::find(kWithoutEffect, extension) != kWithoutEffect.end();
-}
 
 /// What the file is read for; `rest`: a mesh as it is modelled, which no skin and no morph target bends.
 enum class Purpose { lit_scene, any_scene, mesh, rest };
@@ -64,13 +46,28 @@ class GltfImport {
       : model_(model),
         purpose_(purpose),
         lenient_(options.lenient || purpose == Purpose::any_scene || purpose == Purpose::rest),
-        lamps_(model, options),
+        lamps_(model, options, losses_),
         surfaces_(model, scene_.pictures, losses_) {
     scene_.name = std::move(name);
   }
 
   /// See unhidden_places; must outlive it. Without a call, a light that is scaled to nothing is none.
   void keep_hidden_lights(const std::vector<std::optional<glm::dmat4>>& unhidden) { unhidden_ = unhidden; }
+
+  /// What parsing left out, and when animations are looked at, if they are. Without a call, nothing and at rest.
+  void say_of(const TakenOut& taken_out, bool moves) {
+    compressed_ = taken_out.compressed;
+    for (const std::string& place : compressed_)
+      losses_.refuse("is compressed with KHR_draco_mesh_compression, and left out", place);
+    for (const std::string& pointer : taken_out.pointers) {
+      const std::string what = "is moved by KHR_animation_pointer, which is not done: it stays as the file has it";
+      moves ? losses_.refuse(what, pointer) : losses_.mention(what, pointer);
+    }
+    if (taken_out.channels_without_node > 0) {
+      scene_.warnings.push_back(
+          fmt::format("{} animation channels name no node and are ignored", taken_out.channels_without_node));
+    }
+  }
 
   /// Are some of the file's vertices not in the scene? Once it has run.
   [[nodiscard]] bool left_vertices_out() const { return left_out_; }
@@ -81,19 +78,16 @@ class GltfImport {
     const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
     to_world_.resize(model_.nodes.size());
     for (const PlacedNode& placed : nodes) to_world_[static_cast<std::size_t>(placed.number)] = placed.to_world;
-    for (const PlacedNode& placed : nodes) {
-      const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
-      const std::string name = node.name.empty() ? fmt::format("node {}", placed.number) : node.name;
-      if (node.mesh >= 0) add_mesh_or_hidden(node, placed, name);
-      if (is_mesh()) continue;
-      if (node.camera >= 0) add_camera(node, placed, name);
-      if (node.extensions.contains("KHR_lights_punctual"))
-        add_lamp(lamps_.light_of(node, lamp_place(placed)), node, name);
-      if (const auto lamp = area_lamp_of(node, placed)) add_lamp(*lamp, node, name);
-    }
+    for (const PlacedNode& placed : nodes) add_node(placed);
     for (const std::size_t light : shadeless_) {
       scene_.lights[light].unshaded_by.resize(scene_.objects.size());
       std::iota(scene_.lights[light].unshaded_by.begin(), scene_.lights[light].unshaded_by.end(), 0U);
+    }
+    if (scene_.soup.triangles.empty() && !compressed_.empty()) {
+      throw InputError(
+          "{}: its vertices are compressed with KHR_draco_mesh_compression, which is not supported; "
+          "export without compression",
+          compressed_.front());
     }
     if (scene_.soup.triangles.empty()) {
       throw InputError(
@@ -112,12 +106,9 @@ class GltfImport {
       scene_.cameras.push_back(camera_that_sees_all(scene_.soup.positions));
       scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
     }
+    count_what_came(nodes);
     complete_looks(scene_);
-    for (const std::string& extension : model_.extensionsRequired) {
-      if (!is_understood(extension))
-        losses_.refuse("is an extension that the file requires (extensionsRequired) and that is not supported",
-                       extension);
-    }
+    judge_extensions(model_, is_mesh(), losses_, scene_.warnings);
     add_warnings();
     if (!lenient_) losses_.throw_refused();
     is_mesh() ? losses_.warn_of_refused(scene_.warnings) : losses_.warn(scene_.warnings);
@@ -137,6 +128,43 @@ class GltfImport {
     PlacedNode place = unhidden(placed);
     place.to_world[3] = placed.to_world[3];
     return place;
+  }
+
+  /// Every primitive of every instance that the file has in the scene has come, or is counted among what makes none.
+  void count_what_came(std::span<const PlacedNode> nodes) const {
+    std::uint64_t there = 0;
+    for (const PlacedNode& placed : nodes) {
+      const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
+      if (!placed.visible || node.mesh < 0) continue;
+      const auto instances = instances_of(model_, node, placed.number);
+      there +=
+          (instances ? instances->size() : 1) * model_.meshes[static_cast<std::size_t>(node.mesh)].primitives.size();
+    }
+    const std::uint64_t came = scene_.objects.size() + gone_ + bodiless_ + skipped_.points_and_lines +
+                               skipped_.without_positions + skipped_.without_triangles;
+    PENUMBRA_ASSERT(there == came, "of {} primitives in the scene {} came", there, came);
+  }
+
+  void add_node(const PlacedNode& placed) {
+    const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
+    const std::string name = node.name.empty() ? fmt::format("node {}", placed.number) : node.name;
+    if (!is_mesh() && node.camera >= 0) add_camera(node, placed, name);
+    if (!placed.visible) return;
+    if (node.mesh >= 0) add_meshes(node, placed, name);
+    if (is_mesh()) return;
+    if (node.extensions.contains("KHR_lights_punctual"))
+      add_lamp(lamps_.light_of(node, lamp_place(placed)), node, name);
+    if (const auto lamp = area_lamp_of(node, placed, losses_)) add_lamp(*lamp, node, name);
+  }
+
+  void add_meshes(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    const auto instances = instances_of(model_, node, placed.number);
+    if (!instances) return add_mesh_or_hidden(node, placed, name);
+    if (node.skin >= 0) losses_.mention("has instances of a skinned mesh, all of which are where its joints are", name);
+    if (instances->empty())
+      losses_.mention("has no instances (EXT_mesh_gpu_instancing), so nothing of it is there", name);
+    for (std::size_t i = 0; i < instances->size(); ++i)
+      add_mesh(node, {placed.number, placed.to_world * (*instances)[i]}, fmt::format("{}.{}", name, i));
   }
 
   /// A light that is scaled to nothing stays one, of the shape that it has when it is not, and dark: so all frames have
@@ -164,7 +192,7 @@ class GltfImport {
                        model_.meshes.size());
     }
     const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
-    flags_ = flags_of(node, mesh);
+    flags_ = flags_of(node, mesh, losses_);
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
       const std::string place = fmt::format("/meshes/{}/primitives/{}", node.mesh, i);
       add_primitive(mesh.primitives[i], node, placed, place,
@@ -177,22 +205,25 @@ class GltfImport {
     std::optional<PrimitiveMesh> mesh = read_primitive(model_, primitive, place, skipped_);
     if (!mesh) return;
     std::vector<glm::dvec3>& positions = mesh->positions;
-    std::optional<std::vector<glm::dmat4>> skinned;
+    std::optional<Skinned> skinned;
     if (purpose_ != Purpose::rest) {
       morph(model_, node, primitive, "POSITION", place, positions);
-      skinned = skin(model_, node, primitive, place, to_world_);
-      if (skinned && skinned->size() != positions.size()) {
-        throw InputError("{}/attributes/JOINTS_0: joints of {} vertices; there are {}", place, skinned->size(),
+      skinned = skin(model_, {node, placed.to_world}, primitive, place, to_world_);
+      if (skinned && skinned->vertices.size() != positions.size()) {
+        throw InputError("{}/attributes/JOINTS_0: joints of {} vertices; there are {}", place, skinned->vertices.size(),
                          positions.size());
       }
     }
-    const std::string own_name = unique_name(object_names_, name);
+    const std::string own_name = object_names_.take(name);
+    if (skinned && skinned->without_weights > 0)
+      losses_.mention("has vertices that no joint moves; they move with their node", own_name);
     Look look = surfaces_.read(primitive, place, own_name, positions.size());
     if (purpose_ != Purpose::rest) morph(model_, node, primitive, "NORMAL", place, look.normals);
     switch (surfaces_.opacity_of(look)) {
       case Opacity::gone:
         losses_.mention("is wholly transparent, and left out", own_name);
         left_out_ = true;
+        ++gone_;
         bound(positions, placed);
         return;
       case Opacity::solid:
@@ -219,6 +250,11 @@ class GltfImport {
   }
 
   void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
+    const glm::dvec3 radiance = radiance_of(vertices, triangles, scene_.pictures);
+    if (vertices.look.emission && radiance != glm::dvec3(0))
+      losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
+    else if (vertices.look.emission)
+      note_refused_light(name, "its emissive picture is black where it lies on it");
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     Object object;
     object.name = name;
@@ -228,46 +264,45 @@ class GltfImport {
     object.material = vertices.look.material;
     object.picture = vertices.look.picture;
     object.alpha = vertices.look.alpha;
-    object.emits = add_light(vertices.look, name, vertices.placed, before);
-    if (object.emits && !flags_.body) return shorten(scene_, before);  // they only said where the light is
+    object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
+    if (object.emits && !flags_.body) {  // they only said where the light is
+      ++bodiless_;
+      return shorten(scene_, before);
+    }
     left_out_ |= scene_.soup.positions.size() - before.position < vertices.local.size();
     bound(vertices.local, vertices.placed);
     scene_.objects.push_back(std::move(object));
   }
 
+  void note_refused_light(const std::string& name, const std::string& why_not) {
+    refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", name, why_not);
+  }
+
+  struct Emission {
+    glm::dvec3 radiance;
+    bool two_sided;
+  };
   /// The number of the light that the triangles since `before` are the body of, if they are one.
-  std::optional<std::uint32_t> add_light(const Look& look, const std::string& name, const PlacedNode& placed,
+  std::optional<std::uint32_t> add_light(const Emission& emission, const std::string& name, const PlacedNode& placed,
                                          const SoupEnd& before) {
-    const glm::dvec3& radiance = look.radiance;
+    const glm::dvec3& radiance = emission.radiance;
     if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) return std::nullopt;
     if (purpose_ == Purpose::mesh) {
       ++emissive_;
       return std::nullopt;
     }
-    // Files hold single precision: a position is rounded by half a float's step at its distance from the node's
-    // origin, and so is each coordinate; the world's own double rounding is nothing beside it.
-    const auto positions = std::span(scene_.soup.positions).subspan(before.position);
-    const glm::dvec3 origin(placed.to_world[3]);
-    double distance = 0;
-    for (const glm::dvec3& p : positions) distance = std::max(distance, glm::distance(p, origin));
-    const double rounding = distance * static_cast<double>(std::numeric_limits<float>::epsilon());
-    std::vector<mesh::Triangle> body;
-    for (const mesh::Triangle& t : std::span(scene_.soup.triangles).subspan(before.triangle)) {
-      const auto first = static_cast<std::uint32_t>(before.position);
-      body.push_back({t[0] - first, t[1] - first, t[2] - first});
-    }
-    auto recognised = recognise_emitter(positions, body, look.two_sided, rounding);
+    auto recognised = emitter_since(scene_, before, placed, emission.two_sided);
     if (const auto* why_not = std::get_if<std::string>(&recognised)) {
       losses_.refuse(fmt::format("is emissive, but no area light, because {}; it would be plain geometry", *why_not),
                      name);
-      refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", name, *why_not);
+      note_refused_light(name, *why_not);
       return std::nullopt;
     }
     auto& emitter = std::get<Emitter>(recognised);
     if (emitter.hides_itself)
       losses_.mention("is an emitter with parts that stand in one another's light; a light's own mesh hides none of it",
                       name);
-    scene_.lights.push_back({.name = unique_name(light_names_, flags_.light_name.empty() ? name : flags_.light_name),
+    scene_.lights.push_back({.name = light_names_.take(flags_.light_name.empty() ? name : flags_.light_name),
                              .shape = std::move(emitter.shape),
                              .radiance = radiance,
                              .two_sided = emitter.two_sided});
@@ -276,19 +311,15 @@ class GltfImport {
 
   void add_lamp(AreaLight light, const tinygltf::Node& node, const std::string& name) {
     if (light.radiance == glm::dvec3(0)) return;  // off
-    light.name = unique_name(light_names_, name);
-    if (!lamp_casts_shadows(node)) shadeless_.push_back(scene_.lights.size());
+    light.name = light_names_.take(name);
+    if (!lamp_casts_shadows(node, losses_)) shadeless_.push_back(scene_.lights.size());
     scene_.lights.push_back(std::move(light));
   }
 
   void add_camera(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
     Camera camera = camera_of(model_, node, placed);
-    camera.name = unique_name(camera_names_, name);
+    camera.name = camera_names_.take(name);
     scene_.cameras.push_back(std::move(camera));
-  }
-
-  [[nodiscard]] bool is_required(const std::string& extension) const {
-    return !is_mesh() && std::ranges::find(model_.extensionsRequired, extension) != model_.extensionsRequired.end();
   }
 
   void add_warnings() {
@@ -301,10 +332,6 @@ class GltfImport {
     count(skipped_.without_triangles, "primitives with fewer than three vertices skipped");
     count(skipped_.leftover_indices, "indices at the end of primitives skipped: they make no whole triangle");
     count(emissive_, "emissive objects are no lights here: those are the scene's");
-    for (const std::string& extension : model_.extensionsUsed) {
-      if (is_understood(extension) || is_required(extension)) continue;
-      scene_.warnings.push_back(fmt::format("extension {} ignored", extension));
-    }
   }
 
   const tinygltf::Model& model_;
@@ -316,9 +343,11 @@ class GltfImport {
   Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
-  std::set<std::string> object_names_, camera_names_, light_names_;
+  UniqueNames object_names_, camera_names_, light_names_;
   std::string refused_lights_;
   SkippedPrimitives skipped_;
+  std::vector<std::string> compressed_;    // primitives that were left out
+  std::uint64_t gone_ = 0, bodiless_ = 0;  // primitives that are wholly transparent, that only say where a light is
   bool left_out_ = false;
   glm::dvec3 lower_{std::numeric_limits<double>::infinity()}, upper_{-std::numeric_limits<double>::infinity()};
   ObjectFlags flags_;                   // of the mesh at hand
@@ -334,12 +363,30 @@ bool bends(const tinygltf::Model& model) {
   return !model.skins.empty() || std::ranges::any_of(model.meshes, morphs);
 }
 
+/// When what is played moves. At rest nothing of it is seen, so that faults of it are only warned of.
+std::optional<Motion> motion_for(const tinygltf::Model& model, const ClipChoice& clips, const ReadOptions& options,
+                                 std::vector<std::string>& warnings) {
+  if (options.time && !clips.others.empty()) {
+    warnings.push_back(fmt::format("the clips {} move what {} moves, too, and are not played (--clip chooses)",
+                                   names_of_clips(model, clips.others), names_of_clips(model, clips.played)));
+  }
+  try {
+    return motion_of(model, clips.played);
+  } catch (const InputError& error) {
+    if (options.time) throw;
+    warnings.push_back(fmt::format("the animation is damaged and ignored: {}", error.what()));
+    return std::nullopt;
+  }
+}
+
 Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOptions& options) {
   tinygltf::Model model;
-  load_gltf_model(input, options.allow_outside, model);
+  const TakenOut taken_out = load_gltf_model(input, options, model);
   const std::string name = input.name.filename().string();
   try {
-    const std::optional<Motion> motion = motion_of(model);
+    std::vector<std::string> warnings;
+    const ClipChoice clips = choose_clips(model, options.clips);
+    const std::optional<Motion> motion = motion_for(model, clips, options, warnings);
     const auto middle_at_rest = [&] {
       GltfImport rest(model, name, Purpose::rest, options);
       rest.run();
@@ -347,13 +394,15 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
     };
     std::optional<glm::dvec3> origin;
     if (bends(model) || (motion && options.time)) origin = middle_at_rest();
-    std::vector<std::string> warnings;
     const auto scales = rest_scales(model);
-    if (options.time) pose_model(model, *options.time, warnings);
+    if (options.time) pose_model(model, *options.time, clips.played);
     std::vector<std::optional<glm::dmat4>> unhidden;
     if (motion) unhidden = unhidden_places(model, scales);
     GltfImport import(model, name, purpose, options);
     import.keep_hidden_lights(unhidden);
+    import.say_of(taken_out, options.time.has_value());
+    if (!model.animations.empty() && (purpose == Purpose::any_scene || purpose == Purpose::mesh))
+      warnings.push_back("at rest; its animation clips: " + names_of_clips(model, all_clips(model)));
     Scene scene = import.run();
     if (!origin && import.left_vertices_out() && purpose != Purpose::mesh) origin = middle_at_rest();
     scene.origin = origin;

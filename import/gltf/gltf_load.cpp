@@ -3,17 +3,22 @@
 #include "base/error.hpp"
 #include "mesh/import_wire.hpp"
 #include "mesh/opened_files.hpp"
+#include "import/gltf/glb_chunks.hpp"
 #include "import/gltf/gltf_numbers.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <deque>
 #include <limits>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +31,8 @@ struct Confinement {
   std::filesystem::path folder_name;
   bool allow_outside = false;
   std::string refused;  ///< the last name that leads outside
+  /// How many bytes the file's buffers take of the files that they name, in their order: a file may be longer.
+  std::map<std::string, std::deque<std::size_t>> lengths;
 
   /// Nothing if it may not be opened, or is no regular file.
   Descriptor open(const std::string& name) {
@@ -51,10 +58,15 @@ tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   };
   files.ExpandFilePath = [](const std::string& name, void*) { return name; };  // no ~ and no $VARIABLES from a file
   files.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* user) {
-    const Descriptor file = static_cast<Confinement*>(user)->open(name);
+    auto& confined = *static_cast<Confinement*>(user);
+    const Descriptor file = confined.open(name);
     if (file.is_open()) {
-      mesh::note_opened_file(static_cast<Confinement*>(user)->folder_name / name);
-      const std::string content = mesh::read_content(file.get(), name);
+      mesh::note_opened_file(confined.folder_name / name);
+      std::string content = mesh::read_content(file.get(), name);
+      if (auto& lengths = confined.lengths[name]; !lengths.empty()) {
+        if (content.size() > lengths.front()) content.resize(lengths.front());
+        lengths.pop_front();
+      }
       bytes->assign(content.begin(), content.end());
       return true;
     }
@@ -66,36 +78,6 @@ tinygltf::FsCallbacks confined_files(Confinement& confinement) {
   };
   files.user_data = &confinement;
   return files;
-}
-
-std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
-
-/// The chunks of a GLB must fit into the file: tinygltf reads up to eight bytes past its end otherwise. The first chunk
-/// comes back: the JSON.
-std::string_view check_glb(std::string_view bytes, const std::string& file) {
-  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
-  if (bytes.size() < kHeader + kChunkHeader)
-    throw InputError("{}: a GLB of {} bytes; it is truncated", file, bytes.size());
-  const std::uint32_t version = little_endian(bytes, 4), length = little_endian(bytes, 8);
-  if (version != 2) throw InputError("{}: GLB version {}; expected 2. Export it again as glTF 2.0", file, version);
-  if (length > bytes.size()) {
-    throw InputError("{}: the GLB says it has {} bytes, but the file has {}; it is truncated", file, length,
-                     bytes.size());
-  }
-  for (std::size_t at = kHeader; at < length;) {
-    const std::size_t left = length - at;
-    const std::size_t chunk = left < kChunkHeader ? 0 : little_endian(bytes, at);
-    if (left < kChunkHeader || chunk > left - kChunkHeader) {
-      throw InputError("{}: the GLB chunk at byte {} reaches beyond the file's {} bytes; it is truncated or damaged",
-                       file, at, length);
-    }
-    at += kChunkHeader + chunk;
-  }
-  return bytes.substr(kHeader + kChunkHeader, little_endian(bytes, kHeader));
 }
 
 /// A URI's percent signs undone.
@@ -114,9 +96,14 @@ std::string decoded(std::string_view uri) {
   return text;
 }
 
-std::string without_line_ends(std::string text) {
+/// Without line ends, and without what a data URI holds.
+std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
   std::ranges::replace(text, '\n', ' ');
+  for (std::size_t at = text.find(";base64,"); at != std::string::npos; at = text.find(";base64,", at)) {
+    at += std::string_view(";base64,").size();
+    text.replace(at, std::min(text.find(' ', at), text.size()) - at, "…");
+  }
   return mesh::printable(text);
 }
 
@@ -128,18 +115,39 @@ void forgive_default_binds(std::string& error) {
     error.erase(at, kComplaint.size());
 }
 
-}  // namespace
-
-bool is_from_blender(const tinygltf::Model& model) {
-  return model.asset.generator.starts_with("Khronos glTF Blender I/O");
+/// How many bytes each buffer takes of the file that it names.
+void note_lengths(const nlohmann::json& document, Confinement& confinement) {
+  const auto buffers = document.find("buffers");
+  if (buffers == document.end() || !buffers->is_array()) return;
+  for (const nlohmann::json& buffer : *buffers) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
+    if (!buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned()) continue;
+    confinement.lengths[decoded(buffer["uri"].get_ref<const std::string&>())].push_back(
+        buffer["byteLength"].get<std::size_t>());
+  }
 }
 
-void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model) {
+/// The file's JSON, checked; the parser's message if it is none.
+nlohmann::json document_of(std::string_view text, const std::string& file) {
+  try {
+    nlohmann::json document = nlohmann::json::parse(text);
+    if (!document.is_object()) throw InputError("{}: it is no glTF file: its JSON is no object", file);
+    check_gltf_numbers(document, file);
+    return document;
+  } catch (const nlohmann::json::parse_error& error) {
+    throw InputError("{}: {}", file, one_line(error.what()));
+  }
+}
+
+}  // namespace
+
+TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& options, tinygltf::Model& model) {
   const std::string name = input.name.string();
-  const std::string bytes = mesh::read_content(input.content.get(), name);
+  std::string bytes = mesh::read_content(input.content.get(), name);
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) throw InputError("{}: more than 4 GiB", name);
 
-  Confinement confinement{input.folder.get(), std::filesystem::absolute(input.name).parent_path(), allow_outside, {}};
+  Confinement confinement{
+      input.folder.get(), std::filesystem::absolute(input.name).parent_path(), options.allow_outside, {}, {}};
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(confined_files(confinement));
   // As they are: who uses a picture decodes it.
@@ -152,15 +160,26 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
       },
       nullptr);
   std::string error, warning;  // its warnings are about images only
+  TakenOut taken_out;
+  {
+    const bool binary = bytes.starts_with("glTF");
+    const GlbChunks chunks = binary ? glb_chunks(bytes, name) : GlbChunks{bytes, {}};
+    nlohmann::json document = document_of(chunks.json, name);
+    const bool mended = mend_gltf(document, name, options.lenient, taken_out);
+    note_lengths(document, confinement);
+    const std::string text = mended ? document.dump() : std::string();
+    if (binary && (mended || !chunks.strict))
+      bytes = glb_of(mended ? std::string_view(text) : chunks.json, chunks.binary);
+    else if (mended)
+      bytes = text;
+  }
   const auto size = static_cast<unsigned>(bytes.size());
   const std::string here;  // names are looked for from the folder's descriptor
   bool loaded = false;
   if (bytes.starts_with("glTF")) {
-    check_gltf_numbers(check_glb(bytes, name), name);
     const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
     loaded = parser.LoadBinaryFromMemory(&model, &error, &warning, data, size, here, tinygltf::NO_REQUIRE);
   } else {
-    check_gltf_numbers(bytes, name);
     loaded = parser.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, here, tinygltf::NO_REQUIRE);
   }
   // Files of images are opened here, by the names that the file gives them and no other place.
@@ -178,15 +197,16 @@ void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf:
                      mesh::printable(confinement.refused));
   }
   for (const std::string& extension : model.extensionsRequired) {
-    if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression") {
+    if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression") {
       throw InputError("{}: /extensionsRequired: {} is not supported; export without compression", name, extension);
     }
   }
   forgive_default_binds(error);
   // It goes on after some errors, and leaves out what it could not understand: nothing may go missing silently.
   if (!loaded || !error.empty()) {
-    throw InputError("{}: {}", name, error.empty() ? "it is no glTF file" : without_line_ends(error));
+    throw InputError("{}: {}", name, error.empty() ? "it is no glTF file" : one_line(error));
   }
+  return taken_out;
 }
 
 }  // namespace penumbra::scenes

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "import/gltf/gltf_mend.hpp"
 #include "mesh/input_file.hpp"
+#include "scenes/formats/reader.hpp"
 
 namespace tinygltf {
 class Model;
@@ -8,11 +10,9 @@ class Model;
 
 namespace penumbra::scenes {
 
-/// Parses a .gltf or .glb file (told apart by its first bytes) with its buffers, but without its images. Buffers come
-/// from the file's folder and below, or from anywhere if `allow_outside`. Throws InputError.
-void load_gltf_model(const mesh::InputFile& input, bool allow_outside, tinygltf::Model& model);
-
-/// Did Blender's exporter write it? It means some things in its own way.
-bool is_from_blender(const tinygltf::Model& model);
+/// Parses a .gltf or .glb file (told apart by its first bytes) with its buffers; images are not decoded. Buffers come
+/// from the file's folder and below, or from anywhere if `options.allow_outside`. Returns what was taken out so that it
+/// could be parsed. Throws InputError; no message repeats what a data URI holds.
+TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& options, tinygltf::Model& model);
 
 }  // namespace penumbra::scenes

@@ -9,43 +9,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace penumbra::scenes {
 namespace {
 
 /// A property of `wanted` finite numbers, or none at all.
-bool has_numbers(const std::vector<double>& numbers, std::size_t wanted, int node, const char* property) {
+bool has_numbers(const std::vector<double>& numbers, std::size_t wanted, const std::string& place) {
   if (numbers.empty()) return false;
-  if (numbers.size() != wanted) {
-    throw InputError("/nodes/{}/{}: {} numbers; expected {}", node, property, numbers.size(), wanted);
-  }
-  if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) {
-    throw InputError("/nodes/{}/{}: a number is not finite", node, property);
-  }
+  if (numbers.size() != wanted) throw InputError("{}: {} numbers; expected {}", place, numbers.size(), wanted);
+  if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
+    throw InputError("{}: a number is not finite", place);
   return true;
 }
 
+/// The last row of a matrix that exporters multiply in single precision: a product of a few matrices is off by some
+/// units of its last place.
+bool is_affine(const glm::dmat4& transform) {
+  constexpr double kRounding = 16 * static_cast<double>(std::numeric_limits<float>::epsilon());
+  const auto near = [](double x, double wanted) { return std::abs(x - wanted) <= kRounding; };
+  return near(transform[0][3], 0) && near(transform[1][3], 0) && near(transform[2][3], 0) && near(transform[3][3], 1);
+}
+
 glm::dmat4 local_transform(const tinygltf::Node& node, int number) {
+  const std::string place = fmt::format("/nodes/{}", number);
+  if (!has_numbers(node.matrix, 16, place + "/matrix"))
+    return transform_of({node.translation, node.rotation, node.scale}, place);
   glm::dmat4 transform(1);
-  if (has_numbers(node.matrix, 16, number, "matrix")) {
-    for (glm::length_t i = 0; i < 16; ++i) transform[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-    if (transform[0][3] != 0 || transform[1][3] != 0 || transform[2][3] != 0 || transform[3][3] != 1) {
-      throw InputError("/nodes/{}/matrix: its last row must be 0 0 0 1", number);
-    }
-    return transform;
-  }
-  if (has_numbers(node.translation, 3, number, "translation")) {
-    transform = glm::translate(transform, {node.translation[0], node.translation[1], node.translation[2]});
-  }
-  if (has_numbers(node.rotation, 4, number, "rotation")) {  // glTF: x y z w; glm's constructor: w x y z
-    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(rotation) > 0)) throw InputError("/nodes/{}/rotation: a quaternion of length 0", number);
-    transform *= glm::mat4_cast(glm::normalize(rotation));
-  }
-  if (has_numbers(node.scale, 3, number, "scale")) {
-    transform = glm::scale(transform, {node.scale[0], node.scale[1], node.scale[2]});
-  }
+  for (glm::length_t i = 0; i < 16; ++i) transform[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+  if (!is_affine(transform)) throw InputError("{}/matrix: its last row must be 0 0 0 1", place);
+  transform[0][3] = transform[1][3] = transform[2][3] = 0;
+  transform[3][3] = 1;
   return transform;
+}
+
+bool is_visible(const tinygltf::Node& node) {
+  const auto extension = node.extensions.find("KHR_node_visibility");
+  if (extension == node.extensions.end() || !extension->second.Has("visible")) return true;
+  const tinygltf::Value& visible = extension->second.Get("visible");
+  return !visible.IsBool() || visible.Get<bool>();
 }
 
 std::vector<int> root_nodes(const tinygltf::Model& model, std::vector<std::string>& warnings) {
@@ -77,6 +79,20 @@ std::vector<int> root_nodes(const tinygltf::Model& model, std::vector<std::strin
 
 }  // namespace
 
+glm::dmat4 transform_of(const TransformParts& parts, const std::string& place) {
+  glm::dmat4 transform(1);
+  const auto& [translation, rotation, scale] = parts;
+  if (has_numbers(translation, 3, place + "/translation"))
+    transform = glm::translate(transform, {translation[0], translation[1], translation[2]});
+  if (has_numbers(rotation, 4, place + "/rotation")) {  // glTF: x y z w; glm's constructor: w x y z
+    const glm::dquat turn(rotation[3], rotation[0], rotation[1], rotation[2]);
+    if (!(glm::length(turn) > 0)) throw InputError("{}/rotation: a quaternion of length 0", place);
+    transform *= glm::mat4_cast(glm::normalize(turn));
+  }
+  if (has_numbers(scale, 3, place + "/scale")) transform = glm::scale(transform, {scale[0], scale[1], scale[2]});
+  return transform;
+}
+
 std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<std::string>& warnings) {
   std::vector<PlacedNode> placed;
   std::vector<PlacedNode> stack;
@@ -93,9 +109,11 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<st
     // A tree reaches each node once; this also ends every cycle.
     if (visited[index]) throw InputError("/nodes/{}: it has two parents or is its own ancestor", node.number);
     visited[index] = true;
-    node.to_world = node.to_world * local_transform(model.nodes[index], node.number);  // the stack held the parent's
+    // The stack held the parent's.
+    node.to_world = node.to_world * local_transform(model.nodes[index], node.number);
+    node.visible = node.visible && is_visible(model.nodes[index]);
     const auto& children = model.nodes[index].children;
-    for (std::size_t i = children.size(); i-- > 0;) stack.push_back({children[i], node.to_world});
+    for (std::size_t i = children.size(); i-- > 0;) stack.push_back({children[i], node.to_world, node.visible});
     placed.push_back(node);
   }
   return placed;

@@ -25,6 +25,7 @@ constexpr std::array kNumbers = {
     "/meshes/*/primitives/*/material",
     "/meshes/*/primitives/*/mode",
     "/meshes/*/primitives/*/attributes/*",
+    "/meshes/*/primitives/*/targets/*/*",
     "/accessors/*/bufferView",
     "/accessors/*/componentType",
     "/accessors/*/sparse/count",
@@ -34,6 +35,25 @@ constexpr std::array kNumbers = {
     "/accessors/*/sparse/values/bufferView",
     "/accessors/*/sparse/values/byteOffset",
     "/bufferViews/*/buffer",
+    "/textures/*/source",
+    "/textures/*/sampler",
+    "/images/*/bufferView",
+    "/materials/*/pbrMetallicRoughness/baseColorTexture/index",
+    "/materials/*/pbrMetallicRoughness/baseColorTexture/texCoord",
+    "/materials/*/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/texCoord",
+    "/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture/index",
+    "/materials/*/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture/texCoord",
+    "/materials/*/emissiveTexture/index",
+    "/materials/*/emissiveTexture/texCoord",
+    "/materials/*/emissiveTexture/extensions/KHR_texture_transform/texCoord",
+    "/skins/*/joints/*",
+    "/skins/*/inverseBindMatrices",
+    "/animations/*/channels/*/sampler",
+    "/animations/*/channels/*/target/node",
+    "/animations/*/samplers/*/input",
+    "/animations/*/samplers/*/output",
+    "/nodes/*/extensions/KHR_lights_punctual/light",
+    "/nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*",
 };
 /// JSON pointers of the numbers that tinygltf keeps in 64 bits.
 constexpr std::array kSizes = {
@@ -72,9 +92,7 @@ void check_place(const json& value, std::string_view rest, const std::string& po
 
 }  // namespace
 
-void check_gltf_numbers(std::string_view text, const std::string& file) {
-  const json document = json::parse(text, nullptr, false);
-  if (!document.is_object()) return;
+void check_gltf_numbers(const json& document, const std::string& file) {
   // glTF 1.0 has names where 2.0 has numbers: that it is of 1.0 is what helps to know.
   const auto asset = document.find("asset");
   const bool known = asset != document.end() && asset->is_object() && asset->contains("version");

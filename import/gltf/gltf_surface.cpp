@@ -8,7 +8,7 @@
 #include "base/jpeg.hpp"
 #include "base/png.hpp"
 #include "import/gltf/gltf_accessor.hpp"
-#include "import/gltf/gltf_load.hpp"
+#include "import/gltf/blender_exporter.hpp"
 
 #include <tiny_gltf.h>
 
@@ -48,17 +48,57 @@ double number_of(const tinygltf::ExtensionMap& extensions, const char* extension
   return number;
 }
 
-Alpha alpha_of(const tinygltf::Material& material, const std::string& place) {
+/// What a surface's colour and alpha begin with.
+struct BaseColor {
+  std::vector<double> factor;
+  tinygltf::TextureInfo texture;
+  const char *factor_place, *texture_place;  ///< below the material
+};
+
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+/// The core's base colour; of a material of KHR_materials_pbrSpecularGlossiness, which files before 2021 often have,
+/// its diffuse colour, which takes the other's place.
+BaseColor base_color_of(const tinygltf::Material& material) {
+  const auto found = material.extensions.find(kSpecularGlossiness);
+  if (found == material.extensions.end()) {
+    const auto& core = material.pbrMetallicRoughness;
+    return {core.baseColorFactor, core.baseColorTexture, "/pbrMetallicRoughness/baseColorFactor",
+            "/pbrMetallicRoughness/baseColorTexture"};
+  }
+  BaseColor base{{},
+                 {},
+                 "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseFactor",
+                 "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture"};
+  if (found->second.Has("diffuseFactor")) {
+    const tinygltf::Value& factor = found->second.Get("diffuseFactor");
+    for (int i = 0; factor.IsArray() && i < static_cast<int>(factor.ArrayLen()); ++i)
+      base.factor.push_back(factor.Get(i).IsNumber() ? factor.Get(i).GetNumberAsDouble() : std::nan(""));
+  }
+  if (found->second.Has("diffuseTexture")) {
+    const tinygltf::Value& texture = found->second.Get("diffuseTexture");
+    const auto whole = [&](const char* key, int otherwise) {
+      return texture.Has(key) && texture.Get(key).IsInt() ? texture.Get(key).GetNumberAsInt() : otherwise;
+    };
+    base.texture.index = whole("index", -1);
+    base.texture.texCoord = whole("texCoord", 0);
+    if (texture.Has("extensions") && texture.Get("extensions").Has("KHR_texture_transform"))
+      base.texture.extensions["KHR_texture_transform"] = texture.Get("extensions").Get("KHR_texture_transform");
+  }
+  return base;
+}
+
+Alpha alpha_of(const tinygltf::Material& material, const BaseColor& base, const std::string& place) {
   Alpha alpha;
   if (material.alphaMode == "MASK") alpha.mode = Alpha::Mode::mask;
   if (material.alphaMode == "BLEND") alpha.mode = Alpha::Mode::blend;
   if (alpha.mode == Alpha::Mode::opaque && !material.alphaMode.empty() && material.alphaMode != "OPAQUE")
     throw InputError("{}/alphaMode: \"{}\"; expected OPAQUE, MASK or BLEND", place, material.alphaMode);
-  const std::vector<double>& color = material.pbrMetallicRoughness.baseColorFactor;
-  alpha.factor = color.size() >= 4 ? color[3] : 1;
+  alpha.factor = base.factor.size() >= 4 ? base.factor[3] : 1;
   alpha.cutoff = material.alphaCutoff;
-  if (!(alpha.factor >= 0 && alpha.factor <= 1))
-    throw InputError("{}/pbrMetallicRoughness/baseColorFactor: alpha {}; expected 0 to 1", place, alpha.factor);
+  if (!(alpha.factor >= 0 && std::isfinite(alpha.factor)))
+    throw InputError("{}{}: alpha {}; expected 0 to 1", place, base.factor_place, alpha.factor);
+  alpha.factor = std::min(alpha.factor, 1.0);  // as the colour's parts are
   if (!std::isfinite(alpha.cutoff) || alpha.cutoff < 0)
     throw InputError("{}/alphaCutoff: {}; expected a number of 0 or more", place, alpha.cutoff);
   return alpha;
@@ -113,13 +153,13 @@ bool has_no_surface(const tinygltf::Material& material) {
          surface.metallicRoughnessTexture.index < 0;
 }
 
-/// An attribute's numbers, one group a vertex; nothing if the primitive has none.
+/// An attribute's numbers, one group a vertex, finite or not; nothing if the primitive has none.
 std::optional<Numbers> attribute_of(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                     const std::string& name, std::initializer_list<int> types, std::size_t vertices,
                                     const std::string& place) {
   const auto found = primitive.attributes.find(name);
   if (found == primitive.attributes.end()) return std::nullopt;
-  Numbers numbers = read_numbers(model, found->second, types, name.c_str());
+  Numbers numbers = read_numbers(model, found->second, types, name.c_str(), NotFinite::keep);
   if (numbers.count() != vertices)
     throw InputError("{}/attributes/{}: {} of them for {} vertices", place, name, numbers.count(), vertices);
   return numbers;
@@ -130,121 +170,137 @@ std::optional<Numbers> attribute_of(const tinygltf::Model& model, const tinygltf
 Look SurfaceReader::read(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
                          std::size_t vertices) {
   Look look;
-  if (primitive.material >= 0) read_material(primitive, place, object, look);
+  const Owner owner{primitive, place, object, vertices};
+  if (primitive.material >= 0) read_material(owner, look);
+  const auto all_finite = [](const Numbers& numbers) {
+    return std::ranges::all_of(numbers.values, [](double x) { return std::isfinite(x); });
+  };
   if (const auto normals = attribute_of(model_, primitive, "NORMAL", {TINYGLTF_TYPE_VEC3}, vertices, place)) {
+    if (!all_finite(*normals)) losses_.mention("has normals that are not finite; it is shaded by facets there", object);
     for (std::size_t i = 0; i < vertices; ++i)
       look.normals.emplace_back(normals->values[3 * i], normals->values[3 * i + 1], normals->values[3 * i + 2]);
   }
   if (const auto colors =
           attribute_of(model_, primitive, "COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, vertices, place)) {
+    if (!all_finite(*colors)) losses_.mention("has colours that are not finite; they are white", object);
     for (std::size_t i = 0; i < vertices; ++i) {
       glm::vec4 color(1);
       for (std::size_t c = 0; c < colors->components; ++c) {
-        color[static_cast<glm::length_t>(c)] =
-            static_cast<float>(std::clamp(colors->values[i * colors->components + c], 0.0, 1.0));
+        const double part = colors->values[i * colors->components + c];
+        if (std::isfinite(part)) color[static_cast<glm::length_t>(c)] = static_cast<float>(std::clamp(part, 0.0, 1.0));
       }
       look.colors.push_back(color);
-    }
-  }
-  if (look.picture) {
-    const auto& info =
-        model_.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
-    const TextureTransform transform = transform_of(info);
-    const int set = transform.coordinates >= 0 ? transform.coordinates : info.texCoord;
-    const auto places =
-        attribute_of(model_, primitive, fmt::format("TEXCOORD_{}", set), {TINYGLTF_TYPE_VEC2}, vertices, place);
-    if (places) {
-      for (std::size_t i = 0; i < vertices; ++i) {
-        const glm::dvec2 uv(places->values[2 * i], places->values[2 * i + 1]);
-        look.places.push_back(transform(uv));
-      }
-    } else {
-      // glTF 2.0 leaves it open what is seen then; it decides of light where alpha does.
-      const std::string what =
-          fmt::format("has no TEXCOORD_{}, by which its picture lies on it: one texel is everywhere", set);
-      look.alpha.mode == Alpha::Mode::opaque ? losses_.mention(what, object) : losses_.refuse(what, object);
-      look.places.assign(vertices, transform.offset);
     }
   }
   return look;
 }
 
-void SurfaceReader::read_material(const tinygltf::Primitive& primitive, const std::string& place,
-                                  const std::string& object, Look& look) {
-  if (static_cast<std::size_t>(primitive.material) >= model_.materials.size()) {
-    throw InputError("{}/material: material {} does not exist; there are {}", place, primitive.material,
+std::vector<glm::dvec2> SurfaceReader::places_of(const Owner& owner, const tinygltf::TextureInfo& info, bool decides) {
+  const TextureTransform transform = transform_of(info);
+  const int set = transform.coordinates >= 0 ? transform.coordinates : info.texCoord;
+  const auto numbers = attribute_of(model_, owner.primitive, fmt::format("TEXCOORD_{}", set), {TINYGLTF_TYPE_VEC2},
+                                    owner.vertices, owner.place);
+  const auto lose = [&](const std::string& what) {
+    decides ? losses_.refuse(what, owner.object) : losses_.mention(what, owner.object);
+  };
+  if (!numbers) {
+    // glTF 2.0 leaves it open what is seen then.
+    lose(fmt::format("has no TEXCOORD_{}, by which its picture lies on it: one texel is everywhere", set));
+    return std::vector<glm::dvec2>(owner.vertices, transform.offset);
+  }
+  std::vector<glm::dvec2> places;
+  bool finite = true;
+  for (std::size_t i = 0; i < owner.vertices; ++i) {
+    glm::dvec2 place = transform({numbers->values[2 * i], numbers->values[2 * i + 1]});
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) {
+      finite = false;
+      place = transform.offset;
+    }
+    places.push_back(place);
+  }
+  if (!finite) lose(fmt::format("has numbers in TEXCOORD_{} that are not finite: its picture lies wrong there", set));
+  return places;
+}
+
+void SurfaceReader::read_material(const Owner& owner, Look& look) {
+  const int number = owner.primitive.material;
+  if (static_cast<std::size_t>(number) >= model_.materials.size()) {
+    throw InputError("{}/material: material {} does not exist; there are {}", owner.place, number,
                      model_.materials.size());
   }
-  const tinygltf::Material& material = model_.materials[static_cast<std::size_t>(primitive.material)];
-  const std::string here = fmt::format("/materials/{}", primitive.material);
-  const auto& surface = material.pbrMetallicRoughness;
-  look.color =
-      glm::min(checked_factor(surface.baseColorFactor, glm::dvec3(1), here + "/pbrMetallicRoughness/baseColorFactor"),
-               glm::dvec3(1));
-  look.material = material.name.empty() ? fmt::format("material {}", primitive.material) : material.name;
+  const tinygltf::Material& material = model_.materials[static_cast<std::size_t>(number)];
+  const std::string here = fmt::format("/materials/{}", number);
+  const BaseColor base = base_color_of(material);
+  look.color = glm::min(checked_factor(base.factor, glm::dvec3(1), here + base.factor_place), glm::dvec3(1));
+  look.material = material.name.empty() ? fmt::format("material {}", number) : material.name;
   look.two_sided = material.doubleSided;
-  look.alpha = alpha_of(material, here);
+  look.alpha = alpha_of(material, base, here);
   look.radiance = checked_factor(material.emissiveFactor, glm::dvec3(0), here + "/emissiveFactor") *
                   number_of(material.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1, here);
-  read_picture(primitive, object, look);
-  read_emission(material, here, object, look);
-
-  if (look.alpha.mode != Alpha::Mode::opaque && !look.picture &&
-      material.extensions.contains("KHR_materials_pbrSpecularGlossiness"))
-    losses_.refuse("has its alpha in KHR_materials_pbrSpecularGlossiness, which is not supported: it would be solid",
-                   object);
-  if (number_of(material.extensions, "KHR_materials_transmission", "transmissionFactor", 0, here) > 0)
-    losses_.refuse("lets light through (transmission), which is not supported: it would be opaque", object);
-  if (look.radiance == glm::dvec3(0) && is_from_blender(model_) && has_no_surface(material))
-    losses_.mention("has no base colour in the file and is white: Blender exports that of Principled BSDF alone",
-                    object);
-  else if (look.color != glm::dvec3(0) && (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0))
-    losses_.mention("has a metallic material; every surface is diffuse here", object);
-  if (material.normalTexture.index >= 0) losses_.mention("has a normal map, which is left out", object);
+  if (base.texture.index >= 0) {
+    // A picture may have an alpha that cuts holes.
+    const bool decides = look.alpha.mode != Alpha::Mode::opaque;
+    std::string why_not;
+    look.picture = picture_use(base.texture.index, here + base.texture_place, why_not);
+    if (look.picture)
+      look.places = places_of(owner, base.texture, decides);
+    else if (const std::string what = "is shown without its picture: " + why_not; decides)
+      losses_.refuse(what, owner.object);
+    else
+      losses_.mention(what, owner.object);
+  }
+  read_emission(owner, here, look);
+  mention_unlike(owner, here, look);
 }
 
-void SurfaceReader::read_emission(const tinygltf::Material& material, const std::string& place,
-                                  const std::string& object, Look& look) {
+void SurfaceReader::mention_unlike(const Owner& owner, const std::string& here, const Look& look) {
+  const tinygltf::Material& material = model_.materials[static_cast<std::size_t>(owner.primitive.material)];
+  const auto& surface = material.pbrMetallicRoughness;
+  if (number_of(material.extensions, "KHR_materials_transmission", "transmissionFactor", 0, here) > 0)
+    losses_.refuse("lets light through (transmission), which is not supported: it would be opaque", owner.object);
+  if (number_of(material.extensions, "KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0, here) > 0)
+    losses_.mention("scatters light through itself (diffuse transmission), which is left out", owner.object);
+  if (material.extensions.contains("KHR_materials_unlit"))
+    losses_.mention("is unlit in the file; every surface is lit here", owner.object);
+  else if (look.radiance == glm::dvec3(0) && is_from_blender(model_) && has_no_surface(material))
+    losses_.mention("has no base colour in the file and is white: Blender exports that of Principled BSDF alone",
+                    owner.object);
+  else if (!material.extensions.contains(kSpecularGlossiness) && look.color != glm::dvec3(0) &&
+           (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0))
+    losses_.mention("has a metallic material; every surface is diffuse here", owner.object);
+  if (material.normalTexture.index >= 0) losses_.mention("has a normal map, which is left out", owner.object);
+}
+
+void SurfaceReader::read_emission(const Owner& owner, const std::string& place, Look& look) {
+  const tinygltf::Material& material = model_.materials[static_cast<std::size_t>(owner.primitive.material)];
   if (material.emissiveTexture.index < 0 || look.radiance == glm::dvec3(0)) return;
   std::string why_not;
-  const auto picture = picture_of(material.emissiveTexture.index, place + "/emissiveTexture", why_not);
-  if (!picture) {
-    losses_.refuse(fmt::format("would shine without its emissive picture: {}", why_not), object);
+  look.emission = picture_use(material.emissiveTexture.index, place + "/emissiveTexture", why_not);
+  if (!look.emission) {
+    losses_.refuse(fmt::format("would shine without its emissive picture: {}", why_not), owner.object);
     return;
   }
-  const auto& texels = pictures_[*picture].texels;
-  glm::dvec3 sum(0);
-  for (const auto& texel : texels) {
-    for (glm::length_t c = 0; c < 3; ++c) sum[c] += linear_of_srgb(texel[static_cast<std::size_t>(c)] / 255.0);
-  }
-  look.radiance *= sum / static_cast<double>(texels.size());
-  losses_.mention("shines evenly, with the mean of its whole emissive picture", object);
+  tinygltf::TextureInfo info;
+  info.texCoord = material.emissiveTexture.texCoord;
+  info.extensions = material.emissiveTexture.extensions;
+  look.emission_places = places_of(owner, info, false);
 }
 
-void SurfaceReader::read_picture(const tinygltf::Primitive& primitive, const std::string& object, Look& look) {
-  const auto& info =
-      model_.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
-  if (info.index < 0) return;
-  const std::string place = fmt::format("/materials/{}/pbrMetallicRoughness/baseColorTexture", primitive.material);
-  std::string why_not;
-  const auto picture = picture_of(info.index, place, why_not);
-  if (!picture) {
-    const std::string what = fmt::format("is shown without its picture: {}", why_not);
-    // A picture may have an alpha that cuts holes.
-    look.alpha.mode == Alpha::Mode::opaque ? losses_.mention(what, object) : losses_.refuse(what, object);
-    return;
-  }
-  look.picture = PictureUse{*picture};
-  const int sampler = model_.textures[static_cast<std::size_t>(info.index)].sampler;
-  if (sampler < 0) return;
+std::optional<PictureUse> SurfaceReader::picture_use(int texture, const std::string& place, std::string& why_not) {
+  const auto picture = picture_of(texture, place, why_not);
+  if (!picture) return std::nullopt;
+  PictureUse use{*picture};
+  const int sampler = model_.textures[static_cast<std::size_t>(texture)].sampler;
+  if (sampler < 0) return use;
   if (static_cast<std::size_t>(sampler) >= model_.samplers.size()) {
-    throw InputError("/textures/{}/sampler: sampler {} does not exist; there are {}", info.index, sampler,
+    throw InputError("/textures/{}/sampler: sampler {} does not exist; there are {}", texture, sampler,
                      model_.samplers.size());
   }
   const tinygltf::Sampler& how = model_.samplers[static_cast<std::size_t>(sampler)];
-  look.picture->wrap_s = wrap_of(how.wrapS);
-  look.picture->wrap_t = wrap_of(how.wrapT);
-  look.picture->nearest = how.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  use.wrap_s = wrap_of(how.wrapS);
+  use.wrap_t = wrap_of(how.wrapT);
+  use.nearest = how.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  return use;
 }
 
 std::optional<std::uint32_t> SurfaceReader::picture_of(int texture, const std::string& place, std::string& why_not) {
@@ -252,7 +308,10 @@ std::optional<std::uint32_t> SurfaceReader::picture_of(int texture, const std::s
     throw InputError("{}/index: texture {} does not exist; there are {}", place, texture, model_.textures.size());
   const int number = model_.textures[static_cast<std::size_t>(texture)].source;
   if (number < 0 || static_cast<std::size_t>(number) >= model_.images.size()) {
-    why_not = "the file names no image";
+    const auto& extensions = model_.textures[static_cast<std::size_t>(texture)].extensions;
+    why_not = extensions.empty() ? "the file names no image"
+                                 : fmt::format("its only image is that of {}, which is not read (PNG and JPEG are)",
+                                               extensions.begin()->first);
     return std::nullopt;
   }
   const auto [known, is_new] = known_.try_emplace(number);

@@ -28,11 +28,13 @@ struct Look {
   bool two_sided = false;
   std::string material;  ///< its name
   std::optional<PictureUse> picture = {};
+  std::optional<PictureUse> emission = {};  ///< a picture that multiplies its radiance
   Alpha alpha = {};
   /// Of the primitive's vertices; empty: none.
   std::vector<glm::dvec3> normals = {};  ///< where it was modelled
   std::vector<glm::vec4> colors = {};
-  std::vector<glm::dvec2> places = {};
+  std::vector<glm::dvec2> places = {};           ///< in its picture
+  std::vector<glm::dvec2> emission_places = {};  ///< in the picture of its emission
 };
 
 /// What its alpha makes of a whole surface: nothing stops light (`gone`), everything does, or neither.
@@ -58,11 +60,19 @@ class SurfaceReader {
     double least = 1, greatest = 1;
   };
   AlphaRange alpha_range(const Look& look);
-  void read_material(const tinygltf::Primitive& primitive, const std::string& place, const std::string& object,
-                     Look& look);
-  void read_emission(const tinygltf::Material& material, const std::string& place, const std::string& object,
-                     Look& look);
-  void read_picture(const tinygltf::Primitive& primitive, const std::string& object, Look& look);
+  /// Whose surface is read.
+  struct Owner {
+    const tinygltf::Primitive& primitive;
+    const std::string &place, &object;
+    std::size_t vertices;
+  };
+  void read_material(const Owner& owner, Look& look);
+  void read_emission(const Owner& owner, const std::string& place, Look& look);
+  /// What of the material a diffuse surface does not show.
+  void mention_unlike(const Owner& owner, const std::string& place, const Look& look);
+  /// Where the picture lies at each vertex. `decides`: of light, so that what is lost is refused.
+  std::vector<glm::dvec2> places_of(const Owner& owner, const tinygltf::TextureInfo& info, bool decides);
+  std::optional<PictureUse> picture_use(int texture, const std::string& place, std::string& why_not);
   std::optional<std::uint32_t> picture_of(int texture, const std::string& place, std::string& why_not);
 
   const tinygltf::Model& model_;

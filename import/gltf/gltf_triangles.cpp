@@ -52,7 +52,12 @@ SoupEnd append_triangles(Scene& scene, const PrimitiveVertices& vertices, std::v
       if (target == kUnused) {
         if (soup.positions.size() >= kUnused) throw InputError("{}: more than 4,294,967,294 vertices", vertices.place);
         target = static_cast<std::uint32_t>(soup.positions.size());
-        const glm::dvec3 p(vertices.to_world(index) * glm::dvec4(vertices.local[index], 1));
+        const glm::dvec3& local = vertices.local[index];
+        if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) {
+          throw InputError("{}/attributes/POSITION: vertex {} is not finite: ({}, {}, {})", vertices.place, index,
+                           local.x, local.y, local.z);
+        }
+        const glm::dvec3 p(vertices.to_world(index) * glm::dvec4(local, 1));
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
           throw InputError("{}: vertex {} is not finite after the transform of /nodes/{}", vertices.place, index,
                            vertices.placed.number);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "import/gltf/gltf_deform.hpp"
 #include "import/gltf/gltf_nodes.hpp"
 #include "import/gltf/gltf_surface.hpp"
 #include "mesh/triangle_soup.hpp"
@@ -20,13 +21,13 @@ namespace penumbra::scenes {
 /// A primitive's vertices as they were modelled, and what takes each into the world. All must outlive it.
 struct PrimitiveVertices {
   std::span<const glm::dvec3> local;
-  const std::optional<std::vector<glm::dmat4>>& skinned;  ///< of each vertex; nothing: the node's transform is all
+  const std::optional<Skinned>& skinned;  ///< nothing: the node's transform is all
   const Look& look;
   const PlacedNode& placed;
   const std::string& place;  ///< in the file, for messages
 
   [[nodiscard]] const glm::dmat4& to_world(std::uint32_t vertex) const {
-    return skinned ? (*skinned)[vertex] : placed.to_world;
+    return skinned ? skinned->vertices[vertex] : placed.to_world;
   }
 };
 

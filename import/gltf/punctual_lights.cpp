@@ -4,7 +4,8 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
-#include "import/gltf/gltf_load.hpp"
+#include "import/gltf/blender_exporter.hpp"
+#include "import/gltf/gltf_extras.hpp"
 
 #include <tiny_gltf.h>
 
@@ -21,14 +22,9 @@ namespace {
 
 constexpr const char* kExtension = "KHR_lights_punctual";
 constexpr double kBlendersLumensPerWatt = 683;  // its "Standard" lighting mode
-
-/// A number of the extras, of the lamp or of its node.
-std::optional<double> extra(const tinygltf::Value& extras, const char* key, const std::string& place) {
-  if (!extras.IsObject() || !extras.Has(key)) return std::nullopt;
-  const tinygltf::Value& value = extras.Get(key);
-  if (!value.IsNumber()) throw InputError("{}/extras/{}: expected a number", place, key);
-  return value.GetNumberAsDouble();
-}
+/// In place of 0: a shadow that is hard in any picture of a scene that is some units large, as Blender's lamps of
+/// radius 0 give. Blender's own add-on for this program takes the same.
+constexpr double kHardRadius = 1e-4;
 
 double checked(double value, double least, const std::string& place) {
   if (!std::isfinite(value) || value < least)
@@ -36,23 +32,26 @@ double checked(double value, double least, const std::string& place) {
   return value;
 }
 
-Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, const std::string& place) {
-  const auto own_smooth = extra(lamp.extras, "smooth", place);
-  const double smooth = own_smooth.value_or(0);
-  if (smooth != 0 && smooth != 1) throw InputError("{}/extras/smooth: {}; expected 0 or 1", place, smooth);
-  const double inner = lamp.spot.innerConeAngle, outer = lamp.spot.outerConeAngle;
+/// `smooth`: the file says that the cone falls off as Blender's do (1), or does not (0).
+Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, std::optional<double> smooth,
+             const std::string& place) {
+  if (smooth && *smooth != 0 && *smooth != 1) throw InputError("{}/extras/smooth: {}; expected 0 or 1", place, *smooth);
+  const double outer = lamp.spot.outerConeAngle;
+  // Equal angles are a hard edge. An inner one that is larger is what exporters make of rounding, and viewers take it
+  // for the same.
+  const double inner = std::min(lamp.spot.innerConeAngle, outer);
   // Half a turn over four in single precision may be a hair more.
-  if (!(inner >= 0 && inner < outer && outer <= std::numbers::pi / 2 * (1 + 1e-6))) {
-    throw InputError("{}/spot: innerConeAngle {} and outerConeAngle {}; expected 0 <= inner < outer <= pi / 2", place,
-                     inner, outer);
+  if (!(inner >= 0 && outer > 0 && outer <= std::numbers::pi / 2 * (1 + 1e-6))) {
+    throw InputError("{}/spot: innerConeAngle {} and outerConeAngle {}; expected 0 <= inner <= outer <= pi / 2", place,
+                     lamp.spot.innerConeAngle, outer);
   }
-  if (from_blender && !own_smooth) {
+  if (from_blender && !smooth) {
     // The file has (1 − blend) of the outer angle; Blender's lamps fall over `blend` of the cosines, at least 0.001.
     const double full = std::cos(outer), blend = 1 - inner / outer;
     const double edge = std::acos(std::min(full + std::max((1 - full) * blend, 0.001), 1.0));
     return {direction, glm::degrees(edge), std::min(glm::degrees(outer), 90.0), true};
   }
-  return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0), smooth == 1};
+  return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0), smooth.value_or(0) == 1};
 }
 
 }  // namespace
@@ -72,8 +71,8 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
   const std::string place = fmt::format("/extensions/{}/lights/{}", kExtension, number);
   const auto size = [&](const char* key, const std::optional<double>& chosen, double otherwise,
                         std::uint64_t& missing) {
-    if (const auto own = extra(lamp.extras, key, place)) return *own;
-    if (const auto nodes = extra(node.extras, key, node_place)) return *nodes;
+    if (const auto own = number_of_extras(lamp.extras, key, lamp.name, losses_)) return *own;
+    if (const auto nodes = number_of_extras(node.extras, key, node.name, losses_)) return *nodes;
     if (!chosen) ++missing;
     return chosen.value_or(otherwise);
   };
@@ -83,10 +82,7 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
   glm::dvec3 color(1);
   if (lamp.color.size() >= 3) color = {lamp.color[0], lamp.color[1], lamp.color[2]};
   for (glm::length_t i = 0; i < 3; ++i) checked(color[i], 0, place + "/color");
-  const bool from_blender = is_from_blender(model_);
-  const double per_watt = options_.lumens_per_watt.value_or(from_blender ? kBlendersLumensPerWatt : 1.0);
-  if (from_blender && !options_.lumens_per_watt) ++in_lumens_;
-  const double intensity = checked(lamp.intensity, 0, place + "/intensity") / per_watt;
+  const double intensity = checked(lamp.intensity, 0, place + "/intensity") / divisor_of(lamp.type);
 
   AreaLight light;
   if (lamp.type == "directional") {
@@ -106,14 +102,30 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
   Sphere sphere{glm::dvec3(placed.to_world[3]), size("radius", options_.lamp_radius, kLampRadius, without_radius_), {}};
   if (lamp.type == "spot") {
     if (!(glm::length(along) > 0)) throw InputError("{}: its transform leaves the lamp no direction", node_place);
-    sphere.cone = cone_of(lamp, glm::normalize(along), from_blender, place);
+    sphere.cone = cone_of(lamp, glm::normalize(along), is_from_blender(model_),
+                          number_of_extras(lamp.extras, "smooth", lamp.name, losses_), place);
   }
-  if (!(sphere.radius > 0) || !std::isfinite(sphere.radius)) {
-    throw InputError("{}: the lamp's radius is {}; expected a length above 0", node_place, sphere.radius);
+  if (!(sphere.radius >= 0) || !std::isfinite(sphere.radius)) {
+    throw InputError("{}: the lamp's radius is {}; expected a length of 0 or more", node_place, sphere.radius);
+  }
+  if (sphere.radius == 0) {
+    sphere.radius = kHardRadius;
+    ++hard_;
   }
   light.shape = sphere;
   light.radiance = intensity * color / (std::numbers::pi * sphere.radius * sphere.radius);
   return light;
+}
+
+double PunctualLights::divisor_of(const std::string& type) {
+  if (options_.lumens_per_watt) return *options_.lumens_per_watt;
+  if (writes_watts(model_)) {
+    ++in_watts_;
+    return type == "directional" ? 1 : 4 * std::numbers::pi;
+  }
+  if (!is_from_blender(model_)) return 1;
+  ++in_lumens_;
+  return kBlendersLumensPerWatt;
 }
 
 void PunctualLights::add_warnings(std::vector<std::string>& warnings) const {
@@ -122,6 +134,16 @@ void PunctualLights::add_warnings(std::vector<std::string>& warnings) const {
         fmt::format("{} lamps are in lumens, {} to a watt, as Blender's exporter writes them; of one exported with "
                     "Lighting Mode Unitless say --lumens-per-watt 1",
                     in_lumens_, kBlendersLumensPerWatt));
+  }
+  if (in_watts_ > 0) {
+    warnings.push_back(
+        fmt::format("{} lamps are in watts (suns: watts a square metre), as Blender's exporter before version 3.4.36 "
+                    "writes them; --lumens-per-watt 1 takes them as candela and lux",
+                    in_watts_));
+  }
+  if (hard_ > 0) {
+    warnings.push_back(
+        fmt::format("{} lamps of radius 0 are taken as spheres of radius {}: hard shadows", hard_, kHardRadius));
   }
   if (without_radius_ > 0) {
     warnings.push_back(

@@ -82,9 +82,9 @@ void check_shape(const Sphere& sphere, const std::string& where) {
   check_position(direction, where, "the cone's direction");
   if (glm::length(direction) == 0)
     throw InputError("{}: the cone's direction is zero; expected the way it shines", where);
-  if (!(inner >= 0 && inner < outer && outer <= 90)) {
-    throw InputError("{}: the cone reaches from {} to {} degrees; expected 0 <= inner < outer <= 90", where, inner,
-                     outer);
+  if (!(inner >= 0 && inner <= outer && outer > 0 && outer <= 90)) {
+    throw InputError("{}: the cone reaches from {} to {} degrees; expected 0 <= inner <= outer <= 90, outer above 0",
+                     where, inner, outer);
   }
 }
 

@@ -20,6 +20,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
   if (options.sun_angle) job.flags.push_back(fmt::format("--sun-angle={}", *options.sun_angle));
   if (options.lumens_per_watt) job.flags.push_back(fmt::format("--lumens-per-watt={}", *options.lumens_per_watt));
   if (options.time) job.flags.push_back(fmt::format("--time={}", *options.time));
+  for (const std::string& clip : options.clips) job.flags.push_back("--clip=" + clip);
   mesh::HelperAnswer answer = mesh::run_import_helper(job, {});
   try {
     mesh::WireReader from(answer.payload());

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace penumbra::scenes {
 
@@ -16,10 +18,13 @@ struct ReadOptions {
   bool needs_light = true;                 ///< glTF: is a scene without a light an error?
   std::optional<double> lamp_radius = {};  ///< glTF: of point and spot lamps whose file says none; above 0
   std::optional<double> sun_angle = {};    ///< glTF: of sun lamps whose file says none, degrees; 0 ≤ angle < 180
-  /// glTF: by what lamps' intensities are divided; above 0. Nothing: 683 in files of Blender's exporter, else 1.
+  /// glTF: by what lamps' intensities are divided; above 0. Nothing: 683 in files of Blender's exporter (before 3.4.36:
+  /// 4π, of suns 1), else 1.
   std::optional<double> lumens_per_watt = {};
   bool lenient = false;             ///< glTF: leave out what cannot be done and would change shadows, with a warning
   std::optional<double> time = {};  ///< glTF: when, in seconds, its animations are looked at; nothing: at rest
+  /// glTF: the animations that are played, by name or number from 0; empty: all that can be played at once.
+  std::vector<std::string> clips = {};
 };
 
 /// Reads .json (penumbra-scene/1), .gltf or .glb by the file's extension. What comes back is complete: at least one

@@ -110,6 +110,17 @@ TEST(Surface, NormalsAreBetweenThoseOfVerticesOnTheViewersSide) {
   EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, false).normals.empty());
 }
 
+/// Exporters write the normals of facets, too, and round them: such a pixel is lit as if there were none.
+TEST(Surface, NormalsOfFacetsAreTheFacetsOwn) {
+  Surface stage({{1, 1, 0}});
+  stage.scene.looks.normals.assign(3, glm::normalize(glm::vec3(1e-6f, -2e-6f, 1)));
+  EXPECT_EQ(look_at(stage.scene, stage.floats, stage.samples, true).normals[0], glm::vec3(0, 0, 1));
+  stage.scene.looks.normals.assign(3, glm::normalize(glm::vec3(2e-4f, 0, 1)));
+  EXPECT_NE(look_at(stage.scene, stage.floats, stage.samples, true).normals[0], glm::vec3(0, 0, 1));
+  stage.scene.looks.normals.clear();
+  EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, true).normals.empty()) << "the file has none";
+}
+
 /// A small distant light of area A and radiance 1 gives A cos cos / (π d²): the cosine is the shading normal's, by V
 /// and by form factors alike, and where the light is behind that normal there is none.
 TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {

@@ -261,8 +261,9 @@ TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
 TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   const auto expect = [&](Gltf gltf, const std::string& what) { EXPECT_THAT(refusal(gltf), HasSubstr(what)); };
   Gltf gltf;
-  gltf.animate(0, "translation", {1, 1}, {0, 0, 0, 8, 4, 0});
+  gltf.animate(0, "translation", {2, 1}, {0, 0, 0, 8, 4, 0});
   expect(gltf, "times must ascend");
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("times must ascend"))) << "at rest nothing of it is seen";
   gltf = {};
   gltf.animate(0, "translation", {1, 2}, {0, 0, 0});
   expect(gltf, "3 numbers for 2 keys; expected 6");
@@ -282,8 +283,6 @@ TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   gltf.animate(0, "scale", {1, 2}, {1, 1, 1, 1, 1, 1});
   gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   expect(gltf, "node 0 has a matrix");
-  gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
-  expect(gltf, "no joint moves vertex 2");
   gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
   gltf.at("/skins/0/joints") = {3, 44};
   expect(gltf, "/skins/0/joints/1: node 44 is not in the scene");
@@ -291,13 +290,85 @@ TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   expect(gltf, "joint 1 of 1");
 }
 
-TEST_F(GltfAnimation, TheLastOfTwoAnimationsIsShownAndSaid) {
+/// Two keys at one time are a jump: the later one holds from then on.
+TEST_F(GltfAnimation, JumpsAtTwoKeysOfOneTime) {
+  Gltf gltf;
+  gltf.animate(0, "translation", {0, 1, 1, 2}, {0, 0, 0, 1, 0, 0, 5, 0, 0, 7, 0, 0});
+  EXPECT_EQ(corner(gltf, 0.5), glm::dvec3(1.5, 0, 0));
+  EXPECT_EQ(corner(gltf, 1), glm::dvec3(6, 0, 0));
+  EXPECT_EQ(corner(gltf, 1.5), glm::dvec3(7, 0, 0));
+  Gltf first;
+  first.animate(0, "translation", {1, 1}, {0, 0, 0, 8, 4, 0});
+  EXPECT_EQ(corner(first, 0.5), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(corner(first, 1), glm::dvec3(9, 4, 0));
+}
+
+/// Exporters before Blender 3.2 wrote vertices without weights: they stay with their node.
+TEST_F(GltfAnimation, VerticesWithoutWeightsMoveWithTheirNode) {
+  Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
+  gltf.at("/nodes/0")["translation"] = {0, 0, 9};
+  const Scene scene = read(gltf, 0.5);
+  EXPECT_EQ(scene.soup.positions[2], glm::dvec3(0, 1, 9));
+  EXPECT_THAT(scene.warnings, Contains("'Body' has vertices that no joint moves; they move with their node"));
+}
+
+/// Clips of one object move the same: the first is played, or the one that is asked for. What moves something else is
+/// an object's own and is played, too.
+TEST_F(GltfAnimation, OneOfSeveralClips) {
   Gltf gltf;
   gltf.animate(0, "translation", {0, 1}, {1, 0, 0, 1, 0, 0});
-  gltf.animate(0, "translation", {0, 1}, {2, 0, 0, 2, 0, 0});
-  const Scene scene = read(gltf, 0.5);
-  EXPECT_EQ(scene.soup.positions[1], glm::dvec3(3, 0, 0));
-  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Body'")));
+  gltf.animate(0, "translation", {0, 3}, {2, 0, 0, 2, 0, 0});
+  gltf.animate(1, "translation", {0, 2}, {0, 7, 0, 0, 7, 0});
+  gltf.at("/animations/0")["name"] = "Walk";
+  gltf.at("/animations/1")["name"] = "Run";
+  const auto lamp = [](const Scene& scene) { return std::get<Rectangle>(scene.lights[0].shape).center.y; };
+  const Scene first = read(gltf, 0.5);
+  EXPECT_EQ(first.soup.positions[1], glm::dvec3(2, 0, 0));
+  EXPECT_EQ(lamp(first), 7);
+  EXPECT_EQ(first.motion->last, 2);
+  EXPECT_THAT(first.warnings, ::testing::ElementsAre("the clips 1 'Run' move what 0 'Walk', 2 moves, too, and are not "
+                                                     "played (--clip chooses)"));
+  const auto path = write("clips.glb", gltf.glb());
+  ReadOptions options;
+  options.time = 0.5;
+  for (const char* clip : {"Run", "1"}) {
+    options.clips = {clip};
+    const Scene scene = read_gltf(path, options);
+    EXPECT_EQ(scene.soup.positions[1], glm::dvec3(3, 0, 0)) << clip;
+    EXPECT_EQ(lamp(scene), 5) << "no other is played";
+    EXPECT_EQ(scene.motion->last, 3);
+    EXPECT_THAT(scene.warnings, IsEmpty());
+  }
+  options.clips = {"Jump"};
+  EXPECT_THAT(test::input_error([&] { read_gltf(path, options); }),
+              HasSubstr("no animation clip \"Jump\"; there are 0 'Walk', 1 'Run', 2"));
+  ReadOptions looked_at;
+  looked_at.needs_light = false;
+  EXPECT_THAT(read_gltf(path, looked_at).warnings, Contains(HasSubstr("clips: 0 'Walk', 1 'Run', 2")));
+}
+
+/// glTF 2.0, 3.11: a channel without a node is ignored. KHR_animation_pointer may name a node's own transform.
+TEST_F(GltfAnimation, ChannelsWithoutANode) {
+  const auto pointing_to = [](const std::string& pointer) {
+    Gltf gltf;
+    gltf.animate(0, "translation", {0, 1}, {4, 0, 0, 4, 0, 0});
+    gltf.at("/animations/0/channels/0/target") = {{"path", "pointer"},
+                                                  {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+    gltf.document["extensionsUsed"].push_back("KHR_animation_pointer");
+    return gltf;
+  };
+  Gltf moved = pointing_to("/nodes/0/translation");
+  EXPECT_EQ(corner(moved, 0.5), glm::dvec3(5, 0, 0));
+  Gltf other = pointing_to("/materials/1/emissiveFactor");
+  EXPECT_THAT(refusal(other), HasSubstr("'/materials/1/emissiveFactor' is moved by KHR_animation_pointer"));
+  EXPECT_THAT(read(other).warnings, Contains(HasSubstr("'/materials/1/emissiveFactor'"))) << "a still picture is drawn";
+  Gltf without;
+  without.animate(0, "translation", {0, 1}, {4, 0, 0, 4, 0, 0});
+  without.at("/animations/0/channels/0/target").erase("node");
+  const Scene scene = read(without, 0.5);
+  EXPECT_EQ(scene.soup.positions[1], glm::dvec3(1, 0, 0));
+  EXPECT_FALSE(scene.motion);
+  EXPECT_THAT(scene.warnings, Contains("1 animation channels name no node and are ignored"));
 }
 
 }  // namespace

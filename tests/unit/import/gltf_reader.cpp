@@ -232,10 +232,9 @@ TEST_F(GltfReader, RefusesWhatDoesNotFitWithItsPlace) {
   expect([](Gltf& g) { g.at("/cameras/0/perspective/yfov") = 4; }, "/cameras/0/perspective/yfov");
   expect([](Gltf& g) { g.at("/materials/1/emissiveFactor") = {-1, 0, 0}; }, "/materials/1/emissiveFactor");
   expect([](Gltf& g) { g.at("/asset/version") = "1.0"; }, "glTF 1.0 is not supported");
-  expect([](Gltf& g) { g.document["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-         "export without compression");
+  expect([](Gltf& g) { g.document["extensionsRequired"] = {"EXT_meshopt_compression"}; }, "export without compression");
   expect([](Gltf& g) { g.data.replace(4, 4, bytes_of(std::numeric_limits<float>::infinity())); },
-         "/accessors/0: vertex 0 is not finite: (0, inf, 0)");
+         "/meshes/0/primitives/0/attributes/POSITION: vertex 0 is not finite: (0, inf, 0)");
   expect(
       [](Gltf& g) {
         g.at("/nodes/0")["scale"] = {1e308, 1e308, 1e308}, g.at("/nodes/0")["translation"] = {1e308, 0, 0};
@@ -267,14 +266,20 @@ TEST_F(GltfReader, CountsThatOverflowAreRefused) {
 
 TEST_F(GltfReader, ExtensionsThatItRequiresAreUnderstoodOrRefused) {
   Gltf gltf;
-  gltf.document["extensionsUsed"] = {"KHR_materials_emissive_strength", "EXT_mesh_gpu_instancing", "EXT_other"};
-  gltf.document["extensionsRequired"] = {"KHR_materials_emissive_strength", "EXT_mesh_gpu_instancing"};
-  EXPECT_THAT(refusal(gltf), HasSubstr("'EXT_mesh_gpu_instancing' is an extension that the file requires"));
+  gltf.document["extensionsUsed"] = {"KHR_materials_emissive_strength", "EXT_unheard_of", "KHR_materials_variants",
+                                     "EXT_other", "EXT_one_more"};
+  gltf.document["extensionsRequired"] = {"KHR_materials_emissive_strength", "EXT_unheard_of", "KHR_materials_variants"};
+  EXPECT_THAT(refusal(gltf), HasSubstr("'EXT_unheard_of' is an extension that the file requires"));
   ReadOptions lenient;
   lenient.lenient = true;
   const Scene scene = read_gltf(write("scene.glb", gltf.glb()), lenient);
   EXPECT_THAT(scene.warnings,
-              ::testing::ElementsAre(HasSubstr("'EXT_mesh_gpu_instancing'"), "extension EXT_other ignored"));
+              ::testing::ElementsAre(HasSubstr("'EXT_unheard_of'"), "extensions ignored: EXT_other, EXT_one_more"));
+  gltf.document["extensionsRequired"] = {"KHR_materials_variants", "KHR_materials_unlit", "KHR_audio"};
+  EXPECT_THAT(read(gltf).lights, ::testing::SizeIs(1)) << "what changes no light may be required";
+  gltf.document["extensionsUsed"] = {"EXT_lights_image_based"};
+  gltf.document.erase("extensionsRequired");
+  EXPECT_THAT(refusal(gltf), HasSubstr("'EXT_lights_image_based' is an extension that lights the scene"));
 }
 
 TEST_F(GltfReader, AMemoryBombCostsAMessage) {

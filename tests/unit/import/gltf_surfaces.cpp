@@ -16,6 +16,7 @@
 namespace penumbra::scenes {
 namespace {
 
+using nlohmann::json;
 using test::Gltf;
 using ::testing::AllOf;
 using ::testing::Contains;
@@ -207,7 +208,7 @@ TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   Gltf glossy;
   glossy.at("/materials/0")["alphaMode"] = "MASK";
   glossy.at("/materials/0")["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {{"diffuseFactor", {1, 1, 1, 0}}};
-  EXPECT_THAT(refusal(glossy), HasSubstr("KHR_materials_pbrSpecularGlossiness"));
+  EXPECT_THAT(read(glossy).warnings, Contains("'Body' is wholly transparent, and left out")) << "its alpha is there";
   Gltf pane;
   pane.at("/materials/0")["alphaMode"] = "BLEND";
   pane.at("/materials/0/pbrMetallicRoughness")["baseColorFactor"] = {1, 1, 1, 0.5};
@@ -226,16 +227,42 @@ TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   EXPECT_THAT(read(pane).warnings, Contains(HasSubstr("'Body' is wholly transparent")));
 }
 
-/// A light of radiance (20, 10, 0) under a picture of dark red and white: the mean, in linear light.
-TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPicture) {
-  Gltf gltf = textured();
-  gltf.at("/materials/1")["emissiveTexture"] = {{"index", 0}};
-  const Scene scene = read(gltf);
-  const double red = (linear_of_srgb(128 / 255.0) + 1) / 2;
-  EXPECT_LT(glm::distance(scene.lights[0].radiance, glm::dvec3(20 * red, 10 * 0.5, 0)), 1e-12);
-  EXPECT_THAT(scene.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("mean"))));
-  gltf.at("/images/0")["bufferView"] = 0;
-  EXPECT_THAT(refusal(gltf), HasSubstr("'Lamp' would shine without its emissive picture"));
+/// A light of radiance (20, 10, 0) under a picture of dark red and white: the mean over what its mesh covers, in linear
+/// light. The lamp's corners are at (−1, 1), (1, 1), (−1, −1) and (1, −1).
+TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
+  const double dark = linear_of_srgb(128 / 255.0);
+  const auto lit = [](const std::vector<float>& places, const json& transform = {}) {
+    Gltf gltf = textured();
+    gltf.at("/materials/1")["emissiveTexture"] = {{"index", 0}};
+    if (!transform.is_null()) {
+      gltf.document["extensionsUsed"].push_back("KHR_texture_transform");
+      gltf.at("/materials/1/emissiveTexture")["extensions"] = {{"KHR_texture_transform", transform}};
+    }
+    gltf.at("/meshes/1/primitives/0/attributes")["TEXCOORD_0"] = gltf.add_floats("VEC2", places);
+    return gltf;
+  };
+  const auto radiance = [&](Gltf gltf) { return read(gltf).lights.at(0).radiance; };
+  const std::vector<float> whole = {0, 1, 1, 1, 0, 0, 1, 0};
+  Gltf all = lit(whole);
+  EXPECT_LT(glm::distance(radiance(all), glm::dvec3(20 * (dark + 1) / 2, 10 * 0.5, 0)), 1e-12);
+  EXPECT_THAT(read(all).warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("mean"))));
+  // A quarter of the width, so that the right texel is a quarter of what is covered.
+  EXPECT_LT(glm::distance(radiance(lit({0, 1, 0.6666667f, 1, 0, 0, 0.6666667f, 0})),
+                          glm::dvec3(20 * (0.75 * dark + 0.25), 10 * 0.25, 0)),
+            1e-6);
+  // Its right half alone: the places say so, or KHR_texture_transform does.
+  EXPECT_EQ(radiance(lit({0.5f, 1, 1, 1, 0.5f, 0, 1, 0})), glm::dvec3(20, 10, 0));
+  EXPECT_EQ(radiance(lit(whole, {{"scale", {0.5, 1}}, {"offset", {0.5, 0}}})), glm::dvec3(20, 10, 0));
+  // One place for all corners, as of a palette.
+  EXPECT_EQ(radiance(lit({0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f})), glm::dvec3(20 * dark, 0, 0));
+  // Where it is black, there is no light.
+  Gltf black = lit({0, 1, 0.5f, 1, 0, 0, 0.5f, 0});
+  black.at("/materials/1/emissiveFactor") = {0, 1, 1};
+  EXPECT_THAT(refusal(black), HasSubstr("'Lamp' (its emissive picture is black where it lies on it)"));
+
+  Gltf unreadable = lit(whole);
+  unreadable.at("/images/0")["bufferView"] = 0;
+  EXPECT_THAT(refusal(unreadable), HasSubstr("'Lamp' would shine without its emissive picture"));
 }
 
 /// Custom properties of an object, or of its mesh, say what glTF has no words for.
@@ -253,8 +280,10 @@ TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   EXPECT_EQ(bodiless.lights.size(), 1u);
   EXPECT_EQ(bodiless.soup.triangles.size(), 1u);
   EXPECT_EQ(bodiless.soup.positions.size(), 3u);
-  gltf.at("/nodes/1/extras/body") = "no";
-  EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("\"Lamp\""), HasSubstr("extras/body")));
+  gltf.at("/nodes/1/extras/body") = "human";  // another tool's
+  const Scene foreign = read(gltf);
+  EXPECT_EQ(foreign.objects.size(), 2u);
+  EXPECT_THAT(foreign.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("\"body\" of another tool"))));
 }
 
 /// What glTF has no word for: extras of cameras and spot lamps.

@@ -1,0 +1,99 @@
+#include "import/gltf/gltf_extensions.hpp"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace penumbra::scenes {
+namespace {
+
+constexpr std::array<std::string_view, 12> kUnderstood{
+    "EXT_mesh_gpu_instancing",
+    "KHR_animation_pointer",  // what it moves and is not done is said by its target
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_transmission",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
+    "KHR_texture_transform",
+    "KHR_texture_basisu",  // pictures that cannot be read are said by their objects
+};
+
+/// What these say changes no diffuse surface and no light. The core's materials are what KHR_materials_variants begins
+/// with, and the finest level of MSFT_lod is the core's.
+constexpr std::array<std::string_view, 36> kWithoutEffect{
+    "AGI_articulations",
+    "AGI_stk_metadata",
+    "CESIUM_primitive_outline",
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "EXT_texture_avif",
+    "EXT_texture_webp",
+    "FB_ngon_encoding",
+    "KHR_accessor_float64",
+    "KHR_audio",
+    "KHR_audio_emitter",
+    "KHR_implicit_shapes",
+    "KHR_interactivity",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_dispersion",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_physics_rigid_bodies",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "MSFT_lod",
+    "MSFT_packing_normalRoughnessMetallic",
+    "MSFT_packing_occlusionRoughnessMetallic",
+    "MSFT_texture_dds",
+    "VRM",
+    "VRMC_materials_mtoon",
+    "VRMC_vrm",
+};
+
+/// Light from all around, which is no light of this scene's.
+constexpr std::array<std::string_view, 3> kLight{"EXT_lights_ies", "EXT_lights_image_based", "KHR_environment_map"};
+
+/// What ignoring an extension does.
+enum class Effect { none, light, unknown };
+
+Effect effect_of(const std::string& extension) {
+  const auto is_in = [&](const auto& list) { return std::ranges::find(list, extension) != list.end(); };
+  if (is_in(kUnderstood) || is_in(kWithoutEffect)) return Effect::none;
+  return is_in(kLight) ? Effect::light : Effect::unknown;
+}
+
+}  // namespace
+
+void judge_extensions(const tinygltf::Model& model, bool as_mesh, Losses& losses, std::vector<std::string>& warnings) {
+  for (const std::string& extension : model.extensionsRequired) {
+    if (effect_of(extension) == Effect::unknown)
+      losses.refuse("is an extension that the file requires (extensionsRequired) and that is not supported", extension);
+  }
+  std::string ignored;
+  for (const std::string& extension : model.extensionsUsed) {
+    const Effect effect = effect_of(extension);
+    const bool required = std::ranges::find(model.extensionsRequired, extension) != model.extensionsRequired.end();
+    if (effect == Effect::light && !as_mesh)
+      losses.refuse("is an extension that lights the scene from all around, which is not supported", extension);
+    else if (effect == Effect::unknown && (!required || as_mesh))
+      ignored += (ignored.empty() ? "" : ", ") + extension;
+  }
+  if (!ignored.empty()) warnings.push_back("extensions ignored: " + ignored);
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,59 @@
+// EXT_mesh_gpu_instancing: a node's mesh once for each element of its TRANSLATION, ROTATION and SCALE accessors, in
+// place of once at the node.
+
+#include "import/gltf/gltf_instances.hpp"
+
+#include "base/error.hpp"
+#include "import/gltf/gltf_accessor.hpp"
+#include "import/gltf/gltf_nodes.hpp"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <span>
+#include <string>
+
+namespace penumbra::scenes {
+namespace {
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+/// What one attribute says of each instance; empty: the extension does not have it.
+struct Attribute {
+  Numbers numbers;
+  [[nodiscard]] std::vector<double> of(std::size_t instance) const {
+    if (numbers.values.empty()) return {};
+    const auto all = std::span(numbers.values).subspan(instance * numbers.components, numbers.components);
+    return {all.begin(), all.end()};
+  }
+};
+
+}  // namespace
+
+std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Node& node,
+                                                    int number) {
+  const auto extension = node.extensions.find(kInstancing);
+  if (extension == node.extensions.end()) return std::nullopt;
+  const std::string place = fmt::format("/nodes/{}/extensions/{}", number, kInstancing);
+  std::optional<std::size_t> count;
+  const auto read = [&](const char* name, int type) {
+    Attribute attribute;
+    if (!extension->second.Has("attributes") || !extension->second.Get("attributes").Has(name)) return attribute;
+    const tinygltf::Value& accessor = extension->second.Get("attributes").Get(name);
+    attribute.numbers = read_numbers(model, accessor.IsInt() ? accessor.GetNumberAsInt() : -1, {type}, name);
+    if (count && *count != attribute.numbers.count()) {
+      throw InputError("{}/attributes/{}: {} instances; another attribute has {}", place, name,
+                       attribute.numbers.count(), *count);
+    }
+    count = attribute.numbers.count();
+    return attribute;
+  };
+  const Attribute translation = read("TRANSLATION", TINYGLTF_TYPE_VEC3),
+                  rotation = read("ROTATION", TINYGLTF_TYPE_VEC4), scale = read("SCALE", TINYGLTF_TYPE_VEC3);
+  std::vector<glm::dmat4> instances;
+  for (std::size_t i = 0; i < count.value_or(0); ++i)
+    instances.push_back(transform_of({translation.of(i), rotation.of(i), scale.of(i)}, place));
+  return instances;
+}
+
+}  // namespace penumbra::scenes

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace tinygltf {
+class Model;
+class Node;
+}  // namespace tinygltf
+
+namespace penumbra::scenes {
+
+/// EXT_mesh_gpu_instancing: from each instance of the node's mesh to the node. Nothing for a node without the
+/// extension; an empty list if it has it and no attributes, which is no instance at all. Throws InputError, with the
+/// node's place, for lists that are not of one length or type.
+std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model, const tinygltf::Node& node,
+                                                    int number);
+
+}  // namespace penumbra::scenes

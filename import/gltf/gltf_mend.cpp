@@ -1,0 +1,214 @@
+#include "import/gltf/gltf_mend.hpp"
+
+#include "base/error.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace penumbra::scenes {
+namespace {
+
+using nlohmann::json;
+
+/// The array of this name; nothing if there is none.
+json* array_of(json& owner, const char* name) {
+  if (!owner.is_object()) return nullptr;
+  const auto found = owner.find(name);
+  return found != owner.end() && found->is_array() ? &*found : nullptr;
+}
+
+json* object_of(json& owner, const char* name) {
+  if (!owner.is_object()) return nullptr;
+  const auto found = owner.find(name);
+  return found != owner.end() && found->is_object() ? &*found : nullptr;
+}
+
+struct NodePath {
+  std::uint64_t node = 0;
+  std::string path;
+};
+
+/// "/nodes/N/translation" and the like.
+std::optional<NodePath> node_path_of(std::string_view pointer) {
+  constexpr std::string_view kNodes = "/nodes/";
+  if (!pointer.starts_with(kNodes)) return std::nullopt;
+  pointer.remove_prefix(kNodes.size());
+  const std::size_t slash = pointer.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  NodePath found;
+  const auto [end, error] = std::from_chars(pointer.data(), pointer.data() + slash, found.node);
+  if (error != std::errc() || end != pointer.data() + slash) return std::nullopt;
+  found.path = pointer.substr(slash + 1);
+  constexpr std::array kPaths = {"translation", "rotation", "scale", "weights"};
+  if (std::ranges::find(kPaths, found.path) == kPaths.end()) return std::nullopt;
+  return found;
+}
+
+/// Where KHR_animation_pointer leads; nothing if the target has none.
+std::optional<std::string> pointer_of(json& target) {
+  json* const extensions = object_of(target, "extensions");
+  json* const extension = extensions == nullptr ? nullptr : object_of(*extensions, "KHR_animation_pointer");
+  if (extension == nullptr || !extension->contains("pointer") || !(*extension)["pointer"].is_string())
+    return std::nullopt;
+  return (*extension)["pointer"].get<std::string>();
+}
+
+/// Makes the target one of glTF 2.0's own. False: the channel is to go.
+bool mend_target(json& target, TakenOut& taken_out, bool& changed) {
+  const bool by_pointer = target.contains("path") && target["path"] == "pointer";
+  if (!by_pointer) {
+    if (target.contains("node")) return true;
+    ++taken_out.channels_without_node;
+    return false;
+  }
+  const std::string pointer = pointer_of(target).value_or("");
+  if (const auto found = node_path_of(pointer)) {
+    target["node"] = found->node;
+    target["path"] = found->path;
+    return changed = true;
+  }
+  if (std::ranges::find(taken_out.pointers, pointer) == taken_out.pointers.end()) taken_out.pointers.push_back(pointer);
+  return false;
+}
+
+bool mend_animations(json& document, TakenOut& taken_out) {
+  json* const animations = array_of(document, "animations");
+  if (animations == nullptr) return false;
+  bool changed = false;
+  for (json& animation : *animations) {
+    json* const channels = array_of(animation, "channels");
+    if (channels == nullptr) continue;
+    json kept = json::array();
+    for (json& channel : *channels) {
+      json* const target = object_of(channel, "target");
+      if (target == nullptr || mend_target(*target, taken_out, changed)) kept.push_back(std::move(channel));
+    }
+    changed |= kept.size() != channels->size();
+    *channels = std::move(kept);
+  }
+  return changed;
+}
+
+/// A data URI whose content is base64, in two parts.
+struct DataUri {
+  std::string_view media_type, content;
+};
+
+std::optional<DataUri> data_uri_of(std::string_view uri) {
+  constexpr std::string_view kScheme = "data:", kEncoding = ";base64";
+  if (!uri.starts_with(kScheme)) return std::nullopt;
+  const std::size_t comma = uri.find(',');
+  std::string_view head = uri.substr(0, comma);
+  if (comma == std::string_view::npos || !head.ends_with(kEncoding)) return std::nullopt;
+  head.remove_prefix(kScheme.size());
+  head.remove_suffix(kEncoding.size());
+  return DataUri{head, uri.substr(comma + 1)};
+}
+
+std::uint64_t decoded_size(std::string_view base64) {
+  while (base64.ends_with('=')) base64.remove_suffix(1);
+  return base64.size() / 4 * 3 + base64.size() % 4 * 3 / 4;
+}
+
+/// Gives the `uri` of a buffer or image a media type that tinygltf knows. Returns how many bytes it holds.
+std::optional<std::uint64_t> mend_uri(json& owner, const std::string& place, bool& changed) {
+  if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return std::nullopt;
+  const auto& uri = owner["uri"].get_ref<const std::string&>();
+  if (!uri.starts_with("data:")) return std::nullopt;
+  const auto data = data_uri_of(uri);
+  if (!data) throw InputError("{}/uri: a data URI that is not in base64, which is not supported", place);
+  const std::uint64_t size = decoded_size(data->content);
+  if (data->media_type != "application/octet-stream") {
+    owner["uri"] = fmt::format("data:application/octet-stream;base64,{}", data->content);
+    changed = true;
+  }
+  return size;
+}
+
+bool mend_uris(json& document, const std::string& file) {
+  bool changed = false;
+  if (json* const images = array_of(document, "images")) {
+    for (std::size_t i = 0; i < images->size(); ++i)
+      mend_uri((*images)[i], fmt::format("{}: /images/{}", file, i), changed);
+  }
+  json* const buffers = array_of(document, "buffers");
+  for (std::size_t i = 0; buffers != nullptr && i < buffers->size(); ++i) {
+    json& buffer = (*buffers)[i];
+    const std::string place = fmt::format("{}: /buffers/{}", file, i);
+    const auto size = mend_uri(buffer, place, changed);
+    if (!size || !buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned()) continue;
+    const auto wanted = buffer["byteLength"].get<std::uint64_t>();
+    if (*size < wanted)
+      throw InputError("{}/uri: {} bytes; byteLength says {}. The file is damaged", place, *size, wanted);
+    changed |= *size != wanted;
+    buffer["byteLength"] = *size;
+  }
+  return changed;
+}
+
+/// Has the accessor data of its own?
+bool has_data(json& document, const json& accessor) {
+  const json* const accessors = array_of(document, "accessors");
+  if (accessors == nullptr || !accessor.is_number_unsigned() || accessor.get<std::uint64_t>() >= accessors->size())
+    return true;  // it is refused elsewhere
+  const json& found = (*accessors)[accessor.get<std::size_t>()];
+  return found.contains("bufferView") || found.contains("sparse");
+}
+
+bool has_uncompressed_copy(json& document, json& primitive) {
+  if (primitive.contains("indices") && !has_data(document, primitive["indices"])) return false;
+  json* const attributes = object_of(primitive, "attributes");
+  if (attributes == nullptr) return true;
+  return std::ranges::all_of(*attributes, [&](const json& accessor) { return has_data(document, accessor); });
+}
+
+bool mend_draco(json& document, const std::string& file, bool lenient, TakenOut& taken_out) {
+  constexpr const char* kDraco = "KHR_draco_mesh_compression";
+  json* const meshes = array_of(document, "meshes");
+  bool changed = false;
+  for (std::size_t m = 0; meshes != nullptr && m < meshes->size(); ++m) {
+    json* const primitives = array_of((*meshes)[m], "primitives");
+    if (primitives == nullptr) continue;
+    json kept = json::array();
+    for (std::size_t p = 0; p < primitives->size(); ++p) {
+      json& primitive = (*primitives)[p];
+      json* const extensions = object_of(primitive, "extensions");
+      const bool compressed = extensions != nullptr && extensions->contains(kDraco);
+      if (compressed && !has_uncompressed_copy(document, primitive)) {
+        const std::string place = fmt::format("/meshes/{}/primitives/{}", m, p);
+        if (!lenient) {
+          throw InputError(
+              "{}: {}: its vertices are compressed with {}, which is not supported; export without compression", file,
+              place, kDraco);
+        }
+        taken_out.compressed.push_back(place);
+        changed = true;
+        continue;
+      }
+      if (compressed) {
+        extensions->erase(kDraco);
+        changed = true;
+      }
+      kept.push_back(std::move(primitive));
+    }
+    *primitives = std::move(kept);
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool mend_gltf(json& document, const std::string& file, bool lenient, TakenOut& taken_out) {
+  bool changed = mend_animations(document, taken_out);
+  changed |= mend_uris(document, file);
+  changed |= mend_draco(document, file, lenient, taken_out);
+  return changed;
+}
+
+}  // namespace penumbra::scenes

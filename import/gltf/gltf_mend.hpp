@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace penumbra::scenes {
+
+/// What a file holds that was taken out of its document before it was parsed. The scene's warnings and refusals come
+/// of it.
+struct TakenOut {
+  /// Targets of KHR_animation_pointer that are no node's translation, rotation, scale or weights (JSON pointers), each
+  /// once.
+  std::vector<std::string> pointers;
+  std::size_t channels_without_node = 0;  ///< animation channels that glTF 2.0 (3.11) says to ignore
+  std::vector<std::string> compressed;    ///< primitives that exist in compressed form alone; only if lenient
+};
+
+/// Changes what glTF 2.0 or three.js allows and tinygltf refuses into what means the same:
+/// - animation channels without a node go; those that point to a node's transform (KHR_animation_pointer) name it;
+/// - data URIs get a media type that tinygltf knows, and buffers the length of their data URI, which may be longer than
+///   `byteLength`;
+/// - primitives compressed with Draco that have an uncompressed copy are that; those without are refused (InputError by
+///   the primitive's place), or taken out if `lenient`.
+/// Returns whether the document changed. `file` is its name, for messages.
+bool mend_gltf(nlohmann::json& document, const std::string& file, bool lenient, TakenOut& taken_out);
+
+}  // namespace penumbra::scenes

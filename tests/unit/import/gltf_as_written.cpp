@@ -1,0 +1,230 @@
+// glTF as exporters write it: what is not strictly valid, or not in the core, and is read all the same.
+#include "tests/unit/import/gltf_reader.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace penumbra::scenes {
+namespace {
+
+using nlohmann::json;
+using test::bytes_of;
+using test::Gltf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      group = group << 8 | (at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0);
+    for (std::size_t i = 0; i < 4; ++i) text += at + i <= bytes.size() ? kDigits[group >> (18 - 6 * i) & 63] : '=';
+  }
+  return text;
+}
+
+class GltfAsWritten : public GltfReader {
+ protected:
+  Scene read_text(Gltf& gltf) const { return read_gltf(write("scene.gltf", gltf.document.dump())); }
+  std::string refusal_of_text(Gltf& gltf) const {
+    const auto path = write("scene.gltf", gltf.document.dump());
+    return test::input_error([&] { read_gltf(path); });
+  }
+};
+
+/// The resource's length must be at least byteLength.
+TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
+  Gltf gltf;
+  const std::size_t size = gltf.data.size();
+  write("long.bin", gltf.data + "and more");
+  gltf.at("/buffers/0") = {{"byteLength", size}, {"uri", "long.bin"}};
+  EXPECT_EQ(read_text(gltf).soup.triangles.size(), 3u);
+  for (const char* type : {"application/octet-stream", "application/gltf-buffer", "", "application/x;charset=utf-8"}) {
+    gltf.at("/buffers/0/uri") = fmt::format("data:{};base64,{}", type, base64(gltf.data + "and more"));
+    EXPECT_EQ(read_text(gltf).soup.triangles.size(), 3u) << type;
+  }
+  write("short.bin", gltf.data.substr(0, size - 1));
+  gltf.at("/buffers/0/uri") = "short.bin";
+  EXPECT_THAT(refusal_of_text(gltf), HasSubstr("short.bin"));
+}
+
+TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
+  Gltf gltf;
+  const std::string secret(64, 'Q');
+  gltf.at("/buffers/0") = {{"byteLength", gltf.data.size()}, {"uri", "data:application/octet-stream;base64," + secret}};
+  EXPECT_THAT(refusal_of_text(gltf), Not(HasSubstr("QQQQQQQQ")));
+  EXPECT_THAT(refusal_of_text(gltf), HasSubstr("/buffers/0/uri: 48 bytes; byteLength says"));
+  gltf.at("/buffers/0/uri") = "data:text/plain," + secret;
+  EXPECT_THAT(refusal_of_text(gltf), Not(HasSubstr("QQQQQQQQ")));
+  // A picture of a kind that is not read is only one that cannot be shown.
+  Gltf painted;
+  painted.document["images"] = {{{"uri", "data:image/webp;base64," + secret}}};
+  painted.document["textures"] = {{{"source", 0}}};
+  painted.at("/materials/0/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
+  const Scene scene = read(painted);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("is shown without its picture")));
+  EXPECT_THAT(scene.warnings, Not(Contains(HasSubstr("QQQQQQQQ"))));
+}
+
+/// Chunks that are not padded, that are padded without being counted, that are empty, or of a kind that nobody knows.
+TEST_F(GltfAsWritten, ChunksOfGlbs) {
+  Gltf gltf;
+  gltf.data += "x";  // no multiple of four
+  const std::size_t views = gltf.document["bufferViews"].size();
+  gltf.at("/buffers/0")["byteLength"] = gltf.data.size();
+  const std::string text = gltf.document.dump();
+  const auto chunk = [](const std::string& type, const std::string& content) {
+    return bytes_of(static_cast<std::uint32_t>(content.size())) + type + content;
+  };
+  const auto glb = [](const std::string& chunks) {
+    return "glTF" + bytes_of(std::uint32_t{2}, static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
+  };
+  const std::string binary("BIN\0", 4), padding(3, '\0');
+  const auto triangles = [&](const std::string& bytes) {
+    return read_gltf(write("scene.glb", bytes)).soup.triangles.size();
+  };
+  for (std::size_t spaces = 0; spaces < 4; ++spaces) {
+    const std::string json_chunk = chunk("JSON", text + std::string(spaces, ' '));
+    EXPECT_EQ(triangles(glb(json_chunk + chunk(binary, gltf.data))), 3u) << spaces;
+    EXPECT_EQ(triangles(glb(json_chunk + chunk(binary, gltf.data) + padding)), 3u) << spaces;
+    EXPECT_EQ(triangles(glb(json_chunk + chunk(binary, gltf.data + padding) + chunk("ABCD", "1234"))), 3u) << spaces;
+  }
+  std::string uncounted = chunk("JSON", text);
+  uncounted.resize((uncounted.size() + 3) / 4 * 4, ' ');
+  EXPECT_EQ(triangles(glb(uncounted + chunk(binary, gltf.data))), 3u);
+  write("own.bin", gltf.data);
+  gltf.at("/buffers/0")["uri"] = "own.bin";
+  EXPECT_EQ(triangles(glb(chunk("JSON", gltf.document.dump()) + chunk(binary, ""))), 3u) << views;
+  EXPECT_EQ(triangles(glb(chunk("JSON", gltf.document.dump()) + chunk("ABCD", "1234"))), 3u);
+  const auto path = write("scene.glb", glb(chunk("BLOB", text)));
+  EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("first chunk is not its JSON"));
+}
+
+/// What exporters multiply in single precision.
+TEST_F(GltfAsWritten, SinglePrecisionIsNoFault) {
+  Gltf gltf;
+  gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, -1e-7, 0, 0, 1, 0, 5, 0, 0, 0.9999999};
+  gltf.at("/materials/0/pbrMetallicRoughness/baseColorFactor") = {0.5, 0.5, 0.5, 1.0000001};
+  gltf.at("/materials/0")["alphaMode"] = "BLEND";
+  gltf.at("/nodes/2/rotation") = {0, 0.70711, 0, 0.70711};
+  const Scene scene = read(gltf);
+  EXPECT_EQ(scene.soup.positions[1], glm::dvec3(6, 0, 0));
+  EXPECT_EQ(scene.objects[0].alpha.mode, Alpha::Mode::opaque);
+  EXPECT_LT(std::abs(glm::length(scene.cameras[0].target - scene.cameras[0].eye) - 1), 1e-12);
+  gltf.at("/nodes/0/matrix/15") = 0.5;
+  EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/matrix: its last row must be 0 0 0 1"));
+}
+
+/// Numbers that nobody uses may be anything; those of a triangle may not.
+TEST_F(GltfAsWritten, NumbersThatAreNotFinite) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  Gltf gltf;
+  auto& attributes = gltf.at("/meshes/0/primitives/0/attributes");
+  attributes["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, kNan, kNan, kNan, 0, 0, 1});
+  attributes["POSITION"] = gltf.add_floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, kNan, 0, 0});
+  EXPECT_THAT(refusal(gltf), HasSubstr("NORMAL: 3 of them for 4 vertices"));
+  attributes["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, kNan, kNan, kNan, 0, 0, 1, 0, 0, 1});
+  const Scene scene = read(gltf);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.looks.normals[1], glm::vec3(0)) << "none: the triangle is flat";
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Body' has normals that are not finite")));
+  attributes["POSITION"] = gltf.add_floats("VEC3", {0, 0, 0, kNan, 0, 0, 0, 1, 0, 0, 0, 0});
+  EXPECT_THAT(refusal(gltf), HasSubstr("POSITION: vertex 1 is not finite: (nan, 0, 0)"));
+}
+
+/// An index of 2³² or more is no index modulo 2³².
+TEST_F(GltfAsWritten, IndicesBeyondThirtyTwoBits) {
+  constexpr std::uint64_t kWhole = std::uint64_t{1} << 32;
+  const auto expect = [&](auto change, const std::string& what) {
+    Gltf gltf;
+    gltf.document["textures"] = {{{"source", 0}}};
+    gltf.at("/nodes/0")["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
+    gltf.document["skins"] = {{{"joints", {0}}}};
+    gltf.animate(0, "translation", {0, 1}, {0, 0, 0, 1, 1, 1});
+    change(gltf);
+    EXPECT_THAT(refusal(gltf), HasSubstr(what + ": 4294967296; expected a whole number"));
+  };
+  for (const char* place : {"/textures/0/source", "/skins/0/joints/0", "/animations/0/channels/0/target/node",
+                            "/animations/0/samplers/0/input", "/nodes/0/extensions/KHR_lights_punctual/light"})
+    expect([&](Gltf& gltf) { gltf.at(place) = kWhole; }, place);
+}
+
+TEST_F(GltfAsWritten, DracoWithACopyIsThatCopy) {
+  Gltf gltf;
+  gltf.at("/meshes/0/primitives/0")["extensions"] = {{"KHR_draco_mesh_compression", {{"bufferView", 0}}}};
+  gltf.document["extensionsUsed"].push_back("KHR_draco_mesh_compression");
+  EXPECT_EQ(read(gltf).soup.triangles.size(), 3u);
+  gltf.at("/accessors/1").erase("bufferView");
+  EXPECT_THAT(refusal(gltf), HasSubstr("/meshes/0/primitives/0: its vertices are compressed with KHR_draco"));
+  ReadOptions lenient;
+  lenient.lenient = true;
+  const Scene scene = read_gltf(write("scene.glb", gltf.glb()), lenient);
+  EXPECT_EQ(scene.soup.triangles.size(), 2u);
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("'/meshes/0/primitives/0' is compressed")));
+}
+
+/// EXT_mesh_gpu_instancing: the node's mesh at each element, and none at the node itself.
+TEST_F(GltfAsWritten, InstancesOfANode) {
+  Gltf gltf;
+  gltf.at("/nodes/0")["translation"] = {10, 0, 0};
+  gltf.at("/nodes/0")["extensions"] = {
+      {"EXT_mesh_gpu_instancing",
+       {{"attributes",
+         {{"TRANSLATION", gltf.add_floats("VEC3", {0, 1, 0, 0, 2, 0})},
+          {"ROTATION", gltf.add_floats("VEC4", {0, 0, 0, 1, 0, 0, 1, 0})},  // half a turn about z
+          {"SCALE", gltf.add_floats("VEC3", {3, 3, 3, 1, 1, 1})}}}}}};
+  gltf.document["extensionsUsed"].push_back("EXT_mesh_gpu_instancing");
+  gltf.document["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const Scene scene = read(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(scene.objects.size(), 3u);
+  EXPECT_EQ(scene.objects[0].name, "Body.0");
+  EXPECT_EQ(scene.objects[1].name, "Body.1");
+  EXPECT_THAT(corners(scene, 0),
+              ::testing::ElementsAre(glm::dvec3(10, 1, 0), glm::dvec3(13, 1, 0), glm::dvec3(10, 4, 0)));
+  const auto second = corners(scene, 1);
+  EXPECT_LT(glm::distance(second[1], glm::dvec3(9, 2, 0)), 1e-12);
+  gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE") = gltf.add_floats("VEC3", {1, 1, 1});
+  EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE: 1 instances"));
+  gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing") = json::object();
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has no instances")));
+}
+
+/// KHR_node_visibility: neither the node nor what is below it; joints and cameras are no less where they are.
+TEST_F(GltfAsWritten, NodesThatAreNotVisible) {
+  Gltf gltf;
+  gltf.at("/scenes/0/nodes") = {0, 1};
+  gltf.at("/nodes").push_back({{"name", "Child"}, {"mesh", 0}});
+  gltf.at("/nodes/0")["children"] = {2, 3};
+  gltf.at("/nodes/0")["extensions"] = {{"KHR_node_visibility", {{"visible", false}}}};
+  gltf.document["extensionsUsed"].push_back("KHR_node_visibility");
+  const Scene scene = read(gltf);
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  ASSERT_EQ(scene.objects.size(), 1u);
+  EXPECT_EQ(scene.objects[0].name, "Lamp");
+  EXPECT_EQ(scene.cameras[0].name, "Camera");
+  gltf.at("/nodes/0/extensions/KHR_node_visibility/visible") = true;
+  EXPECT_EQ(read(gltf).objects.size(), 3u);
+}
+
+/// Files before 2021 often have their colours in KHR_materials_pbrSpecularGlossiness.
+TEST_F(GltfAsWritten, SpecularGlossinessHasADiffuseColour) {
+  Gltf gltf;
+  gltf.at("/materials/0")["extensions"] = {
+      {"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0.1, 0.2, 0.3, 1}}}}};
+  gltf.document["extensionsUsed"].push_back("KHR_materials_pbrSpecularGlossiness");
+  gltf.document["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+  const Scene scene = read(gltf);
+  EXPECT_EQ(scene.objects[0].color, glm::dvec3(0.1, 0.2, 0.3));
+  EXPECT_THAT(scene.warnings, IsEmpty());
+}
+
+}  // namespace
+}  // namespace penumbra::scenes
