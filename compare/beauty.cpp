@@ -40,6 +40,18 @@ glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const L
   return double{seen.visibility[pixel]} * light.unshadowed(at);
 }
 
+/// By what a pixel's whole form factor is multiplied that has V and perhaps the form factor of its facet: with that the
+/// visible share of what the facet would receive, in which each part of the light counts by its distance and cosines,
+/// and not by its area alone. Where some of the light is below the facet's plane, which V counts as hidden, V.
+double share_of(const visibility::Light& light, const BeautyScene& in, std::size_t i, const LightVisibility& seen,
+                std::size_t asked) {
+  const double v = seen.visibility[asked];
+  if (v == 1 || seen.form_factors.empty()) return v;
+  const visibility::UnshadowedLight facet(light, in.samples.p[i], in.samples.n[i]);
+  const double whole = facet.shines() && facet.above_horizon() ? facet.whole() : 0;
+  return whole > 0 ? std::clamp(seen.form_factors[asked].x / whole, 0.0, 1.0) : v;
+}
+
 /// Is all of a plain light seen from the pixel, or is V to be multiplied with what is? Then vectors do it.
 bool takes_whole(const VisibleLight& light, const LightVisibility& seen, std::size_t pixel, std::size_t words) {
   if (light.light().texture) return false;
@@ -79,7 +91,7 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
     if (shadowed && seen.masks.empty() && seen.visibility[asked] == 0) continue;
     if (shadowed ? takes_whole(visible, seen, asked, words) : !light.texture) {
       wholes.push_back(static_cast<std::uint32_t>(i));
-      shares.push_back(shadowed && seen.masks.empty() ? double{seen.visibility[asked]} : 1.0);
+      shares.push_back(shadowed && seen.masks.empty() ? share_of(light, in, i, seen, asked) : 1.0);
       continue;
     }
     if (shadowed && !seen.masks.empty() && !visible.sees_any(seen.masks.subspan(asked * words, words))) continue;

@@ -54,7 +54,9 @@ struct BeautyScene {
 ///
 /// With shading normals (BeautyScene::normals) cosines are theirs, and light comes from what is visible all the same:
 /// V and masks know only the triangle and what is above its plane, so the terminator is where either normal turns away.
-/// Form factors are of the triangle's own normal: where a pixel has another, its beauty is V · F of the whole light.
+/// Form factors are of the triangle's own normal: where a pixel has another, its beauty is F of the whole light times
+/// the visible share of the form factor (of a textured light, or one that is partly below the triangle's plane: times
+/// V).
 ///
 /// Pixels of a light's body show its radiance (with a texture, times the texel that is there or nearest; none if that
 /// light is not among `lights`: it is off) beside what its colour reflects of the other lights, the background is 0,

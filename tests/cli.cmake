@@ -23,6 +23,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/options_together_support.cpp
   cli/pixel_filters.cpp
   cli/program.cpp
+  cli/public_scenes.cpp
   cli/render.cpp
   cli/shifted_lens.cpp
   cli/tables.cpp

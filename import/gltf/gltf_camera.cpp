@@ -11,26 +11,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace penumbra::scenes {
 
 namespace {
 
-/// The extras' "shift" (Camera::shift), for glTF knows no shifted lenses.
-glm::dvec2 shift_of(const tinygltf::Value& pair, int camera) {
-  const auto at = [&](int i) {
-    return pair.IsArray() && pair.ArrayLen() == 2 && pair.Get(i).IsNumber() ? pair.Get(i).GetNumberAsDouble()
-                                                                            : std::nan("");
-  };
-  const glm::dvec2 shift(at(0), at(1));
-  if (!std::isfinite(shift.x) || !std::isfinite(shift.y))
-    throw InputError("/cameras/{}/extras/shift: expected two numbers, in heights of the picture", camera);
-  return shift;
+/// The extras' "shift" (Camera::shift), for glTF knows no shifted lenses; nothing if it is no pair of numbers, and so
+/// another tool's.
+std::optional<glm::dvec2> shift_of(const tinygltf::Value& pair) {
+  if (!pair.IsArray() || pair.ArrayLen() != 2 || !pair.Get(0).IsNumber() || !pair.Get(1).IsNumber())
+    return std::nullopt;
+  return glm::dvec2(pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble());
 }
 
 }  // namespace
 
-Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed) {
+Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses) {
   if (static_cast<std::size_t>(node.camera) >= model.cameras.size()) {
     throw InputError("/nodes/{}/camera: camera {} does not exist; there are {}", placed.number, node.camera,
                      model.cameras.size());
@@ -59,8 +56,12 @@ Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const
     camera.height = height;
   const double aspect = perspective ? source.perspective.aspectRatio : 2 * source.orthographic.xmag / height;
   if (aspect > 0 && std::isfinite(aspect)) camera.aspect = aspect;
-  if (source.extras.IsObject() && source.extras.Has("shift"))
-    camera.shift = shift_of(source.extras.Get("shift"), node.camera);
+  if (source.extras.IsObject() && source.extras.Has("shift")) {
+    if (const auto shift = shift_of(source.extras.Get("shift")))
+      camera.shift = *shift;
+    else
+      losses.mention("has extras \"shift\" of another tool (no two numbers), which are left out", node.name);
+  }
   return camera;
 }
 

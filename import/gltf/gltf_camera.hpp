@@ -1,6 +1,7 @@
 #pragma once
 
 #include "import/gltf/gltf_nodes.hpp"
+#include "scenes/losses.hpp"
 #include "scenes/scene.hpp"
 
 #include <glm/vec3.hpp>
@@ -15,7 +16,7 @@ namespace penumbra::scenes {
 
 /// A node's camera, without a name: perspective, or orthographic. Throws InputError for one that does not exist, or
 /// that shows nothing.
-Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed);
+Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& node, const PlacedNode& placed, Losses& losses);
 
 /// From above the front right, at the distance at which the bounding sphere just fits into the picture. `positions`:
 /// not empty.

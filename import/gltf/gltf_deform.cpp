@@ -26,7 +26,8 @@ std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, int number,
   if (source.joints.empty()) throw InputError("{}/joints: there are none", place);
   std::optional<Numbers> inverse;
   if (source.inverseBindMatrices >= 0) {
-    inverse = read_numbers(model, source.inverseBindMatrices, {TINYGLTF_TYPE_MAT4}, "inverse bind matrices");
+    inverse =
+        read_numbers(model, source.inverseBindMatrices, {TINYGLTF_TYPE_MAT4}, "inverse bind matrices", NotFinite::keep);
     if (inverse->count() < source.joints.size()) {
       throw InputError("{}/inverseBindMatrices: {} matrices for {} joints", place, inverse->count(),
                        source.joints.size());

@@ -20,16 +20,6 @@ void mention_foreign(const char* key, const char* expected, const std::string& o
   losses.mention(fmt::format("has extras \"{}\" of another tool (no {}), which are left out", key, expected), owner);
 }
 
-std::optional<bool> flag(const tinygltf::Value& extras, const char* key, const std::string& owner, Losses& losses) {
-  const tinygltf::Value* const value = entry(extras, key);
-  if (value == nullptr) return std::nullopt;
-  if (value->IsBool()) return value->Get<bool>();
-  const double number = value->IsNumber() ? value->GetNumberAsDouble() : -1;
-  if (number == 0 || number == 1) return number == 1;
-  mention_foreign(key, "true or false, or 1 or 0", owner, losses);
-  return std::nullopt;
-}
-
 std::string text(const tinygltf::Value& extras, const char* key, const std::string& owner, Losses& losses) {
   const tinygltf::Value* const value = entry(extras, key);
   if (value == nullptr) return {};
@@ -40,10 +30,21 @@ std::string text(const tinygltf::Value& extras, const char* key, const std::stri
 
 }  // namespace
 
+std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
+                                   Losses& losses) {
+  const tinygltf::Value* const value = entry(extras, key);
+  if (value == nullptr) return std::nullopt;
+  if (value->IsBool()) return value->Get<bool>();
+  const double number = value->IsNumber() ? value->GetNumberAsDouble() : -1;
+  if (number == 0 || number == 1) return number == 1;
+  mention_foreign(key, "true or false, or 1 or 0", owner, losses);
+  return std::nullopt;
+}
+
 ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Losses& losses) {
   const auto read = [&](const char* key) {
-    const auto own = flag(node.extras, key, node.name, losses);
-    return own ? *own : flag(mesh.extras, key, mesh.name, losses).value_or(true);
+    const auto own = flag_of_extras(node.extras, key, node.name, losses);
+    return own ? *own : flag_of_extras(mesh.extras, key, mesh.name, losses).value_or(true);
   };
   std::string light = text(node.extras, "lightName", node.name, losses);
   if (light.empty()) light = text(mesh.extras, "lightName", mesh.name, losses);
@@ -51,7 +52,7 @@ ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Los
 }
 
 bool lamp_casts_shadows(const tinygltf::Node& node, Losses& losses) {
-  return flag(node.extras, "castsShadow", node.name, losses).value_or(true);
+  return flag_of_extras(node.extras, "castsShadow", node.name, losses).value_or(true);
 }
 
 std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,

@@ -28,7 +28,11 @@ ObjectFlags flags_of(const tinygltf::Node& node, const tinygltf::Mesh& mesh, Los
 /// Does a lamp cast shadows? "castsShadow" of its node, read likewise.
 bool lamp_casts_shadows(const tinygltf::Node& node, Losses& losses);
 
-/// A number of extras, read likewise; `owner` is whose they are.
+/// True or false of extras, or 1 or 0, read likewise; `owner` is whose they are.
+std::optional<bool> flag_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
+                                   Losses& losses);
+
+/// A number of extras, read likewise.
 std::optional<double> number_of_extras(const tinygltf::Value& extras, const char* key, const std::string& owner,
                                        Losses& losses);
 

@@ -63,6 +63,7 @@ class GltfImport {
       const std::string what = "is moved by KHR_animation_pointer, which is not done: it stays as the file has it";
       moves ? losses_.refuse(what, pointer) : losses_.mention(what, pointer);
     }
+    if (taken_out.no_utf8) scene_.warnings.emplace_back("some names are no UTF-8; '?' stands for their letters");
     if (taken_out.channels_without_node > 0) {
       scene_.warnings.push_back(
           fmt::format("{} animation channels name no node and are ignored", taken_out.channels_without_node));
@@ -100,7 +101,7 @@ class GltfImport {
           "there is no light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
           "material with emission (Emission Strength above 0), or add a point, spot or sun lamp and export with "
           "Punctual Lights (area lamps are lost in glTF){}",
-          refused_lights_.empty() ? "" : "; emissive but no light: " + refused_lights_);
+          refused_lights_.empty() ? "" : "; no lights could be made of " + refused_lights_);
     }
     if (scene_.cameras.empty() && !is_mesh()) {
       scene_.cameras.push_back(camera_that_sees_all(scene_.soup.positions));
@@ -151,9 +152,16 @@ class GltfImport {
     if (!is_mesh() && node.camera >= 0) add_camera(node, placed, name);
     if (!placed.visible) return;
     if (node.mesh >= 0) add_meshes(node, placed, name);
-    if (is_mesh()) return;
-    if (node.extensions.contains("KHR_lights_punctual"))
-      add_lamp(lamps_.light_of(node, lamp_place(placed)), node, name);
+    if (is_mesh()) {
+      lamps_left_ += (node.camera >= 0 ? 1U : 0U) + (node.extensions.contains("KHR_lights_punctual") ? 1U : 0U);
+      return;
+    }
+    if (node.extensions.contains("KHR_lights_punctual")) {
+      if (const auto lamp = lamps_.light_of(node, lamp_place(placed), name))
+        add_lamp(*lamp, node, name);
+      else
+        note_refused_light(name, "a lamp of a type that KHR_lights_punctual does not have");
+    }
     if (const auto lamp = area_lamp_of(node, placed, losses_)) add_lamp(*lamp, node, name);
   }
 
@@ -255,6 +263,8 @@ class GltfImport {
       losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
     else if (vertices.look.emission)
       note_refused_light(name, "its emissive picture is black where it lies on it");
+    const Look& look = vertices.look;
+    if (look.picture || !look.normals.empty() || !look.colors.empty() || look.color != glm::dvec3(1)) ++looks_left_;
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     Object object;
     object.name = name;
@@ -317,7 +327,7 @@ class GltfImport {
   }
 
   void add_camera(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
-    Camera camera = camera_of(model_, node, placed);
+    Camera camera = camera_of(model_, node, placed, losses_);
     camera.name = camera_names_.take(name);
     scene_.cameras.push_back(std::move(camera));
   }
@@ -332,6 +342,12 @@ class GltfImport {
     count(skipped_.without_triangles, "primitives with fewer than three vertices skipped");
     count(skipped_.leftover_indices, "indices at the end of primitives skipped: they make no whole triangle");
     count(emissive_, "emissive objects are no lights here: those are the scene's");
+    if (purpose_ == Purpose::mesh) {
+      count(looks_left_,
+            "objects lose their pictures, colours and normals: a mesh of another scene has the colour that is "
+            "said there");
+      count(lamps_left_, "lamps and cameras left out: those are the scene's");
+    }
   }
 
   const tinygltf::Model& model_;
@@ -350,9 +366,9 @@ class GltfImport {
   std::uint64_t gone_ = 0, bodiless_ = 0;  // primitives that are wholly transparent, that only say where a light is
   bool left_out_ = false;
   glm::dvec3 lower_{std::numeric_limits<double>::infinity()}, upper_{-std::numeric_limits<double>::infinity()};
-  ObjectFlags flags_;                   // of the mesh at hand
-  std::vector<std::size_t> shadeless_;  // lights that cast no shadows
-  std::uint64_t emissive_ = 0;
+  ObjectFlags flags_;                                             // of the mesh at hand
+  std::vector<std::size_t> shadeless_;                            // lights that cast no shadows
+  std::uint64_t emissive_ = 0, looks_left_ = 0, lamps_left_ = 0;  // of Purpose::mesh
 };
 
 /// Does anything but nodes move vertices?

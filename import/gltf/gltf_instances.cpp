@@ -50,6 +50,14 @@ std::optional<std::vector<glm::dmat4>> instances_of(const tinygltf::Model& model
   };
   const Attribute translation = read("TRANSLATION", TINYGLTF_TYPE_VEC3),
                   rotation = read("ROTATION", TINYGLTF_TYPE_VEC4), scale = read("SCALE", TINYGLTF_TYPE_VEC3);
+  // Attributes of other names say how many there are, too.
+  const tinygltf::Value& extra = extension->second;
+  for (const std::string& name :
+       extra.Has("attributes") ? extra.Get("attributes").Keys() : std::vector<std::string>()) {
+    const tinygltf::Value& accessor = extra.Get("attributes").Get(name);
+    const auto number_of = static_cast<std::size_t>(accessor.IsInt() ? accessor.GetNumberAsInt() : -1);
+    if (!count && number_of < model.accessors.size()) count = model.accessors[number_of].count;
+  }
   std::vector<glm::dmat4> instances;
   for (std::size_t i = 0; i < count.value_or(0); ++i)
     instances.push_back(transform_of({translation.of(i), rotation.of(i), scale.of(i)}, place));

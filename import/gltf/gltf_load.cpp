@@ -36,6 +36,18 @@ struct Confinement {
 
   /// Nothing if it may not be opened, or is no regular file.
   Descriptor open(const std::string& name) {
+    Descriptor file = open_as_named(name);
+    if (file.is_open() || name.find('\\') == std::string::npos) return file;
+    // Written on Windows; browsers take a backslash for what it is meant to be.
+    std::string meant = name;
+    std::ranges::replace(meant, '\\', '/');
+    file = open_as_named(meant);
+    if (file.is_open()) mesh::note_opened_file(folder_name / meant);  // no output may take its place
+    return file;
+  }
+
+ private:
+  Descriptor open_as_named(const std::string& name) {
     constexpr int kFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
     Descriptor file;
     if (allow_outside) {
@@ -127,10 +139,29 @@ void note_lengths(const nlohmann::json& document, Confinement& confinement) {
   }
 }
 
-/// The file's JSON, checked; the parser's message if it is none.
-nlohmann::json document_of(std::string_view text, const std::string& file) {
+/// With '?' for what is no UTF-8.
+std::string as_utf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  while (!text.empty()) {
+    const auto control = std::ranges::find_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+    const auto run = static_cast<std::size_t>(control - text.begin());
+    valid += mesh::printable(text.substr(0, run));
+    if (run < text.size()) valid += text[run];
+    text.remove_prefix(std::min(run + 1, text.size()));
+  }
+  return valid;
+}
+
+/// The file's JSON, checked; the parser's message if it is none. `is_utf8`: none of its names had to be changed.
+nlohmann::json document_of(std::string_view text, const std::string& file, bool& is_utf8) {
   try {
-    nlohmann::json document = nlohmann::json::parse(text);
+    nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+    if (document.is_discarded()) {  // names in a code page of Windows, or no JSON at all
+      const std::string valid = as_utf8(text);
+      is_utf8 = valid == text;
+      document = nlohmann::json::parse(valid);
+    }
     if (!document.is_object()) throw InputError("{}: it is no glTF file: its JSON is no object", file);
     check_gltf_numbers(document, file);
     return document;
@@ -164,8 +195,10 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
   {
     const bool binary = bytes.starts_with("glTF");
     const GlbChunks chunks = binary ? glb_chunks(bytes, name) : GlbChunks{bytes, {}};
-    nlohmann::json document = document_of(chunks.json, name);
-    const bool mended = mend_gltf(document, name, options.lenient, taken_out);
+    bool is_utf8 = true;
+    nlohmann::json document = document_of(chunks.json, name, is_utf8);
+    const bool mended = mend_gltf(document, name, options.lenient, taken_out) || !is_utf8;
+    taken_out.no_utf8 = !is_utf8;
     note_lengths(document, confinement);
     const std::string text = mended ? document.dump() : std::string();
     if (binary && (mended || !chunks.strict))
@@ -195,11 +228,6 @@ TakenOut load_gltf_model(const mesh::InputFile& input, const ReadOptions& option
   if (!confinement.refused.empty() && !loaded) {
     throw InputError("{}: it refers to {}, which is outside its folder; copy it there or pass --allow-outside", name,
                      mesh::printable(confinement.refused));
-  }
-  for (const std::string& extension : model.extensionsRequired) {
-    if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression") {
-      throw InputError("{}: /extensionsRequired: {} is not supported; export without compression", name, extension);
-    }
   }
   forgive_default_binds(error);
   // It goes on after some errors, and leaves out what it could not understand: nothing may go missing silently.

@@ -116,13 +116,14 @@ std::uint64_t decoded_size(std::string_view base64) {
   return base64.size() / 4 * 3 + base64.size() % 4 * 3 / 4;
 }
 
-/// Gives the `uri` of a buffer or image a media type that tinygltf knows. Returns how many bytes it holds.
-std::optional<std::uint64_t> mend_uri(json& owner, const std::string& place, bool& changed) {
+/// Gives the `uri` of a buffer or image a media type that tinygltf knows. Returns how many bytes it holds; nothing if
+/// it is no data URI, 0 if it is one that is not in base64.
+std::optional<std::uint64_t> mend_uri(json& owner, bool& changed) {
   if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return std::nullopt;
   const auto& uri = owner["uri"].get_ref<const std::string&>();
   if (!uri.starts_with("data:")) return std::nullopt;
   const auto data = data_uri_of(uri);
-  if (!data) throw InputError("{}/uri: a data URI that is not in base64, which is not supported", place);
+  if (!data) return 0;
   const std::uint64_t size = decoded_size(data->content);
   if (data->media_type != "application/octet-stream") {
     owner["uri"] = fmt::format("data:application/octet-stream;base64,{}", data->content);
@@ -134,14 +135,19 @@ std::optional<std::uint64_t> mend_uri(json& owner, const std::string& place, boo
 bool mend_uris(json& document, const std::string& file) {
   bool changed = false;
   if (json* const images = array_of(document, "images")) {
-    for (std::size_t i = 0; i < images->size(); ++i)
-      mend_uri((*images)[i], fmt::format("{}: /images/{}", file, i), changed);
+    for (json& image : *images) {
+      if (mend_uri(image, changed) != 0) continue;
+      // No picture that could be decoded; tinygltf would look for a file of this name.
+      image["uri"] = "data:application/octet-stream;base64,AAAA";
+      changed = true;
+    }
   }
   json* const buffers = array_of(document, "buffers");
   for (std::size_t i = 0; buffers != nullptr && i < buffers->size(); ++i) {
     json& buffer = (*buffers)[i];
     const std::string place = fmt::format("{}: /buffers/{}", file, i);
-    const auto size = mend_uri(buffer, place, changed);
+    const auto size = mend_uri(buffer, changed);
+    if (size == 0) throw InputError("{}/uri: a data URI that is empty, or not in base64", place);
     if (!size || !buffer.contains("byteLength") || !buffer["byteLength"].is_number_unsigned()) continue;
     const auto wanted = buffer["byteLength"].get<std::uint64_t>();
     if (*size < wanted)
@@ -205,6 +211,12 @@ bool mend_draco(json& document, const std::string& file, bool lenient, TakenOut&
 }  // namespace
 
 bool mend_gltf(json& document, const std::string& file, bool lenient, TakenOut& taken_out) {
+  if (const json* const required = array_of(document, "extensionsRequired")) {
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+      if (std::ranges::find(*required, json(extension)) != required->end())
+        throw InputError("{}: /extensionsRequired: {} is not supported; export without compression", file, extension);
+    }
+  }
   bool changed = mend_animations(document, taken_out);
   changed |= mend_uris(document, file);
   changed |= mend_draco(document, file, lenient, taken_out);

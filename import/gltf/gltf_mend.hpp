@@ -15,6 +15,7 @@ struct TakenOut {
   /// once.
   std::vector<std::string> pointers;
   std::size_t channels_without_node = 0;  ///< animation channels that glTF 2.0 (3.11) says to ignore
+  bool no_utf8 = false;                   ///< names with bytes that are no UTF-8, for which there is '?' now
   std::vector<std::string> compressed;    ///< primitives that exist in compressed form alone; only if lenient
 };
 
@@ -24,6 +25,7 @@ struct TakenOut {
 ///   `byteLength`;
 /// - primitives compressed with Draco that have an uncompressed copy are that; those without are refused (InputError by
 ///   the primitive's place), or taken out if `lenient`.
+/// Refuses files of which no part can be read without their compression (EXT_meshopt_compression).
 /// Returns whether the document changed. `file` is its name, for messages.
 bool mend_gltf(nlohmann::json& document, const std::string& file, bool lenient, TakenOut& taken_out);
 

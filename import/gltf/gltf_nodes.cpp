@@ -60,7 +60,7 @@ std::vector<int> root_nodes(const tinygltf::Model& model, std::vector<std::strin
     warnings.push_back(fmt::format("{} of {} scenes ignored; '{}' (number {}) is rendered", scenes - 1, scenes,
                                    model.scenes[chosen].name, chosen));
   }
-  if (scenes > 0) return model.scenes[chosen].nodes;
+  if (scenes > 0) return model.scenes[chosen].nodes;  // nodes of no scene are seen by nobody
 
   warnings.emplace_back("there is no scene in the file; all its nodes are rendered");
   std::vector<bool> is_child(model.nodes.size(), false);

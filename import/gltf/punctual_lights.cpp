@@ -32,14 +32,14 @@ double checked(double value, double least, const std::string& place) {
   return value;
 }
 
-/// `smooth`: the file says that the cone falls off as Blender's do (1), or does not (0).
-Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, std::optional<double> smooth,
+/// `smooth`: the file says that the cone falls off as Blender's do, or that it does not.
+Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from_blender, std::optional<bool> smooth,
              const std::string& place) {
-  if (smooth && *smooth != 0 && *smooth != 1) throw InputError("{}/extras/smooth: {}; expected 0 or 1", place, *smooth);
   const double outer = lamp.spot.outerConeAngle;
   // Equal angles are a hard edge. An inner one that is larger is what exporters make of rounding, and viewers take it
   // for the same.
-  const double inner = std::min(lamp.spot.innerConeAngle, outer);
+  const double given = lamp.spot.innerConeAngle;
+  const double inner = std::min(given < 0 && given > -1e-6 ? 0 : given, outer);
   // Half a turn over four in single precision may be a hair more.
   if (!(inner >= 0 && outer > 0 && outer <= std::numbers::pi / 2 * (1 + 1e-6))) {
     throw InputError("{}/spot: innerConeAngle {} and outerConeAngle {}; expected 0 <= inner <= outer <= pi / 2", place,
@@ -51,12 +51,13 @@ Cone cone_of(const tinygltf::Light& lamp, const glm::dvec3& direction, bool from
     const double edge = std::acos(std::min(full + std::max((1 - full) * blend, 0.001), 1.0));
     return {direction, glm::degrees(edge), std::min(glm::degrees(outer), 90.0), true};
   }
-  return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0), smooth.value_or(0) == 1};
+  return {direction, glm::degrees(inner), std::min(glm::degrees(outer), 90.0), smooth.value_or(false)};
 }
 
 }  // namespace
 
-AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode& placed) {
+std::optional<AreaLight> PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode& placed,
+                                                  const std::string& name) {
   const auto extension = node.extensions.find(kExtension);
   PENUMBRA_ASSERT(extension != node.extensions.end(), "node {} has no lamp", placed.number);
   const std::string node_place = fmt::format("/nodes/{}", placed.number);
@@ -96,14 +97,16 @@ AreaLight PunctualLights::light_of(const tinygltf::Node& node, const PlacedNode&
     return light;
   }
   if (lamp.type != "point" && lamp.type != "spot") {
-    throw InputError("{}/type: \"{}\"; expected directional, point or spot", place, lamp.type);
+    losses_.refuse(fmt::format("is a lamp of type \"{}\", which is none of directional, point and spot", lamp.type),
+                   name);
+    return std::nullopt;
   }
   if (lamp.range > 0) ++ranges_;
   Sphere sphere{glm::dvec3(placed.to_world[3]), size("radius", options_.lamp_radius, kLampRadius, without_radius_), {}};
   if (lamp.type == "spot") {
     if (!(glm::length(along) > 0)) throw InputError("{}: its transform leaves the lamp no direction", node_place);
     sphere.cone = cone_of(lamp, glm::normalize(along), is_from_blender(model_),
-                          number_of_extras(lamp.extras, "smooth", lamp.name, losses_), place);
+                          flag_of_extras(lamp.extras, "smooth", lamp.name, losses_), place);
   }
   if (!(sphere.radius >= 0) || !std::isfinite(sphere.radius)) {
     throw InputError("{}: the lamp's radius is {}; expected a length of 0 or more", node_place, sphere.radius);

@@ -6,6 +6,7 @@
 #include "scenes/scene.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,10 @@ class PunctualLights {
   PunctualLights(const tinygltf::Model& model, const ReadOptions& options, Losses& losses)
       : model_(model), options_(options), losses_(losses) {}
 
-  /// The node's lamp, without a name; the node names its lamp in the extension (asserted).
-  /// Throws InputError for what the extension does not allow, and for sizes that are none.
-  AreaLight light_of(const tinygltf::Node& node, const PlacedNode& placed);
+  /// The node's lamp, without a name; the node names its lamp in the extension (asserted). Nothing for a lamp of a type
+  /// that the extension does not have, which is refused by `name`. Throws InputError for what the extension does not
+  /// allow, and for sizes that are none.
+  std::optional<AreaLight> light_of(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name);
 
   /// What was taken for granted, with its count.
   void add_warnings(std::vector<std::string>& warnings) const;

@@ -147,7 +147,46 @@ TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {
   EXPECT_EQ(by_visibility[2].x, 0);
   const auto by_form_factors = shade({.visibility = v, .form_factors = form_factors});
   EXPECT_EQ(by_form_factors[0].x, 7) << "its triangle's own normal: as the method has it";
-  EXPECT_EQ(by_form_factors[1], by_visibility[1]);
+  EXPECT_NEAR(by_form_factors[1].x, 0.8 * whole, 2e-6 * whole) << "more than all there is: all";
+  const std::vector<glm::dvec3> quarter(3, glm::dvec3(0.25 * whole));
+  EXPECT_NEAR(shade({.visibility = v, .form_factors = quarter})[1].x, 0.8 * 0.25 * whole, 2e-6 * whole);
+}
+
+/// A light of 2 × 2, one above p, of which the half x < 0 is seen, on a facet whose smooth normal leans by 0.3 toward
+/// +x and by 0.2 toward +y: against the integral over 400² parts. What the facet sees of the light says more than its
+/// area.
+TEST(Surface, SmoothPixelsInPenumbrae) {
+  Surface stage({{1, 1, 0}});
+  stage.scene.lights = {{"near", scenes::Rectangle{{1.5, 1, 1}, {0, 1, 0}, {1, 0, 0}}, glm::dvec3(1)}};
+  const visibility::Light light = visibility::make_light(stage.scene, 0, glm::dvec3(0), {});
+  const glm::dvec3 facet(0, 0, 1), smooth = glm::normalize(glm::dvec3(0.3, 0.2, 1));
+  const auto integral = [](const glm::dvec3& normal, double from) {  // over the light's x from there on
+    constexpr int kParts = 400;
+    double sum = 0;
+    for (int i = 0; i < kParts * kParts; ++i) {
+      const glm::dvec3 d(from + (1.5 - from) * (i % kParts + 0.5) / kParts, -1 + 2 * (i / kParts + 0.5) / kParts, 1);
+      const double distance = glm::length(d);
+      sum += std::max(0.0, glm::dot(normal, d)) * d.z / std::pow(distance, 4);
+    }
+    return sum * (1.5 - from) * 2 / (kParts * double{kParts}) / M_PI;
+  };
+  const std::vector<glm::dvec3> colors(1, glm::dvec3(1)), seen(1, glm::dvec3(integral(facet, 0.5)));
+  const std::vector<float> v(1, 0.5f);  // the half x > 0.5 of −0.5 … 1.5
+  const std::vector<glm::vec3> normals = {glm::vec3(smooth)};
+  const LightVisibility exact{.visibility = v, .form_factors = seen}, area{.visibility = v};
+  const auto shade = [&](const LightVisibility& visibility) {
+    return double{integrate_beauty({.scene = stage.floats,
+                                    .samples = stage.samples,
+                                    .colors = {},
+                                    .lights = {&light, 1},
+                                    .pixel_colors = colors,
+                                    .normals = normals},
+                                   {&visibility, 1})[0]
+                      .x};
+  };
+  const double truth = integral(smooth, 0.5);
+  EXPECT_NEAR(shade(exact), integral(smooth, -0.5) * integral(facet, 0.5) / integral(facet, -0.5), 1e-5);
+  EXPECT_LT(std::abs(shade(exact) - truth), 0.6 * std::abs(shade(area) - truth));
 }
 
 }  // namespace

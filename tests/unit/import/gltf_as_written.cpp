@@ -64,13 +64,15 @@ TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
   gltf.at("/buffers/0/uri") = "data:text/plain," + secret;
   EXPECT_THAT(refusal_of_text(gltf), Not(HasSubstr("QQQQQQQQ")));
   // A picture of a kind that is not read is only one that cannot be shown.
-  Gltf painted;
-  painted.document["images"] = {{{"uri", "data:image/webp;base64," + secret}}};
-  painted.document["textures"] = {{{"source", 0}}};
-  painted.at("/materials/0/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
-  const Scene scene = read(painted);
-  EXPECT_THAT(scene.warnings, Contains(HasSubstr("is shown without its picture")));
-  EXPECT_THAT(scene.warnings, Not(Contains(HasSubstr("QQQQQQQQ"))));
+  for (const char* type : {"data:image/webp;base64,", "data:image/svg+xml,%3Csvg%3E"}) {
+    Gltf painted;
+    painted.document["images"] = {{{"uri", type + secret}}};
+    painted.document["textures"] = {{{"source", 0}}};
+    painted.at("/materials/0/pbrMetallicRoughness")["baseColorTexture"] = {{"index", 0}};
+    const Scene scene = read(painted);
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr("is shown without its picture"))) << type;
+    EXPECT_THAT(scene.warnings, Not(Contains(HasSubstr("QQQQQQQQ"))));
+  }
 }
 
 /// Chunks that are not padded, that are padded without being counted, that are empty, or of a kind that nobody knows.
@@ -193,6 +195,8 @@ TEST_F(GltfAsWritten, InstancesOfANode) {
   EXPECT_LT(glm::distance(second[1], glm::dvec3(9, 2, 0)), 1e-12);
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE") = gltf.add_floats("VEC3", {1, 1, 1});
   EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE: 1 instances"));
+  gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes") = {{"_ID", gltf.add_floats("SCALAR", {7, 8, 9})}};
+  EXPECT_EQ(read(gltf).objects.size(), 4u) << "all three where the node is";
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing") = json::object();
   EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has no instances")));
 }
@@ -212,6 +216,22 @@ TEST_F(GltfAsWritten, NodesThatAreNotVisible) {
   EXPECT_EQ(scene.cameras[0].name, "Camera");
   gltf.at("/nodes/0/extensions/KHR_node_visibility/visible") = true;
   EXPECT_EQ(read(gltf).objects.size(), 3u);
+}
+
+/// Names in a code page of Windows, backslashes between folders, a byte order mark.
+TEST_F(GltfAsWritten, TextOfWindows) {
+  Gltf gltf;
+  std::filesystem::create_directory(folder_ / "parts");
+  write("parts/own.bin", gltf.data);
+  gltf.at("/buffers/0") = {{"byteLength", gltf.data.size()}, {"uri", "parts\\own.bin"}};
+  gltf.at("/nodes/0/name") = "W_rfel";
+  std::string text = gltf.document.dump();
+  text[text.find("W_rfel") + 1] = '\xFC';
+  const Scene scene = read_gltf(write("scene.gltf", "\xEF\xBB\xBF" + text));
+  EXPECT_EQ(scene.objects[0].name, "W?rfel");
+  EXPECT_THAT(scene.warnings, Contains(HasSubstr("no UTF-8")));
+  const auto path = write("scene.gltf", text.substr(0, text.size() - 1));
+  EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("parse error"));
 }
 
 /// Files before 2021 often have their colours in KHR_materials_pbrSpecularGlossiness.

@@ -179,7 +179,7 @@ TEST_F(GltfReader, LampsThatAreNoneAreRefused) {
     Gltf gltf = with_lamp(lamp);
     EXPECT_THAT(refusal(gltf), HasSubstr(what));
   };
-  expect({{"type", "area"}}, "/extensions/KHR_lights_punctual/lights/0/type: \"area\"");
+  expect({{"type", "area"}}, "'Body' (a lamp of a type that KHR_lights_punctual");
   expect({{"type", "point"}, {"intensity", -1}}, "/lights/0/intensity");
   expect({{"type", "point"}, {"color", {1, -1, 0}}}, "/lights/0/color");
   expect({{"type", "point"}, {"extras", {{"radius", -1}}}}, "/nodes/0: the lamp's radius is -1");

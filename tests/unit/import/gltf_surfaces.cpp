@@ -292,7 +292,7 @@ TEST_F(GltfSurfaces, ExtrasShiftLensesAndSmoothCones) {
   gltf.at("/cameras/0")["extras"] = {{"shift", {0.25, -1}}};
   EXPECT_EQ(read(gltf).cameras.at(0).shift, glm::dvec2(0.25, -1));
   gltf.at("/cameras/0/extras/shift") = {0.25};
-  EXPECT_THAT(refusal(gltf), HasSubstr("/cameras/0/extras/shift: expected two numbers"));
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Camera' has extras \"shift\" of another tool")));
   gltf.at("/cameras/0/extras/shift") = {0.25, 1e9};
   EXPECT_THAT(test::input_error([&] { read_scene(write("scene.glb", gltf.glb())); }), HasSubstr("the shift is"));
   gltf.at("/cameras/0").erase("extras");
@@ -303,7 +303,7 @@ TEST_F(GltfSurfaces, ExtrasShiftLensesAndSmoothCones) {
   gltf.at("/nodes/2")["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};
   EXPECT_TRUE(std::get<Sphere>(read(gltf).lights.at(1).shape).cone->smooth);
   gltf.at("/extensions/KHR_lights_punctual/lights/0/extras/smooth") = 0.5;
-  EXPECT_THAT(refusal(gltf), HasSubstr("extras/smooth: 0.5; expected 0 or 1"));
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("extras \"smooth\" of another tool")));
 }
 
 TEST_F(GltfSurfaces, CamerasHaveTheirShape) {
