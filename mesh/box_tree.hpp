@@ -29,7 +29,8 @@ class BoxTree {
   explicit BoxTree(std::span<const Box> boxes);
 
   /// The items' numbers, near ones together.
-  [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
+  [[nodiscard]] std::span<const std::uint32_t> order() const& { return order_; }
+  std::span<const std::uint32_t> order() const&& = delete;
 
   /// visit(item) for every item whose box `reaches(box)`; reaches must be true of a box that holds one it is true of.
   template <typename Reaches, typename Visit>

@@ -41,7 +41,8 @@ class GrowingBytes {
   /// So many of the room are there now.
   void add(std::size_t count) { size_ += count; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] std::span<const std::byte> all() const { return {memory_.get(), size_}; }
+  [[nodiscard]] std::span<const std::byte> all() const& { return {memory_.get(), size_}; }
+  std::span<const std::byte> all() const&& = delete;
 
  private:
   struct Free {
@@ -55,7 +56,8 @@ struct HelperAnswer {
   std::vector<std::filesystem::path> sources;  ///< files that were opened on the way, `job.input` among them
   GrowingBytes bytes;
   std::size_t payload_at = 0;  ///< of the bytes
-  [[nodiscard]] std::span<const std::byte> payload() const { return bytes.all().subspan(payload_at); }
+  [[nodiscard]] std::span<const std::byte> payload() const& { return bytes.all().subspan(payload_at); }
+  std::span<const std::byte> payload() const&& = delete;
 };
 
 /// Runs `penumbra-import` on a foreign file, in a process of its own, and returns its answer.

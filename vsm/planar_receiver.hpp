@@ -25,7 +25,8 @@ class PlanarReceiver {
 
   [[nodiscard]] std::uint32_t pixel(std::uint32_t number) const { return pixels_[number]; }
   /// How far below 0 each is: what a triangle hides is deeper than it.
-  [[nodiscard]] std::span<const double> depths() const { return depths_; }
+  [[nodiscard]] std::span<const double> depths() const& { return depths_; }
+  std::span<const double> depths() const&& = delete;
   [[nodiscard]] pairs::LightPixels& texels() { return texels_; }
 
   /// No points and not everywhere: it hides nothing from any view sample.

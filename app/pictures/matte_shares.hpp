@@ -24,7 +24,8 @@ class MatteShares {
   /// Equal names are one.
   void add(std::span<const std::string> names, std::span<const std::uint32_t> of_sample, std::uint32_t side);
 
-  [[nodiscard]] std::span<const std::string> names() const { return names_; }
+  [[nodiscard]] std::span<const std::string> names() const& { return names_; }
+  std::span<const std::string> names() const&& = delete;
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width_} * rows_.size(); }
   /// What is in a pixel, the largest first; nothing is not among it.
   [[nodiscard]] std::vector<Share> of_pixel(std::size_t pixel) const;

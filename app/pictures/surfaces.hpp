@@ -18,8 +18,10 @@ class Surfaces {
   /// `session` must outlive it.
   explicit Surfaces(const Session& session);
 
-  [[nodiscard]] std::span<const std::string> objects() const { return objects_; }  ///< names
-  [[nodiscard]] std::span<const std::string> materials() const { return materials_; }
+  [[nodiscard]] std::span<const std::string> objects() const& { return objects_; }  ///< names
+  std::span<const std::string> objects() const&& = delete;
+  [[nodiscard]] std::span<const std::string> materials() const& { return materials_; }
+  std::span<const std::string> materials() const&& = delete;
   /// What a view sample shows: an index into these, or kNothing.
   [[nodiscard]] std::uint32_t object(std::size_t view_sample) const;
   [[nodiscard]] std::uint32_t material(std::size_t view_sample) const;

@@ -39,7 +39,8 @@ class FarPlane {
   [[nodiscard]] const std::vector<std::uint32_t>& outside() const { return outside_; }
   /// Of a number in its lists.
   [[nodiscard]] std::uint32_t pixel(std::uint32_t number) const { return pixels_[number]; }
-  [[nodiscard]] std::span<const double> heights() const { return heights_; }
+  [[nodiscard]] std::span<const double> heights() const& { return heights_; }
+  std::span<const double> heights() const&& = delete;
   [[nodiscard]] LightPixels& light_pixels() { return light_pixels_; }
 
   /// No points and not everywhere: it hides nothing from any view sample.

@@ -29,7 +29,8 @@ class DiskPart {
   explicit DiskPart(std::span<const glm::dvec2> corners);
 
   /// In order and closed. None: nothing is inside. One of no length with an arc of ±2π: the whole disk is.
-  [[nodiscard]] std::span<const Piece> pieces() const { return std::span(pieces_).first(count_); }
+  [[nodiscard]] std::span<const Piece> pieces() const& { return std::span(pieces_).first(count_); }
+  std::span<const Piece> pieces() const&& = delete;  ///< of a temporary: a range-for over them would outlive it
   /// Off by less than 16 · 2⁻⁵³ a corner: each edge has three terms, sums of a few roundings of numbers up to 2.
   [[nodiscard]] double area() const;
 

@@ -112,7 +112,8 @@ double UnshadowedLight::part_of_disk(std::span<const glm::dvec2> corners) const 
   }
   const auto direction = [&](const glm::dvec2& st) { return st.x * u_ + st.y * v_; };
   double sum = 0;
-  for (const auto& [from, to, arc] : DiskPart(std::span(above).first(count)).pieces()) {
+  const DiskPart seen{std::span(above).first(count)};
+  for (const auto& [from, to, arc] : seen.pieces()) {
     sum +=
         form_factor_term(FormFactorEdge{center_ + direction(from), center_ + direction(to), direction(to - from)}, n_);
     if (arc != 0) sum += form_factor_arc({center_, u_, v_, std::atan2(to.y, to.x), arc}, n_);
