@@ -1,6 +1,5 @@
 #include "app/runner.hpp"
 
-#include "app/process/interrupt.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/memory.hpp"
 #include "base/pages.hpp"
@@ -22,6 +21,13 @@ using visibility::Light;
 using visibility::Output;
 using visibility::PixelClass;
 using visibility::Tile;
+
+/// Of a round light V is a sum of arcs in double, off by up to 16 · 2⁻⁵³ a corner (DiskPart): what is below this is
+/// rounding, as where a sphere touches the receiver's plane from below.
+constexpr float kLeastRoundShare = 0x1p-44F;
+
+/// Form factors are sums of terms up to 1/2, each off by a few roundings (visibility/lights/form_factor.hpp).
+constexpr double kLeastFormFactor = 0x1p-40;
 
 bool lies_in_light_by_rule(PixelClass pixel) {
   return pixel == PixelClass::background || pixel == PixelClass::emitter || pixel == PixelClass::unshadowed;
@@ -70,35 +76,31 @@ class Host {
     OneRun times{std::vector<LightTimes>(plan_.lights.size())};
     for (const std::size_t light : in_order_of_meshes()) {
       Stopwatch watch;
-      const visibility::ViewSamples* samples = nullptr;
-      {
-        const MayExitAtOnce at_once;
-        if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
-          watch.restart();
-          method_.prepare_mesh(floats);
-          mesh_ = &floats;
-          times.mesh += watch.seconds();
-        }
-        if (const visibility::SceneFloats& floats = session_.floats_for(light);
-            !plan_.lights[light].filtered_by.empty() && filtered_ != &floats) {
-          watch.restart();
-          filter_.emplace(floats);
-          filtered_ = &floats;
-          times.mesh += watch.seconds();
-        }
+      if (const visibility::SceneFloats& floats = session_.floats_for(light); mesh_ != &floats) {
         watch.restart();
-        method_.prepare_light(plan_.lights[light]);
-        times.lights[light].light = watch.seconds();
-        watch.restart();
-        samples = &samples_for(light);
-        method_.prepare_view(*samples);
-        times.view += watch.seconds();
+        method_.prepare_mesh(floats);
+        mesh_ = &floats;
+        times.mesh += watch.seconds();
       }
+      if (const visibility::SceneFloats& floats = session_.floats_for(light);
+          !plan_.lights[light].filtered_by.empty() && filtered_ != &floats) {
+        watch.restart();
+        filter_.emplace(floats);
+        filtered_ = &floats;
+        times.mesh += watch.seconds();
+      }
+      watch.restart();
+      method_.prepare_light(plan_.lights[light]);
+      times.lights[light].light = watch.seconds();
+      watch.restart();
+      const visibility::ViewSamples& samples = samples_for(light);
+      method_.prepare_view(samples);
+      times.view += watch.seconds();
       std::uint32_t rows = std::max(method_.max_tile_rows(), 1u);
       rows = std::min(rows, most_rows_to_read(plan_.lights[light]));
       for (std::uint32_t row = 0; row < session_.height; row += rows) {
         const Tile tile{row, std::min(rows, session_.height - row)};
-        times.lights[light].evaluate += evaluate(tile) + filter(light, *samples, tile);
+        times.lights[light].evaluate += evaluate(tile) + filter(light, samples, tile);
         watch.restart();
         if (last) read(light, tile, result);
         times.read += watch.seconds();
@@ -152,7 +154,6 @@ class Host {
   }
 
   double evaluate(const Tile& tile) {
-    const MayExitAtOnce at_once;
     const Stopwatch watch;
     method_.evaluate(tile);
     return watch.seconds();
@@ -164,7 +165,6 @@ class Host {
     transmittances_.clear();
     dimmed_.clear();
     if (light.filtered_by.empty()) return 0;
-    const MayExitAtOnce at_once;
     const std::size_t count = std::size_t{tile.row_count} * session_.width;
     masks_.resize(count * light.words_per_mask());
     method_.read_masks(masks_);
@@ -201,15 +201,53 @@ class Host {
       method_.read_visibility(values);
     else
       share_filtered(light, values);
+    if (method_.description().output == Output::radiance && visibility::is_round(light.kind)) {
+      for (float& v : values) v = v < kLeastRoundShare ? 0 : v;
+    }
     for (std::size_t i = 0; i < count; ++i) {
       if (lies_in_light_by_rule(classes[i])) values[i] = 1.0f;
       if (classes[i] == PixelClass::unlit) values[i] = 0.0f;
     }
+    require_shares(light, first, values);
     leave_out(light_index, first, values);
     if (method_.description().output == Output::mask) read_masks(light, classes);
     form_factors_.resize(sink_ && method_.description().output == Output::radiance ? count : 0);
-    if (!form_factors_.empty()) method_.read_form_factors(form_factors_);
+    if (!form_factors_.empty()) {
+      method_.read_form_factors(form_factors_);
+      settle_form_factors(light, first, values);
+    }
     if (sink_) sink_({light_index, tile, values, masks_, transmittances_, dimmed_, form_factors_});
+  }
+
+  /// The one place through which every method's V passes: what is no share of the light goes no further.
+  void require_shares(const Light& light, std::size_t first, std::span<const float> values) const {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if ((values[i] >= 0 && values[i] <= 1) || !wanted(first + i)) continue;
+      refuse(light, first + i, fmt::format("V = {}, which is no share of a light (0 to 1)", values[i]));
+    }
+  }
+  /// What sees nothing of a light gets nothing of it, and nothing gets less.
+  void settle_form_factors(const Light& light, std::size_t first, std::span<const float> values) {
+    for (std::size_t i = 0; i < form_factors_.size(); ++i) {
+      glm::dvec3& f = form_factors_[i];
+      if (values[i] == 0) f = glm::dvec3(0);
+      if (std::min({f.x, f.y, f.z}) >= -kLeastFormFactor && std::isfinite(f.x + f.y + f.z)) {
+        f = glm::max(f, glm::dvec3(0));
+      } else if (wanted(first + i)) {
+        refuse(light, first + i,
+               fmt::format("the form factor ({}, {}, {}): no finite numbers from 0 on", f.x, f.y, f.z));
+      }
+    }
+  }
+  [[nodiscard]] bool wanted(std::size_t pixel) const {
+    return !plan_.pixels || std::ranges::binary_search(*plan_.pixels, static_cast<std::uint32_t>(pixel));
+  }
+  [[noreturn]] void refuse(const Light& light, std::size_t pixel, const std::string& what) const {
+    throw ResourceError(
+        "method {} gave {}, under light \"{}\" at pixel ({}, {}): a fault of this program, so nothing of this method "
+        "is "
+        "shown; choose another --method, and report the scene",
+        method_.description().name, what, light.name, pixel % session_.width, pixel / session_.width);
   }
 
   void leave_out(std::size_t light, std::size_t first, std::span<float> values) const {
@@ -300,10 +338,7 @@ MethodRun run_method(visibility::Method& method, const Session& session, const R
   const std::uint32_t discarded = plan.discard_first ? 1 : 0;
   progress.begin(plan.stage.empty() ? method.description().name : plan.stage,
                  std::uint64_t{session.height} * chosen.size() * (plan.runs + discarded));
-  {
-    const MayExitAtOnce at_once;
-    require_mesh_memory(method.description(), session.floats);
-  }
+  require_mesh_memory(method.description(), session.floats);
 
   Host host(method, session, plan, sink, progress);
   std::vector<OneRun> runs;

@@ -28,6 +28,12 @@ double height(const Plane& plane, const glm::dvec3& p) {
   return glm::dot(plane.normal(), p) + plane.d;
 }
 
+/// More than the rounding errors of front's and back's heights above p add up to: products of numbers as large as |p|
+/// and |a|, of planes whose normals are off by a few units in the last place.
+double height_error(const Wedge& wedge, const glm::vec3& p) {
+  return 0x1p-45 * (glm::length(glm::dvec3(p)) + glm::length(wedge.a) + glm::length(wedge.b));
+}
+
 /// The end of an edge, so that equal ones sort together.
 struct End {
   glm::vec3 at{0};
@@ -138,6 +144,8 @@ double ramp_sum(const LightWedges& wedges, const visibility::Light& light, const
     if (std::ranges::any_of(at, [](double h) { return h < 0; })) continue;
     const VolumeEdge& edge = wedges.edges[i];
     const bool lit = visibility::edge_side(p, c, edge.a, edge.b, light) < 0;
+    // On the edge, where front and back meet, the wedge has no width: the shadow is the hard one's.
+    if (!(at[kFront] + at[kBack] > height_error(wedge, p))) continue;
     const double ramp = at[kFront] / (at[kFront] + at[kBack]);
     sum += edge.multiplicity * (lit ? ramp : ramp - 1);
   }

@@ -39,7 +39,11 @@ void main() {
   const double front = height(0, p), back = height(1, p);
   if (front < 0.0LF || back < 0.0LF || height(2, p) < 0.0LF || height(3, p) < 0.0LF) return;
   const Value side = det(dvec3(face_a) - push.c, dvec3(face_b) - push.c, p - push.c);
-  if (abs(side.value) <= side.bound || !(front + back > 0.0LF)) {
+  // On the edge, or within what height_error() of the twin could call so: the host decides.
+  const double reach = double(abs(receiver.p.x) + abs(receiver.p.y) + abs(receiver.p.z)) +
+                       double(abs(face_a.x) + abs(face_a.y) + abs(face_a.z)) +
+                       double(abs(face_b.x) + abs(face_b.y) + abs(face_b.z));
+  if (abs(side.value) <= side.bound || !(front + back > reach / 17592186044416.0LF)) {
     doubts[slot] = 1;
     return;
   }

@@ -53,6 +53,25 @@ TEST_F(WedgeRamp, IsExactUnderALongEdge) {
   EXPECT_GT(errors.penumbra, 500U);
 }
 
+/// View samples on an edge of their own triangle, where the wedge has no width: nothing stands before the light, and so
+/// it is seen. (Front and back are both 0 there: their quotient is no number.)
+TEST_F(WedgeRamp, OnAnEdgeTheShadowIsHard) {
+  scenes::Scene scene;
+  tests::add_object(scene, "floor", {{glm::dvec3(2, 0, 2), glm::dvec3(2, 0, 0), glm::dvec3(-2, 0, -2)}});
+  scene.lights.push_back(tests::ceiling_light(5, 1));
+  scene.cameras.push_back(tests::camera({0, 1, 0}, {0, 0, 0}, 90));
+  scene.cameras.back().up = {0, 0, -1};
+  const SoftStage stage(scene, device(), 16, 16);
+  std::size_t on_edge = 0;
+  const std::vector<float> v = stage.run(*make_wedge_ramp(device(), {}));
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (!stage.judged(i)) continue;
+    on_edge += stage.samples.p[i].x == stage.samples.p[i].z ? 1 : 0;
+    EXPECT_EQ(v[i], 1.0F) << i;
+  }
+  EXPECT_GE(on_edge, 4U);
+}
+
 TEST_F(WedgeRamp, RefusesWhatItCannotDo) {
   EXPECT_THROW(static_cast<void>(make_wedge_ramp(device(), {{"split", "2"}})), UsageError);
   EXPECT_THROW(
