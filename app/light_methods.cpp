@@ -3,6 +3,7 @@
 #include "app/methods.hpp"
 #include "app/whole_lights.hpp"
 #include "base/error.hpp"
+#include "visibility/lights/device_light.hpp"
 
 #include <fmt/ranges.h>
 
@@ -17,6 +18,7 @@ namespace {
 using visibility::Light;
 using visibility::MethodDescription;
 using visibility::MethodOptions;
+using visibility::SceneFloats;
 
 bool has_option(const MethodDescription& method, const std::string& key) {
   return std::ranges::find(method.options, key, &visibility::OptionDescription::name) != method.options.end();
@@ -50,17 +52,35 @@ std::optional<LightMethod> area_method(const MethodDescription& method, const Li
   }
 }
 
-LightMethod choose(const Light& light, const MethodWish& wish) {
+/// Why another method does the light than does lights like it.
+std::string note_of_span(const Light& light, const std::string& method, const std::string& chosen) {
+  return fmt::format("light \"{}\": too far away, too large or too small beside the scene for {}; {} takes its place",
+                     light.name, method, chosen);
+}
+
+LightMethod choose(const Light& light, const SceneFloats& scene, const MethodWish& wish) {
   if (!wish.samples) {
+    std::string first;  // that would do it, were it nearer
     for (const MethodDescription* method : all_methods()) {
       if (!wish.method.empty() && method->name != wish.method) continue;
-      if (auto found = area_method(*method, light, wish)) return *std::move(found);
+      auto found = area_method(*method, light, wish);
+      if (!found) continue;
+      if (!wish.method.empty() || can_span(method->span, light, scene)) {
+        if (!first.empty()) found->note = note_of_span(light, first, method->name);
+        return *std::move(found);
+      }
+      if (first.empty()) first = method->name;
     }
   }
-  const MethodDescription& method = wish.method.empty() ? default_method(light) : describe_method(wish.method);
+  const MethodDescription& method = wish.method.empty() ? default_method(light, &scene) : describe_method(wish.method);
   MethodOptions options = options_for(method, wish);
   LightMethod chosen{describe_method(method.name, options), std::move(options), {}};
-  if (!wish.samples && !counts_light_samples(chosen.description) && !chosen.description.gives_area()) {
+  const MethodDescription* nearer = nullptr;  // what does such lights, where they are nearer
+  if (wish.samples && wish.method.empty()) nearer = &default_method(light);
+  if (nearer != nullptr && nearer->name != method.name) {
+    chosen.note = note_of_span(
+        light, nearer->name, chosen.description.gives_area() ? method.name + ", without light samples," : method.name);
+  } else if (!wish.samples && !counts_light_samples(chosen.description) && !chosen.description.gives_area()) {
     chosen.note = fmt::format("light \"{}\": {} gives an estimate of V without light samples; it is exact for {}",
                               light.name, method.name, method.exact_for);
   } else if (!wish.samples && !chosen.description.gives_area()) {
@@ -77,11 +97,15 @@ LightMethod choose(const Light& light, const MethodWish& wish) {
 }
 
 /// Pieces of one light are done by one method, if some of those chosen can do all.
-void unite(const std::vector<Light>& lights, const WholeLight& whole, std::vector<LightMethod>& chosen) {
+void unite(const std::vector<Light>& lights, const SceneFloats& scene, const WholeLight& whole,
+           std::vector<LightMethod>& chosen) {
   const auto first = static_cast<std::ptrdiff_t>(whole.first), end = first + static_cast<std::ptrdiff_t>(whole.count);
   const std::vector<Light> pieces(lights.begin() + first, lights.begin() + end);
-  const auto for_all = std::find_if(chosen.begin() + first, chosen.begin() + end,
-                                    [&](const LightMethod& one) { return can_do(one.description, pieces); });
+  const auto for_all = std::find_if(chosen.begin() + first, chosen.begin() + end, [&](const LightMethod& one) {
+    return can_do(one.description, pieces) && std::ranges::all_of(pieces, [&](const Light& piece) {
+             return can_span(one.description.span, piece, scene);
+           });
+  });
   if (for_all == chosen.begin() + end) return;
   const LightMethod one = *for_all;
   std::fill(chosen.begin() + first, chosen.begin() + end, one);
@@ -89,10 +113,11 @@ void unite(const std::vector<Light>& lights, const WholeLight& whole, std::vecto
 
 }  // namespace
 
-std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const MethodWish& wish) {
+std::vector<LightMethod> choose_light_methods(const std::vector<Light>& lights, const SceneFloats& scene,
+                                              const MethodWish& wish) {
   std::vector<LightMethod> all;
-  for (const Light& light : lights) all.push_back(choose(light, wish));
-  for (const WholeLight& whole : whole_lights(lights)) unite(lights, whole, all);
+  for (const Light& light : lights) all.push_back(choose(light, scene, wish));
+  for (const WholeLight& whole : whole_lights(lights)) unite(lights, scene, whole, all);
   for (std::size_t i = 0; i < lights.size(); ++i) check_light(all[i].description, lights[i]);
   for (const auto& option : wish.options) {
     const std::string& key = option.first;

@@ -2,6 +2,7 @@
 
 #include "base/did_you_mean.hpp"
 #include "base/error.hpp"
+#include "visibility/lights/device_light.hpp"
 
 #include <fmt/ranges.h>
 
@@ -239,16 +240,23 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
   });
 }
 
-const MethodDescription& default_method(const Light& light) {
-  const MethodDescription* other = nullptr;
+const MethodDescription& default_method(const Light& light, const visibility::SceneFloats* scene) {
+  const MethodDescription *rays = nullptr, *areas = nullptr;
+  bool refused = false;  // is there one that does such lights where they are nearer?
   for (const MethodDescription* method : all_methods()) {
     if (!can_do(*method, {light})) continue;
     // A hard shadow of the light's centre is no answer where rays give one, nor is what takes longer than rays.
     if (method->output == visibility::Output::scalar || method->on_request) continue;
-    if (method->family == Family::geometry) return *method;
-    if (method->family == Family::reference && method->output == visibility::Output::mask) other = method;
+    const bool holds = scene == nullptr || visibility::can_span(method->span, light, *scene);
+    if (method->family == Family::geometry && !refused) {
+      if (holds) return *method;
+      refused = true;
+    }
+    if (method->family != Family::reference || !holds) continue;
+    (method->output == visibility::Output::mask ? rays : areas) = method;
   }
-  if (other != nullptr) return *other;
+  if (rays != nullptr) return *rays;
+  if (areas != nullptr) return *areas;
   throw InputError("light \"{}\" is a {}, which no method of this build can do; choose another with --light",
                    light.name, visibility::name_of(light.kind));
 }

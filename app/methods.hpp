@@ -40,8 +40,11 @@ std::unique_ptr<visibility::Method> make_method(std::string_view name, const vis
 
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 
-/// The best method for the light's samples: the first geometry-based one that can do it, or, of a kind that none can
-/// do, rays. Throws InputError if there is none either.
-const visibility::MethodDescription& default_method(const visibility::Light& light);
+/// The best method for the light's samples: the first geometry-based one that can do it; of a light that it cannot hold
+/// beside the scene (LightSpan), or of a kind that none can do, rays. Where these cannot hold it either, `exact`, which
+/// has areas of any light. Throws InputError if there is none either.
+/// `scene`: null for a light of no size.
+const visibility::MethodDescription& default_method(const visibility::Light& light,
+                                                    const visibility::SceneFloats* scene = nullptr);
 
 }  // namespace penumbra::app

@@ -138,6 +138,7 @@ RayTraced::RayTraced(const visibility::MethodOptions& options) {
   description_.exact_for = "every light and any triangle soup, up to rounding in Embree's robust ray-triangle test";
   description_.lights = {LightKind::rectangle, LightKind::disk,   LightKind::ellipse,
                          LightKind::polygon,   LightKind::sphere, LightKind::sun};
+  description_.span = {0, 0x1p45F};  // EmbreeRange refuses what is farther, and perhaps a bit more
   description_.verdict_on = ray_traced_verdict;
   description_.options = {kPacket.description()};
   width_ = visibility::parse_options(description_, options)[kPacket];

@@ -8,6 +8,7 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/emitters.cpp
   cli/error_budget.cpp
   cli/explain.cpp
+  cli/far_lights.cpp
   cli/form_factor_dust.cpp
   cli/method_answers.cpp
   cli/exact_by_default.cpp

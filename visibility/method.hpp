@@ -9,6 +9,7 @@
 #include "visibility/view_samples.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -33,6 +34,15 @@ struct ExactArea {
   MethodOptions options = {};
 };
 
+/// Sizes of lights, in units of the scene's size (visibility/lights/device_light.hpp), that a method's float32 holds
+/// together with the scene.
+struct LightSpan {
+  float smallest = 0;  ///< of a light's half-size
+  float farthest = std::numeric_limits<float>::infinity();
+};
+/// Of methods that have lights in the scene's float32: they multiply up to six lengths.
+inline constexpr LightSpan kFloatSpan{0x1p-28F, 0x1p28F};
+
 /// What `penumbra methods` and `penumbra inspect` print of a method.
 struct MethodDescription {
   std::string name;
@@ -46,6 +56,7 @@ struct MethodDescription {
   bool on_request = false;        ///< takes so long that a comparison has it only by name, or with its whole family
   std::vector<OptionDescription> options;
   std::optional<ExactArea> exact_area = {};  ///< none: it never gives it
+  LightSpan span = {};                       ///< of lights that it does; by default of any size
   /// What it makes of a mesh with these defects, and why. Every method of the table of methods has one.
   MeshVerdict (*verdict_on)(const mesh::Diagnosis& mesh) = nullptr;
   /// Which runs do without each cause of its error, for options that it takes. Image-based methods have one.

@@ -47,6 +47,7 @@ visibility::MethodDescription view_sample_description(const visibility::MethodOp
       .lights = {LightKind::rectangle, LightKind::disk, LightKind::ellipse, LightKind::polygon, LightKind::sphere,
                  LightKind::sun},
       .options = {engines::kEngine.description(), kVariant.description()},
+      .span = visibility::kFloatSpan,
       .verdict_on = view_sample_verdict,
   };
   const visibility::ParsedOptions options = visibility::parse_options(description, given);

@@ -3,6 +3,7 @@
 #include "app/methods.hpp"
 #include "app/output.hpp"
 #include "base/error.hpp"
+#include "visibility/lights/device_light.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -56,7 +57,10 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
     std::optional<Entry> described = describe_entry(chosen, warn);
     if (!described) continue;
     Entry& entry = *described;
-    if (chosen.from_group && !can_do(entry.description, session.lights)) {
+    const bool can_hold = std::ranges::all_of(session.lights, [&](const visibility::Light& light) {
+      return visibility::can_span(entry.description.span, light, session.floats);
+    });
+    if (chosen.from_group && !(can_do(entry.description, session.lights) && can_hold)) {
       warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
       continue;
     }

@@ -36,10 +36,10 @@ void FrameRenderer::choose_methods(const Session& session) {
   const std::vector<visibility::Light>& lights = session.lights;
   lights_ = lights;
   for (visibility::Light& light : lights_) light.filtered_by.clear();
-  chosen_ = choose_light_methods(lights_, wish_);
+  chosen_ = choose_light_methods(lights_, session.floats, wish_);
   counting_.assign(lights.size(), std::nullopt);
   if (std::ranges::all_of(lights, [](const auto& light) { return light.filtered_by.empty(); })) return;
-  std::vector<LightMethod> counting = choose_light_methods(lights, wish_);
+  std::vector<LightMethod> counting = choose_light_methods(lights, session.floats, wish_);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     if (lights[i].filtered_by.empty()) continue;
     if (chosen_[i].description.gives_area()) counting_[i] = counting[i];

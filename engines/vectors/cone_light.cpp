@@ -67,12 +67,7 @@ ConeLight::ConeLight(const visibility::Light& light, const visibility::SceneFloa
     return;
   }
   const double r = light.radius, reach = largest(glm::dvec3(light.center)) + r;
-  const auto scaled_radius = static_cast<float>(r * scale_);
-  visibility::DeviceLight around;
-  around.center = light.center * static_cast<float>(scale_);
-  around.u = {scaled_radius, 0, 0};
-  around.v = {0, scaled_radius, 0};
-  visibility::check_size(light, around, options.method);
+  visibility::check_size(light, visibility::box_of_sphere(light, static_cast<float>(scale_)), options.method);
   deviation_ = scale_ * (2 * kRoundingOf * reach + 0x1p-147);  // √3 / 2 units in the last place, at most
   reach_ = std::max(reach_, static_cast<float>(scale_ * reach * 1.0001));
   const glm::vec3 box(static_cast<float>(2.25 * r) + 0x1p-12F * reach_ / static_cast<float>(scale_));

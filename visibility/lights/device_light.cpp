@@ -2,6 +2,7 @@
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
+#include "visibility/tree/tree_texels.hpp"
 
 #include <glm/geometric.hpp>
 
@@ -41,6 +42,16 @@ glm::vec2 coordinates_of(const DeviceLight& frame, const glm::dvec3& point) {
   const double along_u = glm::dot(at, u), along_v = glm::dot(at, v);
   const glm::dvec2 exact((along_u * vv - along_v * uv) / det, (along_v * uu - along_u * uv) / det);
   return glm::vec2(glm::clamp(exact, glm::dvec2(-1), glm::dvec2(1)));
+}
+
+/// The smaller half of a light, and how far it reaches from the scene's origin.
+LightSpan sizes_of(const DeviceLight& frame) {
+  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
+  return {std::min(size(frame.u), size(frame.v)), size(frame.center) + size(frame.u) + size(frame.v)};
+}
+
+bool holds(const LightSpan& span, const LightSpan& light) {
+  return light.farthest <= span.farthest && light.smallest >= span.smallest;
 }
 
 constexpr std::uint32_t kShiftUnit = 65536;
@@ -106,15 +117,30 @@ float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale) 
   return reach;
 }
 
+DeviceLight box_of_sphere(const Light& light, float scale) {
+  const float radius = static_cast<float>(light.radius) * scale;
+  DeviceLight box;
+  box.center = light.center * scale;
+  box.u = {radius, 0, 0};
+  box.v = {0, radius, 0};
+  return box;
+}
+
+bool can_span(const LightSpan& span, const Light& light, const SceneFloats& scene) {
+  if (light.sun) return true;
+  const float scale = device_scale(scene);
+  return holds(
+      span, sizes_of(light.kind == LightKind::sphere ? box_of_sphere(light, scale) : make_device_light(light, scale)));
+}
+
 void check_size(const Light& light, const DeviceLight& frame, const std::string& method) {
-  const auto size = [](const glm::vec3& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); };
-  const float largest = size(frame.center) + size(frame.u) + size(frame.v);
-  const float smallest = std::min(size(frame.u), size(frame.v));
-  if (largest <= 0x1p28F && smallest >= 0x1p-28F) return;
+  const LightSpan sizes = sizes_of(frame);
+  if (holds(kFloatSpan, sizes)) return;
   throw InputError(
       "light \"{}\": {} handles lights between 2^-28 and 2^28 of the scene's size; this one has half-size {:.3g} and "
-      "reaches {:.3g} from the origin of a scene of size 1; use raytrace, or bring light and scene closer in scale",
-      light.name, method, smallest, largest);
+      "reaches {:.3g} from the origin of a scene of size 1; use exact or raytrace, or bring light and scene closer in "
+      "scale",
+      light.name, method, sizes.smallest, sizes.farthest);
 }
 
 }  // namespace penumbra::visibility

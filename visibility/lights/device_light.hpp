@@ -1,6 +1,7 @@
 #pragma once
 
 #include "visibility/light_samples.hpp"
+#include "visibility/method.hpp"
 #include "visibility/scene_floats.hpp"
 
 #include <glm/vec2.hpp>
@@ -22,6 +23,9 @@ struct DeviceLight {
   float deviation = 0;                 ///< the largest distance of a stored sample from its place in this frame
 };
 
+/// A sphere's size, as that of planar lights is asked for: no frame that it has.
+DeviceLight box_of_sphere(const Light& light, float scale);
+
 /// Of a rectangle its own frame; of a disk, ellipse or polygon a rectangle around it along the first stored axis.
 /// `scale` is a power of two. Not for spheres.
 DeviceLight make_device_light(const Light& light, float scale);
@@ -33,7 +37,10 @@ bool has_rows(const Light& light);
 /// positions grow with.
 float reach_of(const SceneFloats& scene, const DeviceLight& frame, float scale);
 
-/// Throws InputError where float32 cannot span light and scene together; `method` names the error.
+/// Whether a method that holds lights of these sizes holds this one. Every method holds suns, which have no size.
+bool can_span(const LightSpan& span, const Light& light, const SceneFloats& scene);
+
+/// Throws InputError where float32 (kFloatSpan) cannot span light and scene together; `method` names the error.
 void check_size(const Light& light, const DeviceLight& frame, const std::string& method);
 
 }  // namespace penumbra::visibility

@@ -294,6 +294,7 @@ visibility::MethodDescription depth_complexity_description(const visibility::Met
                  LightKind::sun},
       .options = {engines::kEngine.description(), kVariant.description(), kSearch.description(), kCrop.description(),
                   kCounterBits.description()},
+      .span = visibility::kFloatSpan,
       .verdict_on = depth_complexity_verdict};
   const visibility::ParsedOptions parsed = parse(description, options);
   if (parsed[engines::kEngine] == engines::Engine::vulkan || !can_be_native(parsed) ||

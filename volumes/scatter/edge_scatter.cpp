@@ -267,6 +267,7 @@ visibility::MethodDescription describe() {
           .lights = {kLights.begin(), kLights.end()},
           .options = {engines::kEngine.description(), kExactRows.description()},
           .exact_area = visibility::ExactArea{{kLights.begin(), kLights.end()}, {{"rows", "exact"}}},
+          .span = visibility::kFloatSpan,
           .verdict_on = verdict_on};
 }
 
