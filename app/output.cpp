@@ -120,17 +120,13 @@ void check_bits(const visibility::MethodDescription& description, std::span<cons
 }
 
 void BitsOutput::add(const TileResult& result) {
-  if (!writer_) {
-    open_.emplace();
-    writer_.emplace(path_, session_.floats.origin, session_.samples, light_);
-  }
+  if (!writer_) writer_.emplace(path_, session_.floats.origin, session_.samples, light_);
   writer_->append(result.masks);
 }
 
 void BitsOutput::commit() {
   writer_->commit();
   writer_.reset();
-  open_.reset();
 }
 
 std::string device_of(const std::string& method, const visibility::MethodOptions& options,

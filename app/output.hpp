@@ -1,6 +1,5 @@
 #pragma once
 
-#include "app/process/interrupt.hpp"
 #include "app/runner.hpp"
 #include "app/session.hpp"
 #include "app/whole_lights.hpp"
@@ -50,7 +49,7 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty,
 /// Throws UsageError if `--bits` cannot be had of this method and the first of these lights.
 void check_bits(const visibility::MethodDescription& description, std::span<const visibility::Light> lights);
 
-/// `--bits` as tiles come. The file is opened with the first of them: until then an interrupt need not wait.
+/// `--bits` as tiles come.
 class BitsOutput {
  public:
   /// check_bits comes first. All must outlive it.
@@ -58,13 +57,13 @@ class BitsOutput {
       : path_(std::move(path)), session_(session), light_(light) {}
   /// The tiles of `light` in order.
   void add(const TileResult& result);
+  void settle() { writer_->settle(); }
   void commit();
 
  private:
   std::filesystem::path path_;
   const Session& session_;
   const visibility::Light& light_;
-  std::optional<FileIsOpen> open_;
   std::optional<visibility::BitsWriter> writer_;
 };
 

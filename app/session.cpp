@@ -1,6 +1,5 @@
 #include "app/session.hpp"
 
-#include "app/process/interrupt.hpp"
 #include "app/process/stopwatch.hpp"
 #include "base/assert.hpp"
 #include "base/did_you_mean.hpp"
@@ -167,7 +166,6 @@ void SessionMaker::show(scenes::Scene scene, const std::string& camera, std::uin
   progress.begin("view samples", runs + 1);
   std::vector<double> view_seconds;
   for (std::uint32_t run = 0; run <= runs; ++run) {
-    const MayExitAtOnce at_once;
     const Stopwatch view;
     session_.samples = sampler_->find(session_.camera);
     view_seconds.push_back(view.seconds());
@@ -195,7 +193,6 @@ void SessionMaker::classify() {
   session_.filtered.assign(session_.lights.size(), {});
   session_.filtered_seconds.assign(session_.lights.size(), 0);
   for (std::size_t i = 0; i < session_.lights.size(); ++i) {
-    const MayExitAtOnce at_once;
     visibility::Light& light = session_.lights[i];
     session_.classes.push_back(visibility::classify_pixels(session_.floats, session_.samples, light));
     light.filtered_by = filters_[i];
@@ -223,11 +220,7 @@ Session open_session(const RunOptions& options, std::optional<double> time, Devi
   SessionMaker maker(options, devices);
   devices.begin();
   const Stopwatch load;
-  scenes::Scene scene;
-  {
-    const MayExitAtOnce at_once;
-    scene = read_session_scene(options, time);
-  }
+  scenes::Scene scene = read_session_scene(options, time);
   const double read_seconds = load.seconds();
   maker.show(std::move(scene), options.camera, runs, progress);
   Session session = maker.take();

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
@@ -39,6 +40,18 @@ std::uint64_t disk_quota() {
 /// The folder that a file stands in, as a path that can be opened.
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// Parts that have a name. Held while a file changes its name.
+struct NamedParts {
+  std::mutex mutex;
+  std::set<std::filesystem::path> paths;
+};
+
+/// Never destroyed: a signal may come while the process ends.
+NamedParts& named_parts() {
+  static NamedParts& parts = *std::make_unique<NamedParts>().release();
+  return parts;
 }
 
 /// What the names of parts begin with on this machine until it starts again. An equal beginning means the same kernel,
@@ -139,13 +152,17 @@ bool AtomicFile::open_nameless() {
 void AtomicFile::open_named() {
   for (;;) {
     temporary_ = next_part(destination_);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    {
+      const std::lock_guard lock(named_parts().mutex);
+      descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ >= 0) named_parts().paths.insert(temporary_);
+    }
     if (descriptor_ < 0 && errno == EEXIST) continue;
     if (descriptor_ < 0) fail(errno);
     ::flock(descriptor_, LOCK_EX);  // where there are no locks, nobody else gets one either, and orphans stay
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;
-    ::close(std::exchange(descriptor_, -1));  // taken for an orphan before it was locked
+    remove_temporary();  // taken for an orphan before it was locked
   }
 }
 
@@ -202,6 +219,8 @@ void AtomicFile::commit() {
 
 /// A link never replaces a file: where there is one already, a name of our own comes first, to be renamed.
 void AtomicFile::give_name() {
+  NamedParts& parts = named_parts();
+  const std::lock_guard lock(parts.mutex);
   if (temporary_.empty()) {
     const std::string nameless = path_of_descriptor(descriptor_);
     const auto link = [&](const std::filesystem::path& name) {
@@ -212,12 +231,14 @@ void AtomicFile::give_name() {
     for (std::filesystem::path part = next_part(destination_);; part = next_part(destination_)) {
       if (link(part)) {
         temporary_ = part;
+        parts.paths.insert(part);
         break;
       }
       if (errno != EEXIST) fail(errno);
     }
   }
   if (::rename(temporary_.c_str(), destination_.c_str()) != 0) fail(errno);
+  parts.paths.erase(temporary_);
   temporary_.clear();
 }
 
@@ -227,8 +248,17 @@ void AtomicFile::fail(int error_number) const {
 
 void AtomicFile::remove_temporary() noexcept {
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  const std::lock_guard lock(named_parts().mutex);
+  ::unlink(temporary_.c_str());
+  named_parts().paths.erase(temporary_);
   temporary_.clear();
+}
+
+void remove_unfinished_files() {
+  NamedParts& parts = named_parts();
+  parts.mutex.lock();  // for ever
+  for (const std::filesystem::path& part : parts.paths) ::unlink(part.c_str());
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes) {

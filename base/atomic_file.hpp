@@ -62,6 +62,10 @@ class AtomicFile {
   bool settled_ = false;
 };
 
+/// Removes the temporary files of every AtomicFile of this process. None gets its name any more, and whoever asks for
+/// that waits for ever: for a process that ends without unwinding.
+void remove_unfinished_files();
+
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 

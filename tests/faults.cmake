@@ -9,6 +9,7 @@ penumbra_test(faults PREFIX faults. FULL *Long*
   faults/memory.cpp
   faults/orphans.cpp
   faults/outputs.cpp
+  faults/signals.cpp
   faults/streams.cpp
   faults/waits.cpp
   LIBRARIES penumbra_base)

@@ -1,6 +1,5 @@
 #include "app/commands.hpp"
 #include "app/options.hpp"
-#include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
 #include "app/reading_options.hpp"
 #include "base/error.hpp"
@@ -44,11 +43,7 @@ class ConvertCommand : public Command {
     outputs.add("-o", out_);
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
-    scenes::Scene scene;
-    {
-      const MayExitAtOnce at_once;
-      scene = scenes::read_scene(scene_, reading);
-    }
+    scenes::Scene scene = scenes::read_scene(scene_, reading);
     for (const std::filesystem::path& texture : scenes::texture_files(scene, out_)) outputs.add("-o", texture);
     scene.sources.push_back(scene_);
     outputs.refuse_inputs(scene.sources);

@@ -57,12 +57,8 @@ class RenderCommand : public Command {
       return 0;
     }
     devices.begin();  // while the scene is read, mostly by another process
-    ReadScene now;
-    {
-      const MayExitAtOnce at_once;
-      now = read(frames[at]);
-      now.seconds = seconds_since_start();  // nothing else has been done yet
-    }
+    ReadScene now = read(frames[at]);
+    now.seconds = seconds_since_start();  // nothing else has been done yet
     if (all_cameras) {
       cameras.clear();
       for (const scenes::Camera& camera : now.scene.cameras) {

@@ -1,6 +1,5 @@
 #include "app/compare/mask_comparison.hpp"
 
-#include "app/process/interrupt.hpp"
 #include "visibility/pair_truth.hpp"
 
 namespace penumbra::app {
@@ -38,7 +37,6 @@ compare::PairVerdicts MaskComparison::decide(Progress& progress) const {
   if (kept_.empty()) return verdicts;
   progress.begin("deciding pairs exactly", kept_.size());
   for (const DifferingPair& pair : kept_) {
-    const MayExitAtOnce at_once;
     const visibility::PairTruth truth =
         visibility::decide_pair(session_.floats_for(question_.light), session_.samples, pair.pixel,
                                 session_.lights[question_.light], pair.light_sample);

@@ -2,7 +2,6 @@
 #include "app/inspect/examine.hpp"
 #include "app/inspect/export.hpp"
 #include "app/inspect/report.hpp"
-#include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
 #include "app/process/progress.hpp"
 #include "app/reading_options.hpp"
@@ -127,12 +126,8 @@ class InspectCommand : public Command {
   }
 
   [[nodiscard]] RepairReport repair(const mesh::TriangleSoup& soup) const {
-    mesh::Repaired repaired;
-    {
-      const MayExitAtOnce at_once;
-      repaired =
-          mesh::repair(soup, {.weld = weld_, .fill_holes_up_to = fill_holes_, .resolve_self_intersections = resolve_});
-    }
+    mesh::Repaired repaired =
+        mesh::repair(soup, {.weld = weld_, .fill_holes_up_to = fill_holes_, .resolve_self_intersections = resolve_});
     mesh::PlyMesh ply;
     ply.positions = std::move(repaired.soup.positions);
     ply.triangles = std::move(repaired.soup.triangles);

@@ -1,7 +1,6 @@
 #include "app/inspect/examine.hpp"
 
 #include "app/methods.hpp"
-#include "app/process/interrupt.hpp"
 #include "base/assert.hpp"
 #include "mesh/import.hpp"
 #include "mesh/silhouettes.hpp"
@@ -130,7 +129,6 @@ ObjectReport examine_part(std::string name, const mesh::TriangleSoup& soup, cons
     const auto reached = static_cast<std::uint64_t>(share * kSteps);
     if (reached > done) progress.advance(reached - std::exchange(done, reached));
   };
-  const MayExitAtOnce at_once;
   const mesh::MeshView view{soup.positions, soup.triangles};
   ObjectReport report;
   report.name = std::move(name);
@@ -143,7 +141,6 @@ ObjectReport examine_part(std::string name, const mesh::TriangleSoup& soup, cons
 }  // namespace
 
 InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside) {
-  const MayExitAtOnce at_once;
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });

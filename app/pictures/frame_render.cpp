@@ -3,6 +3,7 @@
 #include "app/methods.hpp"
 #include "app/parse.hpp"
 #include "app/pictures/surfaces.hpp"
+#include "app/process/interrupt.hpp"
 #include "app/process/process.hpp"
 #include "app/process/stopwatch.hpp"
 #include "app/whole_lights.hpp"
@@ -354,6 +355,9 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
     stats_file->write(compare::json_text(compare::to_json(stats)));
     stats_file->settle();
   }
+  if (bits_) bits_->settle();
+  // All of a frame's files or none, also where a signal comes now.
+  const UnwindsAfterSignals unwinds;
   if (bits_) bits_->commit();
   bits_.reset();
   picture.commit();

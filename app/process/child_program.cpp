@@ -1,6 +1,5 @@
 #include "app/process/child_program.hpp"
 
-#include "app/process/interrupt.hpp"
 #include "base/error.hpp"
 
 #include <array>

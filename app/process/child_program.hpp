@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/process/interrupt.hpp"
 #include "base/child.hpp"
 
 #include <csignal>
@@ -37,6 +38,7 @@ class ChildProgram {
   };
   static pid_t start(std::vector<std::string>& command, const Said& output, const Said& errors);
 
+  UnwindsAfterSignals unwinds_;
   Said said_[2];  // output, errors
   Child child_;
 };

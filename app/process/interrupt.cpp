@@ -1,8 +1,10 @@
 #include "app/process/interrupt.hpp"
 
+#include "base/atomic_file.hpp"
+
 #include <atomic>
 #include <csignal>
-#include <cstdio>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -14,22 +16,24 @@ namespace {
 
 // A signal is the process's, so its state is too: the one global of this program.
 std::atomic<bool> g_interrupted{false};
-std::mutex g_at_once_mutex;  // held while the process ends, so that no stretch ends and opens a file meanwhile
-int g_at_once_depth = 0;
-int g_open_files = 0;
+std::mutex g_mutex;  // held while the process ends, so that nothing begins meanwhile that must unwind
+int g_unwinding = 0;
+
+/// Not exit(): its handlers would run under the feet of the working threads.
+[[noreturn]] void end_at_once() {
+  remove_unfinished_files();
+  constexpr char kText[] = "penumbra: interrupted\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText, sizeof(kText) - 1);
+  ::_exit(static_cast<int>(ExitCode::interrupted));
+}
 
 [[noreturn]] void wait_for_signals(sigset_t signals) {
   for (;;) {
     int signal = 0;
     if (sigwait(&signals, &signal) != 0) continue;
     g_interrupted = true;
-    const std::lock_guard lock(g_at_once_mutex);
-    if (g_at_once_depth > 0 && g_open_files == 0) {
-      // Not exit(): its handlers would run under the feet of the working threads.
-      constexpr char kText[] = "penumbra: interrupted\n";
-      [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kText, sizeof(kText) - 1);
-      ::_exit(static_cast<int>(ExitCode::interrupted));
-    }
+    const std::lock_guard lock(g_mutex);
+    if (g_unwinding == 0) end_at_once();
   }
 }
 
@@ -51,25 +55,15 @@ void check_interrupt() {
   if (g_interrupted) throw Interrupted();
 }
 
-MayExitAtOnce::MayExitAtOnce() {
+UnwindsAfterSignals::UnwindsAfterSignals() {
   check_interrupt();
-  const std::lock_guard lock(g_at_once_mutex);
-  ++g_at_once_depth;
+  const std::lock_guard lock(g_mutex);
+  ++g_unwinding;
 }
 
-MayExitAtOnce::~MayExitAtOnce() {
-  const std::lock_guard lock(g_at_once_mutex);
-  --g_at_once_depth;
-}
-
-FileIsOpen::FileIsOpen() {
-  const std::lock_guard lock(g_at_once_mutex);
-  ++g_open_files;
-}
-
-FileIsOpen::~FileIsOpen() {
-  const std::lock_guard lock(g_at_once_mutex);
-  --g_open_files;
+UnwindsAfterSignals::~UnwindsAfterSignals() {
+  const std::lock_guard lock(g_mutex);
+  if (--g_unwinding == 0 && g_interrupted && std::uncaught_exceptions() == 0) end_at_once();
 }
 
 }  // namespace penumbra::app

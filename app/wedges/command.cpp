@@ -1,6 +1,5 @@
 #include "app/commands.hpp"
 #include "app/options.hpp"
-#include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
 #include "app/reading_options.hpp"
 #include "app/wedges/report.hpp"
@@ -125,7 +124,6 @@ class WedgesCommand : public Command {
     OutputFiles outputs = named_outputs();
     outputs.refuse_inputs({&scene_, 1});
     outputs.require_writable();
-    std::optional<MayExitAtOnce> at_once(std::in_place);  // until files are written
     scenes::Scene scene = scenes::read_scene(scene_, {.allow_outside = allow_outside_, .lenient = lenient_});
     outputs.refuse_inputs(scene.sources);
     for (const std::string& warning : scene.warnings) spdlog::warn("{}", warning);
@@ -170,7 +168,6 @@ class WedgesCommand : public Command {
       outputs.refuse_inputs(scene.sources);
       outputs.refuse_inputs({&scene_, 1});
     }
-    at_once.reset();
     if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
     if (!json_.empty()) write_wedges_json(json_, result);
     if (!export_.empty()) {

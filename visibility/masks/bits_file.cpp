@@ -62,6 +62,10 @@ void BitsWriter::append(std::span<const std::uint32_t> masks) {
   }
 }
 
+void BitsWriter::settle() {
+  file_.settle();
+}
+
 void BitsWriter::commit() {
   PENUMBRA_ASSERT(next_pixel_ == samples_.size(), "masks of {} pixels, but there are {}", next_pixel_, samples_.size());
   file_.commit();

@@ -33,7 +33,8 @@ class BitsWriter {
   /// The masks of the next pixels in scan-line order, words_per_mask() words each.
   void append(std::span<const std::uint32_t> masks);
 
-  /// After the last pixel.
+  /// After the last pixel: AtomicFile's.
+  void settle();
   void commit();
 
  private:
