@@ -107,6 +107,28 @@ ExrFile read_from(const std::string& shown, const ExrSelection& selection, Sourc
 
 }  // namespace
 
+bool is_whole_exr(const std::filesystem::path& path, const std::string& attribute) {
+  try {
+    Imf::InputFile input(path.c_str());
+    const Imf::Header& header = input.header();
+    if (header.findTypedAttribute<Imf::StringAttribute>(attribute) == nullptr) return false;
+    if (!input.isComplete() || header.channels().begin() == header.channels().end()) return false;
+    // Lines stand in their order: where the last is, all are.
+    const Imath::Box2i window = header.dataWindow();
+    std::vector<float> line(static_cast<std::size_t>(window.max.x - window.min.x) + 1);
+    Imf::FrameBuffer pixels;
+    pixels.insert(header.channels().begin().name(),
+                  Imf::Slice::Make(Imf::FLOAT, line.data(), {{window.min.x, window.max.y}, window.max}));
+    input.setFrameBuffer(pixels);
+    input.readPixels(window.max.y);
+    return true;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection) {
   return read_from(path.string(), selection, path.c_str());
 }

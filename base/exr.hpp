@@ -68,6 +68,10 @@ struct ExrSelection {
   std::vector<std::string> channels;  ///< these alone, where the file has them; none: all
 };
 
+/// Is this an OpenEXR file whose header has that string attribute, and whose last lines are there? So one that was cut
+/// off, or that something else wrote, can be told. False for what cannot be read.
+bool is_whole_exr(const std::filesystem::path& path, const std::string& attribute);
+
 /// Reads a scan-line or tiled image: its data window. Throws InputError for what is none, or has a side of more than
 /// `largest_side` pixels, which is found out before anything is decoded. Channels that are not selected take no memory.
 ExrFile read_exr(const std::filesystem::path& path, const ExrSelection& selection = {});

@@ -1,10 +1,10 @@
-// OpenEXR's own library writes the header and the table of lines; lines are packed here, as its ZIP has them, by
-// libdeflate, which takes half of zlib's time for as many bytes, on all cores.
+// Lines are packed as OpenEXR's ZIP has them, by libdeflate, which takes half of zlib's time for as many bytes, on all
+// cores.
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/exr.hpp"
+#include "base/exr_header.hpp"
 
-#include <OpenEXR/openexr.h>
 #include <fmt/format.h>
 #include <libdeflate.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <exception>
 #include <memory>
 #include <new>
 #include <string_view>
@@ -39,70 +38,6 @@ struct Plane {
   const std::byte* first = nullptr;
   std::size_t stride = 0;  ///< bytes
   const ExrValues* values = nullptr;
-};
-
-/// The file as OpenEXR's library sees it: places to write to. What a write throws waits here until C code is left.
-struct Sink {
-  AtomicFile& file;
-  std::uint64_t begin = file.size();
-  std::exception_ptr thrown = {};
-  std::string message = {};
-
-  static std::int64_t write(exr_const_context_t /*context*/, void* sink, const void* bytes, std::uint64_t count,
-                            std::uint64_t offset, exr_stream_error_func_ptr_t /*error*/) {
-    auto& self = *static_cast<Sink*>(sink);
-    try {
-      self.file.write_at(self.begin + offset, {static_cast<const std::byte*>(bytes), count});
-      return static_cast<std::int64_t>(count);
-    } catch (...) {
-      self.thrown = std::current_exception();
-      return -1;
-    }
-  }
-};
-
-/// An OpenEXR file that is being written: one part of scan lines.
-class Writer {
- public:
-  Writer(AtomicFile& file, const ExrImage& image) : sink_{file} {
-    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    how.user_data = &sink_;
-    how.write_fn = Sink::write;
-    how.error_handler_fn = [](exr_const_context_t context, exr_result_t /*code*/, const char* message) {
-      void* sink = nullptr;
-      if (exr_get_user_data(context, &sink) == EXR_ERR_SUCCESS && sink != nullptr)
-        static_cast<Sink*>(sink)->message = message;
-    };
-    exr_context_t context = nullptr;
-    const exr_result_t started = exr_start_write(&context, file.path().c_str(), EXR_WRITE_FILE_DIRECTLY, &how);
-    context_.reset(context);
-    check(started);
-    check(exr_set_longname_support(context, 1));
-    check(exr_add_part(context, nullptr, EXR_STORAGE_SCANLINE, nullptr));
-    check(exr_initialize_required_attr_simple(context, 0, static_cast<std::int32_t>(image.width),
-                                              static_cast<std::int32_t>(image.height), EXR_COMPRESSION_ZIP));
-  }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-  ~Writer() = default;
-
-  [[nodiscard]] exr_context_t context() const { return context_.get(); }
-
-  /// Throws what went wrong in the call that gave this answer.
-  void check(exr_result_t answer) const {
-    if (answer == EXR_ERR_SUCCESS) return;
-    if (sink_.thrown) std::rethrow_exception(sink_.thrown);
-    if (answer == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw ResourceError("cannot write \"{}\": OpenEXR says: {}", sink_.file.path().string(),
-                        sink_.message.empty() ? exr_get_default_error_message(answer) : sink_.message);
-  }
-
- private:
-  struct Finish {
-    void operator()(exr_context_t context) const { exr_finish(&context); }
-  };
-  Sink sink_;
-  std::unique_ptr<std::remove_pointer_t<exr_context_t>, Finish> context_;
 };
 
 /// Packs lines as OpenEXR's ZIP does: bytes of even places before those of odd ones, each as its difference from the
@@ -199,9 +134,11 @@ struct Block {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Packs blocks of lines on all cores, and writes each when all before it are written.
-void write_lines(const Writer& writer, std::span<const Plane> planes, std::size_t width, std::size_t height) {
+/// Packs blocks of lines on all cores, and writes each when all before it are written. Returns where each begins.
+std::vector<std::uint64_t> write_lines(AtomicFile& file, std::span<const Plane> planes, std::size_t width,
+                                       std::size_t height) {
   tbb::enumerable_thread_specific<Packer> packers;
+  std::vector<std::uint64_t> places;
   std::size_t next = 0;
   const auto begin = [&](tbb::flow_control& control) {
     if (next >= height) control.stop();
@@ -211,14 +148,19 @@ void write_lines(const Writer& writer, std::span<const Plane> planes, std::size_
     return Block{first, packers.local().packed(planes, width, first, std::min(kLines, height - first))};
   };
   const auto write = [&](const Block& block) {
-    writer.check(exr_write_scanline_chunk(writer.context(), 0, static_cast<int>(block.first_line), block.bytes.data(),
-                                          block.bytes.size()));
+    places.push_back(file.size());
+    ExrBytes begins;
+    begins.put(static_cast<std::int32_t>(block.first_line));
+    begins.put(static_cast<std::int32_t>(block.bytes.size()));
+    file.write(begins.all());
+    file.write(std::as_bytes(std::span(block.bytes)));
   };
   constexpr auto kInOrder = tbb::filter_mode::serial_in_order;
   tbb::parallel_pipeline(2 * std::size_t{std::max(1u, std::thread::hardware_concurrency())},
                          tbb::make_filter<void, std::size_t>(kInOrder, begin) &
                              tbb::make_filter<std::size_t, Block>(tbb::filter_mode::parallel, pack) &
                              tbb::make_filter<Block, void>(kInOrder, write));
+  return places;
 }
 
 }  // namespace
@@ -245,40 +187,30 @@ void write_exr(AtomicFile& file, const ExrImage& image) {
     throw ResourceError("cannot write \"{}\": {}x{} pixels; an OpenEXR image has 1 to {} a side", path.string(),
                         image.width, image.height, kLargestExrSide);
   }
-  const Writer writer(file, image);
-  const exr_context_t context = writer.context();
-  for (const auto& [name, value] : image.attributes) {
-    check_name(path, "attribute's name", name);
-    writer.check(exr_attr_set_string(context, 0, name.c_str(), value.c_str()));
-  }
-  for (const auto& [name, value] : image.vectors) {
-    check_name(path, "attribute's name", name);
-    const exr_attr_v3d_t vector{{{value.x, value.y, value.z}}};
-    writer.check(exr_attr_set_v3d(context, 0, name.c_str(), &vector));
-  }
-  for (const auto& [name, value] : image.matrices) {
-    check_name(path, "attribute's name", name);
-    exr_attr_m44f_t matrix;
-    static_assert(sizeof matrix.m == sizeof value);
-    std::memcpy(matrix.m, &value[0][0], sizeof value);
-    writer.check(exr_attr_set_m44f(context, 0, name.c_str(), &matrix));
-  }
-
+  for (const auto& attribute : image.attributes) check_name(path, "attribute's name", attribute.first);
+  for (const auto& attribute : image.vectors) check_name(path, "attribute's name", attribute.first);
+  for (const auto& attribute : image.matrices) check_name(path, "attribute's name", attribute.first);
   // In the file, channels stand in the order of their names' bytes.
   std::map<std::string, Plane> planes;
+  std::map<std::string, bool> kinds;
   const std::size_t pixel_count = std::size_t{image.width} * image.height;
   for (const ExrChannel& channel : image.channels) {
     check_name(path, "channel's name", channel.name);
     const bool is_new = planes.emplace(channel.name, plane_of(channel, pixel_count)).second;
     PENUMBRA_ASSERT(is_new, "two channels are called {}", channel.name);
-    const bool is_float = !std::holds_alternative<std::span<const std::uint32_t>>(channel.values);
-    writer.check(exr_add_channel(context, 0, channel.name.c_str(), is_float ? EXR_PIXEL_FLOAT : EXR_PIXEL_UINT,
-                                 EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    kinds.emplace(channel.name, !std::holds_alternative<std::span<const std::uint32_t>>(channel.values));
   }
-  writer.check(exr_write_header(context));
+  const std::uint64_t begin = file.size();
+  const std::vector<std::byte> header = exr_header(image, kinds);
+  file.write(header);
+  // A table of where each block of lines begins comes before the first of them, and is filled in afterwards.
+  const std::size_t blocks = (image.height + kLines - 1) / kLines;
+  file.write(std::vector<std::byte>(8 * blocks));
   std::vector<Plane> in_order;
   for (const auto& [name, plane] : planes) in_order.push_back(plane);
-  write_lines(writer, in_order, image.width, image.height);
+  ExrBytes table;
+  for (const std::uint64_t place : write_lines(file, in_order, image.width, image.height)) table.put(place - begin);
+  file.write_at(begin + header.size(), table.all());
 }
 
 }  // namespace penumbra

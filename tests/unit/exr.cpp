@@ -14,6 +14,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -77,6 +78,41 @@ struct Sample {
     image.vectors = {{"penumbra.origin", {0.1, -1e100, 1.0 / 3}}};
   }
 };
+
+/// A scene of a hundred thousand lights has four times as many channels. (OpenEXR's library looks at all for each that
+/// is added: minutes.)
+TEST_F(Exr, ManyChannelsTakeLittleTime) {
+  constexpr int kMany = 200'000;
+  const std::vector<float> value = {0.5F};
+  ExrImage image{1, 1, {}, {}, {}};
+  for (int i = 0; i < kMany; ++i) image.channels.push_back({"light" + std::to_string(i) + ".V", std::span(value), 1});
+  const std::clock_t begin = std::clock();
+  write_exr(folder_ / "many.exr", image);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 10);
+  const ExrFile read = read_exr(folder_ / "many.exr", {.channels = {"light77777.V"}});
+  EXPECT_EQ(read.channel_names.size(), std::size_t{kMany});
+  EXPECT_EQ(read.floats.at("light77777.V"), value);
+}
+
+/// Cut off anywhere, or without the attribute, it is not what was written.
+TEST_F(Exr, ThatIsWholeCanBeTold) {
+  std::vector<float> values(64 * 40);
+  std::mt19937 random(7);
+  for (float& v : values) v = std::ldexp(static_cast<float>(random()), -32);
+  write_exr(folder_ / "a.exr", {64, 40, {{"V", std::span(std::as_const(values)), 1}}, {{"mark", "x"}}, {}});
+  EXPECT_TRUE(is_whole_exr(folder_ / "a.exr", "mark"));
+  EXPECT_FALSE(is_whole_exr(folder_ / "a.exr", "other"));
+  EXPECT_FALSE(is_whole_exr(folder_ / "none.exr", "mark"));
+  EXPECT_FALSE(is_whole_exr(folder_, "mark"));
+  std::ifstream stream(folder_ / "a.exr", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  for (std::size_t size = 0; size < bytes.size(); size += 61) {
+    std::ofstream(folder_ / "cut.exr", std::ios::binary) << bytes.substr(0, size);
+    EXPECT_FALSE(is_whole_exr(folder_ / "cut.exr", "mark")) << size << " of " << bytes.size();
+  }
+  std::ofstream(folder_ / "cut.exr", std::ios::binary) << bytes.substr(0, bytes.size() - 1);
+  EXPECT_FALSE(is_whole_exr(folder_ / "cut.exr", "mark"));
+}
 
 TEST_F(Exr, KeepsEveryBit) {
   const Sample sample;

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "base/exr.hpp"
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace penumbra {
+
+/// What an OpenEXR file is made of: numbers as a little-endian machine has them, and text that a zero byte ends.
+class ExrBytes {
+ public:
+  template <typename Number>
+  void put(const Number& number) {
+    static_assert(std::is_trivially_copyable_v<Number>);
+    const auto* first = reinterpret_cast<const std::byte*>(&number);
+    bytes_.insert(bytes_.end(), first, first + sizeof number);
+  }
+  void put_text(std::string_view text) {
+    put_characters(text);
+    put('\0');
+  }
+  void put_characters(std::string_view text) {
+    const auto* first = reinterpret_cast<const std::byte*>(text.data());
+    bytes_.insert(bytes_.end(), first, first + text.size());
+  }
+  [[nodiscard]] std::span<const std::byte> all() const& { return bytes_; }
+  std::span<const std::byte> all() const&& = delete;
+  [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// The beginning of an OpenEXR file of one part, scan lines and ZIP, up to the table of its blocks. `is_float`: of each
+/// channel, by name; the others are UINT. In time linear in the channels, of which a scene of many lights has many:
+/// OpenEXR's library (3.1) looks at all that there are for each that it adds.
+std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::string, bool>& is_float);
+
+}  // namespace penumbra
