@@ -1,10 +1,12 @@
 #include "app/commands.hpp"
 #include "app/pictures/frame_render.hpp"
+#include "app/pictures/frames.hpp"
 #include "app/pictures/request.hpp"
 #include "app/process/interrupt.hpp"
 #include "app/process/output_files.hpp"
 #include "app/process/process.hpp"
 #include "app/process/stopwatch.hpp"
+#include "base/exr.hpp"
 #include "visibility/view_samples.hpp"
 
 #include <CLI/CLI.hpp>
@@ -65,6 +67,7 @@ class RenderCommand : public Command {
         visibility::make_camera(camera, {}, 1, 1);  // refuses now what would be refused after the others' pictures
         cameras.push_back(camera.name);
       }
+      options_.camera_words = camera_words(cameras);
       outputs = claim(cameras);
     }
     outputs.refuse_inputs(now.scene.sources);
@@ -75,13 +78,9 @@ class RenderCommand : public Command {
       spdlog::warn("{} has no animation: every frame shows the same", now.scene.name);
     }
     if (exposure.kind == Exposure::Kind::first && options_.skip_existing) {
+      // Where it is not whole it is rendered now, and decides again.
       const std::filesystem::path first = files_of(options_, frames.front(), cameras.front()).picture;
-      const auto stops = written_exposure(first);
-      if (!stops && std::filesystem::exists(first)) {
-        progress.clear();
-        spdlog::warn("{} does not say how it was exposed: the first frame that is rendered decides", first.string());
-      }
-      exposure.stops = stops.value_or(exposure.stops);
+      if (is_whole_exr(first, kExposureAttribute)) exposure.stops = written_exposure(first).value_or(exposure.stops);
     }
 
     while (at < frames.size()) {
@@ -92,7 +91,12 @@ class RenderCommand : public Command {
         coming = std::async(std::launch::async, [this, frame = frames[next]] { return read(frame); });
       for (const std::string& camera : cameras) {
         const FrameFiles files = files_of(options_, frames[at], camera);
-        if (options_.skip_existing && files.all_there()) continue;
+        if (options_.skip_existing) {
+          if (files.all_there()) continue;
+          progress.clear();
+          for (const std::filesystem::path& file : files.spoilt())
+            spdlog::warn("{} is cut off, or no file that this command wrote: it is made again", file.string());
+        }
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
         renderer.render(is_last ? std::move(now.scene) : scenes::Scene(now.scene),
                         {frames[at], camera, request_.pixel_side, request_.filter, moments_of(frames[at], moves)},

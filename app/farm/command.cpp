@@ -141,6 +141,7 @@ class SubmitCommand : public Command {
     cameras_.clear();  // their names are in the scene
     const double time = static_cast<double>(frames_.front()) * request_.seconds_per_frame;
     for (const scenes::Camera& camera : read_session_scene(options_.run, time).cameras) cameras_.push_back(camera.name);
+    options_.camera_words = camera_words(cameras_);
   }
 
   // What is there.
@@ -175,7 +176,10 @@ class SubmitCommand : public Command {
         failed.insert(failed.end(), now.begin(), now.end());
         constexpr std::size_t kEnough = 3;
         if (failed.size() == kEnough) throw Error(static_cast<ExitCode>(now.front().code), give_up(failed));
-        if (!now.empty()) continue;
+        if (!now.empty()) {
+          spdlog::warn("frame {}, which --exposure first asks, fails: the next one decides how all are exposed", frame);
+          continue;
+        }
       }
       if (const auto stops = written_exposure(picture(frame))) return fmt::format("{}", *stops);
       spdlog::warn("{} does not say how it was exposed: the next frame decides", picture(frame).string());

@@ -83,20 +83,6 @@ void add_times(MethodRun& to, const MethodRun& before) {
 
 }  // namespace
 
-std::vector<std::pair<const char*, std::filesystem::path>> FrameFiles::all() const {
-  std::vector<std::pair<const char*, std::filesystem::path>> files = {
-      {"-o", picture}, {"--stats", stats}, {"--png", png}, {"--bits", bits}};
-  std::erase_if(files, [](const auto& file) { return file.second.empty(); });
-  return files;
-}
-
-bool FrameFiles::all_there() const {
-  return std::ranges::all_of(all(), [](const auto& file) {
-    std::error_code error;  // what is empty was made by somebody else, to keep the place
-    return std::filesystem::is_regular_file(file.second, error) && std::filesystem::file_size(file.second, error) > 0;
-  });
-}
-
 FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, DeviceSource& devices,
                              Progress& progress)
     : options_(options),

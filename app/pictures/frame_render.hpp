@@ -3,6 +3,7 @@
 #include "app/light_methods.hpp"
 #include "app/output.hpp"
 #include "app/pictures/exposure.hpp"
+#include "app/pictures/frame_files.hpp"
 #include "app/pictures/picture_file.hpp"
 #include "app/pictures/picture_mean.hpp"
 #include "app/runner.hpp"
@@ -22,15 +23,6 @@
 #include <vector>
 
 namespace penumbra::app {
-
-/// Where one picture goes; what is empty is not wanted.
-struct FrameFiles {
-  std::filesystem::path picture, stats, png, bits;
-
-  /// All that are wanted, each with the option that asks for it.
-  [[nodiscard]] std::vector<std::pair<const char*, std::filesystem::path>> all() const;
-  [[nodiscard]] bool all_there() const;
-};
 
 /// What one picture shows, besides what is the same for all.
 struct Frame {

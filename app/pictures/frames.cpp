@@ -1,6 +1,5 @@
 #include "app/pictures/frames.hpp"
 
-#include "app/options.hpp"
 #include "app/parse.hpp"
 #include "base/error.hpp"
 
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace penumbra::app {
@@ -111,12 +111,37 @@ std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t 
   return out.parent_path() / name;
 }
 
-std::filesystem::path camera_path(const std::filesystem::path& out, std::string_view camera) {
+std::map<std::string, std::string> camera_words(std::span<const std::string> cameras) {
+  constexpr std::size_t kLongest = 100;  // bytes: file systems end at 255 for all that is in a name
+  std::map<std::string, std::string> words;
+  std::set<std::string> taken;
+  for (const std::string& camera : cameras) {
+    std::string word = camera.substr(0, kLongest);
+    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };  // of UTF-8
+    if (camera.size() > kLongest && continues(camera[kLongest])) {
+      while (continues(word.back())) word.pop_back();
+      word.pop_back();
+    }
+    std::ranges::replace_if(
+        word,
+        [](unsigned char c) {
+          return c < 0x80 && std::isalnum(c) == 0 &&
+                 std::string_view("-_.=+").find(static_cast<char>(c)) == std::string_view::npos;
+        },
+        '_');
+    const std::string plain = word;
+    for (int number = 2; !taken.insert(word).second; ++number) word = fmt::format("{}_{}", plain, number);
+    words.emplace(camera, word);
+  }
+  return words;
+}
+
+std::filesystem::path camera_path(const std::filesystem::path& out, std::string_view word) {
   std::string name = out.filename().string();
   const auto place = number_place(name);
   std::size_t at = place ? place->at : out.stem().string().size();
   if (place && at > 0 && name[at - 1] == '.') --at;
-  return out.parent_path() / name.insert(at, "." + file_name_of(camera));
+  return out.parent_path() / name.insert(at, "." + std::string(word));
 }
 
 }  // namespace penumbra::app

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,8 +32,11 @@ std::string sequence_name(const std::filesystem::path& out);
 /// The name with the frame's number there, else before its extension: OUT.exr and frame 7 → OUT.0007.exr. Of several
 /// such places it is the last.
 std::filesystem::path frame_path(const std::filesystem::path& out, std::int64_t frame);
-/// The name with a camera's before the frame's number, or else before the extension: OUT.####.exr → OUT.Shot.####.exr.
-/// What does not suit a file's name in it becomes '_'.
-std::filesystem::path camera_path(const std::filesystem::path& out, std::string_view camera);
+/// For each camera's name what stands for it in names of files, each another: letters and digits of every script stay,
+/// other ASCII becomes '_', long names are cut, and names that come to the same get a number ("Shot_1", "Shot_1_2").
+std::map<std::string, std::string> camera_words(std::span<const std::string> cameras);
+/// The name with a camera's word before the frame's number, or else before the extension: OUT.####.exr →
+/// OUT.Shot.####.exr.
+std::filesystem::path camera_path(const std::filesystem::path& out, std::string_view word);
 
 }  // namespace penumbra::app

@@ -140,7 +140,7 @@ PictureRequest parse_request(const PictureOptions& options) {
 FrameFiles files_of(const PictureOptions& options, std::optional<double> frame, const std::string& camera) {
   const auto named = [&](std::filesystem::path path) {
     if (path.empty()) return path;
-    if (options.run.camera == "all") path = camera_path(path, camera);
+    if (options.run.camera == "all") path = camera_path(path, options.camera_words.at(camera));
     const bool numbered = frame && (!options.frames.empty() || has_frame_number(path));
     return numbered ? frame_path(path, static_cast<std::int64_t>(*frame)) : path;
   };

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct PictureOptions {
   std::string method, exposure, frames, fps, pixel_samples, pixel_filter, filter_width, motion_samples, shutter;
   std::optional<std::string> frame;  ///< of `render` alone
   bool skip_existing = false;
+  std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, once it is read
   std::filesystem::path stats, png, bits;
 };
 

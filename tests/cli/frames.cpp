@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <span>
 
 namespace penumbra::tests {
 namespace {
@@ -69,26 +71,47 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
   const std::vector<std::string> sequence = {"--frames",    "1-3",        "-o",    path("s.exr"),    "--png",
                                              path("s.png"), "--exposure", "first", "--skip-existing"};
   ASSERT_EQ(render(sequence).code, 0);
-  const std::string third = read("s.0003.exr"), picture = read("s.0003.png");
-  write("s.0002.exr", "kept as it is");
+  const std::string second = read("s.0002.exr"), third = read("s.0003.exr"), picture = read("s.0003.png");
   write("s.0003.exr", "");  // somebody's placeholder, or what a full disk left
+  const auto before = std::filesystem::last_write_time(path("s.0002.exr"));
   const Outcome again = render(sequence);
   ASSERT_EQ(again.code, 0) << again.err;
-  EXPECT_EQ(read("s.0002.exr"), "kept as it is");
+  EXPECT_EQ(std::filesystem::last_write_time(path("s.0002.exr")), before);
+  EXPECT_EQ(read("s.0002.exr"), second);
   EXPECT_EQ(read("s.0003.exr"), third);
   EXPECT_EQ(read("s.0003.png"), picture) << "exposed as the first was";
   EXPECT_EQ(read_exr(path("s.0003.exr")).attributes.at("penumbra.exposure"),
             read_exr(path("s.0001.exr")).attributes.at("penumbra.exposure"));
+  EXPECT_THAT(again.err, Not(HasSubstr("cut off")));
   EXPECT_THAT(render(sequence).err, HasSubstr("all 3 pictures are there"));
 }
 
-TEST_F(Frames, AFirstPictureThatDoesNotSayItsExposureIsNoReasonToStop) {
-  write("s.0001.exr", "kept as it is");
-  const Outcome outcome = render({"--frames", "1-2", "-o", path("s.exr"), "--exposure", "first", "--skip-existing"});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("does not say how it was exposed"));
-  EXPECT_EQ(read("s.0001.exr"), "kept as it is");
-  EXPECT_TRUE(std::filesystem::exists(path("s.0002.exr")));
+/// A file that was cut off, or that something else wrote, is not there: it is named, and made again with the same
+/// bytes.
+TEST_F(Frames, ThatAreTornOrForeignAreMadeAgain) {
+  const std::vector<std::string> sequence = {
+      "--frames",     "1-2",    "-o",           path("s.exr"), "--png", path("s.png"),    "--stats",
+      path("s.json"), "--bits", path("s.bits"), "--exposure",  "first", "--skip-existing"};
+  ASSERT_EQ(render(sequence).code, 0);
+  write_exr(path("foreign.exr"),
+            {24, 16, {{"V", [](std::size_t, std::span<float> v) { std::ranges::fill(v, 1.0F); }}}, {}, {}});
+  const std::string foreign = read("foreign.exr");
+  std::filesystem::remove(path("foreign.exr"));
+  std::map<std::string, std::string> whole;
+  for (const char* name : {"s.0001.exr", "s.0001.png", "s.0001.bits", "s.0001.json", "s.0002.exr"})
+    whole[name] = read(name);
+  for (const auto& [name, bytes] : whole) {
+    std::vector<std::string> wrong = {"a text", bytes.substr(0, bytes.size() - 1), bytes.substr(0, bytes.size() / 2)};
+    if (name.ends_with(".exr")) wrong.push_back(foreign);
+    for (const std::string& text : wrong) {
+      write(name, text);
+      const Outcome again = render(sequence);
+      ASSERT_EQ(again.code, 0) << again.err;
+      EXPECT_THAT(again.err, HasSubstr(name + " is cut off, or no file that this command wrote")) << text.size();
+      if (name.ends_with(".json")) continue;  // it has times
+      EXPECT_EQ(read(name), bytes) << name << ", where " << text.size() << " bytes stood, and exposed as the first is";
+    }
+  }
 }
 
 /// Between frames, too: the camera is where it is half a frame later.

@@ -43,8 +43,23 @@ TEST(Options, FramePaths) {
   EXPECT_EQ(frame_path("take#1.%03d.exr", 7), "take#1.007.exr");
   EXPECT_EQ(frame_path("g.####.exr", -7), "g.-007.exr");
   EXPECT_TRUE(has_frame_number("g.####.exr") && has_frame_number("%d.exr") && !has_frame_number("100%.exr"));
-  EXPECT_EQ(camera_path("a/out.exr", "Shot 1"), "a/out.Shot_1.exr");
+  EXPECT_EQ(camera_path("a/out.exr", "Shot_1"), "a/out.Shot_1.exr");
   EXPECT_EQ(frame_path(camera_path("out.####.exr", "B"), 3), "out.B.0003.exr");
+}
+
+TEST(Options, CamerasHaveEachAnotherWord) {
+  std::string umlauts;
+  for (int i = 0; i < 60; ++i) umlauts += "\u00c4";
+  const std::vector<std::string> names = {"Shot 1", "Shot/1", "Ä", "Ö", "..", "*", "?", umlauts, umlauts + "!"};
+  const auto words = camera_words(names);
+  EXPECT_EQ(words.at("Shot 1"), "Shot_1");
+  EXPECT_EQ(words.at("Shot/1"), "Shot_1_2");
+  EXPECT_EQ(words.at("Ä"), "Ä");
+  EXPECT_EQ(words.at("Ö"), "Ö");
+  EXPECT_EQ(words.at("*"), "_");
+  EXPECT_EQ(words.at("?"), "__2");
+  EXPECT_EQ(words.at(umlauts), umlauts.substr(0, 100));
+  EXPECT_EQ(words.at(umlauts + "!"), umlauts.substr(0, 100) + "_2");
 }
 
 TEST(Options, Frames) {
