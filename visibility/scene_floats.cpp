@@ -141,7 +141,13 @@ std::vector<std::uint32_t> ranks(const SceneFloats& scene) {
 SceneFloats make_scene_floats(const scenes::Scene& scene) {
   constexpr std::uint64_t kTriangle = sizeof(Triangle) + 3 * sizeof(std::uint32_t) + 2;  // see SceneFloats
   constexpr std::uint64_t kSorting = 3 * sizeof(std::uint32_t);
+  // Sides of triangles are numbered by 32 bits (mesh/sorted_sides.hpp), and triangles by 31 in the picture.
+  constexpr std::uint64_t kMostTriangles = (std::uint64_t{1} << 32U) / 3;
   const std::uint64_t count_of_triangles = scene.soup.triangles.size();
+  if (count_of_triangles > kMostTriangles) {
+    throw ResourceError("a scene of {} triangles; up to {} can be numbered here: make its meshes smaller",
+                        count_of_triangles, kMostTriangles);
+  }
   require_memory(count_of_triangles * (kTriangle + kSorting) + scene.soup.positions.size() * sizeof(glm::vec3),
                  fmt::format("a scene of {} triangles", count_of_triangles), "make its meshes smaller");
   SceneFloats floats;

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace penumbra::scenes {
@@ -52,11 +53,21 @@ Camera read_camera(const json& value, const Place& place, std::string fallback_n
   return camera;
 }
 
-std::vector<Camera> read_cameras(const json& document, const Place& root) {
+/// `--camera` asks for them by name, so a name that is taken gets a number.
+std::vector<Camera> read_cameras(const json& document, const Place& root, std::vector<std::string>& warnings) {
   if (document.contains("camera")) return {read_camera(document["camera"], root / "camera", "camera")};
   std::vector<Camera> cameras;
+  std::set<std::string> taken;
   for (const json& value : document["cameras"]) {
-    cameras.push_back(read_camera(value, root / "cameras" / cameras.size(), fmt::format("camera{}", cameras.size())));
+    const Place place = root / "cameras" / cameras.size();
+    Camera camera = read_camera(value, place, fmt::format("camera{}", cameras.size()));
+    const std::string name = camera.name;
+    for (int number = 2; !taken.insert(camera.name).second; ++number) camera.name = fmt::format("{}_{}", name, number);
+    if (camera.name != name) {
+      warnings.push_back(
+          fmt::format("{}: the name \"{}\" is taken; the camera is called \"{}\"", place.str(), name, camera.name));
+    }
+    cameras.push_back(std::move(camera));
   }
   return cameras;
 }
@@ -174,13 +185,14 @@ AreaLight read_light(const json& value, const Place& place, std::string fallback
 
 std::vector<AreaLight> read_lights(const json& document, const Place& root, const ReadOptions& options, Scene& scene) {
   std::vector<AreaLight> lights;
+  std::unordered_map<std::string, std::size_t> number_of;  // each name
   for (const json& value : document["lights"]) {
     const Place place = root / "lights" / lights.size();
     AreaLight light = read_light(value, place, fmt::format("light{}", lights.size()), options, scene);
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-      if (lights[i].name != light.name) continue;
+    const auto [same, is_new] = number_of.emplace(light.name, lights.size());
+    if (!is_new) {
       throw InputError("{}: the name \"{}\" is that of light {} already; names of lights must differ", place.str(),
-                       light.name, i);
+                       light.name, same->second);
     }
     lights.push_back(std::move(light));
   }
@@ -303,7 +315,7 @@ Scene read_json_text(std::string_view text, const std::filesystem::path& file, c
     scene.width = document["size"][0].get<std::uint32_t>();
     scene.height = document["size"][1].get<std::uint32_t>();
   }
-  scene.cameras = read_cameras(document, root);
+  scene.cameras = read_cameras(document, root, scene.warnings);
   scene.lights = read_lights(document, root, options, scene);
   require_room_for_meshes(document["meshes"], root / "meshes");
   for (const json& value : document["meshes"]) {
