@@ -81,13 +81,18 @@ TEST_F(FarLights, EveryKindIsDone) {
   }
 }
 
-/// Beyond the reach of Embree's float32, too.
+/// Beyond the reach of Embree's float32, too: coordinates end at 1e12, so the scene is small.
 TEST_F(FarLights, BeyondRaysAreAreas) {
-  const Rendered rendered =
-      render(R"({"name": "far", "disk": {"center": [0, 1e20, 0], "normal": [0, -1, 0], "radius": 1e18}})",
-             {"--light-samples", "16"});
-  EXPECT_EQ(rendered.method, "exact");
-  EXPECT_THAT(rendered.err, HasSubstr("exact, without light samples, takes its place"));
+  write("small.json", R"({"format": "penumbra-scene/1", "size": [12, 8],
+    "camera": {"eye": [0, 0.002, 0.003], "target": [0, 0, 0]},
+    "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [0.001, 0, 0], "halfV": [0, 0, -0.001]}}],
+    "lights": [{"name": "far", "disk": {"center": [0, 9e11, 0], "normal": [0, -1, 0], "radius": 1e10}}]})");
+  const Outcome outcome =
+      run({"render", path("small.json"), "-o", path("out.exr"), "--light-samples", "16", "--stats", path("s.json")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("exact, without light samples, takes its place"));
+  EXPECT_EQ(json::parse(read("s.json")).at("lights")[0].at("method"), "exact");
+  EXPECT_THAT(read_exr(path("out.exr")).floats.at("V"), testing::Each(1.0F));
 }
 
 /// A method that was named is not replaced, and of a comparison's methods those that cannot are left out by name.
