@@ -9,6 +9,10 @@ set(PENUMBRA_PRECOMPILED
   <string_view> <system_error> <thread> <tuple> <unordered_map> <utility> <variant> <vector>
   <fmt/format.h> <fmt/ranges.h> <glm/glm.hpp> <nlohmann/json.hpp>)
 
+# Where nothing is optimised, fmt 9 asks g++ by pragma to optimise its own lines. g++ 12 forgets in a precompiled header that this
+# ends there: __OPTIMIZE__ stays defined, intrinsics are then functions in place of macros, and their immediates no constants.
+add_compile_options("$<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Debug>>:-DFMT_GCC_PRAGMA(text)=>")
+
 find_package(fmt REQUIRED)
 find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)

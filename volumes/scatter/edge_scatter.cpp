@@ -209,7 +209,7 @@ class EdgeScatter final : public EdgeMethod {
       }
     }
     std::ranges::sort(pixels);
-    open_pixels_ += static_cast<std::uint64_t>(std::ranges::unique(pixels).begin() - pixels.begin());
+    open_pixels_ += static_cast<std::uint64_t>(std::unique(pixels.begin(), pixels.end()) - pixels.begin());
     return open;
   }
 
