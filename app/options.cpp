@@ -46,6 +46,21 @@ visibility::SamplePattern parse_pattern(const std::string& text) {
   throw UsageError("--sample-pattern {}: expected rows, grid, sobol, jittered or rgss", text);
 }
 
+void add_format_options(CLI::App& command, FormatOptions& format) {
+  command
+      .add_option("--layers", format.layers,
+                  "what the EXR has: names of layers or channels with commas between, * and ? in them, and beauty for "
+                  "R G B A; such as beauty,V,Z,key,P or 'beauty,*_light' (default: all but <light>_light and "
+                  "<light>_V, which repeat a light's R G B and V as Blender's compositor takes them)")
+      ->type_name("NAME,…");
+  command.add_flag("--half", format.half, "16 bits in the EXR for colours, V and N; P, Prel, Z, id and mattes keep 32");
+  command
+      .add_option(
+          "--compression", format.compression,
+          "of the EXR: zip, zips (line by line), none, or dwaa, which is lossy for colours alone (default: zip)")
+      ->type_name("NAME");
+}
+
 }  // namespace
 
 std::string file_name_of(std::string_view label) {
@@ -94,6 +109,7 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("NAME");
   add_lenient(command, options.lenient);
   add_gltf_options(command, options.gltf);
+  add_format_options(command, options.format);
 }
 
 void add_gltf_options(CLI::App& command, GltfOptions& gltf) {

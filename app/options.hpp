@@ -24,6 +24,13 @@ struct GltfOptions {
   std::vector<std::string> clips;  ///< names or numbers; empty: all that can be played at once
 };
 
+/// How OUT.exr is written, as the user gave it; what is empty was not said.
+struct FormatOptions {
+  std::optional<std::string> layers;
+  bool half = false;
+  std::string compression;
+};
+
 /// What `render` and `compare` have in common, as the user gave it.
 struct RunOptions {
   std::filesystem::path scene;
@@ -38,6 +45,7 @@ struct RunOptions {
   bool lenient = false;
   std::string normals;  ///< empty: shading
   GltfOptions gltf;
+  FormatOptions format;
 };
 
 /// Adds --lamp-radius, --sun-angle, --lumens-per-watt and --clip.

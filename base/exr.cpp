@@ -8,9 +8,13 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
+#include <OpenEXR/ImfVersion.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,6 +46,55 @@ class MemoryInput : public Imf::IStream {
   std::size_t position_ = 0;
 };
 
+/// Of an InputFile or InputPart: adds what the file has not read yet.
+template <typename Input>
+void read_channels(Input& input, const std::string& shown, const ExrSelection& selection, ExrFile& file) {
+  const Imf::Header& header = input.header();
+  const Imath::Box2i window = header.dataWindow();
+  Imf::FrameBuffer pixels;
+  const auto insert = [&](const char* name, Imf::PixelType type, auto& values) {
+    values.resize(std::size_t{file.width} * file.height);
+    // OpenEXR addresses pixels by their absolute place: shift so that the window's corner is element 0.
+    pixels.insert(name, Imf::Slice::Make(type, values.data(), window));
+  };
+  const std::vector<std::string>& wanted = selection.channels;
+  const std::vector<std::string> before = file.channel_names;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+    if (std::ranges::find(before, channel.name()) != before.end()) continue;
+    file.channel_names.emplace_back(channel.name());
+    if (!wanted.empty() && std::ranges::find(wanted, channel.name()) == wanted.end()) continue;
+    if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
+      throw InputError("\"{}\": channel {} is subsampled, which is not supported", shown, channel.name());
+    }
+    if (channel.channel().type == Imf::UINT) {
+      insert(channel.name(), Imf::UINT, file.integers[channel.name()]);
+    } else {
+      insert(channel.name(), Imf::FLOAT, file.floats[channel.name()]);
+    }
+  }
+  if (pixels.begin() == pixels.end()) return;
+  input.setFrameBuffer(pixels);
+  input.readPixels(window.min.y, window.max.y);
+}
+
+void rewind(const char* /*path*/) {}
+void rewind(MemoryInput& stream) {
+  stream.seekg(0);
+}
+
+template <typename Source>
+void read_other_parts(Source& source, const Imath::Box2i& window, const std::string& shown,
+                      const ExrSelection& selection, ExrFile& file) {
+  rewind(source);
+  Imf::MultiPartInputFile parts(source);
+  for (int i = 1; i < parts.parts(); ++i) {
+    const Imf::Header& header = parts.header(i);
+    if (header.dataWindow() != window || Imf::isDeepData(header.type())) continue;
+    Imf::InputPart part(parts, i);
+    read_channels(part, shown, selection, file);
+  }
+}
+
 /// From what OpenEXR opens: a name, or a stream.
 template <typename Source>
 ExrFile read_from(const std::string& shown, const ExrSelection& selection, Source&& source) {
@@ -58,7 +111,6 @@ ExrFile read_from(const std::string& shown, const ExrSelection& selection, Sourc
     ExrFile file;
     file.width = static_cast<std::uint32_t>(width);
     file.height = static_cast<std::uint32_t>(height);
-    const std::size_t pixel_count = std::size_t{file.width} * file.height;
     for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute())) {
         file.attributes[attribute.name()] = text->value();
@@ -72,29 +124,8 @@ ExrFile read_from(const std::string& shown, const ExrSelection& selection, Sourc
         }
       }
     }
-    Imf::FrameBuffer pixels;
-    const auto insert = [&](const char* name, Imf::PixelType type, auto& values) {
-      values.resize(pixel_count);
-      // OpenEXR addresses pixels by their absolute place: shift so that the window's corner is element 0.
-      pixels.insert(name, Imf::Slice::Make(type, values.data(), window));
-    };
-    const std::vector<std::string>& wanted = selection.channels;
-    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
-      file.channel_names.emplace_back(channel.name());
-      if (!wanted.empty() && std::ranges::find(wanted, channel.name()) == wanted.end()) continue;
-      if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-        throw InputError("\"{}\": channel {} is subsampled, which is not supported", shown, channel.name());
-      }
-      if (channel.channel().type == Imf::UINT) {
-        insert(channel.name(), Imf::UINT, file.integers[channel.name()]);
-      } else {
-        insert(channel.name(), Imf::FLOAT, file.floats[channel.name()]);
-      }
-    }
-    if (pixels.begin() != pixels.end()) {
-      input.setFrameBuffer(pixels);
-      input.readPixels(window.min.y, window.max.y);
-    }
+    read_channels(input, shown, selection, file);
+    if (Imf::isMultiPart(input.version())) read_other_parts(source, window, shown, selection, file);
     return file;
   } catch (const Error&) {
     throw;

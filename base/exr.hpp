@@ -28,7 +28,13 @@ struct ExrChannel {
   std::string name;
   std::variant<std::span<const float>, std::span<const std::uint32_t>, ExrValues> values;
   std::size_t stride = 1;
+  bool half = false;   ///< floats are written as 16 bits, rounded to nearest; beyond ±65504 as that
+  bool exact = false;  ///< no lossy compression may touch it, nor the others of its layer
 };
+
+/// As the file's header calls them. DWAA is lossy for what it takes for colours by their names (R, G, B and Y of any
+/// layer), and as exact as ZIP for all else.
+enum class ExrCompression { zip, zips, dwaa, none };
 
 /// What goes into an OpenEXR file. Names of channels are unique; dots make layers ("P.X").
 struct ExrImage {
@@ -40,19 +46,22 @@ struct ExrImage {
   /// rows follow each other in memory; glm's column vectors stand on the right of one whose columns do: the same 16
   /// numbers.
   std::map<std::string, glm::mat4> matrices = {};
+  ExrCompression compression = ExrCompression::zip;
 };
 
 /// The three components "<layer>.X", ".Y", ".Z" of an array of vectors, which must outlive them.
 void add_vector_channels(ExrImage& image, const std::string& layer, std::span<const glm::vec3> vectors);
 
-/// Writes scan lines of 32-bit channels with ZIP compression, whole or not at all. Nothing but the image decides the
-/// bytes: no date, no owner. A name that OpenEXR cannot hold (empty, over 255 bytes, with a zero byte) is an
-/// InputError, a file that cannot be written a ResourceError.
-void write_exr(const std::filesystem::path& path, const ExrImage& image);
+/// Writes scan lines, whole or not at all. Nothing but the image decides the bytes: no date, no owner. Where DWAA would
+/// change a channel that is `exact`, its layer stands in a second part of the file, "exact", with ZIP. A name that
+/// OpenEXR cannot hold (empty, over 255 bytes, with a zero byte) is an InputError, a file that cannot be written a
+/// ResourceError. Returns how many values were too large for 16 bits.
+std::uint64_t write_exr(const std::filesystem::path& path, const ExrImage& image);
 /// Appends it to a file that the caller commits.
-void write_exr(AtomicFile& file, const ExrImage& image);
+std::uint64_t write_exr(AtomicFile& file, const ExrImage& image);
 
-/// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers.
+/// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers; of several parts those of
+/// flat images with the first one's data window, each name from the first part that has it.
 struct ExrFile {
   std::uint32_t width = 0, height = 0;
   std::vector<std::string> channel_names;  ///< all that are in the file, read or not

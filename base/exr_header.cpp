@@ -14,9 +14,9 @@ namespace {
 constexpr std::int32_t kMagic = 20000630;
 constexpr std::int32_t kVersion = 2;
 constexpr std::int32_t kLongNames = 0x400;  // of up to 255 bytes, not 31
-constexpr std::uint8_t kZip = 3;            // sixteen lines a block
+constexpr std::uint8_t kNone = 0, kZips = 2, kZip = 3;
 constexpr std::uint8_t kIncreasing = 0;     // order of lines
-constexpr std::int32_t kUint = 0, kFloat = 2;
+constexpr std::int32_t kUint = 0, kHalf = 1, kFloat = 2;
 
 class Header {
  public:
@@ -34,11 +34,11 @@ class Header {
     begin(name, "string", text.size());
     bytes_.put_characters(text);
   }
-  void add_channels(const std::map<std::string, bool>& is_float) {
+  void add_channels(const std::map<std::string, exr::Type>& types) {
     ExrBytes channels;
-    for (const auto& [name, floating] : is_float) {
+    for (const auto& [name, type] : types) {
       channels.put_text(name);
-      channels.put(floating ? kFloat : kUint);
+      channels.put(type == exr::Type::uint32 ? kUint : type == exr::Type::float16 ? kHalf : kFloat);
       channels.put(std::int32_t{0});  // perceptually logarithmic, and three bytes that are kept free
       channels.put(std::array{std::int32_t{1}, std::int32_t{1}});  // a value a pixel, either way
     }
@@ -63,12 +63,15 @@ class Header {
 
 }  // namespace
 
-std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::string, bool>& is_float) {
+std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::string, exr::Type>& types) {
   Header header;
   const std::array<std::int32_t, 4> window = {0, 0, static_cast<std::int32_t>(image.width) - 1,
                                               static_cast<std::int32_t>(image.height) - 1};
   header.add_text("type", "scanlineimage");
-  header.add("compression", "compression", kZip);
+  header.add("compression", "compression",
+             image.compression == ExrCompression::none   ? kNone
+             : image.compression == ExrCompression::zips ? kZips
+                                                         : kZip);
   header.add("dataWindow", "box2i", window);
   header.add("displayWindow", "box2i", window);
   header.add("lineOrder", "lineOrder", kIncreasing);
@@ -78,7 +81,7 @@ std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::str
   for (const auto& [name, value] : image.attributes) header.add_text(name, value);
   for (const auto& [name, value] : image.vectors) header.add(name, "v3d", value);
   for (const auto& [name, value] : image.matrices) header.add(name, "m44f", value);
-  header.add_channels(is_float);
+  header.add_channels(types);
   return header.take();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/exr.hpp"
+#include "base/exr_planes.hpp"
 
 #include <cstddef>
 #include <map>
@@ -38,9 +39,9 @@ class ExrBytes {
   std::vector<std::byte> bytes_;
 };
 
-/// The beginning of an OpenEXR file of one part, scan lines and ZIP, up to the table of its blocks. `is_float`: of each
-/// channel, by name; the others are UINT. In time linear in the channels, of which a scene of many lights has many:
+/// The beginning of an OpenEXR file of one part and scan lines, with any compression but DWAA, up to the table of its
+/// blocks. `types`: of each channel, by name. In time linear in the channels, of which a scene of many lights has many:
 /// OpenEXR's library (3.1) looks at all that there are for each that it adds.
-std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::string, bool>& is_float);
+std::vector<std::byte> exr_header(const ExrImage& image, const std::map<std::string, exr::Type>& types);
 
 }  // namespace penumbra

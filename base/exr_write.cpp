@@ -1,9 +1,10 @@
 // Lines are packed as OpenEXR's ZIP has them, by libdeflate, which takes half of zlib's time for as many bytes, on all
-// cores.
+// cores. (DWAA: exr_dwaa.cpp.)
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/exr.hpp"
 #include "base/exr_header.hpp"
+#include "base/exr_planes.hpp"
 
 #include <fmt/format.h>
 #include <libdeflate.h>
@@ -11,7 +12,7 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
-#include <bit>
+#include <atomic>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -21,45 +22,38 @@
 namespace penumbra {
 namespace {
 
-constexpr std::size_t kLines = 16;  // that ZIP packs together
-constexpr int kLevel = 3;           // larger ones take longer for less than 0.5 % of the bytes
+using exr::Plane;
 
-void check_name(const std::filesystem::path& path, const char* what, const std::string& name) {
-  constexpr std::size_t kLongestName = 255;  // of an OpenEXR 2.0 file with long names
-  if (name.empty() || name.size() > kLongestName || name.find('\0') != std::string::npos) {
-    throw InputError(
-        "cannot write \"{}\": an OpenEXR {} has 1 to {} bytes and no zero byte, but \"{}\" has {}; use a shorter name",
-        path.string(), what, kLongestName, name.c_str(), name.size());
-  }
+constexpr int kLevel = 3;  // larger ones take longer for less than 0.5 % of the bytes
+
+/// Lines that stand together in the file.
+std::size_t lines_of(ExrCompression compression) {
+  return compression == ExrCompression::zip ? 16 : 1;
 }
-
-/// 32-bit values of pixels, whatever they mean: in memory, or written when they are needed.
-struct Plane {
-  const std::byte* first = nullptr;
-  std::size_t stride = 0;  ///< bytes
-  const ExrValues* values = nullptr;
-};
 
 /// Packs lines as OpenEXR's ZIP does: bytes of even places before those of odd ones, each as its difference from the
 /// one before, deflated. One for each thread.
 class Packer {
  public:
-  Packer() : deflate_(libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor) {
+  /// Counts values that were too large for 16 bits.
+  explicit Packer(std::atomic<std::uint64_t>& too_large)
+      : too_large_(too_large), deflate_(libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor) {
     if (!deflate_) throw std::bad_alloc();
   }
 
   /// `count` lines of `width` pixels from number `first` on, each with all its planes one after the other.
   std::vector<std::uint8_t> packed(std::span<const Plane> planes, std::size_t width, std::size_t first,
                                    std::size_t count) {
-    const std::size_t line_bytes = width * 4, bytes = count * planes.size() * line_bytes;
+    const std::size_t bytes = count * width * bytes_of_pixel(planes);
     if (bytes == 0) return {};
     split_.resize(bytes);
-    line_.resize(line_bytes + 2);
+    line_.resize(4 * width + 2);
     line_[0] = line_[1] = 0;  // the two bytes before a line
     std::uint8_t *even = split_.data(), *odd = split_.data() + bytes / 2;
     for (std::size_t y = first; y < first + count; ++y) {
       for (const Plane& plane : planes) {
-        gather(plane, y * width, width, line_.data() + 2);
+        const std::size_t line_bytes = width * plane.bytes();
+        plane.gather(y * width, width, line_.data() + 2, values_, too_large_);
         for (std::size_t i = 0; i < line_bytes / 2; ++i) {
           even[i] = difference(line_[2 * i + 2], line_[2 * i]);
           odd[i] = difference(line_[2 * i + 3], line_[2 * i + 1]);
@@ -77,57 +71,44 @@ class Packer {
     const std::size_t size =
         libdeflate_zlib_compress(deflate_.get(), split_.data(), bytes, deflated_.data(), bytes - 1);
     if (size != 0) return {deflated_.begin(), deflated_.begin() + static_cast<std::ptrdiff_t>(size)};
-    // No smaller: as it is, which readers know by its size.
-    std::uint8_t* to = deflated_.data();
-    for (std::size_t y = first; y < first + count; ++y) {
-      for (const Plane& plane : planes) {
-        gather(plane, y * width, width, to);
-        to += line_bytes;
-      }
-    }
-    return deflated_;
+    // No smaller: as it is, which readers know by its size. What was too large has been counted.
+    std::atomic<std::uint64_t> again = 0;
+    return plain(planes, width, first, count, again);
+  }
+
+  /// The same, not packed.
+  std::vector<std::uint8_t> plain(std::span<const Plane> planes, std::size_t width, std::size_t first,
+                                  std::size_t count) {
+    return plain(planes, width, first, count, too_large_);
   }
 
  private:
   static std::uint8_t difference(std::uint8_t now, std::uint8_t before) {
     return static_cast<std::uint8_t>(now - before + 128);
   }
-  void gather(const Plane& plane, std::size_t pixel, std::size_t width, std::uint8_t* to) {
-    static_assert(std::endian::native == std::endian::little, "OpenEXR's order of bytes");
-    if (plane.values != nullptr) {
-      values_.resize(width);
-      (*plane.values)(pixel, values_);
-      std::memcpy(to, values_.data(), 4 * width);
-      return;
+  static std::size_t bytes_of_pixel(std::span<const Plane> planes) {
+    std::size_t bytes = 0;
+    for (const Plane& plane : planes) bytes += plane.bytes();
+    return bytes;
+  }
+  std::vector<std::uint8_t> plain(std::span<const Plane> planes, std::size_t width, std::size_t first,
+                                  std::size_t count, std::atomic<std::uint64_t>& too_large) {
+    std::vector<std::uint8_t> bytes(count * width * bytes_of_pixel(planes));
+    std::uint8_t* to = bytes.data();
+    for (std::size_t y = first; y < first + count; ++y) {
+      for (const Plane& plane : planes) {
+        plane.gather(y * width, width, to, values_, too_large);
+        to += width * plane.bytes();
+      }
     }
-    const std::byte* from = plane.first + pixel * plane.stride;
-    if (plane.stride == 4) {
-      std::memcpy(to, from, 4 * width);
-      return;
-    }
-    for (std::size_t x = 0; x < width; ++x) std::memcpy(to + 4 * x, from + x * plane.stride, 4);
+    return bytes;
   }
 
+  std::atomic<std::uint64_t>& too_large_;
   std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflate_;
   std::vector<std::uint8_t> split_, line_, deflated_;
   std::vector<float> values_;
 };
-
-/// `channel` must outlive it.
-Plane plane_of(const ExrChannel& channel, std::size_t pixel_count) {
-  return std::visit(
-      [&](const auto& values) -> Plane {
-        if constexpr (std::is_same_v<decltype(values), const ExrValues&>) {
-          return {.values = &values};
-        } else {
-          PENUMBRA_ASSERT(values.size() > (pixel_count - 1) * channel.stride,
-                          "channel {}: {} values for {} pixels with stride {}", channel.name, values.size(),
-                          pixel_count, channel.stride);
-          return {reinterpret_cast<const std::byte*>(values.data()), channel.stride * sizeof(values[0])};
-        }
-      },
-      channel.values);
-}
 
 struct Block {
   std::size_t first_line = 0;
@@ -135,17 +116,21 @@ struct Block {
 };
 
 /// Packs blocks of lines on all cores, and writes each when all before it are written. Returns where each begins.
-std::vector<std::uint64_t> write_lines(AtomicFile& file, std::span<const Plane> planes, std::size_t width,
-                                       std::size_t height) {
-  tbb::enumerable_thread_specific<Packer> packers;
+std::vector<std::uint64_t> write_lines(AtomicFile& file, std::span<const Plane> planes, const ExrImage& image,
+                                       std::atomic<std::uint64_t>& too_large) {
+  tbb::enumerable_thread_specific<Packer> packers([&] { return Packer(too_large); });
+  const std::size_t width = image.width, height = image.height, lines = lines_of(image.compression);
   std::vector<std::uint64_t> places;
   std::size_t next = 0;
   const auto begin = [&](tbb::flow_control& control) {
     if (next >= height) control.stop();
-    return std::exchange(next, next + kLines);
+    return std::exchange(next, next + lines);
   };
   const auto pack = [&](std::size_t first) {
-    return Block{first, packers.local().packed(planes, width, first, std::min(kLines, height - first))};
+    Packer& packer = packers.local();
+    const std::size_t count = std::min(lines, height - first);
+    return Block{first, image.compression == ExrCompression::none ? packer.plain(planes, width, first, count)
+                                                                  : packer.packed(planes, width, first, count)};
   };
   const auto write = [&](const Block& block) {
     places.push_back(file.size());
@@ -175,42 +160,47 @@ void add_vector_channels(ExrImage& image, const std::string& layer, std::span<co
   }
 }
 
-void write_exr(const std::filesystem::path& path, const ExrImage& image) {
+std::uint64_t write_exr(const std::filesystem::path& path, const ExrImage& image) {
   AtomicFile file(path);  // first, so that a place that cannot be written is told before any work
-  write_exr(file, image);
+  const std::uint64_t too_large = write_exr(file, image);
   file.commit();
+  return too_large;
 }
 
-void write_exr(AtomicFile& file, const ExrImage& image) {
+std::uint64_t write_exr(AtomicFile& file, const ExrImage& image) {
   const std::filesystem::path& path = file.path();
   if (image.width == 0 || image.height == 0 || image.width > kLargestExrSide || image.height > kLargestExrSide) {
     throw ResourceError("cannot write \"{}\": {}x{} pixels; an OpenEXR image has 1 to {} a side", path.string(),
                         image.width, image.height, kLargestExrSide);
   }
-  for (const auto& attribute : image.attributes) check_name(path, "attribute's name", attribute.first);
-  for (const auto& attribute : image.vectors) check_name(path, "attribute's name", attribute.first);
-  for (const auto& attribute : image.matrices) check_name(path, "attribute's name", attribute.first);
+  for (const auto& attribute : image.attributes) exr::check_name(path, "attribute's name", attribute.first);
+  for (const auto& attribute : image.vectors) exr::check_name(path, "attribute's name", attribute.first);
+  for (const auto& attribute : image.matrices) exr::check_name(path, "attribute's name", attribute.first);
+  if (image.compression == ExrCompression::dwaa) return exr::write_dwaa(file, image);
   // In the file, channels stand in the order of their names' bytes.
   std::map<std::string, Plane> planes;
-  std::map<std::string, bool> kinds;
+  std::map<std::string, exr::Type> types;
   const std::size_t pixel_count = std::size_t{image.width} * image.height;
   for (const ExrChannel& channel : image.channels) {
-    check_name(path, "channel's name", channel.name);
-    const bool is_new = planes.emplace(channel.name, plane_of(channel, pixel_count)).second;
+    exr::check_name(path, "channel's name", channel.name);
+    const auto [place, is_new] = planes.emplace(channel.name, Plane(channel, pixel_count));
     PENUMBRA_ASSERT(is_new, "two channels are called {}", channel.name);
-    kinds.emplace(channel.name, !std::holds_alternative<std::span<const std::uint32_t>>(channel.values));
+    types.emplace(channel.name, place->second.type());
   }
   const std::uint64_t begin = file.size();
-  const std::vector<std::byte> header = exr_header(image, kinds);
+  const std::vector<std::byte> header = exr_header(image, types);
   file.write(header);
   // A table of where each block of lines begins comes before the first of them, and is filled in afterwards.
-  const std::size_t blocks = (image.height + kLines - 1) / kLines;
+  const std::size_t lines = lines_of(image.compression);
+  const std::size_t blocks = (image.height + lines - 1) / lines;
   file.write(std::vector<std::byte>(8 * blocks));
   std::vector<Plane> in_order;
   for (const auto& [name, plane] : planes) in_order.push_back(plane);
+  std::atomic<std::uint64_t> too_large = 0;
   ExrBytes table;
-  for (const std::uint64_t place : write_lines(file, in_order, image.width, image.height)) table.put(place - begin);
+  for (const std::uint64_t place : write_lines(file, in_order, image, too_large)) table.put(place - begin);
   file.write_at(begin + header.size(), table.all());
+  return too_large;
 }
 
 }  // namespace penumbra

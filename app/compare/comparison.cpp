@@ -51,6 +51,7 @@ class Comparison {
 
   Comparison(const RunOptions& run, const ComparisonOptions& options, Progress& progress)
       : run_(run),
+        format_(parse_format(run.format)),
         options_(options),
         progress_(progress),
         reference_(describe_reference(options.reference)),
@@ -62,6 +63,7 @@ class Comparison {
     files_.claim(run.scene, options.methods, options.stats);
     session_ = open_session(run, options.time, devices_, options.runs, progress);
     files_.refuse_inputs(session_.scene.sources);
+    check_layers(format_, session_, false);
     progress.clear();
     for (const scenes::Object& object : session_.scene.objects) {
       if (object.alpha.mode != scenes::Alpha::Mode::blend) continue;
@@ -259,8 +261,10 @@ class Comparison {
     devices_.check_validation();
     progress_.clear();
     const std::vector<MethodLabel> labels = labels_of(entry, lights);
-    write_picture(files_.of(entry.label, ".exr"),
-                  {session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty});
+    for (std::string& warning :
+         write_picture(files_.of(entry.label, ".exr"),
+                       {session_, {lights, labels}, done.run.visibility, beauty.parts(), done.beauty}, format_))
+      warn(std::move(warning));
     if (bits) bits->commit();
     return done;
   }
@@ -354,6 +358,7 @@ class Comparison {
   }
 
   const RunOptions& run_;
+  PictureFormat format_;
   const ComparisonOptions& options_;
   Progress& progress_;
   const Entry reference_;

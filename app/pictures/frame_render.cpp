@@ -87,6 +87,7 @@ FrameRenderer::FrameRenderer(const RunOptions& options, const MethodWish& wish, 
                              Progress& progress)
     : options_(options),
       wish_(wish),
+      format_(parse_format(options.format)),
       devices_(devices),
       progress_(progress),
       maker_(options, devices),
@@ -135,6 +136,10 @@ void FrameRenderer::show(SessionMaker& maker, scenes::Scene scene) {
   load_seconds_ += maker.session().load_seconds;
   make_seconds_ += maker.session().device_seconds;
   view_seconds_ += maker.session().view_seconds + maker.session().receiver_seconds;
+}
+
+void FrameRenderer::check_wanted_layers() const {
+  check_layers(format_, session(), frame_.pixel_side > 1 || !frame_.moments.empty());
 }
 
 /// Notes in which of the picture's pixels the surfaces that are looked at are bodies of lights.
@@ -210,6 +215,7 @@ void FrameRenderer::render(scenes::Scene scene, const Frame& frame, const std::f
   run_ = {};
   if (frame.moments.empty() && frame.pixel_side == 1) {
     show(maker_, std::move(scene));
+    check_wanted_layers();
     run_methods(bits);
   } else {
     render_mean(std::move(scene));
@@ -222,6 +228,7 @@ void FrameRenderer::render_mean(scenes::Scene scene) {
   const std::uint32_t side = frame_.pixel_side;
   if (side > 1) {
     show(maker_, scene);
+    check_wanted_layers();
     view_seconds_ += sum_of(session().filtered_seconds);
     const std::string size = fmt::format("{}x{}", session().width * side, session().height * side);
     if (!fine_ || fine_options_.size != size) {
@@ -317,8 +324,10 @@ compare::Stats FrameRenderer::write(const FrameFiles& files, Exposure& exposure)
       return encode_png(to_srgb(session().width, session().height, sum, std::exp2(stops)));
     });
   }
-  write_picture(picture, {session(), lights, visibility, beauty, sum, alpha, std::move(attributes),
-                          mattes_ ? &*mattes_ : nullptr});
+  say_once(write_picture(
+      picture,
+      {session(), lights, visibility, beauty, sum, alpha, std::move(attributes), mattes_ ? &*mattes_ : nullptr},
+      format_));
   picture.settle();
   if (png) {
     png->write(packed.get());

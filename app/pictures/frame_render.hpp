@@ -75,6 +75,8 @@ class FrameRenderer {
   void add_panes();
   void mark_lamps();
   void show(SessionMaker& maker, scenes::Scene scene);
+  /// Throws UsageError for layers that the picture, which is shown, will not have.
+  void check_wanted_layers() const;
   void render_mean(scenes::Scene scene);
   /// What methods look at: the picture's session, or that of more view samples a pixel.
   [[nodiscard]] const Session& lit() const { return fine_ ? fine_->session() : maker_.session(); }
@@ -89,6 +91,7 @@ class FrameRenderer {
 
   const RunOptions& options_;
   const MethodWish& wish_;
+  PictureFormat format_;
   DeviceSource& devices_;
   Progress& progress_;
   SessionMaker maker_;

@@ -2,6 +2,7 @@
 
 #include "app/pictures/cryptomatte.hpp"
 #include "app/pictures/surfaces.hpp"
+#include "base/assert.hpp"
 #include "base/exr.hpp"
 
 #include <glm/mat4x4.hpp>
@@ -10,29 +11,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <set>
+#include <utility>
 
 namespace penumbra::app {
 namespace {
 
 constexpr float kFar = 1e10f;  // Z of the background, as Blender has it
-
-/// What the picture has beside lights.
-constexpr std::array kOwnLayers = {"P",
-                                   "Prel",
-                                   "N",
-                                   "object",
-                                   "material",
-                                   "CryptoObject00",
-                                   "CryptoObject01",
-                                   "CryptoObject02",
-                                   "CryptoMaterial00",
-                                   "CryptoMaterial01",
-                                   "CryptoMaterial02"};
-
-/// A light's layers: of all that it has, and each of its two parts for Blender's compositor, which has room for one
-/// kind of channels in a layer: of R, G, B and V it takes V for R.
-constexpr std::array kEndings = {"", "_V", "_light"};
 
 std::string options_text(const visibility::MethodOptions& options) {
   std::string text;
@@ -75,21 +61,46 @@ std::string lights_text(const Session& session, const LabelledLights& all, std::
   return text_of(rows);
 }
 
-/// The components of interleaved vectors or colours as channels that need no copy.
-void add_components(ExrImage& image, const std::string& prefix, std::span<const glm::vec3> values) {
-  const auto* floats = &values.front().x;
-  for (std::size_t c = 0; c < 3; ++c) {
-    image.channels.push_back({prefix + "RGB"[c], std::span<const float>(floats + c, 3 * values.size() - 2), 3});
-  }
-}
+/// The channels of a picture: those that are wanted, each as the format has it.
+class Channels {
+ public:
+  Channels(ExrImage& image, std::set<std::string> wanted, bool half)
+      : image_(image), wanted_(std::move(wanted)), half_(half) {}
 
-/// A channel whose values are made pixel by pixel when its lines are written.
-template <typename ValueOf>
-void add_made(ExrImage& image, const std::string& name, ValueOf value_of) {
-  image.channels.push_back({name, [value_of](std::size_t first, std::span<float> values) {
-                              for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(first + i);
-                            }});
-}
+  [[nodiscard]] bool wants(const std::string& layer) const {
+    return std::ranges::any_of(wanted_, [&](const std::string& name) { return name.starts_with(layer); });
+  }
+  void add(ExrChannel channel) {
+    if (!wanted_.contains(channel.name)) return;
+    channel.half = half_ && stands_half(channel.name);
+    channel.exact = must_be_exact(channel.name);
+    image_.channels.push_back(std::move(channel));
+  }
+  /// The components of interleaved vectors or colours, which need no copy.
+  void add(const std::string& prefix, const char* letters, std::span<const glm::vec3> values) {
+    if (values.empty()) return;
+    const auto* floats = &values.front().x;
+    for (std::size_t c = 0; c < 3; ++c)
+      add({prefix + letters[c], std::span<const float>(floats + c, 3 * values.size() - 2), 3});
+  }
+  /// A channel whose values are made pixel by pixel when its lines are written.
+  template <typename ValueOf>
+  void add_made(const std::string& name, ValueOf value_of) {
+    add({name, [value_of](std::size_t first, std::span<float> values) {
+           for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(first + i);
+         }});
+  }
+  /// All that are wanted must have come.
+  void check() const {
+    PENUMBRA_ASSERT(image_.channels.size() == wanted_.size(), "{} channels of {}", image_.channels.size(),
+                    wanted_.size());
+  }
+
+ private:
+  ExrImage& image_;
+  std::set<std::string> wanted_;
+  bool half_;
+};
 
 /// The number that the picture has of a name: from 1; 0: nothing.
 float picture_number(std::uint32_t index) {
@@ -131,30 +142,19 @@ CameraMatrices matrices_of(const Session& session) {
 
 }  // namespace
 
-std::vector<std::string> layer_names(std::span<const visibility::Light> lights) {
-  std::set<std::string> taken(kOwnLayers.begin(), kOwnLayers.end());
-  std::vector<std::string> names;
-  for (std::string plain : whole_names(lights)) {
-    std::ranges::replace_if(
-        plain, [](char c) { return c == '.' || c == '/'; }, '_');
-    std::string name = plain;
-    const auto is_taken = [&] {
-      return std::ranges::any_of(kEndings, [&](const char* end) { return taken.contains(name + end); });
-    };
-    for (int number = 2; is_taken(); ++number) name = fmt::format("{}_{}", plain, number);
-    for (const char* const end : kEndings) taken.insert(name + end);
-    names.push_back(name);
-  }
-  return names;
+void check_layers(const PictureFormat& format, const Session& session, bool several) {
+  wanted_channels(format, picture_channels(layer_names(session.lights), several, session.floats.triangles.size()));
 }
 
-void write_picture(const std::filesystem::path& path, const PictureContent& content) {
+std::vector<std::string> write_picture(const std::filesystem::path& path, const PictureContent& content,
+                                       const PictureFormat& format) {
   AtomicFile file(path);
-  write_picture(file, content);
+  std::vector<std::string> warnings = write_picture(file, content, format);
   file.commit();
+  return warnings;
 }
 
-void write_picture(AtomicFile& file, const PictureContent& content) {
+std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& content, const PictureFormat& format) {
   const Session& session = content.session;
   const LabelledLights& all = content.lights;
   const MethodLabel& label = all.label(0);
@@ -166,33 +166,39 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   ExrImage image;
   image.width = session.width;
   image.height = session.height;
-  add_components(image, "", content.sum);
-  add_made(image, "A", [&content, is_background](std::size_t i) {
+  image.compression = format.compression;
+  const std::vector<std::string> layers = layer_names(all.lights);
+  const std::uint64_t triangles = session.floats.triangles.size();
+  Channels channels(image, wanted_channels(format, picture_channels(layers, content.mattes != nullptr, triangles)),
+                    format.half);
+  channels.add("", "RGB", content.sum);
+  channels.add_made("A", [&content, is_background](std::size_t i) {
     return !content.alpha.empty() ? content.alpha[i] : is_background(i) ? 0.0f : 1.0f;
   });
-  image.channels.push_back({"V", std::span<const float>(content.visibility.front()), 1});
-  const std::vector<std::string> layers = layer_names(all.lights);
+  channels.add({"V", std::span<const float>(content.visibility.front()), 1});
   for (std::size_t light = 0; light < layers.size(); ++light) {
     for (const char* const end : {".V", "_V.V"})
-      image.channels.push_back({layers[light] + end, std::span<const float>(content.visibility[light]), 1});
-    for (const char* const end : {".", "_light."}) add_components(image, layers[light] + end, content.beauty[light]);
+      channels.add({layers[light] + end, std::span<const float>(content.visibility[light]), 1});
+    for (const char* const end : {".", "_light."}) channels.add(layers[light] + end, "RGB", content.beauty[light]);
   }
   for (glm::length_t axis = 0; axis < 3; ++axis) {
-    add_made(image, std::string("P.") + "XYZ"[axis], [&, is_background, axis](std::size_t i) {
+    channels.add_made(std::string("P.") + "XYZ"[axis], [&, is_background, axis](std::size_t i) {
       return is_background(i) ? 0.0f : static_cast<float>(double{samples.p[i][axis]} + session.floats.origin[axis]);
     });
   }
-  add_vector_channels(image, "Prel", samples.p);
-  add_vector_channels(image, "N", samples.n);
-  add_made(image, "Z", [&, is_background](std::size_t i) { return is_background(i) ? kFar : samples.depth[i]; });
+  channels.add("Prel.", "XYZ", samples.p);
+  channels.add("N.", "XYZ", samples.n);
+  channels.add_made("Z", [&, is_background](std::size_t i) { return is_background(i) ? kFar : samples.depth[i]; });
   // The background's, −1, is 4294967295 there.
   const auto* const id = reinterpret_cast<const std::uint32_t*>(samples.triangle.data());
-  image.channels.push_back({"id", std::span(id, samples.size()), 1});
+  channels.add({"id", std::span(id, samples.size()), 1});
+  channels.add_made("triangle.X", [&samples](std::size_t i) { return low_number(samples.triangle[i]); });
+  channels.add_made("triangle_high.X", [&samples](std::size_t i) { return high_number(samples.triangle[i]); });
   const Surfaces surfaces(session);
   const auto object = [&surfaces](std::size_t i) { return surfaces.object(i); };
   const auto material = [&surfaces](std::size_t i) { return surfaces.material(i); };
-  add_made(image, "object.X", [object](std::size_t i) { return picture_number(object(i)); });
-  add_made(image, "material.X", [material](std::size_t i) { return picture_number(material(i)); });
+  channels.add_made("object.X", [object](std::size_t i) { return picture_number(object(i)); });
+  channels.add_made("material.X", [material](std::size_t i) { return picture_number(material(i)); });
 
   const CameraMatrices matrices = matrices_of(session);
   image.attributes = {{"penumbra.method", label.description.name},
@@ -212,14 +218,39 @@ void write_picture(AtomicFile& file, const PictureContent& content) {
   image.attributes.insert(content.more_attributes.begin(), content.more_attributes.end());
   image.vectors = {{"penumbra.origin", session.floats.origin}};
   image.matrices = {{"worldToCamera", matrices.to_camera}, {"worldToNDC", matrices.to_picture}};
+  std::vector<std::string> warnings;
+  if (triangles >= kFloatNumbers) {
+    image.attributes["penumbra.triangle"] = "id + 1 = triangle.X + 16777216 * triangle_high.X; 0: no triangle";
+    warnings.push_back(
+        fmt::format("{} triangles: more than a float counts, so that triangle.X has the number modulo "
+                    "16777216, and triangle_high.X how often that goes into it (id has it whole)",
+                    triangles));
+  }
   const Mattes* const mattes = content.mattes;
-  const Cryptomatte objects = mattes != nullptr ? Cryptomatte("CryptoObject", mattes->objects)
-                                                : Cryptomatte("CryptoObject", surfaces.objects(), object);
-  const Cryptomatte materials = mattes != nullptr ? Cryptomatte("CryptoMaterial", mattes->materials)
-                                                  : Cryptomatte("CryptoMaterial", surfaces.materials(), material);
-  objects.add_to(image);
-  materials.add_to(image);
-  write_exr(file, image);
+  std::optional<Cryptomatte> objects, materials;
+  const auto add_matte = [&](std::optional<Cryptomatte>& matte, const char* layer, auto make) {
+    if (!channels.wants(layer)) return;
+    ExrImage all_ranks;
+    matte.emplace(make());
+    matte->add_to(all_ranks);
+    for (ExrChannel& channel : all_ranks.channels) channels.add(std::move(channel));
+    image.attributes.merge(all_ranks.attributes);
+  };
+  add_matte(objects, "CryptoObject", [&] {
+    return mattes != nullptr ? Cryptomatte("CryptoObject", mattes->objects)
+                             : Cryptomatte("CryptoObject", surfaces.objects(), object);
+  });
+  add_matte(materials, "CryptoMaterial", [&] {
+    return mattes != nullptr ? Cryptomatte("CryptoMaterial", mattes->materials)
+                             : Cryptomatte("CryptoMaterial", surfaces.materials(), material);
+  });
+  channels.check();
+  if (const std::uint64_t count = write_exr(file, image); count != 0) {
+    warnings.push_back(
+        fmt::format("{} of {} values were beyond 65504, the largest that 16 bits hold, and are that in {}", count,
+                    std::uint64_t{image.width} * image.height * image.channels.size(), file.path().string()));
+  }
+  return warnings;
 }
 
 }  // namespace penumbra::app

@@ -2,6 +2,7 @@
 
 #include "app/output.hpp"
 #include "app/pictures/matte_shares.hpp"
+#include "app/pictures/picture_format.hpp"
 #include "base/atomic_file.hpp"
 
 #include <glm/vec3.hpp>
@@ -13,11 +14,6 @@
 #include <vector>
 
 namespace penumbra::app {
-
-/// The names of whole lights' layers: the light's own, with dots and slashes, which make layers in layers, as "_".
-/// Where this makes two equal, or one that the picture has for something else, the later one gets "_2", "_3" and so on;
-/// each light has its layer's name with "_V" and "_light", too.
-std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
 /// Objects and materials, where a pixel has several view samples.
 struct Mattes {
@@ -36,9 +32,13 @@ struct PictureContent {
   const Mattes* mattes = nullptr;                           ///< none: those of the pixels' centres
 };
 
-/// OUT.exr: all channels (README, "What comes out") and header attributes.
-void write_picture(const std::filesystem::path& path, const PictureContent& content);
+/// OUT.exr: its channels (docs/pictures.md) and header attributes. Returns what is to be warned of.
+std::vector<std::string> write_picture(const std::filesystem::path& path, const PictureContent& content,
+                                       const PictureFormat& format);
 /// Appends it to a file that the caller commits.
-void write_picture(AtomicFile& file, const PictureContent& content);
+std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& content, const PictureFormat& format);
+
+/// Throws UsageError for a layer that a picture of the session will not have. `several`: view samples a pixel.
+void check_layers(const PictureFormat& format, const Session& session, bool several);
 
 }  // namespace penumbra::app

@@ -122,6 +122,7 @@ PictureRequest parse_request(const PictureOptions& options) {
   request.exposure = parse_exposure(options.exposure);
   request.seconds_per_frame = 1 / parse_fps(options.fps);
   parse_means(options, request);
+  parse_format(options.run.format);  // refuses now, not later
   if (options.run.out.extension() != ".exr") {
     throw UsageError("-o {}: expected a name that ends in .exr (--png writes a PNG file beside it)",
                      options.run.out.string());

@@ -32,15 +32,16 @@ class Compositor(unittest.TestCase):
         writer.write(out("scene.glb"), (inside.WIDTH, inside.HEIGHT))
         cls.file = out("picture.exr")
         command = [inside.PENUMBRA, "render", out("scene.glb"), "-o", cls.file, "--size", f"{inside.WIDTH}x{inside.HEIGHT}"]
-        subprocess.run([*command, "--pixel-samples", "9"], check=True)
+        subprocess.run([*command, "--pixel-samples", "9", "--layers", "*,*_light,*_V"], check=True)
+        subprocess.run([*command, "--pixel-samples", "9", "--compression", "dwaa", "-o", out("dwaa.exr")], check=True)
         cls.picture = inside.read(cls.file).channels
 
-    def composite(self, node, prepare, socket):
+    def composite(self, node, prepare, socket, file=None):
         """What comes out of the node, whose image is the picture, at the compositor's end."""
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.ops.preferences.addon_enable(module="penumbra")
         scene = bpy.context.scene
-        render, image = scene.render, bpy.data.images.load(self.file)
+        render, image = scene.render, bpy.data.images.load(file or self.file)
         render.resolution_x, render.resolution_y, render.resolution_percentage = inside.WIDTH, inside.HEIGHT, 100
         settings = render.image_settings
         settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
@@ -62,10 +63,10 @@ class Compositor(unittest.TestCase):
             source.matte_id = name
         return self.composite("CompositorNodeCryptomatteV2", prepare, "Matte")["R"]
 
-    def image(self, socket):
+    def image(self, socket, file=None):
         def prepare(source, image):
             source.image = image
-        return self.composite("CompositorNodeImage", prepare, socket)
+        return self.composite("CompositorNodeImage", prepare, socket, file)
 
     def coverage(self, layer, name):
         """By the specification: of all ranks those whose number is the name's."""
@@ -92,6 +93,17 @@ class Compositor(unittest.TestCase):
 
     def test_depth_and_visibility(self):
         numpy.testing.assert_array_equal(self.image("Depth")["R"], self.picture["Z"])
+
+    def test_triangles_are_numbers(self):
+        numbers = self.image("triangle")["R"]
+        numpy.testing.assert_array_equal(numbers, self.picture["triangle.X"])
+        self.assertGreater(len(numpy.unique(numbers)), 5)
+
+    def test_dwaa_of_two_parts(self):
+        """Colours are in the first part, packed with loss; positions in the second, as they are."""
+        numpy.testing.assert_allclose(self.image("Combined", out("dwaa.exr"))["R"], self.picture["R"], rtol=.05, atol=.02)
+        numpy.testing.assert_array_equal(self.image("P", out("dwaa.exr"))["G"], self.picture["P.Y"])
+        numpy.testing.assert_array_equal(self.image("triangle", out("dwaa.exr"))["R"], self.picture["triangle.X"])
 
 
 def murmur3(name):
