@@ -15,7 +15,7 @@ constexpr std::int32_t kMagic = 20000630;
 constexpr std::int32_t kVersion = 2;
 constexpr std::int32_t kLongNames = 0x400;  // of up to 255 bytes, not 31
 constexpr std::uint8_t kNone = 0, kZips = 2, kZip = 3;
-constexpr std::uint8_t kIncreasing = 0;     // order of lines
+constexpr std::uint8_t kIncreasing = 0;  // order of lines
 constexpr std::int32_t kUint = 0, kHalf = 1, kFloat = 2;
 
 class Header {

@@ -1,0 +1,385 @@
+#include "import/gltf/gltf_scene.hpp"
+
+#include "base/assert.hpp"
+#include "base/error.hpp"
+#include "import/gltf/area_lamp.hpp"
+#include "import/gltf/gltf_camera.hpp"
+#include "import/gltf/gltf_deform.hpp"
+#include "import/gltf/gltf_emission.hpp"
+#include "import/gltf/gltf_extensions.hpp"
+#include "import/gltf/gltf_extras.hpp"
+#include "import/gltf/gltf_hidden.hpp"
+#include "import/gltf/gltf_instances.hpp"
+#include "import/gltf/gltf_nodes.hpp"
+#include "import/gltf/gltf_primitive.hpp"
+#include "import/gltf/gltf_surface.hpp"
+#include "import/gltf/gltf_triangles.hpp"
+#include "import/gltf/punctual_lights.hpp"
+#include "import/gltf/unique_names.hpp"
+
+#include <tiny_gltf.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace penumbra::scenes {
+namespace {
+
+/// Builds the scene from a parsed model, node by node.
+class GltfScene {
+ public:
+  /// `model` and what `request` names must outlive it.
+  GltfScene(const tinygltf::Model& model, const SceneRequest& request, Purpose purpose)
+      : model_(model),
+        purpose_(purpose),
+        lenient_(request.options.lenient || purpose == Purpose::any_scene || purpose == Purpose::rest),
+        unhidden_(request.unhidden),
+        lamps_(model, request.options, losses_),
+        surfaces_(model, scene_.pictures, losses_) {
+    scene_.name = request.name;
+  }
+
+  /// What parsing left out.
+  void say_of(const TakenOut& taken_out, bool moves) {
+    compressed_ = taken_out.compressed;
+    for (const std::string& place : compressed_)
+      losses_.refuse("is compressed with KHR_draco_mesh_compression, and left out", place);
+    for (const std::string& pointer : taken_out.pointers) {
+      const std::string what = "is moved by KHR_animation_pointer, which is not done: it stays as the file has it";
+      moves ? losses_.refuse(what, pointer) : losses_.mention(what, pointer);
+    }
+    if (taken_out.no_utf8) scene_.warnings.emplace_back("some names are no UTF-8; '?' stands for their letters");
+    if (taken_out.channels_without_node > 0) {
+      scene_.warnings.push_back(
+          fmt::format("{} animation channels name no node and are ignored", taken_out.channels_without_node));
+    }
+  }
+
+  /// Are some of the file's vertices not in the scene? Once it has run.
+  [[nodiscard]] bool left_vertices_out() const { return left_out_; }
+  /// The middle of all vertices of its meshes, seen or not. Of Purpose::rest, once it has run.
+  [[nodiscard]] glm::dvec3 middle() const { return 0.5 * lower_ + 0.5 * upper_; }
+
+  Scene run() {
+    const std::vector<PlacedNode> nodes = place_nodes(model_, scene_.warnings);
+    to_world_.resize(model_.nodes.size());
+    for (const PlacedNode& placed : nodes) to_world_[static_cast<std::size_t>(placed.number)] = placed.to_world;
+    for (const PlacedNode& placed : nodes) add_node(placed);
+    for (const std::size_t light : shadeless_) {
+      scene_.lights[light].unshaded_by.resize(scene_.objects.size());
+      std::iota(scene_.lights[light].unshaded_by.begin(), scene_.lights[light].unshaded_by.end(), 0U);
+    }
+    if (scene_.soup.triangles.empty() && !compressed_.empty()) {
+      throw InputError(
+          "{}: its vertices are compressed with KHR_draco_mesh_compression, which is not supported; "
+          "export without compression",
+          compressed_.front());
+    }
+    if (scene_.soup.triangles.empty()) {
+      throw InputError(
+          "there are no triangles in the scene ({} primitives of points or lines, {} without POSITION, {} with "
+          "fewer than three vertices)",
+          skipped_.points_and_lines, skipped_.without_positions, skipped_.without_triangles);
+    }
+    if (scene_.lights.empty() && purpose_ == Purpose::lit_scene) {
+      throw InputError(
+          "there is no light in the scene. In Blender, add a plane, turn its front to the scene and give it a "
+          "material with emission (Emission Strength above 0), or add a point, spot or sun lamp and export with "
+          "Punctual Lights (area lamps are lost in glTF){}",
+          refused_lights_.empty() ? "" : "; no lights could be made of " + refused_lights_);
+    }
+    if (scene_.cameras.empty() && !is_mesh()) {
+      scene_.cameras.push_back(camera_that_sees_all(scene_.soup.positions));
+      scene_.warnings.emplace_back("there is no camera in the file; one that sees the whole scene was put in");
+    }
+    count_what_came(nodes);
+    complete_looks(scene_);
+    judge_extensions(model_, is_mesh(), losses_, scene_.warnings);
+    add_warnings();
+    if (!lenient_) losses_.throw_refused();
+    is_mesh() ? losses_.warn_of_refused(scene_.warnings) : losses_.warn(scene_.warnings);
+    return std::move(scene_);
+  }
+
+ private:
+  [[nodiscard]] bool is_mesh() const { return purpose_ == Purpose::mesh || purpose_ == Purpose::rest; }
+
+  [[nodiscard]] PlacedNode unhidden(const PlacedNode& placed) const {
+    const auto number = static_cast<std::size_t>(placed.number);
+    return number < unhidden_.size() && unhidden_[number] ? PlacedNode{placed.number, *unhidden_[number]} : placed;
+  }
+
+  /// A lamp is where its node is, and shines along what the node is turned to, however it is scaled.
+  [[nodiscard]] PlacedNode lamp_place(const PlacedNode& placed) const {
+    PlacedNode place = unhidden(placed);
+    place.to_world[3] = placed.to_world[3];
+    return place;
+  }
+
+  /// Every primitive of every instance that the file has in the scene has come, or is counted among what makes none.
+  void count_what_came(std::span<const PlacedNode> nodes) const {
+    std::uint64_t there = 0;
+    for (const PlacedNode& placed : nodes) {
+      const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
+      if (!placed.visible || node.mesh < 0) continue;
+      const auto instances = instances_of(model_, node, placed.number);
+      there +=
+          (instances ? instances->size() : 1) * model_.meshes[static_cast<std::size_t>(node.mesh)].primitives.size();
+    }
+    const std::uint64_t came = scene_.objects.size() + gone_ + bodiless_ + skipped_.points_and_lines +
+                               skipped_.without_positions + skipped_.without_triangles;
+    PENUMBRA_ASSERT(there == came, "of {} primitives in the scene {} came", there, came);
+  }
+
+  void add_node(const PlacedNode& placed) {
+    const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(placed.number)];
+    const std::string name = node.name.empty() ? fmt::format("node {}", placed.number) : node.name;
+    if (!is_mesh() && node.camera >= 0) add_camera(node, placed, name);
+    if (!placed.visible) return;
+    if (node.mesh >= 0) add_meshes(node, placed, name);
+    if (is_mesh()) {
+      lamps_left_ += (node.camera >= 0 ? 1U : 0U) + (node.extensions.contains("KHR_lights_punctual") ? 1U : 0U);
+      return;
+    }
+    if (node.extensions.contains("KHR_lights_punctual")) {
+      if (const auto lamp = lamps_.light_of(node, lamp_place(placed), name))
+        add_lamp(*lamp, node, name);
+      else
+        note_refused_light(name, "a lamp of a type that KHR_lights_punctual does not have");
+    }
+    if (const auto lamp = area_lamp_of(node, placed, losses_)) add_lamp(*lamp, node, name);
+  }
+
+  void add_meshes(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    const auto instances = instances_of(model_, node, placed.number);
+    if (!instances) return add_mesh_or_hidden(node, placed, name);
+    if (node.skin >= 0) losses_.mention("has instances of a skinned mesh, all of which are where its joints are", name);
+    if (instances->empty())
+      losses_.mention("has no instances (EXT_mesh_gpu_instancing), so nothing of it is there", name);
+    for (std::size_t i = 0; i < instances->size(); ++i)
+      add_mesh(node, {placed.number, placed.to_world * (*instances)[i]}, fmt::format("{}.{}", name, i));
+  }
+
+  /// A light that is scaled to nothing stays one, of the shape that it has when it is not, and dark: so all frames have
+  /// the same lights. What is seen of it is where its transform puts it.
+  void add_mesh_or_hidden(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    const PlacedNode whole = unhidden(placed);
+    const auto hidden_at = is_mesh() ? std::nullopt : hidden_light(model_, placed.number, to_world_, unhidden_);
+    if (!hidden_at) return add_mesh(node, placed, name);
+    const std::size_t first_position = scene_.soup.positions.size(), first_light = scene_.lights.size();
+    const std::vector<std::optional<glm::dmat4>> posed = std::exchange(to_world_, {unhidden_.begin(), unhidden_.end()});
+    add_mesh(node, whole, name);
+    to_world_ = posed;
+    const glm::dmat4 back = glm::inverse(whole.to_world);
+    for (glm::dvec3& p : std::span(scene_.soup.positions).subspan(first_position))
+      p = node.skin >= 0 ? *hidden_at : glm::dvec3(placed.to_world * (back * glm::dvec4(p, 1)));
+    for (AreaLight& light : std::span(scene_.lights).subspan(first_light)) {
+      light.radiance = glm::dvec3(0);
+      losses_.mention("is scaled to nothing: a light that is dark", light.name);
+    }
+  }
+
+  void add_mesh(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size()) {
+      throw InputError("/nodes/{}/mesh: mesh {} does not exist; there are {}", placed.number, node.mesh,
+                       model_.meshes.size());
+    }
+    const tinygltf::Mesh& mesh = model_.meshes[static_cast<std::size_t>(node.mesh)];
+    flags_ = flags_of(node, mesh, losses_);
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+      const std::string place = fmt::format("/meshes/{}/primitives/{}", node.mesh, i);
+      add_primitive(mesh.primitives[i], node, placed, place,
+                    mesh.primitives.size() > 1 ? fmt::format("{}/{}", name, i) : name);
+    }
+  }
+
+  void add_primitive(const tinygltf::Primitive& primitive, const tinygltf::Node& node, const PlacedNode& placed,
+                     const std::string& place, const std::string& name) {
+    std::optional<PrimitiveMesh> mesh = read_primitive(model_, primitive, place, skipped_);
+    if (!mesh) return;
+    std::vector<glm::dvec3>& positions = mesh->positions;
+    std::optional<Skinned> skinned;
+    if (purpose_ != Purpose::rest) {
+      morph(model_, node, primitive, "POSITION", place, positions);
+      skinned = skin(model_, {node, placed.to_world}, primitive, place, to_world_);
+      if (skinned && skinned->vertices.size() != positions.size()) {
+        throw InputError("{}/attributes/JOINTS_0: joints of {} vertices; there are {}", place, skinned->vertices.size(),
+                         positions.size());
+      }
+    }
+    const std::string own_name = object_names_.take(name);
+    if (skinned && skinned->without_weights > 0)
+      losses_.mention("has vertices that no joint moves; they move with their node", own_name);
+    Look look = surfaces_.read(primitive, place, own_name, positions.size());
+    if (purpose_ != Purpose::rest) morph(model_, node, primitive, "NORMAL", place, look.normals);
+    switch (surfaces_.opacity_of(look)) {
+      case Opacity::gone:
+        losses_.mention("is wholly transparent, and left out", own_name);
+        left_out_ = true;
+        ++gone_;
+        bound(positions, placed);
+        return;
+      case Opacity::solid:
+        look.alpha = {};
+        break;
+      case Opacity::neither:
+        if (is_mesh())
+          losses_.refuse(
+              "is solid as a mesh of another scene: what its alpha lets through is kept in scenes that are glTF",
+              own_name);
+        break;
+    }
+    add_object({positions, skinned, look, placed, place}, std::move(mesh->triangles), own_name);
+  }
+
+  void bound(std::span<const glm::dvec3> positions, const PlacedNode& placed) {
+    if (purpose_ != Purpose::rest) return;
+    for (const glm::dvec3& position : positions) {
+      const glm::dvec3 p(placed.to_world * glm::dvec4(position, 1));
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;  // of no triangle
+      lower_ = glm::min(lower_, p);
+      upper_ = glm::max(upper_, p);
+    }
+  }
+
+  void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
+    const glm::dvec3 radiance = radiance_of(vertices, triangles, scene_.pictures);
+    if (vertices.look.emission && radiance != glm::dvec3(0))
+      losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
+    else if (vertices.look.emission)
+      note_refused_light(name, "its emissive picture is black where it lies on it");
+    const Look& look = vertices.look;
+    if (look.picture || !look.normals.empty() || !look.colors.empty() || look.color != glm::dvec3(1)) ++looks_left_;
+    const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
+    Object object;
+    object.name = name;
+    object.casts_shadow = flags_.casts_shadow;
+    object.receives_shadow = flags_.receives_shadow;
+    object.color = vertices.look.color;
+    object.material = vertices.look.material;
+    object.picture = vertices.look.picture;
+    object.alpha = vertices.look.alpha;
+    object.emits = add_light({radiance, vertices.look.two_sided}, name, vertices.placed, before);
+    if (object.emits && !flags_.body) {  // they only said where the light is
+      ++bodiless_;
+      return shorten(scene_, before);
+    }
+    left_out_ |= scene_.soup.positions.size() - before.position < vertices.local.size();
+    bound(vertices.local, vertices.placed);
+    scene_.objects.push_back(std::move(object));
+  }
+
+  void note_refused_light(const std::string& name, const std::string& why_not) {
+    refused_lights_ += fmt::format("{}'{}' ({})", refused_lights_.empty() ? "" : ", ", name, why_not);
+  }
+
+  struct Emission {
+    glm::dvec3 radiance;
+    bool two_sided;
+  };
+  /// The number of the light that the triangles since `before` are the body of, if they are one.
+  std::optional<std::uint32_t> add_light(const Emission& emission, const std::string& name, const PlacedNode& placed,
+                                         const SoupEnd& before) {
+    const glm::dvec3& radiance = emission.radiance;
+    if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) return std::nullopt;
+    if (purpose_ == Purpose::mesh) {
+      ++emissive_;
+      return std::nullopt;
+    }
+    auto recognised = emitter_since(scene_, before, placed, emission.two_sided);
+    if (const auto* why_not = std::get_if<std::string>(&recognised)) {
+      losses_.refuse(fmt::format("is emissive, but no area light, because {}; it would be plain geometry", *why_not),
+                     name);
+      note_refused_light(name, *why_not);
+      return std::nullopt;
+    }
+    auto& emitter = std::get<Emitter>(recognised);
+    if (emitter.hides_itself)
+      losses_.mention("is an emitter with parts that stand in one another's light; a light's own mesh hides none of it",
+                      name);
+    scene_.lights.push_back({.name = light_names_.take(flags_.light_name.empty() ? name : flags_.light_name),
+                             .shape = std::move(emitter.shape),
+                             .radiance = radiance,
+                             .two_sided = emitter.two_sided});
+    return static_cast<std::uint32_t>(scene_.lights.size() - 1);
+  }
+
+  void add_lamp(AreaLight light, const tinygltf::Node& node, const std::string& name) {
+    if (light.radiance == glm::dvec3(0)) return;  // off
+    light.name = light_names_.take(name);
+    if (!lamp_casts_shadows(node, losses_)) shadeless_.push_back(scene_.lights.size());
+    scene_.lights.push_back(std::move(light));
+  }
+
+  void add_camera(const tinygltf::Node& node, const PlacedNode& placed, const std::string& name) {
+    Camera camera = camera_of(model_, node, placed, losses_);
+    camera.name = camera_names_.take(name);
+    scene_.cameras.push_back(std::move(camera));
+  }
+
+  void add_warnings() {
+    const auto count = [&](std::uint64_t number, const char* what) {
+      if (number > 0) scene_.warnings.push_back(fmt::format("{} {}", number, what));
+    };
+    if (!is_mesh()) lamps_.add_warnings(scene_.warnings);
+    count(skipped_.points_and_lines, "primitives of points or lines skipped");
+    count(skipped_.without_positions, "primitives without POSITION skipped");
+    count(skipped_.without_triangles, "primitives with fewer than three vertices skipped");
+    count(skipped_.leftover_indices, "indices at the end of primitives skipped: they make no whole triangle");
+    count(emissive_, "emissive objects are no lights here: those are the scene's");
+    if (purpose_ == Purpose::mesh) {
+      count(looks_left_,
+            "objects lose their pictures, colours and normals: a mesh of another scene has the colour that is "
+            "said there");
+      count(lamps_left_, "lamps and cameras left out: those are the scene's");
+    }
+  }
+
+  const tinygltf::Model& model_;
+  Purpose purpose_;
+  bool lenient_;
+  std::span<const std::optional<glm::dmat4>> unhidden_;  // empty, or of each node
+  Scene scene_;
+  std::vector<std::optional<glm::dmat4>> to_world_;  // of each node; nothing for those that are not in the scene
+  Losses losses_;
+  PunctualLights lamps_;
+  SurfaceReader surfaces_;
+  UniqueNames object_names_, camera_names_, light_names_;
+  std::string refused_lights_;
+  SkippedPrimitives skipped_;
+  std::vector<std::string> compressed_;    // primitives that were left out
+  std::uint64_t gone_ = 0, bodiless_ = 0;  // primitives that are wholly transparent, that only say where a light is
+  bool left_out_ = false;
+  glm::dvec3 lower_{std::numeric_limits<double>::infinity()}, upper_{-std::numeric_limits<double>::infinity()};
+  ObjectFlags flags_;                                             // of the mesh at hand
+  std::vector<std::size_t> shadeless_;                            // lights that cast no shadows
+  std::uint64_t emissive_ = 0, looks_left_ = 0, lamps_left_ = 0;  // of Purpose::mesh
+};
+
+}  // namespace
+
+BuiltScene build_scene(const tinygltf::Model& model, const SceneRequest& request, Purpose purpose,
+                       const TakenOut& taken_out) {
+  GltfScene builder(model, request, purpose);
+  builder.say_of(taken_out, request.options.time.has_value());
+  BuiltScene built;
+  built.scene = builder.run();
+  built.left_vertices_out = builder.left_vertices_out();
+  return built;
+}
+
+glm::dvec3 middle_at_rest(const tinygltf::Model& model, const SceneRequest& request) {
+  GltfScene rest(model, request, Purpose::rest);
+  rest.run();
+  return rest.middle();
+}
+
+}  // namespace penumbra::scenes
