@@ -6,6 +6,8 @@
 #include "visibility/alpha/alpha_filter.hpp"
 #include "visibility/masks/visible_share.hpp"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>

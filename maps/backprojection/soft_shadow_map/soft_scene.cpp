@@ -1,6 +1,7 @@
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"
 
 #include "visibility/receivers.hpp"
+#include "visibility/tree/view_walk.hpp"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -47,10 +48,11 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
   };
   std::map<std::uint32_t, bool> casting;   // objects that receive: does any of their triangles cast?
   std::map<std::uint32_t, double> facing;  // their area toward the light
-  for (std::size_t i = 0; i < count; ++i) {
+  // A triangle without area is nowhere to be seen, and must not decide what the others are.
+  for (const std::uint32_t i : visibility::triangles_with_area(scene)) {
     if (!receives(i)) continue;
     casting[scene.object[i]] |= casts(i);
-    const auto corners = scene.corners(static_cast<std::uint32_t>(i));
+    const auto corners = scene.corners(i);
     const glm::dvec3 a = basis.local(corners[0]), b = basis.local(corners[1]), c = basis.local(corners[2]);
     const glm::dvec3 middle = (a + b + c) / 3.0;
     if (middle.z < 0 && !light.two_sided) continue;

@@ -341,6 +341,14 @@ TEST_F(SoftShadowMap, WhereOccludersHaveNoShadowsItSaysSo) {
   EXPECT_EQ(warning(on_floor(ball(0.5), {{0, 0}, {1, 0}}), {}), "") << "no pixel shows the ball";
 }
 
+/// An object without area that casts nothing is not the receiver that all others shade.
+TEST_F(SoftShadowMap, WhatIsNowhereDecidesNothing) {
+  scenes::Scene with = ball(0.5);
+  add_object(with, "line", {{glm::dvec3(0), glm::dvec3(0.25), glm::dvec3(0.5)}}).casts_shadow = false;
+  const Stage plain(ball(0.5), 16, 16, light_samples(1)), same(with, 16, 16, light_samples(1));
+  EXPECT_EQ(soft(same).picture.visibility, soft(plain).picture.visibility);
+}
+
 TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
   scenes::Scene nothing = floor_and_light(0.5), crossing = ball(0.5), touching = floor_and_light(0.5), inside,
                 room = ball(0.5);
