@@ -150,5 +150,22 @@ TEST(JsonScene, SkewedRectangleIsSaid) {
   EXPECT_NE(oval.warnings[0].find("/lights/0/ellipse: halfU and halfV are not at right angles"), std::string::npos);
 }
 
+/// --camera asks for them by name.
+TEST(JsonScene, CamerasOfOneNameGetNumbers) {
+  const TemporaryFolder folder;
+  const std::string one = R"({"name": "shot", "eye": [0, 2, 6], "target": [0, 1, 0]})";
+  const std::string taken = R"({"name": "shot_2", "eye": [0, 2, 6], "target": [0, 1, 0]})";
+  const auto file = folder.write(
+      "scene.json", scene_text(kMesh, kLight, "\"cameras\": [" + one + ", " + taken + ", " + one + ", " + one + "]"));
+  const scenes::Scene scene = read_scene(file);
+  std::vector<std::string> names;
+  for (const scenes::Camera& camera : scene.cameras) names.push_back(camera.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"shot", "shot_2", "shot_3", "shot_4"}));
+  ASSERT_EQ(scene.warnings.size(), 2u);
+  EXPECT_NE(scene.warnings[0].find("/cameras/2: the name \"shot\" is taken; the camera is called \"shot_3\""),
+            std::string::npos)
+      << scene.warnings[0];
+}
+
 }  // namespace
 }  // namespace penumbra::test
