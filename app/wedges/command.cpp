@@ -109,9 +109,7 @@ class WedgesCommand : public Command {
         ->type_name("X,Y");
     cli_.add_option("--size", size_, "of that picture (default: as `render` has it)")->type_name("WxH");
     cli_.add_option("--camera", camera_, "that it is seen by (default: the scene's first)")->type_name("NAME");
-    cli_.add_option("--svg", svg_,
-                    "the light as seen from there, with projected edges (default: beside --export's file, or in the "
-                    "working folder: <name>-X-Y.svg)")
+    cli_.add_option("--svg", svg_, "the light as seen from there, with projected edges")
         ->type_name("FILE.svg")
         ->needs("--explain");
     add_allow_outside(cli_, allow_outside_);
@@ -163,10 +161,7 @@ class WedgesCommand : public Command {
       const auto [x, y] = parse_pixel(explain_, scene);
       explanation = explain({scene, floats, light, casters, casting, wedges}, x, y);
       result.explanation = &*explanation;
-      if (!explanation->picture.empty()) result.svg = picture_path(x, y);
-      if (svg_.empty()) outputs.add("--explain", result.svg);
-      outputs.refuse_inputs(scene.sources);
-      outputs.refuse_inputs({&scene_, 1});
+      if (!explanation->picture.empty()) result.svg = svg_;
     }
     if (!result.svg.empty()) write_file_atomically(result.svg, std::string_view(explanation->picture));
     if (!json_.empty()) write_wedges_json(json_, result);
@@ -193,12 +188,6 @@ class WedgesCommand : public Command {
     outputs.add("--json", json_);
     outputs.add("--svg", svg_);
     return outputs;
-  }
-
-  [[nodiscard]] std::filesystem::path picture_path(std::uint32_t x, std::uint32_t y) const {
-    if (!svg_.empty()) return svg_;
-    const std::filesystem::path beside = export_.empty() ? scene_.filename() : export_;
-    return beside.parent_path() / fmt::format("{}-{}-{}.svg", beside.stem().string(), x, y);
   }
 
   std::filesystem::path scene_, export_, json_, svg_;

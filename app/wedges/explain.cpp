@@ -61,7 +61,13 @@ void explain_wedges(const ToExplain& input, const volumes::SoftVisibility& soft,
     entry.seen = found->second->clipped;
     unexplained.erase(found);
   }
-  for (const auto& [edge, covered] : unexplained) result.outside.push_back(edge);
+  // Without p's own triangle, and those in its plane, edges of theirs are silhouettes that are none of the mesh: no
+  // wedge is built of them.
+  const std::vector<volumes::SoftVisibility::Silhouette>& built = soft.silhouettes_of_center();  // by number
+  for (const auto& [edge, covered] : unexplained) {
+    if (std::ranges::binary_search(built, edge, {}, &volumes::SoftVisibility::Silhouette::first))
+      result.outside.push_back(edge);
+  }
 }
 
 std::string title_of(const ToExplain& input, const Explanation& explanation) {
@@ -165,7 +171,7 @@ ordered_json explain_json(const Explanation& explanation, const std::filesystem:
   entry["centre"] = sum_json(*explanation.center);
   entry["receiver"] = sum_json(*explanation.receiver);
   entry["exactV"] = explanation.exact ? ordered_json(*explanation.exact) : ordered_json();
-  entry["svg"] = svg.string();
+  entry["svg"] = svg.empty() ? ordered_json() : ordered_json(svg.string());
   return entry;
 }
 
@@ -214,7 +220,7 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
   print_sum("silhouettes of centre:", *explanation.center);
   print_sum("silhouettes of p:", *explanation.receiver);
   if (explanation.exact) fmt::print("exact area: V = {:.9f}\n", *explanation.exact);
-  fmt::print("picture: {}\n", svg.string());
+  if (!svg.empty()) fmt::print("picture: {}\n", svg.string());
 }
 
 }  // namespace penumbra::app

@@ -166,11 +166,45 @@ TEST_F(ExplainCommand, RefusesABadName) {
   EXPECT_EQ(run({"wedges", scene, "--explain", "4,4", "--svg", path("w.png")}).code, 2);
 }
 
-TEST_F(ExplainCommand, DrawsBesideTheExportByDefault) {
+TEST_F(ExplainCommand, DrawsWhereItIsAskedToAlone) {
   const std::string scene = write("scene.json", scene_with(kSquare)).string();
   const Outcome outcome = run({"wedges", scene, "--explain", "4,4", "--export", path("w.ply")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(files(), testing::Contains("w-4-4.svg"));
+  EXPECT_THAT(files(), testing::ElementsAre("scene.json", "w.ply"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("picture")));
+}
+
+/// A box on the floor, looked at from all sides: edges of the face that a pixel shows are silhouettes without that face
+/// alone, and have no wedges. A construction that is too narrow is named all the same.
+TEST_F(ExplainCommand, NamesEdgesOutsideTheirWedgesOfWrongConstructionsAlone) {
+  const std::string box = R"({"name": "ball", "shape": {"type": "sphere", "center": [-0.5, 0.5, 0], "radius": 0.5,
+    "segments": 12}},)";
+  const std::string scene = write("scene.json", scene_with(kSquare, box)).string();
+  const auto alarms = [&](const std::string& construction, const std::string& pixel) {
+    const Outcome outcome = run({"wedges", scene, "--size", "24x24", "--construction", construction, "--explain", pixel,
+                                 "--json", path("w.json")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const int count = json::parse(read("w.json")).at("explain").value("edgesOutsideTheirWedges", 0);
+    EXPECT_EQ(count > 0, outcome.out.find("none of its wedges") != std::string::npos);
+    return count;
+  };
+  int of_wrong = 0;
+  for (const int y : {9, 11, 12, 14}) {
+    for (const int x : {6, 8, 9, 10, 11, 13}) {
+      const std::string pixel = std::to_string(x) + "," + std::to_string(y);
+      EXPECT_EQ(alarms("original", pixel), 0) << pixel;
+    }
+  }
+  // Of shipped scenes, pixels whose own triangle's edges appear.
+  for (const auto& [shipped, pixel] : {std::pair{"/self-shadow.json", "45,40"}, {"/thin.json", "32,72"}}) {
+    const Outcome outcome =
+        run({"wedges", std::string(PENUMBRA_SCENES) + shipped, "--size", "128x128", "--explain", pixel});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, Not(HasSubstr("none of its wedges"))) << shipped;
+  }
+  for (const char* const wrong : {"broken:1", "broken:2", "broken:3", "broken:4", "broken:5", "broken:6"})
+    of_wrong += alarms(wrong, "13,13") + alarms(wrong, "8,14");
+  EXPECT_GT(of_wrong, 0);
 }
 
 }  // namespace
