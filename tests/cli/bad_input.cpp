@@ -169,7 +169,14 @@ std::vector<BadUsage> bad_usages() {
       {"ExplainNoPixel", {"wedges", "SCENE", "--explain", "1;1"}, 2, {"--explain 1;1", "X,Y"}},
       {"ExplainPixelOffTheImage", {"wedges", "SCENE", "--explain", "1,32"}, 2, {"1,32", "48x32"}},
       {"ReferenceThatIsNoJudge", {"compare", "SCENE", "-o", "DIR", "--reference", "pcss"}, 2, {"raytrace or exact"}},
-      {"ReferenceThatIsNone", {"compare", "SCENE", "-o", "DIR", "--reference", "magic"}, 2, {"magic"}},
+      {"ReferenceThatIsNone",
+       {"compare", "SCENE", "-o", "DIR", "--reference", "magic"},
+       2,
+       {"--reference magic: expected raytrace or exact"}},
+      {"ComparePattern",
+       {"compare", "SCENE", "-o", "DIR", "--sample-pattern", "x"},
+       2,
+       {"--sample-pattern x: expected"}},
       {"ReferenceSamples",
        {"compare", "SCENE", "-o", "DIR", "--methods", "raytrace", "--reference-samples", "0"},
        2,
@@ -234,7 +241,7 @@ TEST_F(BadInput, DiskFullKeepsWhatStoodThere) {
 
 TEST_F(BadInput, FullDevice) {
   // Results on stdout count as output too.
-  std::string command = std::string(PENUMBRA_PROGRAM) + " methods >/dev/full 2>/dev/null";
+  const std::string command = std::string("'") + PENUMBRA_PROGRAM + "' methods >/dev/full 2>/dev/null";
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 4);
 }

@@ -58,6 +58,46 @@ std::map<std::string, std::string> additions(const Conditions& conditions) {
   return added;
 }
 
+/// May others go through all folders above the file?
+bool is_reachable(const std::filesystem::path& file) {
+  for (std::filesystem::path folder = file.parent_path();; folder = folder.parent_path()) {
+    const auto allowed = std::filesystem::status(folder).permissions();
+    if ((allowed & std::filesystem::perms::others_exec) == std::filesystem::perms::none) return false;
+    if (folder == folder.parent_path()) return true;
+  }
+}
+
+/// The program and its helper where strangers can start them: where they were built, or, below a folder that only its
+/// owner may enter, such as root's home, in copies that go with this process.
+class StrangersProgram {
+ public:
+  StrangersProgram() {
+    if (is_reachable(path_)) return;
+    folder_ = std::filesystem::temp_directory_path() / ("penumbra-strangers-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    std::filesystem::permissions(folder_, std::filesystem::perms(0755));
+    for (const auto& file : {path_, path_.parent_path() / "penumbra-import"})
+      std::filesystem::copy_file(file, folder_ / file.filename(), std::filesystem::copy_options::overwrite_existing);
+    path_ = folder_ / path_.filename();
+  }
+  StrangersProgram(const StrangersProgram&) = delete;
+  StrangersProgram& operator=(const StrangersProgram&) = delete;
+  ~StrangersProgram() {
+    std::error_code error;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, error);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_ = PENUMBRA_PROGRAM, folder_;
+};
+
+std::string program_of(const Conditions& conditions) {
+  if (!conditions.as_stranger) return PENUMBRA_PROGRAM;
+  static const StrangersProgram program;
+  return program.path().string();
+}
+
 /// After fork: only calls that are safe there.
 void set_stream(Stream stream, int number, int captured) {
   switch (stream) {
@@ -90,7 +130,8 @@ bool is_documented(int code) {
 
 Running::Running(const Conditions& conditions) : timeout_(conditions.timeout) {
   std::vector<std::string> arguments = conditions.arguments;
-  arguments.insert(arguments.begin(), PENUMBRA_PROGRAM);
+  const std::string program = program_of(conditions);
+  arguments.insert(arguments.begin(), program);
   std::vector<std::string> environment = environment_with(additions(conditions));
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   std::array<int, 2> out{}, err{};
@@ -109,7 +150,7 @@ Running::Running(const Conditions& conditions) : timeout_(conditions.timeout) {
       ::setrlimit(limit.resource, &both);
     }
     if (conditions.as_stranger && ::geteuid() == 0 && ::setresuid(user, user, user) != 0) ::_exit(125);
-    ::execve(PENUMBRA_PROGRAM, argv.data(), envp.data());
+    ::execve(program.c_str(), argv.data(), envp.data());
     ::_exit(126);
   }
   for (const int end : {out[1], err[1], nothing}) ::close(end);
