@@ -88,7 +88,7 @@ class CompareCommand : public Command {
         ->capture_default_str();
     cli_.add_option("--reference", options_.reference,
                     "who judges: raytrace, or exact: areas, not samples (slow; see --sample-pixels)")
-        ->type_name("NAME")
+        ->type_name("raytrace|exact")
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
                     "light samples of the reference; same: those of the methods, which are then compared pair by pair")

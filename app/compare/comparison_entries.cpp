@@ -2,10 +2,12 @@
 
 #include "app/methods.hpp"
 #include "app/output.hpp"
+#include "base/did_you_mean.hpp"
 #include "base/error.hpp"
 #include "visibility/lights/device_light.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -42,12 +44,11 @@ std::optional<Entry> describe_entry(const MethodEntry& chosen, const std::functi
 }  // namespace
 
 Entry describe_reference(const std::string& name) {
-  const visibility::MethodDescription& description = describe_method(name);
-  if (description.family != visibility::Family::reference) {
-    throw UsageError("--reference {}: a {} method is no judge; expected raytrace or exact", name,
-                     visibility::name_of(description.family));
-  }
-  return {"reference", description, {}};
+  constexpr std::array kJudges = {"raytrace", "exact"};
+  if (std::ranges::find(kJudges, name) == kJudges.end())
+    throw UsageError("--reference {}: expected raytrace or exact{}", name,
+                     did_you_mean(name, {kJudges.begin(), kJudges.end()}));
+  return {"reference", describe_method(name), {}};
 }
 
 std::vector<Entry> choose_entries(const ComparisonOptions& options, const Session& session,

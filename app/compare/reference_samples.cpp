@@ -10,7 +10,8 @@
 namespace penumbra::app {
 
 visibility::SampleRequest reference_samples(const RunOptions& run, const std::string& wanted) {
-  if (wanted == "same") return parse_light_samples(run);
+  const visibility::SampleRequest own = parse_light_samples(run);  // refuses by its options' own names
+  if (wanted == "same") return own;
   RunOptions reference = run;
   reference.light_samples = wanted;
   try {

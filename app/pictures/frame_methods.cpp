@@ -83,6 +83,19 @@ void FrameRenderer::label_lights() {
     labels_.push_back(
         {description, options, device_of(description.name, options, light, devices_), in_part_.contains(light.name)});
   }
+  say_unused_samples();
+}
+
+void FrameRenderer::say_unused_samples() {
+  const char* const asked = !options_.light_samples.empty()    ? "--light-samples"
+                            : !options_.sample_pattern.empty() ? "--sample-pattern"
+                                                               : nullptr;
+  const LabelledLights lights{session().lights, labels_};
+  const auto has_none = [&](const WholeLight& whole) { return samples_of(lights, whole) == 0; };
+  if (asked == nullptr || !std::ranges::all_of(whole_lights(session().lights), has_none)) return;
+  notes_.push_back(
+      fmt::format("{}: {} gives areas, and takes no light samples", asked, labels_.front().description.name));
+  say_once({notes_.back()});
 }
 
 FrameRenderer::Kept& FrameRenderer::method_for(const LightMethod& wanted) {

@@ -68,6 +68,8 @@ class FrameRenderer {
   void say_notes();
   /// What the picture's lights were done with.
   void label_lights();
+  /// Light samples were asked for, and nobody took them.
+  void say_unused_samples();
   void run_methods(const std::filesystem::path& bits);
   /// What the chosen methods make of the view samples that are looked at; `bits` may be null.
   MethodRun run_lights(BeautyAccumulator& beauty, BitsOutput* bits);

@@ -12,7 +12,15 @@
 
 namespace penumbra::app {
 
-Progress::Progress(bool wanted) : visible_(wanted && ::isatty(STDERR_FILENO) != 0) {}
+namespace {
+
+/// Between lines, where there is no bar: what is done in less says nothing.
+constexpr auto kSilence = std::chrono::seconds(5);
+
+}  // namespace
+
+Progress::Progress(bool wanted)
+    : wanted_(wanted), on_terminal_(::isatty(STDERR_FILENO) != 0), last_draw_(std::chrono::steady_clock::now()) {}
 
 Progress::~Progress() {
   clear();
@@ -23,7 +31,7 @@ void Progress::begin(std::string stage, std::uint64_t steps) {
   stage_ = std::move(stage);
   steps_ = std::max<std::uint64_t>(steps, 1);
   done_ = 0;
-  last_draw_ = {};
+  if (on_terminal_) last_draw_ = {};
   draw();
 }
 
@@ -40,8 +48,14 @@ void Progress::clear() {
 }
 
 void Progress::draw() {
-  if (!visible_) return;
+  if (!wanted_) return;
   const auto now = std::chrono::steady_clock::now();
+  if (!on_terminal_) {
+    if (now - last_draw_ < kSilence) return;
+    last_draw_ = now;
+    say(fmt::format("penumbra: info: {:3}% {}\n", 100 * done_ / steps_, stage_));
+    return;
+  }
   if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a tile
   last_draw_ = now;
   constexpr std::uint64_t kWidth = 30;

@@ -6,8 +6,8 @@
 
 namespace penumbra::app {
 
-/// A bar on stderr, drawn only if stderr is a terminal and the user did not ask for quiet. Each step also looks for an
-/// interrupt, so that whatever reports progress can be stopped.
+/// A bar on stderr if that is a terminal, else a line every five seconds; neither if the user asked for quiet. Each
+/// step also looks for an interrupt, so that whatever reports progress can be stopped.
 class Progress {
  public:
   explicit Progress(bool wanted);
@@ -24,7 +24,7 @@ class Progress {
  private:
   void draw();
 
-  bool visible_ = false;
+  bool wanted_ = false, on_terminal_ = false;
   std::string stage_;
   std::uint64_t steps_ = 0, done_ = 0;
   bool drawn_ = false;

@@ -231,5 +231,18 @@ TEST_F(ErrorBudget, EachLightIsExplained) {
             json::parse(read("among/metrics.json")).at("methods").at(0).at("lights").at(1).at("errorBudget"));
 }
 
+/// Where stderr is no terminal there is no bar, but a line every five seconds.
+using ErrorBudgetFull = ErrorBudget;
+TEST_F(ErrorBudgetFull, SaysHowFarItIs) {
+  const Outcome outcome =
+      run({"compare", std::string(PENUMBRA_SCENES) + "/bunny.json", "-o", path("dir"), "--runs", "1", "--size",
+           "192x192", "--methods", "backproject,contour,shadow-map", "--error-budget"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("penumbra: info: "));
+  EXPECT_THAT(outcome.err, HasSubstr("% "));
+  EXPECT_THAT(outcome.err, HasSubstr("repaired"));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("\r")));
+}
+
 }  // namespace
 }  // namespace penumbra::tests

@@ -86,6 +86,10 @@ TEST_F(ExactByDefault, OfAMethodThatWasNamedToo) {
   tiny_scene();
   EXPECT_EQ(render({"--method", "edge-scatter"}).stats["lights"][0]["quantity"], "area");
   EXPECT_EQ(render({"--method", "edge-scatter", "--light-samples", "9"}).stats["lightSamples"], 9);
+  const Rendered unused = render({"--method", "exact", "--light-samples", "9"});
+  EXPECT_THAT(unused.err, HasSubstr("--light-samples: exact gives areas, and takes no light samples"));
+  EXPECT_THAT(unused.stats["warnings"].dump(), HasSubstr("takes no light samples"));
+  EXPECT_THAT(render({"--method", "exact"}).err, Not(HasSubstr("light samples")));
   for (const char* option : {"rows=samples", "engine=vulkan"}) {
     const Rendered samples = render({"--method", "edge-scatter", "--method-option", option});
     EXPECT_EQ(samples.stats["lights"][0]["quantity"], "count") << option;
