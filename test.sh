@@ -13,4 +13,4 @@ esac
 build ON all
 if (($# == 0)); then set -- -L quick; fi
 # GPU tests on the processor already use all cores: more than two at once only make each slower.
-exec ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel 2 "$@"
+ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel 2 "$@" | never_silent 'tests are running'

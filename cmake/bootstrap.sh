@@ -4,6 +4,44 @@
 say() { printf 'penumbra: %s\n' "$*" >&2; }
 die() { say "$1"; exit 4; }
 
+# lively TEXT COMMAND…: runs the command, and as long as it takes says every eight seconds what TEXT, a command too, prints. The
+# command stays in front, so that Ctrl-C ends it; the clock, and its sleep, hold none of its files.
+lively() {
+  local text=$1 clock code=0
+  shift
+  (while sleep 8 >/dev/null 2>&1 9>&-; do say "$($text)"; done) 9>&- &
+  clock=$!
+  trap 'kill "$clock" 2>/dev/null || true' EXIT
+  "$@" || code=$?
+  kill "$clock" 2>/dev/null || true
+  wait "$clock" 2>/dev/null || true
+  trap - EXIT
+  return "$code"
+}
+
+# What lively says of apt-get, whose output is in $apt_log, and of other things.
+apt_text() {
+  printf '%s: %d packages fetched, %d unpacked, %d set up' "$apt_step" "$(grep -c '^Get:' "$apt_log")" \
+    "$(grep -c '^Unpacking ' "$apt_log")" "$(grep -c '^Setting up ' "$apt_log")"
+}
+configure_text() { echo 'configuring build/ goes on'; }
+
+# never_silent TEXT: passes lines on, and says TEXT on stderr where none comes for eight seconds.
+never_silent() {
+  local line code
+  while true; do
+    code=0
+    IFS= read -r -t 8 line || code=$?
+    if ((code == 0)); then
+      printf '%s\n' "$line"
+      continue
+    fi
+    printf '%s' "$line"
+    if ((code <= 128)); then break; fi  # the end
+    say "$1 ($SECONDS s)"
+  done
+}
+
 # Installs what packages.txt lists and this machine does not have. Its first paragraph is what the program needs to be
 # built and run; `install_packages all` installs the second, too: what tests and developers need. `install_packages full`
 # also the third: what long tests alone need, and is large.
@@ -25,18 +63,40 @@ install_packages() {
 
   local sudo=()
   if ((EUID != 0)); then
-    command -v sudo >/dev/null ||
-      die "missing packages and no sudo; as root, run: apt-get install --no-install-recommends ${missing[*]}"
+    command -v sudo >/dev/null || die "packages are missing, and there is no sudo. Let root run
+
+    apt-get update && apt-get install --no-install-recommends ${missing[*]}
+
+and start this again; or, without this script, in $root:
+
+    cmake -S . -B build -G Ninja -DPENUMBRA_TESTS=OFF && ninja -C build penumbra && build/penumbra --help"
     sudo=(sudo)
   fi
-  say "installing ${missing[*]}"
-  local apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300)
+  apt_log=$(mktemp)
+  apt_step=installing
+  say "installing ${#missing[@]} packages and what they need: ${missing[*]}"
   # Package lists may be fresh enough; only if not, fetch them.
-  if ! "${sudo[@]}" "${apt[@]}" install --no-install-recommends -y "${missing[@]}" >/dev/null 2>&1; then
-    "${sudo[@]}" "${apt[@]}" update >&2 || die "apt-get update failed; is the package mirror within reach?"
-    "${sudo[@]}" "${apt[@]}" install --no-install-recommends -y "${missing[@]}" >&2 ||
-      die "apt-get install failed for: ${missing[*]}"
+  if ! lively apt_text install_now; then
+    say 'apt-get update, then once more'
+    apt_step='apt-get update'
+    lively apt_text update_now ||
+      { cat "$apt_log" >&2; die "apt-get update failed; is the package mirror within reach?"; }
+    apt_step=installing
+    lively apt_text install_now || { tail -20 "$apt_log" >&2; die "apt-get install failed for: ${missing[*]}"; }
   fi
+  rm -f "$apt_log"
+}
+
+# Of install_packages, whose variables they know.
+update_now() { "${sudo[@]}" apt-get -q update >"$apt_log" 2>&1; }
+install_now() {
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 install --no-install-recommends -y \
+    "${missing[@]}" >"$apt_log" 2>&1
+}
+
+configure_now() {
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="${PENUMBRA_BUILD_TYPE:-Release}" -DPENUMBRA_TESTS="$1" \
+    >"$build/configure.log" 2>&1
 }
 
 # build TESTS TARGET…: configures once (ninja itself notices later changes of the build rules), with tests where TESTS is ON,
@@ -50,16 +110,15 @@ build() {
   flock 9
   if [[ ! -f $build/build.ninja ]] || { [[ $tests == ON ]] && grep -q '^PENUMBRA_TESTS:BOOL=OFF' "$build/CMakeCache.txt"; }; then
     say "configuring build/"
-    cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="${PENUMBRA_BUILD_TYPE:-Release}" \
-      -DPENUMBRA_TESTS="$tests" >"$build/configure.log" 2>&1 || {
+    lively configure_text configure_now "$tests" || {
       cat "$build/configure.log" >&2
       die "configuring failed (see above)"
     }
   fi
   # Progress goes to stderr, so that stdout is the program's alone; a build with nothing to do says nothing.
   NINJA_STATUS='[%f/%t] ' ninja -C "$build" "$@" |
-    sed -u -e '/^ninja: Entering directory/d' -e '/^ninja: no work to do/d' -e '/Re-checking globbed directories/d' >&2 ||
-    die "the build failed (see above)"
+    sed -u -e '/^ninja: Entering directory/d' -e '/^ninja: no work to do/d' -e '/Re-checking globbed directories/d' |
+    never_silent 'still compiling' >&2 || die "the build failed (see above)"
   flock -u 9
   exec 9>&-
 }

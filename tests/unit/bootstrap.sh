@@ -53,4 +53,30 @@ expect 'install_packages full' 'removed half broken unknown of-tests of-long-tes
 printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' 'ii  there-too' >"$work/dpkg"
 expect install_packages ''
 [[ ! -s $work/said ]] || { echo "not quiet where nothing is missing" >&2; failed=1; }
+
+# Package lists that are too old: that they are fetched is said, and how far a slow installation is.
+printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' >"$work/dpkg"
+cat >"$work/bin/apt-get" <<'END'
+#!/bin/bash
+echo "$*" >>"$WORK/apt"
+case "$*" in
+  *update*) touch "$WORK/fresh" ;;
+  *) [[ -e $WORK/fresh ]] || exit 100
+     echo 'Get:1 http://mirror there-too'; sleep 9 ;;
+esac
+END
+rm -f "$work/apt"
+# shellcheck disable=SC2034
+(root=$WORK/root && source "$source/cmake/bootstrap.sh" && install_packages) 2>"$work/said" || { cat "$work/said" >&2; failed=1; }
+[[ $(wc -l <"$work/apt") == 3 ]] || { echo "apt-get is not called three times" >&2; failed=1; }
+for said in 'installing 1 packages and what they need: there-too' 'apt-get update' 'installing: 1 packages fetched, 0 unpacked'; do
+  grep -qF "$said" "$work/said" || { echo "not said: $said" >&2; cat "$work/said" >&2; failed=1; }
+done
+
+# Lines come through, with what the pipeline's first command ends with; silence is broken.
+# shellcheck disable=SC2034
+(root=$WORK/root && source "$source/cmake/bootstrap.sh" && (echo a; sleep 9; echo b; exit 7) | never_silent 'goes on') \
+  >"$work/lines" 2>"$work/said" && { echo "a failure gets lost" >&2; failed=1; }
+[[ $(<"$work/lines") == $'a\nb' ]] || { echo "lines get lost" >&2; failed=1; }
+grep -q 'goes on' "$work/said" || { echo "nothing is said for nine seconds" >&2; failed=1; }
 exit $failed
