@@ -1,0 +1,76 @@
+"""Does everything compile as the presets `clang`, `fuzz`, `coverage` and a Debug build would have it? Without building them:
+
+    compilers.py SOURCE BUILD
+
+clang looks at all sources and their templates without making code of them. g++ does the same without optimisation, and compiles
+those of them that Highway compiles once a target, since what an intrinsic's immediate is shows when code is made, and there with
+precompiled headers alone. Sources are joined as run.sh joins them. BUILD must have been built: shaders embedded as headers are
+taken from there. Eight minutes of two cores."""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+HIGHWAY = re.compile(rb"hwy/foreach_target\.h")
+
+
+def configure(source, build, name, *options):
+    """Compile commands of the sources, in a folder of its own; its embedded shaders are BUILD's."""
+    folder = os.path.join(build, name)
+    command = ["cmake", "-S", source, "-B", folder, "-G", "Ninja", "-DPENUMBRA_TESTS=ON", *options]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stdout)
+    with open(os.path.join(folder, "compile_commands.json")) as file:
+        entries = json.load(file)
+    own = [entry for entry in entries if not entry["file"].startswith(build + os.sep) or f"{os.sep}Unity{os.sep}" in entry["file"]]
+    for entry in own:
+        entry["command"] = entry["command"].replace(os.path.join(folder, "shaders"), os.path.join(build, "shaders"))
+    return folder, [entry for entry in own if entry["file"].endswith((".cpp", ".cxx"))]
+
+
+def is_highway(entry):
+    with open(entry["file"], "rb") as file:
+        return HIGHWAY.search(file.read()) is not None
+
+
+def compile_one(entry, how):
+    """Nothing is kept of it. Returns what the compiler says."""
+    words = shlex.split(entry["command"])
+    words[words.index("-o") + 1] = "/dev/null"
+    done = subprocess.run([*words, *how], cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return "" if done.returncode == 0 else f"{entry['file']}:\n" + "\n".join(done.stdout.splitlines()[:30])
+
+
+def check(name, jobs):
+    """Compiles on all cores; says what fails. Returns how many do."""
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        failures = [text for text in pool.map(lambda job: compile_one(*job), jobs) if text]
+    for text in failures:
+        print(text, file=sys.stderr)
+    print(f"style: {name}: {len(jobs)} files, {len(failures)} do not compile", flush=True)
+    return len(failures)
+
+
+def main(source, build):
+    source, build = os.path.realpath(source), os.path.realpath(build)
+    _, clang = configure(source, build, "compilers-clang", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_COMPILER=clang",
+                         "-DCMAKE_CXX_COMPILER=clang++", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON", "-DPENUMBRA_JOIN=ON")
+    failed = check("clang", [(entry, ["-fsyntax-only"]) for entry in clang])
+
+    folder, debug = configure(source, build, "compilers-debug", "-DCMAKE_BUILD_TYPE=Debug")
+    headers = subprocess.run(["ninja", "-C", folder, "penumbra_precompiled", "penumbra_precompiled_tests"],
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if headers.returncode != 0:
+        sys.exit(headers.stdout)
+    failed += check("g++ without optimisation",
+                    [(entry, [] if is_highway(entry) else ["-fsyntax-only"]) for entry in debug])
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(1 if main(*sys.argv[1:]) else 0)
