@@ -8,8 +8,9 @@
 
 namespace penumbra::app {
 
-/// The Vulkan device of this run, made when first asked for, so that what needs none works without any; or from when
-/// somebody knows that it will be asked for.
+/// The Vulkan device of this run, made when first asked for, or from when somebody knows that it will be. `render` and
+/// `compare` always ask, whatever the method, since view samples are found on it; `inspect`, `wedges`, `convert` and
+/// `methods` never do, and work without any.
 class DeviceSource {
  public:
   /// `wanted` as `--device` takes it. PENUMBRA_VALIDATION=1 in the environment switches the validation layer on.

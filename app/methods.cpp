@@ -93,7 +93,8 @@ template <auto kDescribe, auto kMake>
           on_vectors};
 }
 
-/// A method that runs on the processor, on a machine without Vulkan too: an instance can be asked what it is.
+/// A method that runs on the processor: an instance can be asked what it is, without a Vulkan device. (To render with
+/// it takes one all the same, since view samples are found there.)
 template <auto kMake>
 [[maybe_unused]] TableRow on_processor() {
   return {[]() -> const MethodDescription& {

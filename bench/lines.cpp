@@ -55,13 +55,13 @@ void add_errors(Json& line, const Entry& entry, const Contestant& contestant) {
 
 }  // namespace
 
-std::string table_head() {
+std::string table_head(bool penumbra) {
   return fmt::format(
-      "| {:<50} | {:>15} | {:>7} | {:>7} | {:>7} | {:>8} | {:>9} | {:>9} | {:>7} | {:>6} | {:>4} |\n"
-      "| {:-<50} | {:->14}: | {:->6}: | {:->6}: | {:->6}: | {:->7}: | {:->8}: | {:->8}: | {:->6}: | {:->5}: | {:->3}: "
+      "| {:<50} | {:>15} | {:>7} | {:>7} | {:>7} | {:>9} | {:>9} | {:>9} | {:>7} | {:>6} | {:>4} |\n"
+      "| {:-<50} | {:->14}: | {:->6}: | {:->6}: | {:->6}: | {:->8}: | {:->8}: | {:->8}: | {:->6}: | {:->5}: | {:->3}: "
       "|\n",
-      "name", "shadow s", "plain", "nontr.", "adapt.", "RMSE", "RMSE ref.", "differing", "of all", "MiB", "load", "",
-      "", "", "", "", "", "", "", "", "", "");
+      "name", "shadow s", "plain", "nontr.", "adapt.", "RMSE s.l.", penumbra ? "RMSE pen." : "RMSE", "differing",
+      "of all", "MiB", "load", "", "", "", "", "", "", "", "", "", "", "");
 }
 
 std::string table_rows(const Entry& entry) {
@@ -74,7 +74,7 @@ std::string table_rows(const Entry& entry) {
       share = fmt::format("{:.1e}", of > 0 ? static_cast<double>(contestant.pairs->differing) / of : 0.0);
     }
     rows += fmt::format(
-        "| {:<50} | {:>15} | {:>7} | {:>7} | {:>7} | {:>8} | {:>9} | {:>9} | {:>7} | {:>6} | {:>4.1f} |\n",
+        "| {:<50} | {:>15} | {:>7} | {:>7} | {:>7} | {:>9} | {:>9} | {:>9} | {:>7} | {:>6} | {:>4.1f} |\n",
         entry.name + "/" + contestant.name, seconds(timing_of(contestant.times.shadow())),
         ratio_text(ratio_to(entry, "plain-rays", contestant)),
         ratio_text(ratio_to(entry, "nontrivial-rays", contestant)),

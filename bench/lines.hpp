@@ -7,8 +7,8 @@
 
 namespace penumbra::bench {
 
-/// The table on stdout, a row a contestant.
-std::string table_head();
+/// The table on stdout, a row a contestant. `penumbra`: the reference judges pixels in penumbra alone.
+std::string table_head(bool penumbra);
 std::string table_rows(const Entry& entry);
 
 /// One JSON line a contestant, each with its name ("bunny/n=1024/edge-scatter"), which never changes.

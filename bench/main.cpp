@@ -87,7 +87,7 @@ void run_methods(const bench::Options& options, Output& output) {
   app::DeviceSource devices(options.device);
   fmt::print(stderr, "{}; commit {}; {} runs after one discarded\n", devices.device().info().name,
              options.commit.empty() ? "unknown" : options.commit, options.runs);
-  output.write(bench::table_head(), "");
+  output.write(bench::table_head(options.reference == bench::Reference::exact), "");
   std::vector<bench::Entry> entries;
   for (const bench::Subject& subject : options.subjects) {
     bench::measure(subject, options, devices.device(), [&](const bench::Entry& entry) {
