@@ -35,13 +35,18 @@ class BoxTree {
   /// visit(item) for every item whose box `reaches(box)`; reaches must be true of a box that holds one it is true of.
   template <typename Reaches, typename Visit>
   void find(const Reaches& reaches, const Visit& visit) const {
+    find([](std::uint32_t) { return true; }, reaches, visit);
+  }
+  /// The same without what is below nodes that `enters(node)` is false of.
+  template <typename Enters, typename Reaches, typename Visit>
+  void find(const Enters& enters, const Reaches& reaches, const Visit& visit) const {
     if (order_.empty()) return;
     std::array<std::uint32_t, 64> stack;  // numbers as in a heap, from 1; never more than one a level waits
     std::size_t waiting = 0;
     stack[waiting++] = 1;
     while (waiting > 0) {
       const std::uint32_t node = stack[--waiting];
-      if (!reaches(nodes_[node])) continue;
+      if (!reaches(nodes_[node]) || !enters(node)) continue;
       if (node < leaves_) {
         stack[waiting++] = 2 * node + 1;
         stack[waiting++] = 2 * node;
@@ -51,6 +56,21 @@ class BoxTree {
         if (reaches(boxes_[i])) visit(order_[i]);
       }
     }
+  }
+
+  /// For each node, what join(value, value) makes of value_of(item) of all items below it; by the nodes' numbers.
+  template <typename ValueOf, typename Join>
+  [[nodiscard]] auto fold(const ValueOf& value_of, const Join& join) const {
+    std::vector<decltype(value_of(std::uint32_t{}))> values(nodes_.size());
+    if (order_.empty()) return values;
+    for (std::uint32_t node = 2 * leaves_; node-- > leaves_;) {
+      values[node] = value_of(order_[begin_of_leaf(node)]);
+      for (std::size_t i = begin_of_leaf(node) + 1; i < begin_of_leaf(node + 1); ++i) {
+        values[node] = join(values[node], value_of(order_[i]));
+      }
+    }
+    for (std::uint32_t node = leaves_; node-- > 1;) values[node] = join(values[2 * node], values[2 * node + 1]);
+    return values;
   }
 
  private:

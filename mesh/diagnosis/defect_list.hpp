@@ -20,10 +20,13 @@ class DefectList {
   /// There are so many more, all behind `limit` of those that are added.
   void count(std::uint64_t more) { count_ += more; }
 
+  /// Could one whose first triangle is this be among those that are kept?
+  [[nodiscard]] bool may_list(std::uint32_t first_triangle) const { return limit_ > 0 && first_triangle <= last_; }
+
   /// Both in the order in which they shall be listed; the triangles ascending, and at least one.
   void add(std::span<const std::uint32_t> triangles, std::span<const std::uint32_t> vertices) {
     ++count_;
-    if (limit_ == 0 || triangles.front() > last_) return;
+    if (!may_list(triangles.front())) return;
     marks_.push_back({{triangles.begin(), triangles.end()}, {vertices.begin(), vertices.end()}});
     if (marks_.size() / 2 >= limit_) drop_surplus();
   }

@@ -3,6 +3,10 @@
 //
 // Whether two triangles meet is a matter of their vertices alone. So those with the same three are searched as one
 // surface, and what is found of it counts for all of them: n triangles in one place cost n log n, not n².
+//
+// All triangles at one vertex have boxes that overlap there: a fan of n would cost n². Two triangles with a common
+// vertex meet elsewhere exactly if some ray from it goes into both, so those at a vertex of many, a hub, are searched
+// by the directions in which they lie, and the search by boxes leaves pairs out that have a hub in common.
 
 #include "mesh/diagnosis/self_intersections.hpp"
 
@@ -16,8 +20,12 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -157,6 +165,91 @@ class PairList {
   DefectList list_;
 };
 
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Vertices of more surfaces than kCrowd, and what lies at each.
+class Hubs {
+ public:
+  static constexpr std::uint32_t kCrowd = 64;
+  using Few = std::array<std::uint32_t, 3>;  ///< a triangle's vertices that are hubs; kNone for the others
+
+  Hubs(const MeshView& mesh, const EdgeGraph& graph, const Surfaces& surfaces) : mesh_(mesh) {
+    corners_.resize(surfaces.size());
+    std::vector<std::uint32_t> count(mesh.positions.size(), 0);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      corners_[i] = graph.corners(mesh.triangles[surfaces[i].front()]);
+      for (const std::uint32_t v : corners_[i]) ++count[v];
+    }
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      for (const std::uint32_t v : corners_[i]) {
+        if (count[v] > kCrowd) at_hubs_.emplace_back(v, static_cast<std::uint32_t>(i));
+      }
+    }
+    std::ranges::sort(at_hubs_);
+    is_hub_.resize(at_hubs_.empty() ? 0 : count.size());
+    for (const auto& [v, surface] : at_hubs_) is_hub_[v] = true;
+  }
+
+  [[nodiscard]] bool empty() const { return at_hubs_.empty(); }
+  [[nodiscard]] Few of(std::uint32_t surface) const {
+    Few hubs = corners_[surface];
+    for (std::uint32_t& v : hubs) v = is_hub_[v] ? v : kNone;
+    return hubs;
+  }
+  static Few common(const Few& a, const Few& b) {
+    Few both = a;
+    for (std::uint32_t& v : both) v = std::ranges::find(b, v) != b.end() ? v : kNone;
+    return both;
+  }
+  static bool have_common(const Few& a, const Few& b) { return first(common(a, b)) != kNone; }
+
+  /// visit(surface, other) for pairs with a common hub, each once: all that may meet elsewhere than in shared vertices.
+  template <typename Visit>
+  void find_pairs(const Visit& visit) const {
+    for (std::size_t begin = 0, end = 0; begin < at_hubs_.size(); begin = end) {
+      const std::uint32_t hub = at_hubs_[begin].first;
+      while (end < at_hubs_.size() && at_hubs_[end].first == hub) ++end;
+      const auto here = std::span(at_hubs_).subspan(begin, end - begin);
+      std::vector<Box> boxes(here.size());
+      for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = directions(corners_[here[i].second], hub);
+      const BoxTree tree(boxes);
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, here.size(), 64), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const std::uint32_t item = tree.order()[i], surface = here[item].second;
+          tree.find([&](const Box& box) { return box.meets(boxes[item]); },
+                    [&](std::uint32_t other) {
+                      // Two common hubs: the pair is the first one's.
+                      if (other > item && first(common(of(surface), of(here[other].second))) == hub)
+                        visit(surface, here[other].second);
+                    });
+        }
+      });
+    }
+  }
+
+ private:
+  static std::uint32_t first(const Few& hubs) { return std::ranges::min(hubs); }
+
+  /// A box around the unit vectors from the hub into the triangle: they are an arc between two of them, which is no
+  /// farther from its chord c than 1 − √(1 − c²/4) ≤ c²/4. Rounding is far below 2⁻⁴⁰.
+  [[nodiscard]] Box directions(const Triangle& corners, std::uint32_t hub) const {
+    std::array<glm::dvec3, 2> ends;
+    std::size_t count = 0;
+    for (const std::uint32_t v : corners) {
+      if (v == hub) continue;
+      const glm::dvec3 way = 0.5 * mesh_.positions[v] - 0.5 * mesh_.positions[hub], size = glm::abs(way);
+      ends[count++] = glm::normalize(way / std::max({size.x, size.y, size.z}));
+    }
+    const glm::dvec3 chord = ends[1] - ends[0], more(glm::dot(chord, chord) / 4 + 0x1p-40);
+    return {glm::min(ends[0], ends[1]) - more, glm::max(ends[0], ends[1]) + more};
+  }
+
+  const MeshView& mesh_;
+  std::vector<Triangle> corners_;                                 ///< of each surface
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> at_hubs_;  ///< (hub, surface), sorted
+  std::vector<bool> is_hub_;                                      ///< of each vertex; empty if there are none
+};
+
 }  // namespace
 
 Defect find_self_intersections(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit,
@@ -168,6 +261,9 @@ Defect find_self_intersections(const MeshView& mesh, const EdgeGraph& graph, std
       boxes[i].include(mesh.positions[v]);
   }
   const BoxTree tree(boxes);
+  const Hubs hubs(mesh, graph, surfaces);
+  std::vector<Hubs::Few> below;  // for each node, the hubs that all below it have in common
+  if (!hubs.empty()) below = tree.fold([&](std::uint32_t item) { return hubs.of(item); }, Hubs::common);
   const PairTest meet(mesh, graph);
   tbb::enumerable_thread_specific<PairList> found([&] { return PairList(mesh, graph, list_limit); });
   Progress::Counter counter(progress, surfaces.size());
@@ -177,12 +273,20 @@ Defect find_self_intersections(const MeshView& mesh, const EdgeGraph& graph, std
       const std::uint32_t item = tree.order()[i];
       const Copies copies = surfaces[item];
       list.add(copies);
+      const Hubs::Few own = hubs.empty() ? Hubs::Few{kNone, kNone, kNone} : hubs.of(item);
+      const bool has_hub = std::ranges::min(own) != kNone;
+      const auto enters = [&](std::uint32_t node) { return !has_hub || !Hubs::have_common(own, below[node]); };
       const auto visit = [&](std::uint32_t other) {
-        if (other > item && meet(copies.front(), surfaces[other].front())) list.add(copies, surfaces[other]);
+        if (other <= item || (has_hub && Hubs::have_common(own, hubs.of(other)))) return;
+        if (meet(copies.front(), surfaces[other].front())) list.add(copies, surfaces[other]);
       };
-      tree.find([&](const Box& box) { return box.meets(boxes[item]); }, visit);
+      tree.find(
+          enters, [&](const Box& box) { return box.meets(boxes[item]); }, visit);
       counter.done_one();
     }
+  });
+  hubs.find_pairs([&](std::uint32_t surface, std::uint32_t other) {
+    if (meet(surfaces[surface].front(), surfaces[other].front())) found.local().add(surfaces[surface], surfaces[other]);
   });
   DefectList all(list_limit);
   for (PairList& list : found) all.add_all(std::move(list).take());

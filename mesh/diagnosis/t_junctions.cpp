@@ -1,5 +1,8 @@
 // Candidates by a tree over the vertices that each edge descends as a segment (a long diagonal edge has a large box,
 // but passes few vertices); the verdict is exact. The descent errs only on the side of more candidates.
+// Many vertices on one line with many edges on it would be a quadratic number of pairs: the vertices on the line of a
+// crowded edge are found and sorted once, and every other edge on that line counts those between its ends by two binary
+// searches.
 
 #include "mesh/diagnosis/t_junctions.hpp"
 
@@ -12,6 +15,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace penumbra::mesh {
 namespace {
@@ -28,8 +34,9 @@ class SegmentQuery {
     box_.include(b);
   }
 
-  bool reaches(const Box& box) const {
-    if (!box_.meets(box)) return false;
+  bool reaches(const Box& box) const { return box_.meets(box) && line_reaches(box); }
+  /// The same of the whole line that the segment lies on; it takes three of the axes, and the same bounds hold.
+  bool line_reaches(const Box& box) const {
     const glm::dvec3 t = middle_ - (0.5 * box.lower + 0.5 * box.upper), e = 0.5 * box.upper - 0.5 * box.lower;
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -68,55 +75,150 @@ std::vector<std::uint32_t> used_vertices(const MeshView& mesh, const EdgeGraph& 
   return vertices;
 }
 
-bool strictly_between(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& p) {
-  for (int i = 0; i < 3; ++i) {  // on the line, it is between if it is along the first axis that tells
-    if (a[i] != b[i]) return std::min(a[i], b[i]) < p[i] && p[i] < std::max(a[i], b[i]);
+/// The first axis along which the edge's ends differ: on their line, positions are ordered by it.
+int telling_axis(const glm::dvec3& a, const glm::dvec3& b) {
+  for (int i = 0; i < 2; ++i) {
+    if (a[i] != b[i]) return i;
   }
-  return false;
+  return 2;
 }
+
+bool strictly_between(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& p) {
+  const int i = telling_axis(a, b);
+  return std::min(a[i], b[i]) < p[i] && p[i] < std::max(a[i], b[i]);
+}
+
+/// An edge with more vertices in it than this is crowded.
+constexpr std::size_t kCrowded = 32;
+
+class Search {
+ public:
+  Search(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit)
+      : mesh_(mesh),
+        graph_(graph),
+        list_limit_(list_limit),
+        vertices_(used_vertices(mesh, graph)),
+        scale_(scale_to_one(mesh, vertices_)),
+        tree_(points()),
+        found_(list_limit) {}
+
+  Defect run(const Progress& progress) {
+    Progress::Counter counter(progress, graph_.edges.size());
+    // In the order of the tree, so that successive searches go the same ways through memory; edges are sorted by a.
+    for_each_index(vertices_.size(), [&](std::size_t i) {
+      const std::uint32_t v = vertices_[tree_.order()[i]];
+      auto edge = std::ranges::lower_bound(graph_.edges, Edge{v, 0});
+      for (; edge != graph_.edges.end() && edge->a == v; ++edge) {
+        search(static_cast<std::uint32_t>(edge - graph_.edges.begin()));
+        counter.done_one();
+      }
+    });
+    DefectList all(list_limit_);
+    for (DefectList& list : found_) all.add_all(std::move(list));
+    add_crowded(all);
+    return std::move(all).finish(mesh_);
+  }
+
+ private:
+  using Numbers = std::vector<std::uint32_t>;
+
+  [[nodiscard]] glm::dvec3 scaled(std::uint32_t v) const { return scale_ * mesh_.positions[v]; }
+  [[nodiscard]] std::vector<Box> points() const {
+    std::vector<Box> points(vertices_.size());
+    for_each_index(points.size(), [&](std::size_t i) { points[i].include(scaled(vertices_[i])); });
+    return points;
+  }
+  [[nodiscard]] Numbers triangles_at(std::uint32_t edge) const {
+    Numbers triangles;
+    for (const Incidence& i : graph_.around(edge)) triangles.push_back(i.triangle);
+    return triangles;
+  }
+
+  void search(std::uint32_t e) {
+    const std::uint32_t a = graph_.edges[e].a, b = graph_.edges[e].b;
+    const glm::dvec3 &at_a = mesh_.positions[a], &at_b = mesh_.positions[b];
+    const SegmentQuery query(scaled(a), scaled(b));
+    Numbers& inside = inside_.local();
+    inside.clear();
+    tree_.find([&](const Box& box) { return inside.size() <= kCrowded && query.reaches(box); },
+               [&](std::uint32_t item) {
+                 const std::uint32_t v = vertices_[item];
+                 const glm::dvec3& p = mesh_.positions[v];
+                 if (v == a || v == b || !strictly_between(at_a, at_b, p) || !collinear(at_a, at_b, p)) return;
+                 inside.push_back(v);
+               });
+    if (inside.size() > kCrowded) return crowded_.local().push_back(e);
+    if (inside.empty()) return;
+    const Numbers triangles = triangles_at(e);
+    for (const std::uint32_t v : inside) found_.local().add(triangles, std::array{v, a, b});
+  }
+
+  /// By their first triangles, so that the list is full soon and the others are counted alone.
+  void add_crowded(DefectList& all) {
+    Numbers edges;
+    for (const Numbers& some : crowded_) edges.insert(edges.end(), some.begin(), some.end());
+    if (edges.empty()) return;
+    std::ranges::sort(edges, {}, [&](std::uint32_t e) { return std::pair(graph_.around(e).front().triangle, e); });
+    lines_at_.resize(mesh_.positions.size());
+    for (const std::uint32_t e : edges) {
+      const std::uint32_t a = graph_.edges[e].a, b = graph_.edges[e].b;
+      const Numbers& line = lines_[line_through(a, b)];
+      const int axis = telling_axis(mesh_.positions[a], mesh_.positions[b]);
+      const auto place = [&](std::uint32_t v) { return mesh_.positions[v][axis]; };
+      const double low = std::min(place(a), place(b)), high = std::max(place(a), place(b));
+      const auto first = std::ranges::upper_bound(line, low, {}, place);
+      const auto last = std::ranges::lower_bound(line, high, {}, place);
+      const auto count = static_cast<std::size_t>(last - first);
+      const Numbers triangles = triangles_at(e);
+      if (!all.may_list(triangles.front())) {
+        all.count(count);
+        continue;
+      }
+      Numbers inside(first, last);
+      const std::size_t listed = std::min(list_limit_, count);
+      std::ranges::partial_sort(inside, inside.begin() + static_cast<std::ptrdiff_t>(listed));
+      for (const std::uint32_t v : std::span(inside).first(listed)) all.add(triangles, std::array{v, a, b});
+      all.count(count - listed);
+    }
+  }
+
+  /// The number in `lines_` of the line through two vertices: two vertices that lie on one known line lie on no other.
+  std::size_t line_through(std::uint32_t a, std::uint32_t b) {
+    const Numbers &at_a = lines_at_[a], &at_b = lines_at_[b];
+    for (const std::uint32_t line : at_a) {
+      if (std::ranges::find(at_b, line) != at_b.end()) return line;
+    }
+    const glm::dvec3 &from = mesh_.positions[a], &to = mesh_.positions[b];
+    const SegmentQuery query(scaled(a), scaled(b));
+    Numbers on_line;
+    tree_.find([&](const Box& box) { return query.line_reaches(box); },
+               [&](std::uint32_t item) {
+                 if (collinear(from, to, mesh_.positions[vertices_[item]])) on_line.push_back(vertices_[item]);
+               });
+    const int axis = telling_axis(from, to);
+    std::ranges::sort(on_line, {}, [&](std::uint32_t v) { return std::pair(mesh_.positions[v][axis], v); });
+    for (const std::uint32_t v : on_line) lines_at_[v].push_back(static_cast<std::uint32_t>(lines_.size()));
+    lines_.push_back(std::move(on_line));
+    return lines_.size() - 1;
+  }
+
+  const MeshView& mesh_;
+  const EdgeGraph& graph_;
+  std::size_t list_limit_;
+  Numbers vertices_;
+  double scale_;
+  BoxTree tree_;
+  tbb::enumerable_thread_specific<DefectList> found_;
+  tbb::enumerable_thread_specific<Numbers> inside_, crowded_;
+  std::vector<Numbers> lines_;     ///< of crowded edges: the vertices on each, in order along it
+  std::vector<Numbers> lines_at_;  ///< for each vertex, those that it lies on
+};
 
 }  // namespace
 
 Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit,
                         const Progress& progress) {
-  const std::vector<std::uint32_t> vertices = used_vertices(mesh, graph);
-  const double scale = scale_to_one(mesh, vertices);
-  const auto scaled = [&](std::uint32_t v) { return scale * mesh.positions[v]; };
-  std::vector<Box> points(vertices.size());
-  for_each_index(points.size(), [&](std::size_t i) { points[i].include(scaled(vertices[i])); });
-  const BoxTree tree(points);
-
-  tbb::enumerable_thread_specific<DefectList> found(list_limit);
-  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> triangles;
-  Progress::Counter counter(progress, graph.edges.size());
-  const auto search = [&](std::uint32_t e) {
-    const std::uint32_t a = graph.edges[e].a, b = graph.edges[e].b;
-    const glm::dvec3 &at_a = mesh.positions[a], &at_b = mesh.positions[b];
-    const SegmentQuery query(scaled(a), scaled(b));
-    const auto visit = [&](std::uint32_t item) {
-      const std::uint32_t v = vertices[item];
-      if (v == a || v == b) return;
-      const glm::dvec3& p = mesh.positions[v];
-      if (!strictly_between(at_a, at_b, p) || !collinear(at_a, at_b, p)) return;
-      std::vector<std::uint32_t>& around = triangles.local();
-      around.clear();
-      for (const Incidence& i : graph.around(e)) around.push_back(i.triangle);
-      found.local().add(around, std::array{v, a, b});
-    };
-    tree.find([&](const Box& box) { return query.reaches(box); }, visit);
-    counter.done_one();
-  };
-  // In the order of the tree, so that successive searches go the same ways through memory; edges are sorted by a.
-  for_each_index(vertices.size(), [&](std::size_t i) {
-    const std::uint32_t v = vertices[tree.order()[i]];
-    auto edge = std::ranges::lower_bound(graph.edges, Edge{v, 0});
-    for (; edge != graph.edges.end() && edge->a == v; ++edge) {
-      search(static_cast<std::uint32_t>(edge - graph.edges.begin()));
-    }
-  });
-  DefectList all(list_limit);
-  for (DefectList& list : found) all.add_all(std::move(list));
-  return std::move(all).finish(mesh);
+  return Search(mesh, graph, list_limit).run(progress);
 }
 
 }  // namespace penumbra::mesh

@@ -102,6 +102,38 @@ TEST_P(Soups, ATriangleTooFewOpensThem) {
   EXPECT_EQ(diagnosed(soup_of(soup)).closed_as_wound, flat);
 }
 
+TEST_P(Soups, ManyTrianglesAtAVertexFollowTheDefinition) {
+  if (GetParam() % 8 != 0) return;  // slow by exact constructions: a few seeds
+  std::vector<Corners> soup = random_soup(20, 2);
+  const Point hub = lattice_point(2), other = lattice_point(2);
+  for (int i = 0; i < 90; ++i) soup.push_back({i % 4 == 0 ? other : hub, lattice_point(4), lattice_point(4)});
+  std::ranges::shuffle(soup, random_);
+  EXPECT_EQ(diagnosed(soup_of(soup)).self_intersections.value().count, oracle::count_self_intersections(soup));
+}
+
+TEST_P(Soups, CrowdedLinesFollowTheDefinition) {
+  if (GetParam() % 8 != 0) return;  // slow: a few seeds
+  // Three lines, two of which cross, with so many vertices that edges are counted by their places on them.
+  const auto on_a_line = [&] {
+    const std::int64_t at = below(60);
+    return std::array{Point{at, 0, 0}, Point{30, at - 30, 0}, Point{at, 2 * at, 7}}[static_cast<std::size_t>(below(3))];
+  };
+  std::vector<Corners> soup;
+  for (int i = 0; i < 150; ++i) soup.push_back({on_a_line(), on_a_line(), on_a_line()});
+  const TriangleSoup triangles = soup_of(soup);
+  const MeshView mesh{triangles.positions, triangles.triangles};
+  const Defect all = diagnose(mesh, {.search_intersections = false, .list_limit = 1'000'000}).t_junctions;
+  EXPECT_EQ(all.count, oracle::count(soup).t_junctions);
+  ASSERT_EQ(all.first.size(), all.count);
+  const Defect few = diagnose(mesh, {.search_intersections = false, .list_limit = 40}).t_junctions;
+  EXPECT_EQ(few.count, all.count);
+  ASSERT_EQ(few.first.size(), 40u);
+  for (std::size_t i = 0; i < few.first.size(); ++i) {
+    EXPECT_EQ(few.first[i].triangles, all.first[i].triangles) << i;
+    EXPECT_EQ(few.first[i].points, all.first[i].points) << i;
+  }
+}
+
 TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
   std::vector<Corners> soup = below(2) == 0 ? random_soup(60, 4) : wound_at_random(closed_soup(6, 12));
   const Diagnosis before = diagnosed(soup_of(soup));
