@@ -2,11 +2,14 @@
 
 #include "base/assert.hpp"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 // Where a polygon that is neither flat nor simple is cut is a convention, not a fact of its geometry, so plain double
 // arithmetic decides here; nothing later depends on these signs, and the number of triangles never does.
@@ -43,30 +46,163 @@ double turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// No corner turns right, and the outline goes round once: then every fan triangle lies inside.
-bool is_convex(std::span<const glm::dvec2> outline) {
-  const std::size_t count = outline.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (turn(outline[i], outline[(i + 1) % count], outline[(i + 2) % count]) < 0) return false;
-  }
-  // A pentagram turns left everywhere, too, but its fan turns right somewhere.
-  for (std::size_t i = 1; i + 1 < count; ++i) {
-    if (turn(outline[0], outline[i], outline[i + 1]) < 0) return false;
-  }
-  return true;
+/// The sine of an angle that counts as none: a corner in the middle of a straight side is off its line by the rounding
+/// of single precision in files. A triangle cut off there would have no area, or be a sliver, though a better one can
+/// be cut elsewhere.
+constexpr double kStraight = 0x1p-20;
+
+/// turn(a, b, c) where the sine of the turn at b is `sine`, or up to twice that: lengths are sums of coordinates.
+double turn_of_sine(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, double sine) {
+  const glm::dvec2 u = glm::abs(b - a), v = glm::abs(c - b);
+  return sine * (u.x + u.y) * (v.x + v.y);
 }
 
-bool is_ear(std::span<const glm::dvec2> outline, std::span<const std::uint32_t> ring, std::size_t tip) {
+bool turns_left(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, double sine) {
+  return turn(a, b, c) > turn_of_sine(a, b, c, sine);
+}
+
+bool turns_right(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+  return turn(a, b, c) < -turn_of_sine(a, b, c, kStraight);
+}
+
+enum class Shape { round, straight_corners, other };
+
+/// round: convex, and every triangle of the fan around corner 0 has three corners that are not straight, or there is no
+/// area at all. straight_corners: convex, but that fan would have triangles without area.
+Shape shape_of(std::span<const glm::dvec2> outline) {
+  const std::size_t count = outline.size();
+  bool has_area = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % count], &c = outline[(i + 2) % count];
+    if (turns_right(a, b, c)) return Shape::other;
+    has_area |= turns_left(a, b, c, kStraight);
+  }
+  // A pentagram turns left everywhere, too, but its fan turns right somewhere.
+  bool clear = true;
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    const glm::dvec2 &a = outline[0], &b = outline[i], &c = outline[i + 1];
+    if (turns_right(a, b, c)) return Shape::other;
+    clear &= turns_left(a, b, c, kStraight) && turns_left(b, c, a, kStraight) && turns_left(c, a, b, kStraight);
+  }
+  return clear || !has_area ? Shape::round : Shape::straight_corners;
+}
+
+/// A convex polygon from its leftmost to its rightmost corner, as monotone polygons are cut (Garey, Johnson, Preparata
+/// and Tarjan 1978): in linear time, and without cutting off straight corners, whichever corner comes first.
+class Zipper {
+ public:
+  Zipper(std::span<const glm::dvec2> outline, std::vector<Triangle>& triangles)
+      : outline_(outline), triangles_(triangles) {}
+
+  void run() {
+    const auto before = [&](std::uint32_t i, std::uint32_t j) {
+      return std::tie(outline_[i].x, outline_[i].y) < std::tie(outline_[j].x, outline_[j].y);
+    };
+    const auto count = static_cast<std::uint32_t>(outline_.size());
+    std::uint32_t first = 0, last = 0;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      if (before(i, first)) first = i;
+      if (before(last, i)) last = i;
+    }
+    stack_ = {first};
+    // Below with the order of the corners, above against it; whichever comes first is next.
+    std::uint32_t below = (first + 1) % count, above = (first + count - 1) % count;
+    while (below != last || above != last) {
+      const bool is_below = above == last || (below != last && before(below, above));
+      add(is_below ? below : above, is_below);
+      (is_below ? below : above) = is_below ? (below + 1) % count : (above + count - 1) % count;
+    }
+    close(last);
+  }
+
+ private:
+  void add(std::uint32_t corner, bool below) {
+    if (stack_.size() > 1 && below != below_) {
+      const std::uint32_t top = stack_.back();
+      close(corner);
+      stack_ = {top};
+    }
+    below_ = below;
+    while (stack_.size() > 1 && can_cut(stack_[stack_.size() - 2], stack_.back(), corner)) {
+      cut(stack_[stack_.size() - 2], stack_.back(), corner);
+      stack_.pop_back();
+    }
+    stack_.push_back(corner);
+  }
+
+  /// The triangles from `corner` to all that wait.
+  void close(std::uint32_t corner) {
+    for (std::size_t i = 0; i + 1 < stack_.size(); ++i) cut(stack_[i], stack_[i + 1], corner);
+  }
+
+  [[nodiscard]] bool can_cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    if (!below_) std::swap(a, c);
+    return turns_left(outline_[a], outline_[b], outline_[c], kStraight);
+  }
+  void cut(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    triangles_.push_back(below_ ? Triangle{a, b, c} : Triangle{c, b, a});
+  }
+
+  std::span<const glm::dvec2> outline_;
+  std::vector<Triangle>& triangles_;
+  std::vector<std::uint32_t> stack_;  ///< corners that still miss triangles; all but the first are on one side
+  bool below_ = true;                 ///< that side
+};
+
+/// The corners that are not cut off yet, in cells of a grid, so that an ear looks at those near it alone.
+class CornerGrid {
+ public:
+  explicit CornerGrid(std::span<const glm::dvec2> outline) : outline_(outline) {
+    glm::dvec2 high = outline[0];
+    low_ = outline[0];
+    for (const glm::dvec2& p : outline) low_ = glm::min(low_, p), high = glm::max(high, p);
+    constexpr std::size_t kWorthAGrid = 256;
+    if (outline.size() > kWorthAGrid) side_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(outline.size())));
+    cell_ = (high - low_) / static_cast<double>(side_);
+    cells_.resize(side_ * side_);
+    for (std::uint32_t i = 0; i < outline.size(); ++i) cells_[cell_of(outline[i])].push_back(i);
+  }
+
+  void remove(std::uint32_t corner) { std::erase(cells_[cell_of(outline_[corner])], corner); }
+
+  /// Is blocks(place) true of any corner within the box, or near it?
+  template <typename Blocks>
+  [[nodiscard]] bool any(const glm::dvec2& low, const glm::dvec2& high, const Blocks& blocks) const {
+    for (std::size_t y = index(low, 1); y <= index(high, 1); ++y) {
+      for (std::size_t x = index(low, 0); x <= index(high, 0); ++x) {
+        for (const std::uint32_t corner : cells_[y * side_ + x]) {
+          if (blocks(outline_[corner])) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(const glm::dvec2& p, glm::length_t axis) const {
+    const double at = (p[axis] - low_[axis]) / cell_[axis];  // no number where the outline has no extent
+    return at > 0 ? std::min(static_cast<std::size_t>(std::min(at, 1e9)), side_ - 1) : 0;
+  }
+  [[nodiscard]] std::size_t cell_of(const glm::dvec2& p) const { return index(p, 1) * side_ + index(p, 0); }
+
+  std::span<const glm::dvec2> outline_;
+  glm::dvec2 low_{0}, cell_{0};
+  std::size_t side_ = 1;
+  std::vector<std::vector<std::uint32_t>> cells_;
+};
+
+bool is_ear(std::span<const glm::dvec2> outline, const CornerGrid& corners, std::span<const std::uint32_t> ring,
+            std::size_t tip, double sine) {
   const std::size_t count = ring.size();
   const glm::dvec2 a = outline[ring[(tip + count - 1) % count]], b = outline[ring[tip]],
                    c = outline[ring[(tip + 1) % count]];
-  if (turn(a, b, c) <= 0) return false;
-  for (const std::uint32_t corner : ring) {
-    const glm::dvec2 p = outline[corner];
-    if (p == a || p == b || p == c) continue;  // also a bridge to a hole, which visits corners twice
-    if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
-  }
-  return true;
+  if (!turns_left(a, b, c, sine)) return false;
+  const glm::dvec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c)),
+                   more = 4 * sine * (high - low);
+  return !corners.any(low - more, high + more, [&](const glm::dvec2& p) {
+    if (p == a || p == b || p == c) return false;  // also a bridge to a hole, which visits corners twice
+    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= -turn_of_sine(c, a, p, sine);
+  });
 }
 
 }  // namespace
@@ -79,21 +215,33 @@ PolygonKind triangulate_polygon(std::span<const glm::dvec3> corners, std::vector
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) triangles.push_back({ring[0], ring[i], ring[i + 1]});
   };
   if (corners.size() == 3) return fan(), PolygonKind::convex;
+  const glm::dvec3 normal = mean_normal(corners);
+  if (!std::isfinite(normal.x + normal.y + normal.z)) return fan(), PolygonKind::convex;  // whoever uses it refuses it
   const std::vector<glm::dvec2> outline = project(corners);
-  if (is_convex(outline)) return fan(), PolygonKind::convex;
+  const Shape shape = shape_of(outline);
+  if (shape == Shape::round) return fan(), PolygonKind::convex;
+  if (shape == Shape::straight_corners) return Zipper(outline, triangles).run(), PolygonKind::convex;
 
+  CornerGrid grid(outline);
+  double sine = kStraight;
   std::size_t tip = 0, tries = 0;
-  while (ring.size() > 3 && tries < ring.size()) {
+  while (ring.size() > 3 && (tries < ring.size() || sine > 0)) {
     const std::size_t count = ring.size();
-    if (!is_ear(outline, ring, tip)) {
+    if (tries == count) {  // only slivers are left
+      sine = 0;
+      tries = 0;
+    }
+    if (!is_ear(outline, grid, ring, tip, sine)) {
       tip = (tip + 1) % count;
       ++tries;
       continue;
     }
     triangles.push_back({ring[(tip + count - 1) % count], ring[tip], ring[(tip + 1) % count]});
+    grid.remove(ring[tip]);
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(tip));
     tip %= ring.size();  // go on with the next corner, not around the same one: fewer slivers
     tries = 0;
+    sine = kStraight;
   }
   const bool stuck = ring.size() > 3;
   fan();

@@ -5,6 +5,9 @@
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace penumbra::mesh {
 namespace {
 
@@ -44,6 +47,73 @@ TEST(Polygon, EarsOfASimplePolygonAllLieInside) {
     EXPECT_NE(triangulate_polygon(corners, triangles), PolygonKind::tangled) << teeth;
     for (const auto& [a, b, c] : triangles)
       EXPECT_GT(glm::cross(corners[b] - corners[a], corners[c] - corners[a]).z, 0);
+  }
+}
+
+/// Corners in the middle of straight sides, exactly and as single precision leaves them: no triangle is without area or
+/// a sliver, whichever corner comes first.
+TEST(Polygon, StraightCornersMakeNoSlivers) {
+  const std::vector<std::vector<glm::dvec3>> outlines = {
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}},  // a square
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {0, 3, 0}},  // one side of a triangle
+      {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 1, 0}},                        // a "quad"
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0.5, 0}}};  // an L
+  for (const double angle : {0.0, 0.3, 1.1}) {
+    for (std::vector<glm::dvec3> outline : outlines) {
+      double area = 0;
+      for (glm::dvec3& p : outline) {
+        p = {p.x * std::cos(angle) - p.y * std::sin(angle), p.x * std::sin(angle) + p.y * std::cos(angle), p.z};
+        if (angle > 1) p = glm::dvec3(glm::vec3(p));
+      }
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        area += glm::cross(outline[i], outline[(i + 1) % outline.size()]).z;
+      for (std::size_t start = 0; start < outline.size(); ++start) {
+        std::vector<Triangle> triangles;
+        EXPECT_NE(triangulate_polygon(outline, triangles), PolygonKind::tangled);
+        double sum = 0;
+        for (const auto& [a, b, c] : triangles) {
+          const double twice = glm::cross(outline[b] - outline[a], outline[c] - outline[a]).z;
+          EXPECT_GT(twice, 0.2) << outline.size() << " corners turned by " << angle << ", from corner " << start;
+          sum += twice;
+        }
+        EXPECT_NEAR(sum, area, 1e-6);
+        std::rotate(outline.begin(), outline.begin() + 1, outline.end());
+      }
+    }
+  }
+}
+
+/// In linear time: a square with a hundred thousand corners on one side.
+TEST(Polygon, ManyStraightCorners) {
+  std::vector<glm::dvec3> outline;
+  for (int i = 0; i < 100'000; ++i) outline.emplace_back(i, 0, 0);
+  outline.emplace_back(99'999, 5, 0);
+  outline.emplace_back(0, 5, 0);
+  std::vector<Triangle> triangles;
+  EXPECT_EQ(triangulate_polygon(outline, triangles), PolygonKind::convex);
+  ASSERT_EQ(triangles.size(), 100'000u);
+  double sum = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const double twice = glm::cross(outline[b] - outline[a], outline[c] - outline[a]).z;
+    ASSERT_GT(twice, 0);
+    sum += twice;
+  }
+  EXPECT_EQ(sum, 2 * 5 * 99'999.0);
+}
+
+/// An ear looks at what is near it: a star of twenty thousand corners, each second one concave.
+TEST(Polygon, ManyConcaveCorners) {
+  constexpr int kCorners = 20'000;
+  std::vector<glm::dvec3> outline;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 6.283185307179586 * i / kCorners, radius = i % 2 == 0 ? 1 : 1.5;
+    outline.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+  }
+  std::vector<Triangle> triangles;
+  EXPECT_EQ(triangulate_polygon(outline, triangles), PolygonKind::concave);
+  ASSERT_EQ(triangles.size(), outline.size() - 2);
+  for (const auto& [a, b, c] : triangles) {
+    ASSERT_GT(glm::cross(outline[b] - outline[a], outline[c] - outline[a]).z, 0);
   }
 }
 
