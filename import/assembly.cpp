@@ -32,10 +32,11 @@ class Assembly {
         stack.push_back({children[i].part, next.placement * children[i].placement});
       }
     }
+    faces_.require_all(held_, file_);
     if (mesh_.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file_);
     mesh_.notes = faces_.notes();
     std::uint64_t unplaced = 0;
-    for (std::size_t i = 0; i < parts_.size(); ++i) unplaced += !placed_[i] && !parts_[i].triangles.empty() ? 1 : 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) unplaced += !placed_[i] && has_faces(parts_[i]) ? 1 : 0;
     if (unplaced > 0) {
       mesh_.notes.push_back(fmt::format("{} of {} objects skipped: nothing places them", unplaced, parts_.size()));
     }
@@ -67,11 +68,19 @@ class Assembly {
     }
     if (gone == parts_.size()) return;
     const auto left = std::ranges::find_if(waiting, [](std::size_t count) { return count > 0; });
-    throw InputError("{}: {} is made of itself", file_, parts_[static_cast<std::size_t>(left - waiting.begin())].name);
+    auto part = static_cast<std::size_t>(left - waiting.begin());
+    for (std::size_t step = 0; step < parts_.size(); ++step) {  // down to one that is in the circle, not above it
+      const auto& children = parts_[part].children;
+      part = std::ranges::find_if(children, [&](const PlacedPart& child) { return waiting[child.part] > 0; })->part;
+    }
+    throw InputError("{}: {} is made of itself", file_, parts_[part].name);
   }
 
+  static bool has_faces(const AssemblyPart& part) { return !part.triangles.empty() || !part.face_ends.empty(); }
+
   void add(const AssemblyPart& part, const glm::dmat4& placement) {
-    if (part.triangles.empty()) return;
+    if (!has_faces(part)) return;
+    held_ += part.triangles.size() + part.face_ends.size();
     auto& positions = mesh_.soup.positions;
     const std::size_t first = positions.size();
     if (first + part.positions.size() > std::numeric_limits<std::uint32_t>::max()) {
@@ -92,6 +101,14 @@ class Assembly {
       if (mirrored) std::swap(corners[1], corners[2]);
       faces_.add(corners);
     }
+    std::size_t begin = 0;
+    for (const std::size_t end : part.face_ends) {
+      std::vector<std::uint32_t> corners;
+      for (std::size_t i = begin; i < end; ++i) corners.push_back(static_cast<std::uint32_t>(first) + part.corners[i]);
+      if (mirrored) std::ranges::reverse(corners);
+      faces_.add(corners);
+      begin = end;
+    }
   }
 
   std::span<const AssemblyPart> parts_;
@@ -99,6 +116,7 @@ class Assembly {
   ImportedMesh mesh_;
   FaceCollector faces_;
   std::vector<bool> placed_;
+  std::uint64_t held_ = 0;  ///< faces of all parts, as often as they are placed
   std::uint64_t mirrored_ = 0;
 };
 

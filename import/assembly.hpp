@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct AssemblyPart {
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;  ///< into `positions`, in range
   std::vector<PlacedPart> children;
+  std::vector<std::uint32_t> corners = {};  ///< of faces of any number of corners, one after the other, as `triangles`
+  std::vector<std::size_t> face_ends = {};  ///< of each of these, in `corners`
 };
 
 /// The triangles of all `roots` and what they are made of, every part as often as it is placed. Parts that nothing

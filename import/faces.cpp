@@ -3,7 +3,11 @@
 #include "base/error.hpp"
 #include "import/polygon.hpp"
 
+#include <glm/vec3.hpp>
+
+#include <cmath>
 #include <limits>
+#include <vector>
 
 namespace penumbra::mesh {
 
@@ -27,6 +31,7 @@ void FaceCollector::add(std::span<const std::uint32_t> corners) {
     return;
   }
   const std::size_t first = soup_.triangles.size();
+  due_ += corners.size() - 2;
   if (corners.size() == 3) {
     soup_.triangles.push_back({corners[0], corners[1], corners[2]});
   } else {
@@ -48,10 +53,20 @@ void FaceCollector::add(std::span<const std::uint32_t> corners) {
   }
 }
 
+void FaceCollector::require_all(std::uint64_t held, const std::string& file) const {
+  if (next_face_ != held) {
+    throw InputError("{}: it holds {} faces, but {} came through; the reader would lose some", file, held, next_face_);
+  }
+  if (soup_.triangles.size() != due_) {
+    throw InputError("{}: its faces are made of {} triangles, but {} came through; the reader would lose some", file,
+                     due_, soup_.triangles.size());
+  }
+}
+
 std::vector<std::string> FaceCollector::notes() const {
   std::vector<std::string> notes;
   if (polygon_triangles_ > 0) {
-    std::string note = fmt::format("{} polygons became {} triangles ({} convex by a fan, {} concave by ear clipping",
+    std::string note = fmt::format("{} polygons became {} triangles ({} convex, {} concave by ear clipping",
                                    convex_ + concave_ + tangled_, polygon_triangles_, convex_, concave_);
     if (tangled_ > 0)
       note += fmt::format(", {} that cross themselves or have no area by a fan where no ear was left", tangled_);
@@ -67,6 +82,29 @@ std::vector<std::string> FaceCollector::notes() const {
 
 std::string FaceCollector::instead_of_surfaces() const {
   return fmt::format("{} points, {} lines, {} faces without corners", points_, lines_, empty_);
+}
+
+void settle_unused_vertices(ImportedMesh& mesh, const std::function<void(std::uint32_t)>& refuse) {
+  const auto is_finite = [](const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  auto& positions = mesh.soup.positions;
+  std::vector<std::uint32_t> wild;
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    if (!is_finite(positions[v])) wild.push_back(v);
+  }
+  if (wild.empty()) return;
+  for (const Triangle& triangle : mesh.soup.triangles) {
+    for (const std::uint32_t v : triangle) {
+      if (!is_finite(positions[v])) refuse(v);
+    }
+  }
+  if (mesh.soup.triangles.empty()) return;
+  for (const std::uint32_t v : wild) positions[v] = positions[mesh.soup.triangles.front().front()];
+  mesh.notes.push_back(
+      fmt::format("{} vertices are not finite, the first number {} (numbered from 0): no matter, since "
+                  "no face uses them",
+                  wild.size(), wild.front()));
 }
 
 }  // namespace penumbra::mesh

@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace penumbra::mesh {
 namespace {
 
 /// Statements that say nothing of where surfaces are.
-constexpr std::array<std::string_view, 21> kSilent = {
-    "g",   "o",          "s",         "mg", "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp", "d_interp",
-    "lod", "shadow_obj", "trace_obj", "vp", "vn",     "vt",     "cstype", "deg",    "end",   "call"};
+constexpr std::array<std::string_view, 20> kSilent = {
+    "g",        "o",   "s",          "mg",        "usemtl", "mtllib", "usemap", "maplib", "bevel", "c_interp",
+    "d_interp", "lod", "shadow_obj", "trace_obj", "vp",     "vn",     "vt",     "cstype", "deg",   "end"};
 /// Parts of free-form curves and surfaces, which are not read.
 constexpr std::array<std::string_view, 13> kFreeForm = {"curv", "curv2", "surf", "parm", "trim",  "hole", "scrv",
                                                         "sp",   "con",   "bmat", "step", "ctech", "stech"};
@@ -31,8 +34,8 @@ class ObjReader {
       ++line_number_;
       std::string_view words = line;
       if (joined.empty() && take_word(words).starts_with('#')) continue;  // a comment's backslash continues nothing
-      if (line.ends_with('\\')) {
-        joined.append(line.substr(0, line.size() - 1)).append(" ");
+      if (const auto part = continued(line)) {
+        joined.append(*part).append(" ");
       } else if (joined.empty()) {
         statement(line);
       } else {
@@ -46,6 +49,8 @@ class ObjReader {
                        highest_line_, highest_named_, vertices());
     }
     add_faces();
+    faces_.require_all(statements_, file_);
+    settle_unused_vertices(mesh_, [&](std::uint32_t v) { refuse_vertex(v); });
     if (mesh_.soup.triangles.empty()) {
       throw InputError("{}: there are no triangles in it ({})", file_, faces_.instead_of_surfaces());
     }
@@ -59,15 +64,32 @@ class ObjReader {
     throw InputError("{}: line {}: {}", file_, line_number_, text_for_people(format, std::forward<Args>(args)...));
   }
 
+  /// What stands before a backslash that ends the line, as it does where only blanks follow.
+  static std::optional<std::string_view> continued(std::string_view line) {
+    const std::size_t last = line.find_last_not_of(" \t\v\f");
+    if (last == std::string_view::npos || line[last] != '\\') return std::nullopt;
+    return line.substr(0, last);
+  }
+
+  [[noreturn]] void refuse_vertex(std::uint32_t v) const {
+    const auto found = std::ranges::find(wild_, v, &std::pair<std::uint32_t, std::size_t>::first);
+    const glm::dvec3& p = mesh_.soup.positions[v];
+    throw InputError("{}: line {}: vertex {} is not finite: ({}, {}, {})", file_, found->second, v + 1, p.x, p.y, p.z);
+  }
+
   [[nodiscard]] std::uint64_t vertices() const { return mesh_.soup.positions.size(); }
 
   void statement(std::string_view line) {
     std::string_view rest = line;
     const std::string_view keyword = take_word(rest);
     if (keyword.empty() || keyword.front() == '#') return;
-    rest = rest.substr(0, rest.find('#'));
+    rest = without_comment(rest);
     if (keyword == "v") return vertex(rest);
     if (keyword == "f" || keyword == "fo") return face(rest);
+    if (keyword == "call") {
+      fail("'call{}' takes the statements of another file in, which is not done; copy them to this place",
+           rest.substr(0, 80));
+    }
     if (keyword == "p" || keyword == "l") return skip(keyword == "p", rest);
     normals_ += keyword == "vn" ? 1 : 0;
     uvs_ += keyword == "vt" ? 1 : 0;
@@ -92,16 +114,15 @@ class ObjReader {
            count == words.size() ? " or more" : "");
     }
     for (std::size_t i = 0; i < (count == 4 ? 4 : 3); ++i) {
-      const auto value = parse_number<double>(words[i]);
+      const auto value = parse_real(words[i]);
       if (!value) fail("vertex {}: '{}' is not a number", number, words[i]);
-      if (!std::isfinite(*value)) fail("vertex {} is not finite: '{}'", number, words[i]);
       numbers[i] = *value;
     }
     colors_ += count >= 6 ? 1 : 0;
     if (numbers[3] == 0) fail("vertex {} has the weight 0, so it lies at infinity", number);
     const glm::dvec3 position = glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-      fail("vertex {} is not finite: its weight is {}", number, numbers[3]);
+      wild_.emplace_back(static_cast<std::uint32_t>(vertices()), line_number_);  // no matter, unless a face uses it
     }
     mesh_.soup.positions.push_back(position);
   }
@@ -128,6 +149,7 @@ class ObjReader {
 
   void face(std::string_view line) {
     const std::size_t first = corners_.size();
+    ++statements_;
     for (std::string_view word; !(word = take_word(line)).empty();) corners_.push_back(corner(word));
     face_ends_.push_back(corners_.size());
     if (corners_.size() - first > std::numeric_limits<std::uint32_t>::max()) fail("too many corners");
@@ -153,7 +175,8 @@ class ObjReader {
   }
 
   void write_notes() {
-    mesh_.notes = faces_.notes();
+    const auto notes = faces_.notes();
+    mesh_.notes.insert(mesh_.notes.begin(), notes.begin(), notes.end());
     std::string ignored;
     const auto mention = [&](std::uint64_t count, std::string_view what) {
       if (count > 0) ignored += fmt::format("{}{} {}", ignored.empty() ? "" : ", ", count, what);
@@ -173,8 +196,10 @@ class ObjReader {
   const std::string& file_;
   ImportedMesh mesh_;
   FaceCollector faces_;
-  std::vector<std::uint32_t> corners_;  ///< of all faces, one after the other
-  std::vector<std::size_t> face_ends_;  ///< into `corners_`
+  std::vector<std::uint32_t> corners_;                       ///< of all faces, one after the other
+  std::vector<std::size_t> face_ends_;                       ///< into `corners_`
+  std::vector<std::pair<std::uint32_t, std::size_t>> wild_;  ///< vertices that are not finite, and their lines
+  std::uint64_t statements_ = 0;                             ///< that are faces
   std::size_t line_number_ = 0, highest_line_ = 0;
   std::uint64_t highest_named_ = 0;  ///< vertex, from 1, that a face before it names; 0 if there is none
   std::uint64_t normals_ = 0, uvs_ = 0, colors_ = 0, free_form_ = 0, unknown_ = 0;

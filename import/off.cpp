@@ -5,7 +5,9 @@
 
 #include <glm/vec3.hpp>
 
-#include <array>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace penumbra::mesh {
 namespace {
@@ -25,6 +27,12 @@ class OffWords {
   /// The next word on this line; empty at its end.
   std::string_view next_on_line() { return take_word(line_); }
   void skip_rest_of_line() { line_ = {}; }
+  bool next_line() {
+    if (!take_line(text_, line_)) return false;
+    ++line_number_;
+    line_ = without_comment(line_);
+    return true;
+  }
 
   std::uint32_t count(std::string_view wanted) {
     const std::string_view word = next(wanted);
@@ -34,11 +42,12 @@ class OffWords {
   }
   double real(std::string_view wanted) {
     const std::string_view word = next(wanted);
-    const auto value = parse_number<double>(word);
+    const auto value = parse_real(word);
     if (!value) fail("'{}' is no {}; expected a number", word, wanted);
     return *value;
   }
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() + line_.size(); }
+  [[nodiscard]] std::size_t line_number() const { return line_number_; }
 
   template <typename... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
@@ -46,12 +55,6 @@ class OffWords {
   }
 
  private:
-  bool next_line() {
-    if (!take_line(text_, line_)) return false;
-    ++line_number_;
-    line_ = line_.substr(0, line_.find('#'));
-    return true;
-  }
   std::string_view text_, line_;
   std::string file_;
   std::size_t line_number_ = 0;
@@ -59,22 +62,57 @@ class OffWords {
 
 struct OffHeader {
   bool homogeneous = false;  ///< 4OFF: a fourth coordinate divides the others
+  bool attributes = false;   ///< the header promises normals, colours or texture coordinates
   std::uint32_t extras = 0;  ///< numbers after a vertex's coordinates that are always there: normal, texture
-  bool colors = false;       ///< COFF: a colour of unknown length, up to the line's end
+  bool colors = false;       ///< COFF: a colour of unknown length
   std::uint32_t vertices = 0, faces = 0;
 };
+
+/// The letters before OFF: ST, C, N, 4 and n, in Geomview's order or in that of MeshLab, whose files say NCOFF.
+void read_letters(std::string_view letters, OffHeader& header, OffWords& words) {
+  const std::string_view all = letters;
+  bool any_dimension = false;
+  while (!letters.empty()) {
+    const std::size_t length = letters.starts_with("ST") ? 2 : 1;
+    switch (letters.front()) {
+      case 'S':
+        header.extras += 2;
+        break;
+      case 'C':
+        header.colors = true;
+        break;
+      case 'N':
+        header.extras += 3;
+        break;
+      case '4':
+        header.homogeneous = true;
+        break;
+      case 'n':
+        any_dimension = true;
+        break;
+      default:
+        break;
+    }
+    if (std::string_view("SCN4n").find(letters.front()) == std::string_view::npos ||
+        (letters.front() == 'S' && length == 1)) {
+      words.fail("'{}OFF' files are not supported; expected OFF with any of the letters ST, C, N, 4 and n before it",
+                 all);
+    }
+    letters.remove_prefix(length);
+  }
+  header.attributes = header.extras > 0 || header.colors;
+  if (!any_dimension) return;
+  const std::uint32_t dimension = words.count("number of dimensions");
+  if (dimension != 3) words.fail("vertices of {} dimensions are not supported; expected 3", dimension);
+}
 
 OffHeader read_header(OffWords& words) {
   OffHeader header;
   std::string_view word = words.next("the word OFF");
   const std::string_view whole = word;
-  if (word.ends_with("OFF")) {  // [ST][C][N][4][n]OFF; the word may be missing altogether
+  if (word.ends_with("OFF")) {  // the word may be missing altogether
     word.remove_suffix(3);
-    if (word.starts_with("ST")) word.remove_prefix(2), header.extras += 2;
-    if (word.starts_with('C')) word.remove_prefix(1), header.colors = true;
-    if (word.starts_with('N')) word.remove_prefix(1), header.extras += 3;
-    if (word.starts_with('4')) word.remove_prefix(1), header.homogeneous = true;
-    if (!word.empty()) words.fail("'{}' files are not supported; expected OFF, COFF, NOFF, STOFF or 4OFF", whole);
+    read_letters(word, header, words);
     // "OFF BINARY": the counts would be binary, too.
     const std::string_view first = words.next("the number of vertices");
     if (first == "BINARY") words.fail("binary OFF is not supported; save it as ASCII OFF or PLY");
@@ -98,49 +136,134 @@ OffHeader read_header(OffWords& words) {
   return header;
 }
 
-glm::dvec3 read_vertex(OffWords& words, const OffHeader& header, std::uint32_t number) {
-  glm::dvec3 position;
-  for (glm::length_t axis = 0; axis < 3; ++axis) position[axis] = words.real("coordinate");
-  if (header.homogeneous) position /= words.real("coordinate");
-  for (std::uint32_t i = 0; i < header.extras && !header.colors; ++i) words.real("vertex attribute");
-  if (header.colors) words.skip_rest_of_line();
-  if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-    words.fail("vertex {} is not finite: ({}, {}, {})", number, position.x, position.y, position.z);
+/// Has each vertex a line of its own? Then what follows its coordinates there is known to belong to it, whatever the
+/// header says: many writers put colours there and no letter C. So it is where each of the first lines holds a vertex
+/// and there are lines enough for the faces. A copy of the words is read ahead.
+bool has_line_for_each(OffWords words, const OffHeader& header) {
+  const std::size_t needed = (header.homogeneous ? 4u : 3u) + header.extras;
+  std::uint64_t lines = 0;
+  while (lines < std::uint64_t{header.vertices} + header.faces && words.next_line()) {
+    std::size_t count = 0;
+    while (count < needed && !words.next_on_line().empty()) ++count;
+    if (count == 0) continue;
+    if (lines < header.vertices && count < needed) return false;
+    ++lines;
   }
-  return position;
+  return lines == std::uint64_t{header.vertices} + header.faces;
 }
+
+class OffReader {
+ public:
+  OffReader(std::string_view text, const std::string& file) : words_(text, file), file_(file), faces_(mesh_.soup) {}
+
+  ImportedMesh read() {
+    header_ = read_header(words_);
+    by_lines_ = has_line_for_each(words_, header_);
+    mesh_.soup.positions.reserve(header_.vertices);
+    for (std::uint32_t i = 0; i < header_.vertices; ++i) read_vertex();
+    for (std::uint32_t face = 0; face < header_.faces; ++face) read_face(face);
+    faces_.require_all(header_.faces, file_);
+    mesh_.notes = faces_.notes();
+    read_rest();
+    settle_unused_vertices(mesh_, [&](std::uint32_t v) {
+      const auto found = std::ranges::find(wild_, v, &std::pair<std::uint32_t, std::size_t>::first);
+      const glm::dvec3& p = mesh_.soup.positions[v];
+      throw InputError("{}: line {}: vertex {} is not finite: ({}, {}, {})", file_, found->second, v, p.x, p.y, p.z);
+    });
+    if (mesh_.soup.triangles.empty()) {
+      throw InputError("{}: there are no triangles in it ({} vertices, {})", file_, header_.vertices,
+                       faces_.instead_of_surfaces());
+    }
+    if (header_.attributes) mesh_.notes.emplace_back("vertex colours, normals or texture coordinates ignored");
+    if (longer_ > 0 && !header_.attributes) {
+      mesh_.notes.push_back(
+          fmt::format("{} vertices have more numbers than the header's letters say (colours?): ignored", longer_));
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_vertex() {
+    glm::dvec3 position;
+    for (glm::length_t axis = 0; axis < 3; ++axis) position[axis] = words_.real("coordinate");
+    if (header_.homogeneous) position /= words_.real("coordinate");
+    if (by_lines_) {
+      const bool is_longer = !words_.next_on_line().empty();
+      if (!header_.attributes && is_longer != (longer_ == mesh_.soup.positions.size()) &&
+          !mesh_.soup.positions.empty()) {
+        words_.fail("vertex {} has {} numbers than those before it; the header does not fit the file",
+                    mesh_.soup.positions.size(), is_longer ? "more" : "fewer");
+      }
+      longer_ += is_longer ? 1 : 0;
+      words_.skip_rest_of_line();
+    } else if (header_.colors) {
+      words_.skip_rest_of_line();
+    } else {
+      for (std::uint32_t i = 0; i < header_.extras; ++i) words_.real("vertex attribute");
+    }
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
+      wild_.emplace_back(static_cast<std::uint32_t>(mesh_.soup.positions.size()), words_.line_number());
+    }
+    mesh_.soup.positions.push_back(position);
+  }
+
+  void read_face(std::uint32_t face) {
+    corners_.clear();
+    const std::uint32_t count = words_.count("number of corners");
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t index = words_.count("vertex number");
+      if (index >= header_.vertices) {
+        words_.fail("face {} names vertex {}, but there are only {} (numbered from 0)", face, index, header_.vertices);
+      }
+      corners_.push_back(index);
+    }
+    words_.skip_rest_of_line();  // the face's colour
+    faces_.add(corners_);
+  }
+
+  /// What follows the last face. A line that could be one more is refused: the header does not fit the file, and what
+  /// was read may be anything.
+  void read_rest() {
+    std::uint64_t lines = 0;
+    std::size_t first = 0;
+    while (words_.next_line()) {
+      std::string_view word = words_.next_on_line();
+      if (word.empty()) continue;
+      if (lines++ == 0) first = words_.line_number();
+      const auto count = parse_number<std::uint32_t>(word);
+      if (!count || *count < 3) continue;
+      std::uint32_t corners = 0;
+      while (!(word = words_.next_on_line()).empty()) {
+        const auto index = parse_number<std::uint32_t>(word);
+        if (!index || *index >= header_.vertices) break;
+        ++corners;
+      }
+      if (corners < *count) continue;
+      words_.fail(
+          "a face follows the last of the {} that the header promises; the header does not fit the file, which may "
+          "have numbers behind its vertices that it does not announce (COFF, NOFF)",
+          header_.faces);
+    }
+    if (lines > 0) {
+      mesh_.notes.push_back(fmt::format("{} lines after the last face ignored, the first is line {}", lines, first));
+    }
+  }
+
+  OffWords words_;
+  const std::string& file_;
+  OffHeader header_;
+  bool by_lines_ = false;
+  ImportedMesh mesh_;
+  FaceCollector faces_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<std::pair<std::uint32_t, std::size_t>> wild_;  ///< vertices that are not finite, and their lines
+  std::uint64_t longer_ = 0;                                 ///< vertices with more numbers on their lines
+};
 
 }  // namespace
 
 ImportedMesh read_off_text(std::string_view text, const std::string& file) {
-  OffWords words(text, file);
-  const OffHeader header = read_header(words);
-  ImportedMesh mesh;
-  mesh.soup.positions.reserve(header.vertices);
-  for (std::uint32_t i = 0; i < header.vertices; ++i) mesh.soup.positions.push_back(read_vertex(words, header, i));
-  FaceCollector faces(mesh.soup);
-  std::vector<std::uint32_t> corners;
-  for (std::uint32_t face = 0; face < header.faces; ++face) {
-    corners.clear();
-    const std::uint32_t count = words.count("number of corners");
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t index = words.count("vertex number");
-      if (index >= header.vertices) {
-        words.fail("face {} names vertex {}, but there are only {} (numbered from 0)", face, index, header.vertices);
-      }
-      corners.push_back(index);
-    }
-    words.skip_rest_of_line();  // the face's colour
-    faces.add(corners);
-  }
-  if (mesh.soup.triangles.empty()) {
-    throw InputError("{}: there are no triangles in it ({} vertices, {})", file, header.vertices,
-                     faces.instead_of_surfaces());
-  }
-  mesh.notes = faces.notes();
-  if (header.colors || header.extras > 0)
-    mesh.notes.emplace_back("vertex colours, normals or texture coordinates ignored");
-  return mesh;
+  return OffReader(text, file).read();
 }
 
 }  // namespace penumbra::mesh

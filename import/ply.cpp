@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 namespace penumbra::mesh {
@@ -27,7 +28,7 @@ class AsciiNumbers {
       if (!take_line(text_, line_)) fail("the file ends in the middle of an element; it is truncated");
       ++line_number_;
     }
-    const auto value = parse_number<double>(word);
+    const auto value = parse_real(word);
     if (!value) fail("'{}' is not a number", word);
     return *value;
   }
@@ -37,6 +38,11 @@ class AsciiNumbers {
     line_ = {};
   }
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() + line_.size(); }
+  /// Is there anything but blanks?
+  [[nodiscard]] bool has_more() const {
+    std::string_view rest = text_;
+    return !take_word(rest).empty();
+  }
   [[nodiscard]] std::uint64_t lines_with_more() const { return lines_with_more_; }
   static std::size_t least_size(PlyType) { return 1; }
 
@@ -70,6 +76,11 @@ class PlyReader {
   ImportedMesh read() {
     for (const PlyElement& element : header_.elements) read_element(element);
     add_waiting_faces();
+    faces_.require_all(held_, file_);
+    settle_unused_vertices(mesh_, [&](std::uint32_t v) {
+      const glm::dvec3& p = mesh_.soup.positions[v];
+      throw InputError("{}: vertex {} is not finite: ({}, {}, {}) (numbered from 0)", file_, v, p.x, p.y, p.z);
+    });
     if (mesh_.soup.triangles.empty()) {
       throw InputError("{}: there are no triangles in it ({} vertices, {})", file_, vertices_,
                        faces_.instead_of_surfaces());
@@ -79,6 +90,9 @@ class PlyReader {
     if (numbers_.lines_with_more() > 0) {
       mesh_.notes.push_back(
           fmt::format("{} lines have more numbers than the header declares", numbers_.lines_with_more()));
+    }
+    if (numbers_.has_more()) {
+      mesh_.notes.push_back(fmt::format("{} bytes after the last element ignored", numbers_.bytes_left()));
     }
     return std::move(mesh_);
   }
@@ -92,6 +106,7 @@ class PlyReader {
     }
     const std::vector<Role> roles = roles_of(element, vertex, face);
     if (vertex) mesh_.soup.positions.reserve(mesh_.soup.positions.size() + element.count);
+    if (face && !strips) held_ += element.count;
     vertices_known_ = mesh_.soup.positions.size() == vertices_ && kept_.empty() && face_ends_.empty();
     if (face && vertices_known_) faces_.expect(std::min<std::uint64_t>(element.count, numbers_.bytes_left() / 4));
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -102,7 +117,7 @@ class PlyReader {
       corners_.clear();
       for (std::size_t p = 0; p < roles.size(); ++p) read_property(element.properties[p], roles[p], position);
       numbers_.end_element();
-      if (vertex) add_vertex(position, i);
+      if (vertex) mesh_.soup.positions.push_back(position);
       if (strips) keep_strip();
       if (face && !strips) keep_face();
     }
@@ -123,6 +138,7 @@ class PlyReader {
       if (role == Role::none) ignored += " " + property.name;
       roles.push_back(role);
     }
+    if (face && std::ranges::count(roles, Role::corners) == 0) take_other_list(element, roles, ignored);
     for (const Role wanted : {Role::x, Role::y, Role::z, Role::corners}) {
       const bool needed = wanted == Role::corners ? face : vertex;
       if (!needed || std::ranges::count(roles, wanted) == 1) continue;
@@ -134,6 +150,22 @@ class PlyReader {
       mesh_.notes.push_back(fmt::format("ignored properties of '{}':{}", element.name, ignored));
     }
     return roles;
+  }
+
+  /// Without a list of either usual name, the only list of integers is it.
+  void take_other_list(const PlyElement& element, std::vector<Role>& roles, std::string& ignored) {
+    std::optional<std::size_t> only;
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (!property.is_list || property.type == PlyType::float32 || property.type == PlyType::float64) continue;
+      if (only) return;
+      only = i;
+    }
+    if (!only) return;
+    const std::string& name = element.properties[*only].name;
+    roles[*only] = Role::corners;
+    ignored.erase(ignored.find(" " + name), name.size() + 1);
+    mesh_.notes.push_back(fmt::format("the list '{}' of '{}' taken for its vertex_indices", name, element.name));
   }
 
   void read_property(const PlyProperty& property, Role role, glm::dvec3& position) {
@@ -174,13 +206,6 @@ class PlyReader {
     return 0;
   }
 
-  void add_vertex(const glm::dvec3& p, std::uint64_t number) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      numbers_.fail("vertex {} is not finite: ({}, {}, {})", number, p.x, p.y, p.z);
-    }
-    mesh_.soup.positions.push_back(p);
-  }
-
   std::uint32_t vertex_named(double index) const {
     if (!(index >= 0 && index < static_cast<double>(vertices_)) || index != std::floor(index)) {
       numbers_.fail("face {} names vertex {}, but there are only {} (numbered from 0)", kept_faces_, index, vertices_);
@@ -208,6 +233,7 @@ class PlyReader {
     for (std::size_t i = 0; i < corners_.size(); ++i) {
       length = corners_[i] == -1 ? 0 : length + 1;
       if (length < 3) continue;
+      ++held_;
       const std::size_t turn = length % 2;  // of every other triangle, so that all have one winding
       face_.clear();
       for (const std::size_t back : {2 - (1 - turn), 1 + (1 - turn), std::size_t{0}}) {
@@ -236,6 +262,7 @@ class PlyReader {
   std::vector<double> corners_;  ///< of the element that is being read, as the file says
   bool vertices_known_ = false;  ///< all that the header promises
   std::uint64_t kept_faces_ = 0;
+  std::uint64_t held_ = 0;              ///< faces that the header counts, and triangles of strips
   std::vector<std::uint32_t> face_;     ///< the last one's corners
   std::vector<std::uint32_t> kept_;     ///< corners of all faces that wait, one after the other
   std::vector<std::size_t> face_ends_;  ///< into `kept_`

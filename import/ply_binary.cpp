@@ -27,6 +27,10 @@ double BinaryNumbers::number(PlyType type) {
       return take<std::int32_t>();
     case PlyType::uint32:
       return take<std::uint32_t>();
+    case PlyType::int64:
+      return static_cast<double>(take<std::int64_t>());
+    case PlyType::uint64:
+      return static_cast<double>(take<std::uint64_t>());
     case PlyType::float32:
       return static_cast<double>(take<float>());
     default:
@@ -48,6 +52,9 @@ std::int64_t BinaryNumbers::load_length(const char* from, PlyType type, bool swa
       return load<std::int32_t>(from, swap);
     case PlyType::uint32:
       return load<std::uint32_t>(from, swap);
+    case PlyType::int64:
+    case PlyType::uint64:  // what is too large is less than 0
+      return load<std::int64_t>(from, swap);
     default:
       return -1;  // the header refuses those
   }

@@ -25,6 +25,7 @@ class BinaryNumbers {
   double number(PlyType type);
   void end_element() {}
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size(); }
+  [[nodiscard]] bool has_more() const { return !bytes_.empty(); }
   static std::uint64_t lines_with_more() { return 0; }
   static std::size_t least_size(PlyType type) { return size_of(type); }
 

@@ -12,7 +12,7 @@ namespace penumbra::mesh {
 namespace {
 
 std::optional<PlyType> type_named(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{{"char", PlyType::int8},
+  constexpr std::array<std::pair<std::string_view, PlyType>, 18> kTypes = {{{"char", PlyType::int8},
                                                                             {"int8", PlyType::int8},
                                                                             {"uchar", PlyType::uint8},
                                                                             {"uint8", PlyType::uint8},
@@ -24,6 +24,8 @@ std::optional<PlyType> type_named(std::string_view name) {
                                                                             {"int32", PlyType::int32},
                                                                             {"uint", PlyType::uint32},
                                                                             {"uint32", PlyType::uint32},
+                                                                            {"int64", PlyType::int64},
+                                                                            {"uint64", PlyType::uint64},
                                                                             {"float", PlyType::float32},
                                                                             {"float32", PlyType::float32},
                                                                             {"double", PlyType::float64},
@@ -151,6 +153,8 @@ std::size_t size_of(PlyType type) {
     case PlyType::int16:
     case PlyType::uint16:
       return 2;
+    case PlyType::int64:
+    case PlyType::uint64:
     case PlyType::float64:
       return 8;
     default:

@@ -8,7 +8,7 @@
 
 namespace penumbra::mesh {
 
-enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
 std::size_t size_of(PlyType type);
 

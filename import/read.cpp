@@ -2,15 +2,17 @@
 
 #include "base/error.hpp"
 #include "import/audit_3ds.hpp"
+#include "import/audit_collada.hpp"
 #include "import/3mf.hpp"
 #include "import/amf.hpp"
-#include "import/faces.hpp"
+#include "import/assimp_scene.hpp"
 #include "import/obj.hpp"
 #include "import/off.hpp"
 #include "import/ply.hpp"
 #include "import/stl.hpp"
 #include "import/text.hpp"
 #include "import/unicode.hpp"
+#include "import/x3d.hpp"
 #include "mesh/opened_files.hpp"
 
 #include <assimp/DefaultLogger.hpp>
@@ -24,15 +26,11 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
-
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 
 namespace penumbra::mesh {
 namespace {
@@ -116,152 +114,6 @@ class Complaints : public Assimp::LogStream {
   std::size_t more_ = 0;
 };
 
-glm::dmat4 to_glm(const aiMatrix4x4& m) {  // Assimp's letters are rows, glm's constructor takes columns
-  return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
-}
-
-/// Adds every mesh of the node tree, where the nodes put it, to one soup.
-class SceneReader {
- public:
-  SceneReader(const aiScene& scene, std::string file) : scene_(scene), file_(std::move(file)), faces_(mesh_.soup) {}
-
-  ImportedMesh read() {
-    struct Visit {
-      const aiNode* node;
-      glm::dmat4 to_world;
-    };
-    std::vector<bool> shown(scene_.mNumMeshes, false);
-    std::vector<Visit> stack{{scene_.mRootNode, to_glm(scene_.mRootNode->mTransformation)}};
-    while (!stack.empty()) {  // no recursion: a file may nest a million nodes
-      const Visit visit = stack.back();
-      stack.pop_back();
-      for (const unsigned number : std::span(visit.node->mMeshes, visit.node->mNumMeshes)) {
-        if (number >= scene_.mNumMeshes)
-          throw InputError("{}: a node names mesh {} of {}", file_, number, scene_.mNumMeshes);
-        shown[number] = true;
-        add(*scene_.mMeshes[number], visit.to_world);
-      }
-      for (unsigned i = visit.node->mNumChildren; i-- > 0;) {  // last first, so that they come off in the file's order
-        const aiNode* child = visit.node->mChildren[i];
-        broken_tree_ = broken_tree_ || child == nullptr;
-        if (child != nullptr) stack.push_back({child, visit.to_world * to_glm(child->mTransformation)});
-      }
-    }
-    add_hidden(shown);
-    if (mesh_.soup.triangles.empty()) {
-      throw InputError("{}: there are no triangles in it ({})", file_, faces_.instead_of_surfaces());
-    }
-    const auto notes = faces_.notes();
-    mesh_.notes.insert(mesh_.notes.end(), notes.begin(), notes.end());
-    note_what_was_ignored();
-    note_lost_precision();
-    return std::move(mesh_);
-  }
-
- private:
-  /// Meshes that no node shows are not part of what the file depicts, unless the importer delivers a tree with holes
-  /// (Assimp's RAW importer does) or with no mesh at all.
-  void add_hidden(const std::vector<bool>& shown) {
-    const auto hidden = std::ranges::count(shown, false);
-    if (hidden == 0) return;
-    if (static_cast<std::size_t>(hidden) < shown.size() && !broken_tree_) {
-      mesh_.notes.push_back(fmt::format("{} of {} meshes skipped: no node shows them", hidden, shown.size()));
-      return;
-    }
-    mesh_.notes.push_back(fmt::format("{} of {} meshes taken as they are: no node shows them", hidden, shown.size()));
-    for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
-      if (!shown[i]) add(*scene_.mMeshes[i], glm::dmat4(1));
-    }
-  }
-
-  void add(const aiMesh& part, const glm::dmat4& to_world) {
-    auto& positions = mesh_.soup.positions;
-    const std::size_t first = positions.size();
-    if (first + part.mNumVertices > std::numeric_limits<std::uint32_t>::max()) {
-      throw InputError("{}: more than 4,294,967,295 vertices", file_);
-    }
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      const aiVector3D& v = part.mVertices[i];
-      const glm::dvec3 p(to_world * glm::dvec4(v.x, v.y, v.z, 1));
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-        throw InputError("{}: vertex {}{} is not finite: ({}, {}, {})", file_, i, of_part(part), v.x, v.y, v.z);
-      }
-      for (const float x : {v.x, v.y, v.z}) farthest_ = std::max(farthest_, std::abs(x));
-      low_ = glm::min(low_, p);
-      high_ = glm::max(high_, p);
-      positions.push_back(p);
-    }
-    // A mirroring transform turns every triangle inside out; swapping its corners' order keeps the outside outside.
-    const bool mirrored = glm::determinant(to_world) < 0;
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      corners_.clear();
-      for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
-        if (index >= part.mNumVertices) {
-          throw InputError("{}: face {}{} names vertex {}, but there are only {} (numbered from 0)", file_, f,
-                           of_part(part), index, part.mNumVertices);
-        }
-        corners_.push_back(static_cast<std::uint32_t>(first) + index);
-      }
-      if (mirrored) std::ranges::reverse(corners_);
-      faces_.add(corners_);
-    }
-    mirrored_ += mirrored ? 1 : 0;
-    normals_ += part.HasNormals() ? 1 : 0;
-    uvs_ += part.HasTextureCoords(0) ? 1 : 0;
-    colors_ += part.HasVertexColors(0) ? 1 : 0;
-    skins_ += part.HasBones() ? 1 : 0;
-    morphs_ += part.mNumAnimMeshes > 0 ? 1 : 0;
-  }
-
-  /// " of mesh 'name'", where the file has several.
-  [[nodiscard]] std::string of_part(const aiMesh& part) const {
-    return scene_.mNumMeshes > 1 ? fmt::format(" of mesh '{}'", part.mName.C_Str()) : "";
-  }
-
-  void note_what_was_ignored() {
-    std::string ignored;
-    const auto mention = [&](std::uint64_t count, std::string_view what) {
-      if (count > 0) ignored += fmt::format("{}{} of {} meshes", ignored.empty() ? "" : ", ", what, count);
-    };
-    mention(normals_, "vertex normals");
-    mention(uvs_, "texture coordinates");
-    mention(colors_, "vertex colours");
-    mention(skins_, "bones");
-    mention(morphs_, "morph targets");
-    if (!ignored.empty()) mesh_.notes.push_back("ignored: " + ignored);
-    if (mirrored_ > 0) {
-      mesh_.notes.push_back(
-          fmt::format("{} meshes mirrored by their nodes' transforms: windings reversed, so that the "
-                      "outside stays outside",
-                      mirrored_));
-    }
-  }
-
-  /// Assimp holds positions in single precision. That is worth a word where the grid of floats at the mesh's distance
-  /// from zero shows against its size: coarser than a 16384th of the diagonal, a 32nd of a pixel in a 512-pixel image.
-  void note_lost_precision() {
-    const double spacing = std::nextafter(farthest_, std::numeric_limits<float>::infinity()) - farthest_;
-    const double diagonal = glm::length(high_ - low_);
-    if (spacing * 16384 > diagonal && diagonal > 0) {
-      mesh_.notes.push_back(
-          fmt::format("coordinates were rounded to single precision: steps of {:.2g} on a mesh of size "
-                      "{:.2g}; store it nearer to zero and move it by a transform",
-                      spacing, diagonal));
-    }
-  }
-
-  const aiScene& scene_;
-  std::string file_;
-  ImportedMesh mesh_;
-  FaceCollector faces_;
-  std::vector<std::uint32_t> corners_;
-  bool broken_tree_ = false;
-  float farthest_ = 0;
-  glm::dvec3 low_{std::numeric_limits<double>::infinity()}, high_{-std::numeric_limits<double>::infinity()};
-  std::uint64_t mirrored_ = 0, normals_ = 0, uvs_ = 0, colors_ = 0, skins_ = 0, morphs_ = 0;
-};
-
 std::string supported_extensions(const Assimp::Importer& importer) {
   std::string list;
   importer.GetExtensionList(list);
@@ -284,7 +136,8 @@ void rethrow_out_of_memory(std::string_view message) {
   }
 }
 
-ImportedMesh read_with_assimp(const InputFile& input, const std::string& content) {
+/// Of what the file shows so many triangles are known, and must come.
+ImportedMesh read_with_assimp(const InputFile& input, const std::string& content, std::uint64_t triangles = 0) {
   const std::string file = input.name.string(), extension = input.name.extension().string();
   if (lower_extension(input.name) == ".3ds") audit_3ds(content, file);
   Complaints complaints;
@@ -316,7 +169,10 @@ ImportedMesh read_with_assimp(const InputFile& input, const std::string& content
     }
     throw InputError("{}: {}", file, said.empty() ? "it could not be read" : said);
   }
-  ImportedMesh mesh = SceneReader(*scene, file).read();
+  AssimpSceneOptions options;
+  options.is_fbx = lower_extension(input.name) == ".fbx";
+  options.triangles = triangles;
+  ImportedMesh mesh = read_assimp_scene(*scene, file, options);
   const auto said = complaints.notes();
   mesh.notes.insert(mesh.notes.end(), said.begin(), said.end());
   return mesh;
@@ -346,6 +202,11 @@ ImportedMesh read_as(const std::string& extension, const InputFile& input, const
   if (extension == ".stl") return read_stl(content, file);
   if (extension == ".amf") return read_amf(content, file);
   if (extension == ".3mf") return read_3mf(content, file);
+  if (extension == ".dae") {
+    const std::uint64_t triangles = triangles_of_collada(content, file);
+    return read_with_assimp(input, without_leading_blanks(content, file), triangles);
+  }
+  if (extension == ".x3d") return read_x3d(content, file);
   if (content.starts_with("FORM") && std::string_view(content).substr(4).find("LWOB") == 4) {
     throw InputError("{}: LWOB, the format of LightWave before version 6, is not supported; save it as LWO2 or OBJ",
                      file);

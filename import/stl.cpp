@@ -47,7 +47,12 @@ void add_corners(TriangleSoup& soup, FaceCollector& faces, std::uint32_t count) 
 }
 
 ImportedMesh read_binary(std::string_view content, const std::string& file) {
-  const std::size_t count = count_of_binary(content);
+  const std::size_t told = count_of_binary(content), held = (content.size() - kHeader) / kTriangle;
+  const bool whole = (content.size() - kHeader) % kTriangle == 0;
+  // Writers that do not know the number when they begin leave 0 or all bits set; and what follows the promised
+  // triangles to the end of the file, fifty bytes each, is triangles.
+  const bool unknown = told == 0 || told == std::numeric_limits<std::uint32_t>::max();
+  const std::size_t count = held > 0 && ((whole && told < held) || unknown) ? held : told;
   const std::size_t wanted = kHeader + kTriangle * count;
   if (content.size() < wanted) {
     throw InputError("{}: a binary STL file of {} triangles takes {} bytes, but it has {}; it is truncated", file,
@@ -73,7 +78,11 @@ ImportedMesh read_binary(std::string_view content, const std::string& file) {
     }
     add_corners(mesh.soup, faces, 3);
   }
+  faces.require_all(count, file);
   mesh.notes = faces.notes();
+  if (count != told) {
+    mesh.notes.push_back(fmt::format("the header says {} triangles, but the file holds {}: all taken", told, count));
+  }
   if (content.size() > wanted) {
     mesh.notes.push_back(fmt::format("{} bytes after the last triangle ignored", content.size() - wanted));
   }
@@ -100,6 +109,7 @@ class AsciiStl {
     if (facet_line_ > 0) {
       throw InputError("{}: line {}: the facet that begins here has no end; the file is truncated", file_, facet_line_);
     }
+    faces_.require_all(loops_, file_);
     mesh_.notes = faces_.notes();
     if (open_solid_) mesh_.notes.emplace_back("the last solid has no end ('endsolid'): the file may be truncated");
     if (unknown_ > 0) {
@@ -142,9 +152,10 @@ class AsciiStl {
     } else if (same_keyword(word, "endfacet")) {
       if (facet_line_ == 0) fail("a facet ends that has not begun");
       facet_line_ = 0;
-      if (corners_ > 0 || !had_loop_) add_corners(mesh_.soup, faces_, corners_);
+      if (corners_ > 0 || !had_loop_) ++loops_, add_corners(mesh_.soup, faces_, corners_);
     } else if (same_keyword(word, "endloop") && facet_line_ > 0 && corners_ > 0) {
       had_loop_ = true;
+      ++loops_;
       add_corners(mesh_.soup, faces_, corners_);
       corners_ = 0;
     } else if (!same_keyword(word, "outer") && !same_keyword(word, "loop") && !same_keyword(word, "endloop")) {
@@ -158,7 +169,7 @@ class AsciiStl {
     glm::dvec3 position;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
       const std::string_view word = take_word(line);
-      const auto value = parse_number<double>(word);
+      const auto value = parse_real(word);
       if (!value) fail("'{}' is not a coordinate", word);
       if (!std::isfinite(*value)) fail("a vertex is not finite: '{}'", word);
       position[axis] = *value;
@@ -174,6 +185,7 @@ class AsciiStl {
   FaceCollector faces_;
   std::size_t line_number_ = 0, facet_line_ = 0;  ///< where the open facet begins; 0 if none is open
   std::uint32_t corners_ = 0;                     ///< of the loop that is being read
+  std::uint64_t loops_ = 0;                       ///< that ended
   bool had_loop_ = false;                         ///< the open facet has a face already
   bool open_solid_ = false;
   std::uint64_t unknown_ = 0;

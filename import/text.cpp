@@ -1,6 +1,7 @@
 #include "import/text.hpp"
 
 #include <cctype>
+#include <limits>
 
 namespace penumbra::mesh {
 
@@ -36,6 +37,23 @@ std::string_view take_word(std::string_view& line) {
   const std::string_view word = line.substr(first, end - first);
   line.remove_prefix(end);
   return word;
+}
+
+std::string_view without_comment(std::string_view line) {
+  std::size_t mark = line.find('#');
+  while (mark != std::string_view::npos && mark > 0 && line[mark - 1] == '.') mark = line.find('#', mark + 1);
+  return line.substr(0, mark);
+}
+
+std::optional<double> parse_real(std::string_view word) {
+  if (const auto value = parse_number<double>(word)) return value;
+  const std::size_t mark = word.find(".#");
+  if (mark == std::string_view::npos || !parse_number<double>(word.substr(0, mark))) return std::nullopt;
+  const std::string_view name = word.substr(mark + 2);
+  if (name.starts_with("INF")) return std::numeric_limits<double>::infinity() * (word.starts_with('-') ? -1 : 1);
+  if (name.starts_with("IND") || name.starts_with("QNAN") || name.starts_with("SNAN"))
+    return std::numeric_limits<double>::quiet_NaN();
+  return std::nullopt;
 }
 
 }  // namespace penumbra::mesh

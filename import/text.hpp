@@ -23,6 +23,9 @@ bool take_line(std::string_view& text, std::string_view& line);
 /// Takes the next blank-separated word off `line`; empty at its end.
 std::string_view take_word(std::string_view& line);
 
+/// The line before its comment, which '#' begins; that of "1.#IND" begins none.
+std::string_view without_comment(std::string_view line);
+
 /// A message with words of the file in it, printable: a zero byte among them would end the message there.
 template <typename... Args>
 std::string text_for_people(fmt::format_string<Args...> format, Args&&... args) {
@@ -43,5 +46,8 @@ std::optional<Number> parse_number(std::string_view word) {
   if (error != std::errc()) return std::nullopt;
   return value;
 }
+
+/// The same of a real, also one that an old C library wrote for what is no number: "-1.#IND", "1.#QNAN", "1.#INF".
+std::optional<double> parse_real(std::string_view word);
 
 }  // namespace penumbra::mesh

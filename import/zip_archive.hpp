@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,19 +22,19 @@ class ZipArchive {
   [[nodiscard]] std::string read(std::string_view name) const;
 
  private:
-  /// What the library reads the archive through, as if it were a file.
-  struct Cursor {
-    std::string_view content;
-    std::uint64_t at = 0;
+  struct Entry {
+    std::uint64_t at = 0;                ///< of its own header
+    std::uint64_t packed = 0, size = 0;  ///< bytes in the archive, and unpacked
+    std::uint32_t checksum = 0, method = 0;
+    bool encrypted = false;
   };
-  struct Close {
-    void operator()(void* archive) const;
-  };
+  static void take_sizes(std::string_view extra, Entry& entry);
+  static std::string inflated(std::string_view packed, std::uint64_t size);
 
+  std::string_view content_;
   std::string file_;
-  std::unique_ptr<Cursor> cursor_;
-  std::unique_ptr<void, Close> archive_;
   std::vector<std::string> names_;
+  std::vector<Entry> entries_;  ///< as `names_`
 };
 
 }  // namespace penumbra::mesh

@@ -153,7 +153,7 @@ TEST_F(MeshImport, CutsConcaveAndLargePolygons) {
   }
   EXPECT_DOUBLE_EQ(area[0], 3);
   EXPECT_NEAR(area[1], 3, 1e-5);  // 12 · sin(30°) / 2, from coordinates printed with six digits
-  EXPECT_THAT(mesh.notes, Contains(HasSubstr("2 polygons became 14 triangles (1 convex by a fan, 1 concave")));
+  EXPECT_THAT(mesh.notes, Contains(HasSubstr("2 polygons became 14 triangles (1 convex, 1 concave")));
 }
 
 TEST_F(MeshImport, AppliesNodeTransformsInDouble) {

@@ -172,5 +172,72 @@ TEST_F(XmlReaders, ThreeMfRefusals) {
 #endif
 }
 
+// -------------------------------------------------------------------------------------------------------------- X3D
+
+std::string x3d(const std::string& scene) {
+  return "<?xml version=\"1.0\"?>\n<X3D version=\"3.3\"><Scene>\n" + scene + "\n</Scene></X3D>\n";
+}
+
+std::string triangle_shape(const std::string& attributes = "") {
+  return "<Shape><IndexedFaceSet " + attributes +
+         " coordIndex=\"0 1 2\"><Coordinate point=\"1 0 0, 2 0 0, 1 1 0\"/></IndexedFaceSet></Shape>";
+}
+
+TEST_F(XmlReaders, X3dTransformsInTheirOrder) {
+  const ImportedMesh mesh = read(
+      "transform.x3d", x3d("<Transform translation=\"1 2 3\" rotation=\"0 0 1 1.5707963267948966\" scale=\"2 1 1\" "
+                           "center=\"1 0 0\">" +
+                           triangle_shape() + "<Transform scale=\"-1 1 1\">" + triangle_shape("ccw=\"false\"") +
+                           "</Transform></Transform>"));
+  ASSERT_EQ(mesh.soup.triangles.size(), 2u);
+  // Seen from the centre the corners are (0 0), (1 0), (0 1); twice as wide and turned by 90°, (0 0), (0 2), (-1 0).
+  EXPECT_LT(distance(corner(mesh.soup, 0, 0), {2, 2, 3}), 1e-15);
+  EXPECT_LT(distance(corner(mesh.soup, 0, 1), {2, 4, 3}), 1e-15);
+  EXPECT_LT(distance(corner(mesh.soup, 0, 2), {1, 2, 3}), 1e-15);
+  // Clockwise, and mirrored: wound as the first one's mirror image would be, then turned over. (-2 0 0) is (-3 0) from
+  // the centre.
+  EXPECT_LT(distance(corner(mesh.soup, 1, 1), {2, -4, 3}), 1e-15);
+  EXPECT_THAT(mesh.notes, Contains(HasSubstr("1 objects mirrored")));
+}
+
+TEST_F(XmlReaders, X3dSetsOfTrianglesHaveOneWinding) {
+  const std::string points = "<Coordinate point=\"0 0 0 1 0 0 0 1 0 1 1 0 0 2 0 1 2 0\"/>";
+  const std::map<std::string, std::size_t> sets = {{"<TriangleStripSet stripCount=\"6\">", 4},
+                                                   {"<IndexedTriangleStripSet index=\"0 1 2 3 -1 2 3 4 5 -1\">", 4},
+                                                   {"<TriangleFanSet stripCount=\"3\" fanCount=\"3 3\">", 2},
+                                                   {"<IndexedTriangleFanSet index=\"0 1 3 2 -1\">", 2},
+                                                   {"<TriangleSet>", 2},
+                                                   {"<IndexedQuadSet index=\"0 1 3 2, 2 3 5 4\">", 4}};
+  for (const auto& [set, count] : sets) {
+    const std::string name = set.substr(1, set.find_first_of(" >") - 1);
+    const ImportedMesh mesh = read("set.x3d", x3d("<Shape>" + set + points + "</" + name + "></Shape>"));
+    ASSERT_EQ(mesh.soup.triangles.size(), count) << set;
+    if (name == "TriangleFanSet" || name == "TriangleSet") continue;  // its second run goes round the other way
+    for (std::size_t t = 0; t < count; ++t) {
+      const glm::dvec3 a = corner(mesh.soup, t, 0), b = corner(mesh.soup, t, 1), c = corner(mesh.soup, t, 2);
+      EXPECT_GT((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), 0) << set << t;
+    }
+  }
+}
+
+TEST_F(XmlReaders, X3dRefusalsSayTheLine) {
+  expect_refused("use.x3d", x3d("<Group USE=\"later\"/>\n<Group DEF=\"later\"/>"),
+                 {"line 3", "no node 'later' before"});
+  expect_refused("circle.x3d", x3d("<Group DEF=\"A\">" + triangle_shape() + "<Group USE=\"A\"/></Group>"),
+                 {"'A' is made of itself"});
+  expect_refused("index.x3d",
+                 x3d("<Shape><IndexedFaceSet coordIndex=\"0 1 3\"><Coordinate point=\"0 0 0 1 0 0 1 1 "
+                     "0\"/></IndexedFaceSet></Shape>"),
+                 {"line 3", "vertex 3", "only 3"});
+  expect_refused("point.x3d", x3d("<Shape><TriangleSet><Coordinate point=\"0 0 0 1\"/></TriangleSet></Shape>"),
+                 {"line 3", "no multiple of 3"});
+  expect_refused("proto.x3d", x3d(triangle_shape() + "\n<ProtoInstance name=\"Chair\"/>"),
+                 {"line 4", "<ProtoInstance>"});
+  expect_refused("human.x3d", x3d("<HAnimHumanoid>" + triangle_shape() + "</HAnimHumanoid>"),
+                 {"line 3", "<HAnimHumanoid>"});
+  expect_refused("lines.x3d", x3d("<Shape><Text string='\"a\"'/></Shape>"), {"no triangles", "1 Text"});
+  expect_refused("other.x3d", "<html/>", {"<html>", "expected <X3D>"});
+}
+
 }  // namespace
 }  // namespace penumbra::mesh
