@@ -27,10 +27,12 @@ penumbra_test(cli PREFIX cli. FULL *EveryTriple*
   cli/pixel_filters.cpp
   cli/program.cpp
   cli/public_scenes.cpp
+  cli/public_cases.cpp
   cli/render.cpp
   cli/shifted_lens.cpp
   cli/tables.cpp
   cli/wedges.cpp
   LIBRARIES penumbra_app penumbra_mesh penumbra_visibility penumbra_base nlohmann_json::nlohmann_json ZLIB::ZLIB)
-target_compile_definitions(cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>")
+target_compile_definitions(cli_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>"
+  PENUMBRA_PUBLIC_CASES="${CMAKE_CURRENT_SOURCE_DIR}/public_cases")
 add_dependencies(cli_test penumbra)
