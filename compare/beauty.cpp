@@ -72,7 +72,8 @@ void add_light(const BeautyScene& in, const VisibleLight& visible, const LightVi
   const auto add = [&](std::size_t i, const glm::dvec3& form_factor) {
     const auto triangle = static_cast<std::size_t>(in.samples.triangle[i]);
     const glm::dvec3 color = in.pixel_colors.empty() ? in.colors[in.scene.object[triangle]] : in.pixel_colors[i];
-    beauty[i - begin] += color * light.radiance * spot_share(light, in.samples.p[i]) * form_factor;
+    const glm::vec3& normal = in.normals.empty() ? in.samples.n[i] : in.normals[i];
+    beauty[i - begin] += color * light.radiance * spot_share(light, in.samples.p[i], normal) * form_factor;
   };
   std::vector<std::uint32_t> wholes;  // pixels, and what their form factors are multiplied with
   std::vector<double> shares;

@@ -81,16 +81,6 @@ glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l) {
   return light.sun ? glm::dvec3(l) : glm::dvec3(l) - glm::dvec3(p);
 }
 
-double spot_share(const Light& light, const glm::vec3& p) {
-  if (!light.spot) return 1;
-  const glm::dvec3 way = glm::dvec3(p) - glm::dvec3(light.center);
-  const double length = glm::length(way);
-  if (length == 0) return 0;
-  const double cosine = glm::dot(way, light.spot->direction) / length;
-  const double share = glm::clamp(cosine * light.spot->scale + light.spot->offset, 0.0, 1.0);
-  return share * share * (light.spot->smooth ? cosine * (3 - 2 * share) : 1.0);
-}
-
 Bounds point_bounds(const Light& light) {
   if (light.kind == LightKind::sphere) {
     // The disks are inside the ball; their points are rounded to float32, as the bounds are.

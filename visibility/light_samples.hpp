@@ -102,11 +102,13 @@ struct Light {
 /// double holds the difference.
 glm::dvec3 way_to(const Light& light, const glm::vec3& p, const glm::vec3& l);
 
-/// How bright a spot lamp's cone is at p, in [0, 1], by the formula that KHR_lights_punctual recommends: c the cosine
-/// of the angle at the lamp's centre between its direction and p, t = clamp((c − cos outer) / max(0.001, cos inner −
-/// cos outer)), t²; if the cone is smooth c t² (3 − 2t), as Cycles has it, whose lamps are disks that face along the
-/// cone. 1 of what has no cone. It multiplies radiance; V knows nothing of it.
-double spot_share(const Light& light, const glm::vec3& p);
+/// How bright a spot lamp's cone is at p, whose normal is n, in [0, 1], by the formula that KHR_lights_punctual
+/// recommends: c the cosine of the angle at the lamp's centre between its direction and p, t = clamp((c − cos outer) /
+/// max(0.001, cos inner − cos outer)), t². Of a smooth cone, as Cycles has it: the lamp is a disk of its radius that
+/// faces p, each point of which shines by c t² (3 − 2t), c from there; what p gets, divided by what it would get if all
+/// the light came from the centre at full strength. 1 of what has no cone. It multiplies radiance; V knows nothing of
+/// it.
+double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n);
 
 /// Bounds all light points of all view samples.
 Bounds point_bounds(const Light& light);

@@ -226,14 +226,54 @@ TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
 /// With cosines 0.8 and 0.6 of the cone's ends and 0.65 of p's direction, a quarter of the way in from the rim.
 TEST(Lights, ConesFallAsTheirLampsSay) {
   const double inner = glm::degrees(std::acos(0.8)), outer = glm::degrees(std::acos(0.6));
-  const glm::vec3 p(static_cast<float>(std::sqrt(1 - 0.65 * 0.65)), -0.65F, 0);
-  scenes::Sphere spot{{0, 0, 0}, 0.1, scenes::Cone{{0, -1, 0}, inner, outer}};
-  EXPECT_NEAR(spot_share(light_of(spot, {4}), p), 0.25 * 0.25, 1e-6);
+  const glm::vec3 p(static_cast<float>(std::sqrt(1 - 0.65 * 0.65)), -0.65F, 0), up(0, 1, 0);
+  scenes::Sphere spot{{0, 0, 0}, 1e-5, scenes::Cone{{0, -1, 0}, inner, outer}};
+  EXPECT_NEAR(spot_share(light_of(spot, {4}), p, up), 0.25 * 0.25, 1e-6);
   spot.cone->smooth = true;
   const Light light = light_of(spot, {4});
-  EXPECT_NEAR(spot_share(light, p), 0.65 * 0.25 * 0.25 * (3 - 2 * 0.25), 1e-6);
-  EXPECT_NEAR(spot_share(light, {0, -3, 0}), 1, 1e-12);
-  EXPECT_EQ(spot_share(light, {1, -0.7F, 0}), 0);
+  EXPECT_NEAR(spot_share(light, p, up), 0.65 * 0.25 * 0.25 * (3 - 2 * 0.25), 1e-4);
+  EXPECT_NEAR(spot_share(light, {0, -3, 0}, up), 1, 1e-9);
+  EXPECT_EQ(spot_share(light, {1, -0.7F, 0}, up), 0);
+}
+
+/// What p gets of a disk that faces it, over what it would get if all the light came from its middle: over a fine grid.
+double share_by_grid(const scenes::Sphere& lamp, const glm::dvec3& p, const glm::dvec3& n) {
+  const glm::dvec3 axis = lamp.cone->direction, middle = lamp.center - p, away = glm::normalize(middle);
+  const glm::dvec3 u = glm::normalize(glm::cross(away, glm::dvec3(0.3, 0.5, 0.7))), v = glm::cross(away, u);
+  const double full = std::cos(glm::radians(lamp.cone->inner)), dark = std::cos(glm::radians(lamp.cone->outer));
+  double sum = 0;
+  int points = 0;
+  constexpr int kSide = 400;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double x = (2.0 * (i % kSide) + 1) / kSide - 1, y = (2.0 * (i / kSide) + 1) / kSide - 1;
+    if (x * x + y * y > 1) continue;
+    ++points;
+    const glm::dvec3 way = middle + lamp.radius * (x * u + y * v);
+    const double length = glm::length(way), c = -glm::dot(way, axis) / length;
+    const double t = glm::clamp((c - dark) / std::max(full - dark, 0.001), 0.0, 1.0);
+    const double there = glm::dot(way, away) / length, here = std::max(glm::dot(way, n), 0.0) / length;
+    sum += there * here / (length * length) * c * t * t * (3 - 2 * t);
+  }
+  return sum / points * glm::dot(middle, middle) / glm::dot(away, n);
+}
+
+/// Wide, narrow and hard edges; lamps that are small, large and larger than their distance; tilted surfaces.
+TEST(Lights, ConesOfWideLampsAreThoseOfTheirDisks) {
+  int between = 0;
+  for (const double radius : {0.01, 0.25, 1.5}) {
+    for (const double inner : {24.99, 20.0, 5.0}) {
+      const scenes::Sphere spot{
+          {0.5, 2, 0}, radius, scenes::Cone{glm::normalize(glm::dvec3(0.2, -1, 0.1)), inner, 25, true}};
+      for (const glm::vec3 p :
+           {glm::vec3(1, 0, 0), glm::vec3(1.7F, 0, 0.2F), glm::vec3(1.9F, 0, 0.2F), glm::vec3(0, 0, 1)}) {
+        const glm::vec3 n = glm::normalize(glm::vec3(0.2F, 1, -0.3F));
+        const double wanted = share_by_grid(spot, p, n), found = spot_share(light_of(spot, {4}), p, n);
+        EXPECT_NEAR(found, wanted, 3e-3) << radius << ' ' << inner << ' ' << p.x;
+        between += wanted > 0.05 && wanted < 0.7 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(between, 9);
 }
 
 /// The share of samples within a part of the disk is the part's share of its area.

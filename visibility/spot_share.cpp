@@ -1,0 +1,107 @@
+// How bright the cone of a spot lamp is.
+
+#include "visibility/light_samples.hpp"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace penumbra::visibility {
+namespace {
+
+/// The lamp's disk as p sees it, in units of the disk's radius: x along what is nearest to the cone's axis, y across.
+struct FacingDisk {
+  double size = 0;    ///< its radius over its distance
+  double cosine = 0;  ///< of the angle between the cone's axis and the way from the middle to p
+  double sine = 0;    ///< of the same angle
+  double tilt = 0;    ///< by how much p's cosine grows along x, over its cosine of the middle
+  double scale = 1, offset = 0;
+
+  /// Length of the way to p, over the middle's.
+  [[nodiscard]] double way(double x, double y) const { return std::sqrt(1 + size * size * (x * x + y * y)); }
+
+  /// What p gets of the point, over what it would get if it shone fully from the middle: less by the square of its way,
+  /// and by the cosines there and here.
+  [[nodiscard]] double share(double x, double y) const {
+    const double length = way(x, y), c = (cosine - size * sine * x) / length;
+    const double t = glm::clamp(c * scale + offset, 0.0, 1.0);
+    return std::max(1 + tilt * x, 0.0) * c * t * t * (3 - 2 * t) / (length * length * length * length);
+  }
+
+  /// Where on the chord at y the cosine is `wanted`: both solutions, some of which may be of its negative; NaN: none.
+  [[nodiscard]] std::array<double, 2> where(double wanted, double y) const {
+    const double a = size * size * (sine * sine - wanted * wanted), b = -size * sine * cosine;
+    const double c = cosine * cosine - wanted * wanted * (1 + size * size * y * y);
+    const double root = std::sqrt(b * b - a * c), q = -(b + std::copysign(root, b));
+    return {q / a, c / q};
+  }
+};
+
+/// Gauss and Legendre's four points of [−1, 1], and their weights.
+constexpr std::array<double, 4> kPoints{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                        0.8611363115940526};
+constexpr std::array<double, 4> kWeights{0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                         0.3478548451374538};
+
+/// The integral over x within the chord at y, piece by piece between the ends of the cone's edge.
+double over_chord(const FacingDisk& disk, double y, double half) {
+  std::array<double, 6> ends{-half, half};
+  std::size_t count = 2;
+  for (const double t : {0.0, 1.0}) {
+    for (const double x : disk.where((t - disk.offset) / disk.scale, y)) {
+      if (x > -half && x < half) ends[count++] = x;
+    }
+  }
+  std::sort(ends.begin(), ends.begin() + count);
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const double middle = (ends[i] + ends[i + 1]) / 2, reach = (ends[i + 1] - ends[i]) / 2;
+    for (std::size_t j = 0; j < kPoints.size(); ++j)
+      sum += reach * kWeights[j] * disk.share(middle + reach * kPoints[j], y);
+  }
+  return sum;
+}
+
+double mean_over(const FacingDisk& disk) {
+  // The farthest that a point's cosine can be from the middle's; most pixels are outside of the cone.
+  const double nearest = std::atan(disk.size), angle = std::atan2(disk.sine, disk.cosine);
+  if (std::cos(std::max(angle - nearest, 0.0)) * disk.scale + disk.offset <= 0) return 0;
+  // Chords at Chebyshev's points of the second kind, symmetric about y = 0: half of them suffice.
+  constexpr int kChords = 12;
+  double sum = 0;
+  for (int i = 0; i < kChords; ++i) {
+    const double place = std::numbers::pi * (i + 1) / (2 * kChords + 1), half = std::sin(place);
+    sum += half * over_chord(disk, std::cos(place), half);
+  }
+  return 2 * sum / (2 * kChords + 1);
+}
+
+}  // namespace
+
+double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n) {
+  if (!light.spot) return 1;
+  const glm::dvec3 way = glm::dvec3(p) - glm::dvec3(light.center);
+  const double length = glm::length(way);
+  if (length == 0) return 0;
+  const double cosine = glm::dot(way, light.spot->direction) / length;
+  if (!light.spot->smooth) {
+    const double share = glm::clamp(cosine * light.spot->scale + light.spot->offset, 0.0, 1.0);
+    return share * share;
+  }
+  FacingDisk disk{
+      .size = light.radius / length, .cosine = cosine, .scale = light.spot->scale, .offset = light.spot->offset};
+  // From p's middle of the lamp toward the axis lies what the lamp's direction has across the way, turned round.
+  const glm::dvec3 across = light.spot->direction - cosine * way / length;
+  disk.sine = glm::length(across);
+  const double facing = -glm::dot(way, glm::dvec3(n)) / length;
+  if (disk.sine > 1e-9 && facing > 0)
+    disk.tilt = disk.size * glm::dot(across, glm::dvec3(n)) / disk.sine / std::max(facing, disk.size);
+  return mean_over(disk);
+}
+
+}  // namespace penumbra::visibility
