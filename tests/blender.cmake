@@ -4,8 +4,14 @@ set(addon ${PROJECT_BINARY_DIR}/penumbra-blender.zip)
 add_test(NAME blender.addon
          COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/addon.py ${PROJECT_SOURCE_DIR}/blender ${addon}
                  $<TARGET_FILE:penumbra>)
-set_tests_properties(blender.addon PROPERTIES LABELS quick)
-foreach(script engine cycles exported compositor)
+add_test(NAME blender.nodes
+         COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/addon_nodes.py ${addon})
+set_tests_properties(blender.addon blender.nodes PROPERTIES LABELS quick)
+add_test(NAME blender.farm
+         COMMAND ${PENUMBRA_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/blender/farm.py ${addon} $<TARGET_FILE:penumbra>
+                 ${PROJECT_BINARY_DIR}/blender_farm)
+set_tests_properties(blender.farm PROPERTIES LABELS full TIMEOUT 1200)
+foreach(script engine panels surfaces cycles exported compositor)
   add_test(NAME blender.${script}
            COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/blender/run.sh ${script}.py ${addon} $<TARGET_FILE:penumbra>
                    ${PROJECT_BINARY_DIR}/blender_${script})

@@ -4,7 +4,7 @@ bl_info = {
     "name": "Penumbra",
     "description": "Exact soft shadows of area lights",
     "author": "Penumbra's authors",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "category": "Render",
     "location": "Render Properties > Render Engine > Penumbra",
@@ -14,14 +14,16 @@ bl_info = {
 def register():
     import bpy
 
-    from . import engine, panel
-    panel.register()
+    from . import engine, panels, settings
+    settings.register()
     bpy.utils.register_class(engine.PenumbraEngine)
+    panels.register()
 
 
 def unregister():
     import bpy
 
-    from . import engine, panel
+    from . import engine, panels, settings
+    panels.unregister()
     bpy.utils.unregister_class(engine.PenumbraEngine)
-    panel.unregister()
+    settings.unregister()

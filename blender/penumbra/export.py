@@ -1,15 +1,13 @@
 """Blender's scene, as its dependency graph evaluates it for a render, in the exchange file (glb.py)."""
 
-import os
-import tempfile
-
 import bpy
 import numpy
 
-from . import glb, lamps, materials
+from . import glb, graph, lamps, materials, space, texels
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
-_UNKNOWN = {"VOLUME": "is a volume", "POINTCLOUD": "is a point cloud", "CURVES": "is hair", "GPENCIL": "is grease pencil"}
+_UNKNOWN = {"VOLUME": "is a volume", "POINTCLOUD": "is a point cloud", "CURVES": "is hair", "GPENCIL": "is grease pencil",
+            "GREASEPENCIL": "is grease pencil"}
 
 
 class SceneWriter:
@@ -17,16 +15,20 @@ class SceneWriter:
 
     def __init__(self, depsgraph, losses, shading_normals):
         self.depsgraph, self.losses, self.shading_normals = depsgraph, losses, shading_normals
-        self.scene = depsgraph.scene
+        self.scene, self.layer = depsgraph.scene, depsgraph.view_layer_eval
         self.glb = glb.Glb()
+        self.background = (0.0, 0.0, 0.0)  # the colour that is seen behind everything
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
+        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, whose distances are looked at
 
-    def write(self, path, size):
+    def write(self, path, region):
+        """`region`: which pixels (frames.py)."""
         for instance in self.depsgraph.object_instances:
             if instance.show_self:
                 self._object(instance)
-        self._camera(size)
+        self._camera(region)
         self._world()
+        lamps.check_balls(self._balls, self._placed, self.losses)
         with open(path, "wb") as file:
             file.write(self.glb.encoded())
 
@@ -34,7 +36,7 @@ class SceneWriter:
         thing = instance.object
         if thing.type == "LIGHT":
             if thing.visible_diffuse:
-                lamps.write_lamp(thing.data, thing.name, instance.matrix_world, self.glb, self.losses)
+                self._balls += lamps.write_lamp(thing.data, thing.name, instance.matrix_world, self.glb, self.losses)
             return
         if thing.type in _UNKNOWN:
             self.losses.refuse(f"{_UNKNOWN[thing.type]}, which is not rendered", thing.name)
@@ -43,24 +45,34 @@ class SceneWriter:
         for system in thing.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self.losses.refuse("has hair, which is not rendered", thing.name)
-        if thing.is_holdout or thing.is_shadow_catcher:
-            self.losses.refuse("is a holdout or shadow catcher", thing.name)
+        owner = instance.parent if instance.is_instance else thing
+        if thing.is_holdout or thing.is_shadow_catcher or owner.holdout_get(view_layer=self.layer):
+            self.losses.refuse("is a holdout or shadow catcher, or in a collection that is a holdout", thing.name)
         mesh = self._mesh(thing)
         if mesh is None:
             return
-        number, emits = mesh
+        number, emits, corners = mesh
         extras = {} if thing.visible_shadow else {"castsShadow": False}
+        if owner.indirect_only_get(view_layer=self.layer):
+            self.losses.refuse("is in a collection that is indirect only", thing.name)
         if not thing.visible_camera:
             if not emits or thing.visible_shadow:
                 self.losses.refuse("is hidden from the camera but not from light", thing.name)
             else:
                 extras["body"] = False
+        self._placed.append(space.Placed(thing.name, corners.positions, corners.vertices, numpy.array(instance.matrix_world)))
         self.glb.node(thing.name, instance.matrix_world, extras, mesh=number)
 
+    def _materials_of(self, thing):
+        """Of its slots; the view layer's override stands for all."""
+        if self.layer.material_override is not None:
+            return [self.layer.material_override]
+        return [slot.material for slot in thing.material_slots]
+
     def _mesh(self, thing):
-        """The number of an object's mesh in the file, and whether it shines; None for one without faces."""
+        """The number of an object's mesh in the file, whether it shines, and its corners; None for one without faces."""
         key = (thing.data.as_pointer(), thing.original.as_pointer() if thing.type != "MESH" else 0,
-               tuple(slot.material.name_full if slot.material else "" for slot in thing.material_slots))
+               tuple(material.name_full if material else "" for material in self._materials_of(thing)))
         if key not in self._meshes:
             data = thing.to_mesh()
             self._meshes[key] = self._primitives(thing, data) if data is not None else None
@@ -75,16 +87,21 @@ class SceneWriter:
         corners = Corners(data, self.shading_normals)
         material_of = numpy.empty(count, numpy.int32)
         data.loop_triangles.foreach_get("material_index", material_of)
-        slots = thing.material_slots
+        slots = self._materials_of(thing)
         material_of = numpy.clip(material_of, 0, max(len(slots) - 1, 0))
         primitives, emits = [], False
         for slot in numpy.unique(material_of):
-            material = slots[slot].material if len(slots) > 0 else None
+            material = slots[slot] if slots else None
             look = self._look(material, thing.name)
             emits = emits or max(look.radiance) > 0
-            attributes, indices = corners.of(material_of == slot, look, self)
-            primitives.append({"attributes": attributes, "indices": indices, "material": self._material(material, look)})
-        return self.glb.mesh(thing.data.name, primitives), emits
+            number = self._material(material, look)
+            for smooth in (False, True):
+                chosen = (material_of == slot) & (corners.smooth == smooth)
+                if chosen.any():
+                    attributes, indices = corners.of(chosen, look, self, smooth)
+                    primitives.append({"attributes": attributes, "indices": indices, "material": number})
+        corners.forget()
+        return self.glb.mesh(thing.data.name, primitives), emits, corners
 
     def _look(self, material, name):
         key = material.name_full if material else ""
@@ -104,55 +121,81 @@ class SceneWriter:
 
     def _texture(self, look):
         image = look.image
-        if image.name_full not in self._images:
+        key = (image.name_full, look.interpolation, look.wrap, look.image_alpha, id(look.pixels) if look.pixels is not None else 0)
+        if key not in self._images:
             try:
-                self._images[image.name_full] = self.glb.image(image.name, *encoded_image(image))
+                self._images[key] = self.glb.image(image.name, *encoded_image(image, look))
             except (OSError, RuntimeError) as error:
-                self.losses.refuse(f"is an image that cannot be written as PNG ({error})", image.name)
-                self._images[image.name_full] = None
-            if image.colorspace_settings.name not in ("sRGB", "Non-Color") or \
-                    (image.colorspace_settings.name == "Non-Color" and not look.image_alpha):
-                self.losses.mention(f"is read as sRGB, not {image.colorspace_settings.name}", image.name)
-        number = self._images[image.name_full]
+                self.losses.refuse(f"is an image that cannot be read ({error})", image.name)
+                self._images[key] = None
+            if not texels.knows_space(image):
+                self.losses.refuse(f"is an image in the colour space {image.colorspace_settings.name}, which is not known", image.name)
+        number = self._images[key]
         if number is None:
             return None
         return self.glb.texture(number, 33071 if look.wrap == "EXTEND" else 10497, look.nearest)
 
-    def _camera(self, size):
+    def _camera(self, region):
         camera = self.scene.camera
         if camera is None:
             raise ValueError("the scene has no camera")
         camera = camera.evaluated_get(self.depsgraph)
         lens = camera.data
-        if lens.type == "PANO":
+        if lens.type not in ("PERSP", "ORTHO"):
             raise ValueError(f"camera '{camera.name}' is panoramic; perspective and orthographic ones are rendered")
         if lens.dof.use_dof:
             self.losses.mention("has a depth of field, which is left out", camera.name)
-        self.glb.camera(camera.name, lamps.without_scale(camera.matrix_world), size[0] / size[1],
-                        **lamps.lens_of(lens, *size))
+        matrix = lamps.without_scale(camera.matrix_world)
+        if lamps.is_sheared(matrix):
+            self.losses.refuse("is a camera that is sheared (by a parent with uneven scale)", camera.name)
+        view = lamps.lens_of(lens, region)
+        self.glb.camera(camera.name, matrix, region.size[0] / region.size[1], **view)
+        frustum = space.Frustum(matrix, region.size[0] / region.size[1], **view)
+        for placed in self._placed:
+            if frustum.sees(placed, 0, lens.clip_start):
+                self.losses.refuse(f"is cut by the clip start of camera '{camera.name}', which is not done; lower it", placed.name)
+            if frustum.sees(placed, lens.clip_end, numpy.inf):
+                self.losses.mention(f"reaches beyond the clip end of camera '{camera.name}', and is shown there", placed.name)
 
     def _world(self):
         world = self.scene.world
-        if world is not None and sends_light(world):
-            self.losses.mention("is a world (or HDRI) whose light is not rendered", world.name)
+        if world is None:
+            return
+        try:
+            self.background = world_color(world)
+        except graph.Unknown as error:
+            self.losses.mention(f"is a world made by {error}, which is not evaluated: black, and its light is not rendered",
+                                world.name)
+            return
+        if max(self.background) > 0:
+            self.losses.mention("is a world whose light is not rendered", world.name)
 
 
-def sends_light(world):
-    """May any light come from the world?"""
+def world_color(world):
+    """What is seen of a world of one colour."""
     if not world.use_nodes or world.node_tree is None:
-        return max(world.color) > 0
+        return tuple(world.color)
     output = world.node_tree.get_output_node("CYCLES")
-    if output is None or not output.inputs["Surface"].is_linked:
-        return False
-    node = output.inputs["Surface"].links[0].from_node
-    if node.type != "BACKGROUND" or any(socket.is_linked for socket in node.inputs):
-        return True
-    return max(node.inputs["Color"].default_value[:3]) > 0 and node.inputs["Strength"].default_value > 0
+    source = graph.At(output.inputs["Surface"]).source() if output else None
+    if source is None:
+        return (0.0, 0.0, 0.0)
+    node, _, groups = source
+    if node.type != "BACKGROUND":
+        raise graph.Unknown(f"the node '{node.name}'")
+    strength = graph.constant(graph.At(node.inputs["Strength"], groups))[0]
+    if strength == 0:
+        return (0.0, 0.0, 0.0)
+    return tuple(x * strength for x in graph.constant(graph.At(node.inputs["Color"], groups)))
 
 
-def encoded_image(image):
-    """An image's bytes and their type: its file's, where that is PNG or JPEG and nothing was painted since."""
-    if not image.is_dirty and image.source == "FILE" and image.file_format in ("PNG", "JPEG"):
+def encoded_image(image, look):
+    """An image's bytes and their type: its file's, where that is PNG or JPEG in sRGB and shown as it is."""
+    if look.pixels is not None:
+        return texels.png(texels.bytes_of(texels.encoded_of(look.pixels))), "image/png"
+    small = not look.nearest and max(image.size) <= texels.FINE // 2
+    plain = texels.is_encoded(image) or look.image_alpha
+    if plain and not (small and not look.image_alpha) and not image.is_dirty and image.source == "FILE" and \
+            image.file_format in ("PNG", "JPEG"):
         if image.packed_file is not None:
             data = image.packed_file.data
         else:
@@ -162,17 +205,14 @@ def encoded_image(image):
             return data, "image/png"
         if data[:2] == b"\xff\xd8":
             return data, "image/jpeg"
-    handle, path = tempfile.mkstemp(suffix=".png")
-    os.close(handle)
-    copy = image.copy()
-    try:
-        copy.file_format = "PNG"
-        copy.save(filepath=path)
-        with open(path, "rb") as file:
-            return file.read(), "image/png"
-    finally:
-        bpy.data.images.remove(copy)
-        os.remove(path)
+    values = texels.pixels(image)
+    if not look.image_alpha:
+        values = values[..., :3]
+        if not look.nearest:
+            values = texels.finer(values, look.interpolation, look.wrap)
+    if not texels.is_encoded(image):
+        values = numpy.concatenate([texels.encoded_of(values[..., :3]), values[..., 3:]], axis=-1)
+    return texels.png(texels.bytes_of(values)), "image/png"
 
 
 class Corners:
@@ -188,19 +228,29 @@ class Corners:
         self.positions = numpy.empty(3 * len(data.vertices), numpy.float32)
         data.vertices.foreach_get("co", self.positions)
         self.positions = self.positions.reshape(-1, 3)
-        self.normals = None
+        self.smooth = numpy.zeros(count, bool)
         if shading_normals:
-            data.calc_normals_split()
+            data.loop_triangles.foreach_get("use_smooth", self.smooth)
+            # Normals at corners count for flat faces, too.
+            if getattr(data, "use_auto_smooth", False) or getattr(data, "normals_domain", "FACE") == "CORNER":
+                self.smooth[:] = True
+        if self.smooth.any():
+            if hasattr(data, "calc_normals_split"):  # before Blender 4.1
+                data.calc_normals_split()
             self.normals = numpy.empty(9 * count, numpy.float32)
             data.loop_triangles.foreach_get("split_normals", self.normals)
             self.normals = self.normals.reshape(-1, 3)
 
-    def of(self, chosen, look, writer):
+    def forget(self):
+        """Only where triangles are is kept."""
+        self.data = self.loops = self.smooth = self.normals = None
+
+    def of(self, chosen, look, writer, smooth):
         """Attributes and indices of some triangles (a mask), as numbers of accessors."""
         corners = numpy.repeat(chosen, 3)
         columns = [self.positions[self.vertices[corners]]]
         names = [("POSITION", "VEC3")]
-        if self.normals is not None:
+        if smooth:
             columns.append(self.normals[corners])
             names.append(("NORMAL", "VEC3"))
         if look.image is not None:
@@ -229,6 +279,9 @@ class Corners:
         if layer is not None:
             layer.data.foreach_get("uv", places)
         places = places.reshape(-1, 2)
+        if look.placing is not None:
+            rows = numpy.array(look.placing)
+            places = (places @ rows[:, :2].T + rows[:, 2]).astype(numpy.float32)
         places[:, 1] = 1 - places[:, 1]
         return places
 

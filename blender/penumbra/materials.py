@@ -4,6 +4,10 @@ Knows nodes by their names and values alone, not bpy.
 """
 
 from dataclasses import dataclass, field
+from math import cos, sin
+
+from . import graph
+from .graph import At, Unknown, find_socket
 
 
 @dataclass
@@ -14,10 +18,16 @@ class Look:
     alpha: float = 1.0
     image: object = None        # multiplies the colour
     image_alpha: bool = False   # and its alpha the alpha
+    pixels: object = None       # linear, in place of the image's own: what nodes make of it
     uv_map: str = ""            # by which the image lies on it; "": the active one
-    nearest: bool = False
+    placing: tuple = None       # of it: two rows of three numbers; None: as it is
+    interpolation: str = "Linear"
     wrap: str = "REPEAT"        # or EXTEND
     attribute: str = None       # a colour attribute that multiplies the colour; "": the active one
+
+    @property
+    def nearest(self):
+        return self.interpolation == "Closest"
 
 
 @dataclass
@@ -26,31 +36,29 @@ class _Shader:
     diffuse: tuple = (0.0, 0.0, 0.0)
     emission: tuple = (0.0, 0.0, 0.0)
     through: float = 0.0
-    pictured: list = field(default_factory=list)  # colour inputs behind `diffuse`
-    cut: object = None          # an image node whose alpha lets the rest through
+    pictured: list = field(default_factory=list)  # Values behind `diffuse`, which has their factors
+    cut: object = None          # an image (graph.ImageUse) whose alpha lets the rest through
 
 
 _GLOSSY = {"BSDF_GLOSSY", "BSDF_ANISOTROPIC", "BSDF_TOON", "BSDF_VELVET", "BSDF_SHEEN", "SUBSURFACE_SCATTERING",
-           "BSDF_HAIR", "BSDF_HAIR_PRINCIPLED", "EEVEE_SPECULAR"}
+           "BSDF_HAIR", "BSDF_HAIR_PRINCIPLED", "BSDF_METALLIC", "EEVEE_SPECULAR"}
 _CLEAR = {"BSDF_GLASS", "BSDF_REFRACTION", "BSDF_TRANSLUCENT"}
+_GREY = (0.8, 0.8, 0.8)  # in place of a colour that is not known, where that is left out
 
 
-def _times(a, b):
-    return tuple(x * y for x, y in zip(a, b))
-
-
-def _mixed(a, b, share):
-    return tuple(x + (y - x) * share for x, y in zip(a, b))
-
-
-def _source(socket):
-    """The node and socket that feed a socket, through reroutes; None where nothing does."""
-    while socket.is_linked:
-        link = socket.links[0]
-        if link.from_node.type != "REROUTE":
-            return link
-        socket = link.from_node.inputs[0]
-    return None
+def may_shine(material):
+    """Has the material a node that sends light? Asked before a render, for names of passes."""
+    if not material.use_nodes or material.node_tree is None:
+        return False
+    for node in material.node_tree.nodes:
+        if node.type == "EMISSION":
+            return True
+        if node.type == "BSDF_PRINCIPLED":
+            color, strength = find_socket(node.inputs, "Emission Color", "Emission"), find_socket(node.inputs, "Emission Strength")
+            if color is not None and (color.is_linked or max(color.default_value[:3]) > 0) and \
+                    (strength is None or strength.is_linked or strength.default_value > 0):
+                return True
+    return False
 
 
 class Reader:
@@ -65,101 +73,142 @@ class Reader:
         if not material.use_nodes or material.node_tree is None:
             return Look(color=tuple(material.diffuse_color[:3]))
         output = material.node_tree.get_output_node("CYCLES")
-        surface = _source(output.inputs["Surface"]) if output else None
         if output and output.inputs["Volume"].is_linked:
             self.losses.refuse("has a volume, which is not rendered", self.name)
         if output and output.inputs["Displacement"].is_linked:
             self.losses.mention("is not displaced by its material", self.name)
-        shader = self._shader(surface.from_node) if surface else _Shader()
-        return self._look_of(shader)
+        return self._look_of(self._input(At(output.inputs["Surface"])) if output else _Shader())
 
     def _look_of(self, shader):
         solid = 1 - shader.through
         look = Look(alpha=min(max(solid, 0.0), 1.0), radiance=shader.emission)
         if solid > 0:
-            look.color = tuple(min(x / solid, 1.0) for x in shader.diffuse)
+            look.color = tuple(x / solid for x in shader.diffuse)
             look.radiance = tuple(x / solid for x in shader.emission)
-        for link in shader.pictured:
-            self._picture(link, look)
+        for value in shader.pictured:
+            self._picture(value, look)
         if shader.cut is not None:
-            if look.image is not None and look.image != shader.cut.image:
-                self.losses.refuse("takes its colour and its alpha from different images", self.name)
-            elif look.image is None:  # glTF multiplies the colour by the image, too
-                self.losses.mention("is shown in its image's colour: its alpha alone was wanted", self.name)
-            self._use_image(shader.cut, look)
-            look.image_alpha = True
+            self._cut(shader.cut, look)
         return look
 
-    def _use_image(self, node, look):
-        look.image = node.image
-        look.nearest = node.interpolation == "Closest"
-        look.wrap = "EXTEND" if node.extension == "EXTEND" else "REPEAT"
-        if node.extension == "CLIP" or node.projection != "FLAT":
-            self.losses.refuse("has an image that neither repeats nor extends, or is not laid flat", self.name)
-        place = _source(node.inputs["Vector"])
-        if place is None:
+    def _picture(self, value, look):
+        """What a colour has beside its factor."""
+        if value.attribute is not None:
+            if look.attribute not in (None, value.attribute):
+                self.losses.refuse("mixes several colour attributes", self.name)
+            look.attribute = value.attribute
+        if value.image is None:
             return
-        if place.from_node.type == "UVMAP":
-            look.uv_map = place.from_node.uv_map
-        elif not (place.from_node.type == "TEX_COORD" and place.from_socket.name == "UV"):
-            self.losses.refuse("has an image that lies on it by other nodes than UV maps", self.name)
+        if look.image is not None and not (look.image is value.image.node.image and look.pixels is value.pixels):
+            self.losses.refuse("mixes surfaces of several images", self.name)
+            return
+        self._use_image(value.image, look)
+        look.pixels = value.pixels
 
-    def _picture(self, link, look):
-        node = link.from_node
-        if node.type == "TEX_IMAGE" and node.image is not None and look.image in (None, node.image):
-            self._use_image(node, look)
-        elif node.type in ("VERTEX_COLOR", "ATTRIBUTE") and look.attribute is None:
-            look.attribute = node.layer_name if node.type == "VERTEX_COLOR" else node.attribute_name
-        else:
-            self.losses.mention(f"is not coloured by its node '{node.name}'", self.name)
+    def _cut(self, use, look):
+        if look.image is not None and look.image != use.node.image:
+            self.losses.refuse("takes its colour and its alpha from different images", self.name)
+        elif look.pixels is not None:
+            self.losses.refuse("has an image whose alpha cuts holes and whose colours nodes change", self.name)
+        elif look.image is None:  # glTF multiplies the colour by the image, too
+            self.losses.mention("is shown in its image's colour: its alpha alone was wanted", self.name)
+        self._use_image(use, look)
+        look.image_alpha, look.pixels = True, None
 
-    def _color(self, socket, pictured):
-        """A colour input: its factor; what feeds it is added to `pictured`."""
-        link = _source(socket)
-        if link is None:
-            return tuple(socket.default_value[:3])
-        node = link.from_node
-        if node.type == "RGB":
-            return tuple(node.outputs[0].default_value[:3])
-        if node.type == "MIX_RGB" and node.blend_type == "MULTIPLY" and not node.inputs[0].is_linked and \
-                node.inputs[0].default_value == 1:
-            return _times(self._color(node.inputs[1], pictured), self._color(node.inputs[2], pictured))
-        pictured.append(link)
-        return (1.0, 1.0, 1.0)
+    def _use_image(self, use, look):
+        node = use.node
+        look.image, look.interpolation = node.image, node.interpolation
+        look.wrap = "EXTEND" if node.extension == "EXTEND" else "REPEAT"
+        if node.extension not in ("EXTEND", "REPEAT") or node.projection != "FLAT":
+            self.losses.refuse("has an image that neither repeats nor extends, or is not laid flat", self.name)
+        if _is_moved(getattr(node, "texture_mapping", None)):
+            self.losses.refuse("has an image that is placed by its node's own texture mapping", self.name)
+        try:
+            self._place(At(find_socket(node.inputs, "Vector"), use.groups), look)
+        except Unknown as error:
+            self.losses.refuse(f"has an image that is placed by {error}", self.name)
 
-    def _plain(self, socket, what):
-        """A number or colour that must not be fed by nodes."""
-        link = _source(socket)
-        if link is not None:
-            if link.from_node.type in ("RGB", "VALUE"):
-                return link.from_node.outputs[0].default_value
-            self.losses.refuse(f"has {what} made by nodes, which are not evaluated", self.name)
-        return socket.default_value
+    def _place(self, at, look):
+        source = at.source()
+        if source is None:
+            return
+        node, output, groups = source
+        if node.type == "UVMAP":
+            look.uv_map = node.uv_map
+        elif node.type == "MAPPING":
+            look.placing = _placing(node, groups)
+            self._place(At(find_socket(node.inputs, "Vector"), groups), look)
+        elif not (node.type == "TEX_COORD" and output.name == "UV"):
+            raise Unknown(f"the node '{node.name}' and not by UV maps")
+
+    def _color(self, at, pictured):
+        """A colour input: its factor; what else it has is added to `pictured`."""
+        try:
+            value = graph.evaluate(at)
+        except Unknown as error:
+            self.losses.refuse(f"has a colour made by {error}, which is not evaluated (left out, it is grey)", self.name)
+            return _GREY
+        except OSError as error:
+            self.losses.refuse(f"has an image that cannot be read ({error})", self.name)
+            return _GREY
+        if not value.is_constant:
+            pictured.append(value)
+        if min(value.factor) < 0:
+            self.losses.refuse("has a colour below 0", self.name)
+        return tuple(max(float(x), 0.0) for x in value.factor)
+
+    def _plain(self, at, what):
+        """A colour, or a number three times, that must be the same everywhere."""
+        try:
+            return graph.constant(at)
+        except Unknown as error:
+            self.losses.refuse(f"has {what} made by {error}, which is not evaluated", self.name)
+            value = at.socket.default_value
+            return tuple(value[:3]) if hasattr(value, "__len__") else (value,) * 3
+
+    def _number(self, at, what):
+        red, green, blue = self._plain(at, what)
+        return red if red == green == blue else 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
     def _emission(self, color, strength):
-        color = tuple(self._plain(color, "a light")[:3])
-        return tuple(x * self._plain(strength, "a light") for x in color)
+        strength = self._number(strength, "a light")
+        return tuple(x * strength for x in self._plain(color, "a light")) if strength else (0.0, 0.0, 0.0)
 
-    def _shader(self, node):
+    def _input(self, at):
+        """The shader that feeds a socket."""
+        try:
+            source = at.source()
+        except Unknown as error:
+            self.losses.refuse(f"has {error}, which is not known", self.name)
+            return _Shader()
+        return self._shader(source[0], source[2]) if source else _Shader()
+
+    def _shader(self, node, groups):
+        def at(*names):
+            return At(find_socket(node.inputs, *names), groups)
         if node.type == "BSDF_PRINCIPLED":
-            return self._principled(node)
+            return self._principled(node, at)
         if node.type == "BSDF_DIFFUSE":
             shader = _Shader()
-            shader.diffuse = self._color(node.inputs["Color"], shader.pictured)
-            if node.inputs["Roughness"].default_value > 0:
+            shader.diffuse = self._color(at("Color"), shader.pictured)
+            roughness = find_socket(node.inputs, "Roughness")
+            if roughness.is_linked or roughness.default_value > 0:
                 self.losses.mention("is a Lambert surface, however rough", self.name)
             return shader
         if node.type == "EMISSION":
-            return _Shader(emission=self._emission(node.inputs["Color"], node.inputs["Strength"]))
+            return _Shader(emission=self._emission(at("Color"), at("Strength")))
         if node.type == "BSDF_TRANSPARENT":
-            color = self._plain(node.inputs["Color"], "a transparency")
-            if max(color[:3]) - min(color[:3]) > 1e-6:
+            color = self._plain(at("Color"), "a transparency")
+            if max(color) - min(color) > 1e-6:
                 self.losses.refuse("colours the light that it lets through", self.name)
             return _Shader(through=color[1])
         if node.type == "ADD_SHADER":
-            return self._sum([self._input(socket) for socket in node.inputs], [1.0, 1.0], None)
+            return self._sum([self._input(At(socket, groups)) for socket in node.inputs], [1.0, 1.0], None)
         if node.type == "MIX_SHADER":
-            return self._mix(node)
+            return self._mix(node, groups)
+        if node.type == "HOLDOUT":
+            self.losses.refuse("is a holdout", self.name)
+            return _Shader()
         if node.type in _CLEAR:
             self.losses.refuse("lets light through by refraction or translucency", self.name)
         elif node.type in _GLOSSY:
@@ -167,16 +216,17 @@ class Reader:
         else:
             self.losses.refuse(f"has a node '{node.name}' that is not known", self.name)
         shader = _Shader()
-        if "Color" in node.inputs:
-            shader.diffuse = self._color(node.inputs["Color"], shader.pictured)
+        color = find_socket(node.inputs, "Color", "Base Color")
+        if color is not None:
+            shader.diffuse = self._color(At(color, groups), shader.pictured)
         return shader
-
-    def _input(self, socket):
-        link = _source(socket)
-        return self._shader(link.from_node) if link else _Shader()
 
     def _sum(self, shaders, shares, cut):
         total = _Shader(cut=cut)
+        pictured = [shader for shader, share in zip(shaders, shares) if share and shader.pictured]
+        plain = [shader for shader, share in zip(shaders, shares) if share and not shader.pictured and max(shader.diffuse) > 0]
+        if pictured and (plain or len(pictured) > 1):
+            self.losses.refuse("mixes a surface of an image or a colour attribute with another", self.name)
         for shader, share in zip(shaders, shares):
             total.diffuse = tuple(x + share * y for x, y in zip(total.diffuse, shader.diffuse))
             total.emission = tuple(x + share * y for x, y in zip(total.emission, shader.emission))
@@ -185,38 +235,64 @@ class Reader:
             total.cut = total.cut or shader.cut
         return total
 
-    def _mix(self, node):
-        first, second = (self._input(socket) for socket in list(node.inputs)[1:3])
-        link = _source(node.inputs[0])
-        if link is None:
-            share = min(max(node.inputs[0].default_value, 0.0), 1.0)
-            return self._sum([first, second], [1 - share, share], None)
-        # The one graph that cuts holes: an image's alpha between nothing and a surface.
-        if link.from_node.type == "TEX_IMAGE" and link.from_socket.name == "Alpha" and first.through == 1:
-            return self._sum([second], [1.0], link.from_node)
-        self.losses.refuse("mixes shaders by nodes, which are not evaluated", self.name)
-        return self._sum([first, second], [0.5, 0.5], None)
+    def _mix(self, node, groups):
+        first, second = (self._input(At(socket, groups)) for socket in list(node.inputs)[1:3])
+        share = At(node.inputs[0], groups)
+        try:
+            source = share.source()
+            # The one graph that cuts holes: an image's alpha between nothing and a surface.
+            if source and source[0].type == "TEX_IMAGE" and source[1].name == "Alpha" and first.through == 1:
+                return self._sum([second], [1.0], graph.ImageUse(source[0], source[2]))
+            share = min(max(graph.constant(share)[0], 0.0), 1.0)
+        except Unknown as error:
+            self.losses.refuse(f"mixes shaders by {error}, which is not evaluated", self.name)
+            share = 0.5
+        return self._sum([first, second], [1 - share, share], None)
 
-    def _principled(self, node):
-        inputs, shader = node.inputs, _Shader()
-        color = self._color(inputs["Base Color"], shader.pictured)
-        shader.emission = self._emission(inputs["Emission"], inputs["Emission Strength"])
-        alpha, link = 1.0, _source(inputs["Alpha"])
-        if link is None:
-            alpha = min(max(inputs["Alpha"].default_value, 0.0), 1.0)
-        elif link.from_node.type == "TEX_IMAGE" and link.from_socket.name == "Alpha":
-            shader.cut = link.from_node
+    def _principled(self, node, at):
+        shader = _Shader()
+        color = self._color(at("Base Color"), shader.pictured)
+        shader.emission = self._emission(at("Emission Color", "Emission"), at("Emission Strength"))
+        alpha, source = 1.0, at("Alpha").source()
+        if source and source[0].type == "TEX_IMAGE" and source[1].name == "Alpha":
+            shader.cut = graph.ImageUse(source[0], source[2])
         else:
-            alpha = min(max(self._plain(inputs["Alpha"], "an alpha"), 0.0), 1.0)
-        if inputs["Transmission"].is_linked or inputs["Transmission"].default_value > 0:
+            alpha = min(max(self._number(at("Alpha"), "an alpha"), 0.0), 1.0)
+
+        def used(*names):
+            socket = find_socket(node.inputs, *names)
+            return socket is not None and (socket.is_linked or socket.default_value > 0)
+        if used("Transmission Weight", "Transmission"):
             self.losses.refuse("lets light through (transmission)", self.name)
-        if inputs["Metallic"].is_linked or inputs["Metallic"].default_value > 0:
+        if used("Metallic"):
             self.losses.mention("is metallic; every surface is diffuse here", self.name)
-        if inputs["Subsurface"].is_linked or inputs["Subsurface"].default_value > 0:
+        if used("Subsurface Weight", "Subsurface"):
             self.losses.mention("is diffuse: gloss and what is below a surface are not rendered", self.name)
-        if inputs["Normal"].is_linked:
+        if find_socket(node.inputs, "Normal").is_linked:
             self.losses.mention("has a normal or bump map, which is left out", self.name)
         shader.diffuse = tuple(alpha * x for x in color)
         shader.emission = tuple(alpha * x for x in shader.emission)
         shader.through = 1 - alpha
         return shader
+
+
+def _is_moved(mapping):
+    return mapping is not None and (any(mapping.translation) or any(mapping.rotation) or any(x != 1 for x in mapping.scale))
+
+
+def _placing(node, groups):
+    """What a mapping node makes of (u, v), as two rows of three numbers."""
+    def numbers(name):
+        socket = find_socket(node.inputs, name)
+        return graph.constant(At(socket, groups)) if socket is not None else (0.0, 0.0, 0.0)
+    place, turn, scale = numbers("Location"), numbers("Rotation"), numbers("Scale")
+    if turn[0] or turn[1] or node.vector_type not in ("POINT", "TEXTURE", "VECTOR"):
+        raise Unknown(f"the node '{node.name}', which turns it out of its plane")
+    c, s = cos(turn[2]), sin(turn[2])
+    if node.vector_type == "TEXTURE":  # moved back, turned back, scaled back
+        x, y = (1 / one if one else 0.0 for one in scale[:2])
+        rows = ((x * c, x * s), (-y * s, y * c))
+        return tuple((a, b, -(a * place[0] + b * place[1])) for a, b in rows)
+    if node.vector_type == "VECTOR":
+        place = (0.0, 0.0, 0.0)
+    return ((c * scale[0], -s * scale[1], place[0]), (s * scale[0], c * scale[1], place[1]))

@@ -1,6 +1,9 @@
 """What of a picture goes into which of Blender's passes. Knows nothing of Blender, where Z is up."""
 
+import hashlib
 import json
+
+import numpy
 
 _CHANNELS = {  # of passes that Blender knows: the pictures' own, and what turns them round
     "Combined.R": "R", "Combined.G": "G", "Combined.B": "B", "Combined.A": "A", "Depth.Z": "Z",
@@ -19,37 +22,60 @@ def layer_of(name):
     return name.replace(".", "_").replace("/", "_")
 
 
-def own_passes(lights):
-    """Passes that Blender has no name for: name, letters of the channels, kind. `lights`: their layers."""
-    passes = [("V", "X", "VALUE")]
-    for light in lights:
-        passes += [(_short(f"V {light}"), "X", "VALUE"), (_short(f"Light {light}"), "RGB", "COLOR")]
-    return passes
-
-
 def matte_groups(name, pixel_samples):
     """A matte's passes: of one view sample a pixel there is one that covers it, of more there may be six."""
     return [f"{name}{group:02}" for group in range(1 if int(pixel_samples) == 1 else 3)]
 
 
-def _short(name):
-    """Blender cuts longer ones."""
-    return name.encode()[:63].decode("utf-8", "ignore")
+# Of a whole name, layer and channel included ("ViewLayer.Light Key.R"), Blender keeps so many bytes.
+_LONGEST = 63
 
 
-def channels(picture):
-    """All that the picture has, by pass and channel."""
-    names = dict(_CHANNELS)
-    names["V.X"] = "V"
-    for layer in layers(picture):
-        names[_short(f"V {layer}") + ".X"] = f"{layer}.V"
-        for letter in "RGB":
-            names[f"{_short(f'Light {layer}')}.{letter}"] = f"{layer}.{letter}"
-    for name in picture.channels:
-        if name.startswith("Crypto"):
-            names[name] = name
-    found = {}
-    for name, own in names.items():
-        values = picture.channels[own.lstrip("-")]
-        found[name] = -values if own.startswith("-") else values
-    return found
+def put_before(picture, world):
+    """A colour behind all that is there: what a film that is not transparent shows."""
+    missing = 1 - picture.channels["A"]
+    for letter, value in zip("RGB", world):
+        picture.channels[letter] = picture.channels[letter] + missing * numpy.float32(value)
+    picture.channels["A"] = numpy.ones_like(missing)
+
+
+class Names:
+    """Names of passes within one view layer; `shortened`: those that Blender would have cut, as (full, short)."""
+
+    def __init__(self, layer):
+        self._room = max(_LONGEST - len(layer.encode()) - len("..X"), 16)
+        self.shortened = []
+
+    def _short(self, name):
+        """Unlike that of any other name: the end is a number made of the whole."""
+        if len(name.encode()) <= self._room:
+            return name
+        tail = "~" + hashlib.sha256(name.encode()).hexdigest()[:6]
+        short = name.encode()[:self._room - len(tail)].decode("utf-8", "ignore") + tail
+        if (name, short) not in self.shortened:
+            self.shortened.append((name, short))
+        return short
+
+    def own_passes(self, lights):
+        """Passes that Blender has no name for: name, letters of the channels, kind. `lights`: their layers."""
+        found = [("V", "X", "VALUE")]
+        for light in lights:
+            found += [(self._short(f"V {light}"), "X", "VALUE"), (self._short(f"Light {light}"), "RGB", "COLOR")]
+        return found
+
+    def channels(self, picture):
+        """All that the picture has, by pass and channel."""
+        names = dict(_CHANNELS)
+        names["V.X"] = "V"
+        for layer in layers(picture):
+            names[self._short(f"V {layer}") + ".X"] = f"{layer}.V"
+            for letter in "RGB":
+                names[f"{self._short(f'Light {layer}')}.{letter}"] = f"{layer}.{letter}"
+        for name in picture.channels:
+            if name.startswith("Crypto"):
+                names[name] = name
+        found = {}
+        for name, own in names.items():
+            values = picture.channels[own.lstrip("-")]
+            found[name] = -values if own.startswith("-") else values
+        return found

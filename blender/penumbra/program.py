@@ -1,8 +1,12 @@
 """Runs the command-line program. Knows nothing of Blender."""
 
 import os
+import queue
+import re
 import shutil
 import subprocess
+import tempfile
+import threading
 
 EXACT, SAMPLES = "EXACT", "SAMPLES"
 BOX, BLACKMAN_HARRIS = "BOX", "BLACKMAN_HARRIS"
@@ -31,8 +35,7 @@ def arguments(program, scene, picture, size, settings):
         command += ["--pixel-samples", str(settings.pixel_samples)]
         if settings.pixel_filter == BLACKMAN_HARRIS:
             command += ["--pixel-filter", "blackman-harris", "--filter-width", f"{settings.filter_width:.6g}"]
-    if settings.shading_normals:
-        command += ["--normals", "shading"]
+    command += ["--normals", "shading" if settings.shading_normals else "geometric"]
     if settings.lenient:
         command += ["--lenient"]
     if settings.device:
@@ -40,11 +43,28 @@ def arguments(program, scene, picture, size, settings):
     return command
 
 
-def messages(text):
-    """Warnings, and the error (or None), of what the program printed."""
+# What the program says of command lines and files, in the words of who sits before Blender.
+_IN_BLENDER = (
+    (re.compile(r"there is no light in the scene\..*"),
+     "there is no light in the scene: no lamp and no emissive material that is shown in renders"),
+    (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
+    (re.compile(r"--lenient"), "'Lenient'"),
+    (re.compile(r"--light-samples( N)?"), "'Light samples'"),
+    (re.compile(r"--pixel-samples( N)?"), "'Pixel samples'"),
+    (re.compile(r"--method( NAME)?"), "'Method'"),
+    (re.compile(r"--device( NAME)?"), "'Device'"),
+)
+
+
+def messages(text, scene=""):
+    """Warnings, and the error (or None), of what the program printed. `scene`: the exchange file, which they do not name."""
     warnings, errors = [], []
     for line in text.splitlines():
         kind, _, what = line.removeprefix("penumbra: ").partition(": ")
+        for name in (scene, os.path.basename(scene)) if scene else ():
+            what = what.replace(f"{name}: ", "").replace(name, "the scene")
+        for pattern, words in _IN_BLENDER:
+            what = pattern.sub(words, what)
         if kind == "warning":
             warnings.append(what)
         elif kind == "error":
@@ -52,16 +72,72 @@ def messages(text):
     return warnings, "; ".join(errors) or None
 
 
-def run(command, cancelled):
-    """Returns (exit code, what it printed); the code is None if `cancelled()` came true meanwhile, which ends it."""
+# Ends with whoever holds its input open, however that one ends; then the program that still works for it ends, too, and
+# the folder is removed. Lines are the program's number, or nothing where there is none.
+_KEEPER = """while read -r line; do program=$line; done
+[ -n "$program" ] && kill "$program" && sleep 1
+rm -rf -- "$1"
+"""
+
+
+class Workspace:
+    """A folder for one frame's files, which goes even if this process is killed."""
+
+    def __init__(self):
+        self.folder = tempfile.mkdtemp(prefix="penumbra-")
+        self._keeper = None
+        if os.name == "posix":
+            self._keeper = subprocess.Popen(["/bin/sh", "-c", _KEEPER, "sh", self.folder], stdin=subprocess.PIPE,
+                                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+
+    def note_program(self, number):
+        """`number`: of the process that works for this one; "" where it has ended."""
+        if self._keeper is not None:
+            self._keeper.stdin.write(f"{number}\n".encode())
+            self._keeper.stdin.flush()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self._keeper is not None:
+            self._keeper.stdin.close()
+            self._keeper.wait()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def run(command, cancelled, workspace=None, hears=lambda line: None):
+    """Returns (exit code, what it printed); the code is None if `cancelled()` came true meanwhile, which ends it, as does an
+    exception of `hears`, which gets each line as soon as it is printed."""
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                           text=True, errors="replace") as process:
-        while True:
-            try:
-                _, printed = process.communicate(timeout=0.1)
-                return process.returncode, printed
-            except subprocess.TimeoutExpired:
-                if cancelled():
-                    process.terminate()
-                    process.communicate()
-                    return None, ""
+        note = workspace.note_program if workspace is not None else lambda number: None
+        note(process.pid)
+        lines = queue.SimpleQueue()
+        reader = threading.Thread(target=_read, args=(process.stderr, lines))
+        reader.start()
+        printed = []
+        try:
+            while True:
+                try:
+                    line = lines.get(timeout=0.1)
+                except queue.Empty:
+                    if cancelled():
+                        return None, ""
+                    continue
+                if line is None:
+                    return process.wait(), "".join(printed)
+                printed.append(line)
+                hears(line)
+        finally:
+            if process.poll() is None:
+                process.terminate()
+            process.wait()
+            reader.join()
+            note("")
+
+
+def _read(stream, lines):
+    for line in stream:
+        lines.put(line)
+    lines.put(None)

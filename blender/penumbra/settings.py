@@ -1,4 +1,4 @@
-"""Settings of a scene, and where they are shown."""
+"""Settings of a scene and of the add-on. panels.py shows them."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
@@ -30,8 +30,8 @@ class PenumbraSettings(bpy.types.PropertyGroup):
         (program.BOX, "Box", "The mean of a pixel's own view samples"),
         (program.BLACKMAN_HARRIS, "Blackman-Harris", "As Cycles has it, neighbours' view samples included")])
     filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Of the filter, in pixels")
-    shading_normals: BoolProperty(name="Smooth normals", description="Cosines of smooth shading; shadows are always those "
-                                  "of the triangles")
+    shading_normals: BoolProperty(name="Smooth shading", default=True, description="Cosines of smooth faces are those of "
+                                  "their normals, as in Cycles; shadows are always those of the triangles")
     lenient: BoolProperty(name="Lenient", description="Leave out what would change shadows and cannot be done, with a "
                           "warning, instead of refusing")
     light_passes: BoolProperty(name="Passes of each light", default=True,
@@ -39,59 +39,22 @@ class PenumbraSettings(bpy.types.PropertyGroup):
     device: StringProperty(name="Device", description="Part of a Vulkan device's name, its number, or cpu; empty: the best")
 
 
-class Panel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "render"
-    COMPAT_ENGINES = {"PENUMBRA"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
+CLASSES = (PenumbraPreferences, PenumbraSettings)
 
 
-class PENUMBRA_PT_shadows(Panel, bpy.types.Panel):
-    bl_label = "Shadows"
-
-    def draw(self, context):
-        settings, layout = context.scene.penumbra, self.layout
-        layout.use_property_split = True
-        layout.prop(settings, "exactness")
-        if settings.exactness == program.SAMPLES:
-            layout.prop(settings, "light_samples")
-        for name in ("method", "pixel_samples"):
-            layout.prop(settings, name)
-        if settings.pixel_samples != "1":
-            layout.prop(settings, "pixel_filter")
-            if settings.pixel_filter == program.BLACKMAN_HARRIS:
-                layout.prop(settings, "filter_width")
-        for name in ("shading_normals", "lenient", "light_passes", "device"):
-            layout.prop(settings, name)
-
-
-def _panels_of_others():
-    """Panels that say nothing of how a renderer works: of lamps, cameras, materials, output, layers."""
-    excluded = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_eevee_motion_blur"}
-    for panel in bpy.types.Panel.__subclasses__():
-        engines = getattr(panel, "COMPAT_ENGINES", None)
-        if engines is not None and "BLENDER_RENDER" in engines and panel.__name__ not in excluded:
-            yield panel
-
-
-CLASSES = (PenumbraPreferences, PenumbraSettings, PENUMBRA_PT_shadows)
+def program_path():
+    """What the preferences say; "" where the add-on is enabled for one start alone (`blender --addons penumbra`)."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    return addon.preferences.program if addon is not None and addon.preferences is not None else ""
 
 
 def register():
     for one in CLASSES:
         bpy.utils.register_class(one)
     bpy.types.Scene.penumbra = PointerProperty(type=PenumbraSettings)
-    for panel in _panels_of_others():
-        panel.COMPAT_ENGINES.add("PENUMBRA")
 
 
 def unregister():
-    for panel in _panels_of_others():
-        panel.COMPAT_ENGINES.discard("PENUMBRA")
     del bpy.types.Scene.penumbra
     for one in reversed(CLASSES):
         bpy.utils.unregister_class(one)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The Blender add-on without Blender: what is in the zip, that all of it compiles, and its parts that know nothing of
-Blender: nodes to surfaces, lamps and lenses, the exchange file, and the pictures that come back.
+Blender: lamps and lenses, the exchange file, and the pictures that come back. Nodes: addon_nodes.py.
 
     addon.py SOURCE ADDON.zip PENUMBRA
 """
@@ -10,16 +10,17 @@ import os
 import subprocess
 import sys
 import tempfile
-import types
 import unittest
 import zipfile
 
 SOURCE, ZIP, PENUMBRA = sys.argv[1:4]
 sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
 
-from penumbra import exr, glb, lamps, losses, materials, passes, program  # noqa: E402
+from penumbra import exr, frames, glb, lamps, losses, passes, program, space  # noqa: E402
+from stubs import box  # noqa: E402
 
 IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 
@@ -27,57 +28,6 @@ IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 def at(x, y, z, scale=(1, 1, 1)):
     return [[scale[0], 0, 0, x], [0, scale[1], 0, y], [0, 0, scale[2], z], [0, 0, 0, 1]]
 
-
-def box(**values):
-    return types.SimpleNamespace(**values)
-
-
-class Socket:
-    def __init__(self, value=None):
-        self.default_value, self.links = value, []
-
-    @property
-    def is_linked(self):
-        return bool(self.links)
-
-    def link(self, node, name="Color"):
-        self.links = [box(from_node=node, from_socket=box(name=name))]
-
-
-class Inputs(dict):
-    """By name and by number, as Blender's."""
-
-    def __getitem__(self, key):
-        return list(self.values())[key] if isinstance(key, int) else super().__getitem__(key)
-
-    def __iter__(self):
-        return iter(self.values())
-
-    def __contains__(self, key):
-        return key in self.keys()
-
-
-def node(kind, **inputs):
-    sockets = Inputs({key.replace("_", " "): Socket(value) for key, value in inputs.items()})
-    return box(type=kind, name=kind, inputs=sockets, outputs=[])
-
-
-def principled(**values):
-    defaults = dict(Base_Color=(0.8, 0.8, 0.8, 1), Emission=(0, 0, 0, 1), Emission_Strength=1.0, Alpha=1.0,
-                    Transmission=0.0, Metallic=0.0, Subsurface=0.0, Normal=None)
-    return node("BSDF_PRINCIPLED", **{**defaults, **values})
-
-
-def surface_of(shader):
-    output = node("OUTPUT_MATERIAL", Surface=None, Volume=None, Displacement=None)
-    if shader is not None:
-        output.inputs["Surface"].link(shader)
-    return box(use_nodes=True, node_tree=box(get_output_node=lambda _: output))
-
-
-def look(shader):
-    lost = losses.Losses()
-    return materials.Reader(lost, "M").look(surface_of(shader)), lost
 
 
 class Package(unittest.TestCase):
@@ -93,55 +43,11 @@ class Package(unittest.TestCase):
                 compile(text, name, "exec")
 
 
-class Materials(unittest.TestCase):
-    def test_surfaces(self):
-        found, lost = look(principled(Base_Color=(0.5, 0.25, 1, 1), Emission=(1, 0.5, 0, 1), Emission_Strength=6.0, Alpha=0.5))
-        self.assertEqual((found.color, found.radiance, found.alpha), ((0.5, 0.25, 1), (6, 3, 0), 0.5))
-        self.assertFalse(lost.refused or lost.mentioned)
-        self.assertEqual(look(node("EMISSION", Color=(1, 0.5, 0, 1), Strength=4.0))[0].radiance, (4, 2, 0))
-        self.assertEqual(look(None)[0].color, (0, 0, 0))
-        plain = materials.Reader(lost, "M").look(box(use_nodes=False, node_tree=None, diffuse_color=(0.1, 0.2, 0.3, 1)))
-        self.assertEqual(plain.color, (0.1, 0.2, 0.3))
-
-    def test_mixed_with_nothing(self):
-        mix = node("MIX_SHADER", Fac=0.25, First=None, Second=None)
-        mix.inputs["First"].link(node("BSDF_TRANSPARENT", Color=(1, 1, 1, 1)))
-        mix.inputs["Second"].link(node("BSDF_DIFFUSE", Color=(0.4, 0.8, 0.2, 1), Roughness=0.0))
-        found, _ = look(mix)
-        self.assertAlmostEqual(found.alpha, 0.25)
-        for value, wanted in zip(found.color, (0.4, 0.8, 0.2)):
-            self.assertAlmostEqual(value, wanted)
-
-    def test_an_image_that_cuts(self):
-        picture = node("TEX_IMAGE", Vector=None)
-        picture.image, picture.interpolation, picture.extension, picture.projection = "image", "Closest", "EXTEND", "FLAT"
-        shader = principled()
-        shader.inputs["Base Color"].link(picture)
-        shader.inputs["Alpha"].link(picture, "Alpha")
-        found, lost = look(shader)
-        self.assertEqual((found.image, found.image_alpha, found.nearest, found.wrap), ("image", True, True, "EXTEND"))
-        self.assertFalse(lost.refused)
-
-    def test_what_changes_shadows_is_refused(self):
-        self.assertIn("'M' lets light through (transmission)", losses.sentences(look(principled(Transmission=0.5))[1].refused))
-        for kind in ("BSDF_GLASS", "BSDF_TRANSLUCENT", "SOMETHING"):
-            self.assertTrue(look(node(kind, Color=(1, 1, 1, 1)))[1].refused, kind)
-        dim = node("BSDF_TRANSPARENT", Color=(1, 0.5, 0.5, 1))
-        self.assertTrue(look(dim)[1].refused)
-        shader = principled()
-        shader.inputs["Alpha"].link(node("NOISE"), "Fac")
-        self.assertTrue(look(shader)[1].refused)
-        shader = principled()
-        shader.inputs["Emission"].link(node("NOISE"))
-        self.assertTrue(look(shader)[1].refused)
-        self.assertTrue(look(principled(Metallic=1.0))[1].mentioned)
-
-
 class Lenses(unittest.TestCase):
     def lens(self, width, height, **values):
         defaults = dict(type="PERSP", sensor_fit="AUTO", sensor_width=36, sensor_height=24, lens=18, shift_x=0, shift_y=0,
                         ortho_scale=6)
-        return lamps.lens_of(box(**{**defaults, **values}), width, height)
+        return lamps.lens_of(box(**{**defaults, **values}), frames.Region((width, height), (width, height)))
 
     def test_angles_are_of_the_side_that_fits(self):
         self.assertAlmostEqual(self.lens(200, 100)["half_angle"], 0.5)
@@ -160,6 +66,58 @@ class Lenses(unittest.TestCase):
         self.assertAlmostEqual(math.cos(inner), (1 + math.cos(math.pi / 6)) / 2)
         inner, outer = lamps.cone_of(box(spot_size=1, spot_blend=0))
         self.assertAlmostEqual(math.cos(inner) - math.cos(outer), 0.001)
+
+
+    def test_areas_of_sheared_lamps(self):
+        """A unit square whose second side leans: its area is that of the parallelogram."""
+        sides = ((2, 0, 0), (3, 4, 0))
+        self.assertEqual(lamps.radiance_of_area((32, 16, 0), "rectangle", (1, 1), sides), (1, 0.5, 0))
+        round_ = lamps.radiance_of_area((32, 16, 0), "ellipse", (1, 1), sides)
+        self.assertAlmostEqual(round_[0], 4 / math.pi)
+        self.assertFalse(lamps.is_sheared(at(0, 0, 0, (2, 3, 4))))
+        self.assertTrue(lamps.is_sheared([[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]))
+
+    def test_regions(self):
+        """The middle of a region, from that of the whole, in heights of the region."""
+        region = frames.Region((200, 100), (50, 20), 150, 10)
+        self.assertEqual(region.shift_of_middle(), (75 / 20, -30 / 20))
+        whole = self.lens(200, 100)
+        lens = lamps.lens_of(box(type="PERSP", sensor_fit="AUTO", sensor_width=36, sensor_height=24, lens=18, shift_x=0.1,
+                                 shift_y=0, ortho_scale=6), region)
+        self.assertAlmostEqual(lens["half_angle"], whole["half_angle"] / 5)
+        self.assertAlmostEqual(lens["shift"][0], (0.1 * 200 + 75) / 20)
+        render = box(pixel_aspect_x=1, pixel_aspect_y=1, use_multiview=False, use_border=True, border_min_x=0.1,
+                     border_max_x=0.7, border_min_y=0, border_max_y=1)
+        self.assertEqual(frames.region_of(render, 100, 30), frames.Region((100, 30), (60, 30), 10, 0))
+
+
+class Space(unittest.TestCase):
+    def placed(self, *triangles):
+        points = numpy.array(triangles, numpy.float32).reshape(-1, 3)
+        return space.Placed("It", points, numpy.arange(len(points), dtype=numpy.int32), numpy.eye(4))
+
+    def test_distances(self):
+        """To the inside, to an edge, to a corner, and of a flat triangle."""
+        triangle = numpy.array([[(0, 0, 0), (4, 0, 0), (0, 4, 0)], [(0, 0, 1), (2, 0, 1), (4, 0, 1)]], float)
+        for point, wanted in (((1, 1, 3), (3, 5 ** 0.5)), ((1, -2, 0), (2, 5 ** 0.5)), ((-3, -4, 0), (5, 26 ** 0.5))):
+            numpy.testing.assert_allclose(space.distances(triangle, numpy.array(point, float)), wanted)
+        far = self.placed((9, 0, 0), (9, 1, 0), (9, 0, 1))
+        self.assertGreater(far.distance_to(numpy.zeros(3), 5), 5)
+
+    def test_what_a_camera_sees(self):
+        """From the origin along −Z, half as wide as far on each side; a triangle around all of it counts, one beside it not."""
+        for lens in (dict(half_angle=0.5), dict(height=4)):
+            frustum = space.Frustum(IDENTITY, 1, (0, 0), **lens)
+            self.assertTrue(frustum.sees(self.placed((-99, -99, -2), (99, -99, -2), (0, 99, -2)), 1, 3))
+            self.assertFalse(frustum.sees(self.placed((-99, -99, -2), (99, -99, -2), (0, 99, -2)), 2.5, 3))
+            self.assertFalse(frustum.sees(self.placed((-99, -99, 2), (99, -99, 2), (0, 99, 2)), 1, 3))
+            self.assertFalse(frustum.sees(self.placed((2.5, -9, -2), (9, 0, -2), (2.5, 9, -2)), 1, 3))
+            # Beside the picture where it is near, in it where it is far.
+            floor = self.placed((-9, -1.5, 1), (9, -1.5, 1), (0, -1.5, -99))
+            self.assertEqual((frustum.sees(floor, 0, 2.9), frustum.sees(floor, 0, 3.1)),
+                             (False, True) if "half_angle" in lens else (True, True))
+        moved = space.Frustum(IDENTITY, 1, (1, 0), half_angle=0.5)
+        self.assertTrue(moved.sees(self.placed((2, 0, -2), (2.2, 0, -2), (2, 0.2, -2)), 1, 3))
 
 
 class Pictures(unittest.TestCase):
@@ -182,7 +140,7 @@ class Pictures(unittest.TestCase):
         lamps.write_lamp(box(**lamp, **{**area, "shape": "ELLIPSE", "size_y": 0.04}), "Oval", at(0, 0, 2, (1, 0.5, 1)), file, lost)
         point = dict(shadow_soft_size=0.01, cycles=box(is_portal=False, cast_shadow=False))
         lamps.write_lamp(box(**lamp, **point, type="POINT"), "Point", at(0, 0, 2), file, lost)
-        spot = dict(shadow_soft_size=0.01, spot_size=math.pi / 2, spot_blend=0.5, type="SPOT")
+        spot = dict(shadow_soft_size=0.001, spot_size=math.pi / 2, spot_blend=0.5, type="SPOT")
         lamps.write_lamp(box(**lamp, **spot), "Spot", at(0, 0, 2), file, lost)
         lamps.write_lamp(box(**{**lamp, "energy": 2.0}, type="SUN", angle=0.0), "Sun", at(0, 0, 2), file, lost)
         lamps.write_lamp(box(**{**lamp, "energy": 0.0}, type="SUN", angle=0.0), "Off", at(0, 0, 2), file, lost)
@@ -252,7 +210,7 @@ class Pictures(unittest.TestCase):
         self.assertEqual(self.picture.channels["Sun.V"][x > 1.05].max(), 0)
 
     def test_passes(self):
-        found = passes.channels(self.picture)
+        found = passes.Names("ViewLayer").channels(self.picture)
         lights = ["Key", "Oval", "Point", "Spot", "Sun"]
         self.assertEqual(passes.layers(self.picture), lights)
         self.assertAlmostEqual(float(found["Position.X"][19, 0]), -1.5 + 0.05, places=5)
@@ -260,12 +218,12 @@ class Pictures(unittest.TestCase):
         self.assertEqual([float(found[f"Normal.{axis}"][0, 0]) for axis in "XYZ"], [0, 0, 1])
         total = sum(found[f"Light {light}.R"] for light in lights)
         numpy.testing.assert_allclose(total, found["Combined.R"], rtol=1e-5, atol=1e-7)
-        names = {f"{name}.{letter}" for name, letters, _ in passes.own_passes(lights) for letter in letters}
+        names = {f"{name}.{letter}" for name, letters, _ in passes.Names("ViewLayer").own_passes(lights) for letter in letters}
         self.assertLessEqual(names, found.keys())
 
     def test_passes_are_written_as_they_are(self):
-        again = exr.read(exr.encoded(passes.channels(self.picture)))
-        for name, values in passes.channels(self.picture).items():
+        again = exr.read(exr.encoded(passes.Names("ViewLayer").channels(self.picture)))
+        for name, values in passes.Names("ViewLayer").channels(self.picture).items():
             numpy.testing.assert_array_equal(again.channels[name], values.astype("<f4"), name)
 
 
@@ -277,14 +235,15 @@ class Programs(unittest.TestCase):
 
     def test_arguments(self):
         plain = program.arguments("p", "s.glb", "o.exr", (3, 2), self.settings())
-        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--size", "3x2"])
+        self.assertEqual(plain, ["p", "render", "s.glb", "-o", "o.exr", "--size", "3x2", "--normals", "geometric"])
         much = program.arguments("p", "s", "o", (3, 2), self.settings(
             method="raytrace", exactness=program.SAMPLES, pixel_samples="16", shading_normals=True, lenient=True, device="cpu"))
         self.assertEqual(much[7:], ["--method", "raytrace", "--light-samples", "64", "--pixel-samples", "16", "--normals",
                                     "shading", "--lenient", "--device", "cpu"])
         filtered = program.arguments("p", "s", "o", (3, 2), self.settings(
             pixel_samples="4", pixel_filter=program.BLACKMAN_HARRIS, filter_width=1.6000000238))
-        self.assertEqual(filtered[7:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6"])
+        self.assertEqual(filtered[7:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6",
+                                        "--normals", "geometric"])
 
     def test_matte_groups(self):
         self.assertEqual(passes.matte_groups("CryptoObject", "1"), ["CryptoObject00"])
@@ -293,6 +252,17 @@ class Programs(unittest.TestCase):
     def test_messages(self):
         text = "penumbra: warning: a: b\npenumbra: something\npenumbra: error: c\n"
         self.assertEqual(program.messages(text), (["a: b"], "c"))
+        text = "penumbra: error: /tmp/x/scene.glb: 'Pane' lets light through. Shadows would be wrong: --lenient renders all the same, and warns"
+        self.assertEqual(program.messages(text, "/tmp/x/scene.glb")[1],
+                         "'Pane' lets light through. Shadows would be wrong; 'Lenient' renders all the same")
+
+    def test_workspaces_go(self):
+        with program.Workspace() as workspace:
+            self.assertTrue(os.path.isdir(workspace.folder))
+            code, printed = program.run(["/bin/sh", "-c", "echo one >&2; echo two >&2; exit 3"], lambda: False, workspace)
+            self.assertEqual((code, printed), (3, "one\ntwo\n"))
+        self.assertFalse(os.path.exists(workspace.folder))
+        self.assertEqual(program.run(["/bin/sleep", "60"], lambda: True), (None, ""))
 
     def test_an_error_comes_back(self):
         code, printed = program.run([PENUMBRA, "render", "none.glb", "-o", "none.exr"], lambda: False)
@@ -308,7 +278,16 @@ class Programs(unittest.TestCase):
 class Exr(unittest.TestCase):
     def test_names_of_layers(self):
         self.assertEqual(passes.layer_of("Plane.001/a"), "Plane_001_a")
-        self.assertEqual(len(passes.own_passes(["\u00e9" * 60])[1][0].encode()), 62)
+
+    def test_long_names_are_shortened_and_stay_apart(self):
+        names = passes.Names("ViewLayer")
+        lights = ["\u00e9" * 60, "\u00e9" * 61, "a" * 60]
+        found = [name for name, _, _ in names.own_passes(lights)]
+        self.assertEqual(len(set(found)), 7)
+        self.assertLessEqual(max(len(f"ViewLayer.{name}.X".encode()) for name in found), 63)
+        self.assertEqual(len(names.shortened), 6)
+        self.assertEqual([name for name, _, _ in names.own_passes(lights)], found)
+        self.assertEqual(passes.Names("ViewLayer").own_passes(["Key"])[1][0], "V Key")
 
     def test_refuses_what_it_cannot_read(self):
         with self.assertRaises(ValueError):

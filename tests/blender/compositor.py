@@ -27,9 +27,9 @@ class Compositor(unittest.TestCase):
     def setUpClass(cls):
         """A picture of several view samples a pixel, of a scene that the add-on wrote."""
         inside.fresh(scenes.many_lamps)
-        from penumbra import export, losses
+        from penumbra import export, frames, losses
         writer = export.SceneWriter(bpy.context.evaluated_depsgraph_get(), losses.Losses(), False)
-        writer.write(out("scene.glb"), (inside.WIDTH, inside.HEIGHT))
+        writer.write(out("scene.glb"), frames.Region(*[(inside.WIDTH, inside.HEIGHT)] * 2))
         cls.file = out("picture.exr")
         command = [inside.PENUMBRA, "render", out("scene.glb"), "-o", cls.file, "--size", f"{inside.WIDTH}x{inside.HEIGHT}"]
         subprocess.run([*command, "--pixel-samples", "9", "--layers", "*,*_light,*_V"], check=True)
@@ -122,7 +122,4 @@ def murmur3(name):
 
 
 if __name__ == "__main__":
-    result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromTestCase(Compositor))
-    print(f"compare: {result.testsRun} tests, {len(result.failures) + len(result.errors)} failed", flush=True)
-    if not result.wasSuccessful():
-        raise SystemExit(1)
+    inside.run_tests(Compositor)

@@ -32,10 +32,10 @@ BIAS = 1e-3
 EDGE = 1e-2
 # Light that passes holes and panes is counted in light samples: as many as there may be.
 COUNTED = {"translucent", "cut_out"}
-# Beside that, where another shape is meant: a lamp of radius r at distance d is a disk to Cycles, a ball here, which gives
-# up to r² / d² more; an icosphere of 1280 faces and its sphere differ by 0.25 %; under the tube Cycles is 0.15 % below
+# Beside that, where another shape is meant: a point lamp of radius r at distance d is a disk to Cycles, a ball here, which
+# gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere differ by 0.25 %; under the tube Cycles is 0.15 % below
 # Lambert's closed form, which ours meets to 1e-6 (both at 509 pixels of the floor).
-MODEL = {"point": 0.1 ** 2 / 2.5 ** 2, "spot": 0.08 ** 2 / 3 ** 2, "many_lamps": 0.05 ** 2 / 2 ** 2,
+MODEL = {"point": 0.1 ** 2 / 2.5 ** 2, "many_lamps": 0.05 ** 2 / 2 ** 2,
          "shadowless_lamp": 0.1 ** 2 / 2 ** 2, "emissive_sphere": 2.5e-3, "emissive_tube": 2e-3}
 
 

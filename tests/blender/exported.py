@@ -155,7 +155,7 @@ def by_penumbra(name, scene):
     run.check_returncode()
     if moves:
         scene.frame_set(7)
-    return passes.channels(read(picture))
+    return passes.Names("").channels(read(picture))
 
 
 def main():

@@ -2,6 +2,7 @@
 
 import os
 import sys
+import unittest
 
 import bpy
 
@@ -37,6 +38,15 @@ def channels(scene, path):
     scene.render.filepath = path
     bpy.ops.render.render(write_still=True)
     return {name.split(".", 1)[1]: values for name, values in read(path).channels.items() if "." in name}
+
+
+def run_tests(*cases):
+    """All of them; Blender ends with 1 if one fails."""
+    load = unittest.defaultTestLoader.loadTestsFromTestCase
+    result = unittest.TextTestRunner(verbosity=2).run(unittest.TestSuite(load(case) for case in cases))
+    print(f"compare: {result.testsRun} tests, {len(result.failures) + len(result.errors)} failed", flush=True)
+    if not result.wasSuccessful():
+        raise SystemExit(1)
 
 
 bpy.ops.preferences.addon_install(filepath=ZIP)

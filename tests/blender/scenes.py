@@ -127,9 +127,16 @@ def point():
 
 @scene
 def spot():
-    """With a wide edge: Cycles asks the cone from each point of the lamp, which blurs it by the radius."""
     stage()
     lamp("SPOT", (1, -1, 5), (12, 10, 0), energy=2000, shadow_soft_size=0.08, spot_size=radians(80), spot_blend=0.9)
+
+
+@scene
+def spot_rim():
+    """A hard cone of a large lamp, each point of which has a cone of its own."""
+    add("Floor", quad("Floor", half=4))
+    camera()
+    lamp("SPOT", (1, -1, 5), (12, 10, 0), energy=2000, shadow_soft_size=0.25, spot_size=radians(35), spot_blend=0.15)
 
 
 @scene

@@ -1,0 +1,69 @@
+"""Which pixels are asked for, and what a scene's settings ask for that is left out. Knows nothing of bpy."""
+
+from dataclasses import dataclass
+
+import numpy
+
+from . import materials, passes
+
+
+@dataclass
+class Region:
+    """Pixels of a whole picture: a rectangle whose lower left corner is at (left, bottom)."""
+    whole: tuple
+    size: tuple
+    left: int = 0
+    bottom: int = 0
+
+    def shift_of_middle(self):
+        """From the whole's middle to the region's, in heights of the region."""
+        return tuple((start + side / 2 - all / 2) / self.size[1]
+                     for start, side, all in zip((self.left, self.bottom), self.size, self.whole))
+
+
+def region_of(render, width, height):
+    """`width`, `height`: the whole's, as Blender rounds them. ValueError for pictures of another kind."""
+    if abs(render.pixel_aspect_x - render.pixel_aspect_y) > 1e-6 * render.pixel_aspect_x:
+        raise ValueError("the pixels are not square (Output, Format, Aspect); Penumbra renders square pixels")
+    if render.use_multiview:
+        raise ValueError("stereoscopy is on (Output, Stereoscopy); Penumbra renders one view")
+    if not render.use_border:
+        return Region((width, height), (width, height))
+    # As Blender cuts them, in single precision.
+    left, right = (int(numpy.float32(x) * numpy.float32(width)) for x in (render.border_min_x, render.border_max_x))
+    bottom, top = (int(numpy.float32(y) * numpy.float32(height)) for y in (render.border_min_y, render.border_max_y))
+    if right <= left or top <= bottom:
+        raise ValueError("the render region has no pixels (Ctrl Alt B takes it away)")
+    return Region((width, height), (right - left, top - bottom), left, bottom)
+
+
+_ABSENT = {
+    "mist": "Mist", "vector": "Vector", "uv": "UV", "object_index": "Object Index", "material_index": "Material Index",
+    "diffuse_direct": "Diffuse Direct", "diffuse_indirect": "Diffuse Indirect", "diffuse_color": "Diffuse Color",
+    "glossy_direct": "Glossy Direct", "glossy_indirect": "Glossy Indirect", "glossy_color": "Glossy Color",
+    "transmission_direct": "Transmission Direct", "transmission_indirect": "Transmission Indirect",
+    "transmission_color": "Transmission Color", "subsurface_direct": "Subsurface Direct",
+    "subsurface_indirect": "Subsurface Indirect", "subsurface_color": "Subsurface Color", "emit": "Emission",
+    "environment": "Environment", "shadow": "Shadow", "ambient_occlusion": "Ambient Occlusion",
+    "cryptomatte_asset": "Cryptomatte Asset"}
+
+
+def check_render(scene, layer, lost):
+    """What of the settings of a scene and a view layer is left out."""
+    render = scene.render
+    if render.use_motion_blur:
+        lost.mention("has motion blur switched on, which is left out", scene.name)
+    if render.use_simplify:
+        lost.mention("is simplified as the render settings say", scene.name)
+    if getattr(render, "use_freestyle", False):
+        lost.mention("has Freestyle lines, which are not drawn", scene.name)
+    absent = [name for key, name in _ABSENT.items() if getattr(layer, f"use_pass_{key}", False)]
+    if absent:
+        lost.mention(f"asks for passes that Penumbra does not have ({', '.join(absent)})", layer.name)
+
+
+def likely_lights(scene):
+    """The lights that a render will have: lamps, and objects with an emissive material."""
+    def shines(thing):
+        return any(slot.material and materials.may_shine(slot.material) for slot in thing.material_slots)
+    return [passes.layer_of(thing.name) for thing in scene.objects if not thing.hide_render and (thing.type == "LIGHT" or shines(thing))]

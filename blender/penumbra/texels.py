@@ -1,0 +1,106 @@
+"""Texels of Blender's images: read, interpolated as Cycles does, and written as PNG. Knows images by their names and values
+alone, not bpy."""
+
+import struct
+import zlib
+
+import numpy
+
+# Images that are smaller are given the texels that Cycles sees between theirs: so many times as wide at most.
+FINE, _MOST = 1024, 16
+
+
+def linear_of(encoded):
+    return numpy.where(encoded <= 0.04045, encoded / 12.92, ((numpy.maximum(encoded, 0) + 0.055) / 1.055) ** 2.4)
+
+
+def encoded_of(linear):
+    linear = numpy.clip(linear, 0, 1)
+    return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def pixels(image):
+    """Height x width x 4, first row at the top, in the image's own colour space."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        raise OSError("it has no pixels: its file is missing or not readable")
+    values = numpy.empty(width * height * 4, numpy.float32)
+    image.pixels.foreach_get(values)
+    return values.reshape(height, width, 4)[::-1]
+
+
+def is_encoded(image):
+    """Are its texels stored in sRGB? Floats and data are linear."""
+    space = image.colorspace_settings.name
+    return space == "sRGB" and not image.is_float
+
+
+def knows_space(image):
+    return image.colorspace_settings.name in ("sRGB", "Non-Color", "Raw", "Linear", "Linear Rec.709") or image.is_float
+
+
+def linear(node):
+    """The image of a node, linear, with what Cycles sees between its texels, which it interpolates as they are stored."""
+    values = pixels(node.image)[..., :3].astype(numpy.float64)
+    if node.interpolation != "Closest":
+        values = finer(values, node.interpolation, node.extension)
+    return linear_of(values) if is_encoded(node.image) else values
+
+
+def _weights(kind, t):
+    """Of the texels from one before on (cubic B-splines), or of two (linear)."""
+    if kind == "Linear":
+        return (0, 1), (1 - t, t)
+    return (-1, 0, 1, 2), ((1 - t) ** 3 / 6, (3 * t ** 3 - 6 * t ** 2 + 4) / 6, (-3 * t ** 3 + 3 * t ** 2 + 3 * t + 1) / 6, t ** 3 / 6)
+
+
+def finer(values, kind, wrap):
+    """More texels, between the given ones."""
+    times = min(FINE // max(values.shape[:2]), _MOST)
+    if times < 2:
+        return values
+    for axis in (0, 1):
+        count = values.shape[axis]
+        at = (numpy.arange(count * times) + 0.5) / times - 0.5
+        low = numpy.floor(at).astype(int)
+        steps, weights = _weights(kind, at - low)
+        total = 0
+        for step, weight in zip(steps, weights):
+            index = numpy.clip(low + step, 0, count - 1) if wrap == "EXTEND" else (low + step) % count
+            total = total + numpy.take(values, index, axis) * (weight[:, None, None] if axis == 0 else weight[None, :, None])
+        values = total
+    return values
+
+
+def png(bytes_by_pixel):
+    """A PNG of height x width x 3 or 4 bytes."""
+    height, width, channels = bytes_by_pixel.shape
+    rows = numpy.zeros((height, 1 + width * channels), numpy.uint8)
+    rows[:, 1:] = bytes_by_pixel.reshape(height, -1)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    head = struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 1)) + chunk(b"IEND", b"")
+
+
+def bytes_of(values):
+    return numpy.floor(numpy.clip(values, 0, 1) * 255 + 0.5).astype(numpy.uint8)
+
+
+def hsv_of(color):
+    most, least = color.max(axis=-1), color.min(axis=-1)
+    delta = most - least
+    safe = numpy.where(delta > 0, delta, 1)
+    r, g, b = color[..., 0], color[..., 1], color[..., 2]
+    hue = numpy.where(most == r, (g - b) / safe, numpy.where(most == g, 2 + (b - r) / safe, 4 + (r - g) / safe))
+    hue = numpy.where(delta > 0, numpy.mod(hue / 6, 1), 0)
+    return hue, numpy.where(most > 0, delta / numpy.where(most > 0, most, 1), 0), most
+
+
+def rgb_of(hue, saturation, value):
+    channels = []
+    for n in (5, 3, 1):
+        k = numpy.mod(n + hue * 6, 6)
+        channels.append(value - value * saturation * numpy.clip(numpy.minimum(k, 4 - k), 0, 1))
+    return numpy.stack(channels, axis=-1)

@@ -1,0 +1,232 @@
+#!/usr/bin/python3
+"""What the add-on makes of materials' nodes, without Blender: surfaces, colours that are evaluated, images, and what is refused.
+
+    addon_nodes.py ADDON.zip
+"""
+
+import math
+import os
+import sys
+import unittest
+import zlib
+
+ZIP = sys.argv[1]
+sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import numpy  # noqa: E402
+
+from penumbra import losses, materials, spectrum, texels  # noqa: E402
+from stubs import Inputs, Socket, box, image, image_node, node  # noqa: E402
+
+
+def principled(**values):
+    defaults = dict(Base_Color=(0.8, 0.8, 0.8, 1), Emission=(0, 0, 0, 1), Emission_Strength=1.0, Alpha=1.0,
+                    Transmission=0.0, Metallic=0.0, Subsurface=0.0, Normal=None)
+    return node("BSDF_PRINCIPLED", **{**defaults, **values})
+
+
+def surface_of(shader):
+    output = node("OUTPUT_MATERIAL", Surface=None, Volume=None, Displacement=None)
+    if shader is not None:
+        output.inputs["Surface"].link(shader)
+    return box(use_nodes=True, node_tree=box(get_output_node=lambda _: output))
+
+
+def look(shader):
+    lost = losses.Losses()
+    return materials.Reader(lost, "M").look(surface_of(shader)), lost
+
+
+class Materials(unittest.TestCase):
+    def test_surfaces(self):
+        found, lost = look(principled(Base_Color=(0.5, 0.25, 1, 1), Emission=(1, 0.5, 0, 1), Emission_Strength=6.0, Alpha=0.5))
+        self.assertEqual((found.color, found.radiance, found.alpha), ((0.5, 0.25, 1), (6, 3, 0), 0.5))
+        self.assertFalse(lost.refused or lost.mentioned)
+        self.assertEqual(look(node("EMISSION", Color=(1, 0.5, 0, 1), Strength=4.0))[0].radiance, (4, 2, 0))
+        self.assertEqual(look(None)[0].color, (0, 0, 0))
+        plain = materials.Reader(lost, "M").look(box(use_nodes=False, node_tree=None, diffuse_color=(0.1, 0.2, 0.3, 1)))
+        self.assertEqual(plain.color, (0.1, 0.2, 0.3))
+
+    def test_mixed_with_nothing(self):
+        mix = node("MIX_SHADER", Fac=0.25, First=None, Second=None)
+        mix.inputs["First"].link(node("BSDF_TRANSPARENT", Color=(1, 1, 1, 1)))
+        mix.inputs["Second"].link(node("BSDF_DIFFUSE", Color=(0.4, 0.8, 0.2, 1), Roughness=0.0))
+        found, _ = look(mix)
+        self.assertAlmostEqual(found.alpha, 0.25)
+        for value, wanted in zip(found.color, (0.4, 0.8, 0.2)):
+            self.assertAlmostEqual(value, wanted)
+
+    def test_an_image_that_cuts(self):
+        picture = node("TEX_IMAGE", Vector=None)
+        picture.image, picture.interpolation, picture.extension, picture.projection = "image", "Closest", "EXTEND", "FLAT"
+        shader = principled()
+        shader.inputs["Base Color"].link(picture)
+        shader.inputs["Alpha"].link(picture, "Alpha")
+        found, lost = look(shader)
+        self.assertEqual((found.image, found.image_alpha, found.nearest, found.wrap), ("image", True, True, "EXTEND"))
+        self.assertFalse(lost.refused)
+
+    def test_sockets_of_blender_4(self):
+        """Principled BSDF as Blender 4 names its inputs; in a language of its own, too, whose identifiers stay."""
+        def four(translate=str, **values):
+            defaults = dict(Base_Color=(0.8, 0.8, 0.8, 1), Metallic=0.0, Roughness=0.5, IOR=1.5, Alpha=1.0, Normal=None,
+                            Subsurface_Weight=0.0, Specular_IOR_Level=0.5, Transmission_Weight=0.0, Coat_Weight=0.0,
+                            Sheen_Weight=0.0, Emission_Color=(1, 1, 1, 1), Emission_Strength=0.0)
+            made = node("BSDF_PRINCIPLED", **{**defaults, **values})
+            made.inputs = Inputs({translate(name): socket for name, socket in made.inputs.items()})
+            for name, socket in made.inputs.items():
+                socket.name = name
+            return made
+        for translate in (str, lambda name: name[::-1]):
+            found, lost = look(four(translate, Emission_Strength=3.0, Emission_Color=(1, 0.5, 0, 1), Alpha=0.5,
+                                    Base_Color=(0.1, 0.2, 0.3, 1)))
+            self.assertEqual((found.radiance, found.alpha, found.color), ((3, 1.5, 0), 0.5, (0.1, 0.2, 0.3)))
+            self.assertFalse(lost.refused or lost.mentioned)
+            self.assertEqual(look(four(translate))[0].radiance, (0, 0, 0))
+            self.assertTrue(look(four(translate, Transmission_Weight=0.5))[1].refused)
+            self.assertTrue(look(four(translate, Subsurface_Weight=0.5))[1].mentioned)
+            lit, dark = (box(use_nodes=True, node_tree=box(nodes=[four(translate, Emission_Strength=x)])) for x in (1.0, 0.0))
+            self.assertEqual((materials.may_shine(lit), materials.may_shine(dark)), (True, False))
+        self.assertTrue(materials.may_shine(box(use_nodes=True, node_tree=box(nodes=[principled(Emission=(1, 0, 0, 1))]))))
+        self.assertFalse(materials.may_shine(box(use_nodes=True, node_tree=box(nodes=[principled()]))))
+
+    def test_what_changes_shadows_is_refused(self):
+        self.assertIn("'M' lets light through (transmission)", losses.sentences(look(principled(Transmission=0.5))[1].refused))
+        for kind in ("BSDF_GLASS", "BSDF_TRANSLUCENT", "SOMETHING"):
+            self.assertTrue(look(node(kind, Color=(1, 1, 1, 1)))[1].refused, kind)
+        dim = node("BSDF_TRANSPARENT", Color=(1, 0.5, 0.5, 1))
+        self.assertTrue(look(dim)[1].refused)
+        shader = principled()
+        shader.inputs["Alpha"].link(node("NOISE"), "Fac")
+        self.assertTrue(look(shader)[1].refused)
+        shader = principled()
+        shader.inputs["Emission"].link(node("NOISE"))
+        self.assertTrue(look(shader)[1].refused)
+        self.assertTrue(look(principled(Metallic=1.0))[1].mentioned)
+
+    def test_mixed_surfaces_of_images_are_refused(self):
+        mix = node("MIX_SHADER", Fac=0.5, First=None, Second=None)
+        for name, value in (("First", (0.1, 0.1, 0.1, 1)), ("Second", (1, 1, 1, 1))):
+            mix.inputs[name].link(node("BSDF_DIFFUSE", Color=value, Roughness=0.0))
+        self.assertFalse(look(mix)[1].refused)
+        mix.inputs["Second"].links[0].from_node.inputs["Color"].link(image_node(CHEQUERS))
+        self.assertTrue(look(mix)[1].refused)
+
+
+CHEQUERS = image([[(1, 0.5, 0, 1), (0, 0, 0, 1)], [(0, 0, 0, 1), (1, 0.5, 0, 1)]])
+
+
+def colored(source, name="Color"):
+    """A surface whose colour comes from a node."""
+    shader = node("BSDF_DIFFUSE", Color=(1, 1, 1, 1), Roughness=0.0)
+    shader.inputs["Color"].link(source, name)
+    return shader
+
+
+class Colors(unittest.TestCase):
+    def test_constants(self):
+        """By hand: twice the contrast about a half; and a power of what is mixed."""
+        mixed = node("MIX_RGB", Fac=0.25, Color1=(0.2, 0.4, 0.8, 1), Color2=(1, 0, 0, 1))
+        mixed.blend_type, mixed.use_clamp = "MIX", False
+        gamma = node("GAMMA", Color=None, Gamma=2.0)
+        gamma.inputs["Color"].link(mixed)
+        found, lost = look(colored(gamma))
+        self.assertFalse(lost.refused or lost.mentioned)
+        numpy.testing.assert_allclose(found.color, (0.16, 0.09, 0.36))
+        contrast = node("BRIGHTCONTRAST", Color=(0.5, 0.75, 0.6, 1), Bright=0.0, Contrast=1.0)
+        numpy.testing.assert_allclose(look(colored(contrast))[0].color, (0.5, 1.0, 0.7))
+        grey = node("HUE_SAT", Hue=0.5, Saturation=0.0, Value=0.5, Fac=1.0, Color=(0.2, 0.8, 0.4, 1))
+        numpy.testing.assert_allclose(look(colored(grey))[0].color, (0.4, 0.4, 0.4))
+        turned = node("HUE_SAT", Hue=0.5 + 1 / 3, Saturation=1.0, Value=1.0, Fac=1.0, Color=(0.8, 0.2, 0.4, 1))
+        numpy.testing.assert_allclose(look(colored(turned))[0].color, (0.4, 0.8, 0.2))
+
+    def test_what_nodes_make_of_a_picture(self):
+        invert = node("INVERT", Fac=1.0, Color=None)
+        invert.inputs["Color"].link(image_node(CHEQUERS))
+        found, lost = look(colored(invert))
+        self.assertFalse(lost.refused)
+        self.assertIs(found.image, CHEQUERS)
+        half = ((0.5 + 0.055) / 1.055) ** 2.4
+        numpy.testing.assert_allclose(found.pixels, [[(0, 1 - half, 1), (1, 1, 1)], [(1, 1, 1), (0, 1 - half, 1)]], atol=1e-9)
+        product = node("MIX_RGB", Fac=1.0, Color1=None, Color2=(0.5, 0.5, 1, 1))
+        product.blend_type, product.use_clamp = "MULTIPLY", False
+        product.inputs["Color1"].link(image_node(CHEQUERS))
+        found, _ = look(colored(product))
+        self.assertEqual((found.pixels, found.color), (None, (0.5, 0.5, 1)))
+
+    def test_what_is_not_evaluated_is_refused_by_name_and_not_white(self):
+        for source in (node("TEX_NOISE"), node("NEW_GEOMETRY"), node("HUE_SAT", Hue=0.5)):
+            found, lost = look(colored(source))
+            self.assertIn(f"the node '{source.name}'", losses.sentences(lost.refused)[0])
+            self.assertEqual(found.color, (0.8, 0.8, 0.8))
+
+    def test_groups_and_muted_nodes(self):
+        """A colour that comes out of a group, where it is the product of what went in and half."""
+        half = node("MIX_RGB", Fac=1.0, Color1=None, Color2=(0.5, 0.5, 0.5, 1))
+        half.blend_type, half.use_clamp = "MULTIPLY", False
+        start, end = node("GROUP_INPUT"), node("GROUP_OUTPUT", Result=None)
+        start.outputs = [box(name="Tint", identifier="Tint")]
+        half.inputs["Color1"].link(start, "Tint")
+        end.inputs["Result"].link(half)
+        group = node("GROUP", Tint=(0.2, 0.4, 0.6, 1))
+        group.node_tree, group.outputs = box(nodes=[start, half, end]), [box(name="Result", identifier="Result")]
+        self.assertEqual(look(colored(group, "Result"))[0].color, (0.1, 0.2, 0.3))
+        group.inputs["Tint"].link(image_node(CHEQUERS))
+        found, _ = look(colored(group, "Result"))
+        self.assertEqual((found.image, found.color), (CHEQUERS, (0.5, 0.5, 0.5)))
+        muted = node("GAMMA", Color=(0.3, 0.2, 0.1, 1), Gamma=3.0)
+        muted.outputs = [box(name="Color", identifier="Color")]
+        muted.mute, muted.internal_links = True, [box(from_socket=muted.inputs["Color"], to_socket=muted.outputs[0])]
+        self.assertEqual(look(colored(muted))[0].color, (0.3, 0.2, 0.1))
+
+    def test_mapping(self):
+        """A quarter turn, twice as large, moved; and the same the other way."""
+        for kind, wanted in (("POINT", (0.1 - 2 * 0.5, 0.2 + 2 * 0.25)), ("TEXTURE", ((0.5 - 0.2) / 2, (0.1 - 0.25) / 2))):
+            mapping = node("MAPPING", Vector=None, Location=(0.1, 0.2, 0), Rotation=(0, 0, math.pi / 2), Scale=(2, 2, 1))
+            mapping.vector_type = kind
+            picture = image_node(CHEQUERS)
+            picture.inputs["Vector"].link(mapping, "Vector")
+            rows = numpy.array(look(colored(picture))[0].placing)
+            numpy.testing.assert_allclose(rows @ (0.25, 0.5, 1), wanted, atol=1e-12)
+
+    def test_black_bodies(self):
+        """Daylight is nearly white, a candle's blue is gone, and luminance is 1."""
+        for kelvin in (900, 2000, 6500, 20000):
+            red, green, blue = spectrum.blackbody(kelvin)
+            if min(red, green, blue) > 0:
+                self.assertAlmostEqual(0.2126 * red + 0.7152 * green + 0.0722 * blue, 1, places=3)
+        self.assertEqual(spectrum.blackbody(900)[2], 0)
+        numpy.testing.assert_allclose(spectrum.blackbody(6504), (1.0, 1.0, 1.0), atol=0.06)
+
+
+class Texels(unittest.TestCase):
+    def test_between_texels(self):
+        """Halfway between two it is their mean, beyond the last that or the first; B-splines keep straight lines."""
+        values = numpy.linspace(0, 1, 8).reshape(1, 8, 1).repeat(3, axis=2)
+        fine = texels.finer(values, "Linear", "EXTEND")
+        self.assertEqual(fine.shape, (16, 128, 3))
+        at = (numpy.arange(128) + 0.5) / 16 - 0.5
+        numpy.testing.assert_allclose(fine[3, :, 0], numpy.clip(at / 7, 0, 1), atol=1e-12)
+        self.assertAlmostEqual(texels.finer(values, "Linear", "REPEAT")[0, -1, 0], 1 - (at[-1] - 7) * 1)
+        numpy.testing.assert_allclose(texels.finer(values, "Cubic", "EXTEND")[0, 32:96, 0], at[32:96] / 7, atol=1e-12)
+
+    def test_colours_there_and_back(self):
+        generator = numpy.random.default_rng(7)
+        values = generator.random((50, 40, 3))
+        numpy.testing.assert_allclose(texels.rgb_of(*texels.hsv_of(values)), values, atol=1e-12)
+        numpy.testing.assert_allclose(texels.linear_of(texels.encoded_of(values)), values, atol=1e-7)
+
+    def test_png(self):
+        """Its rows, unpacked by hand."""
+        values = numpy.arange(24, dtype=numpy.uint8).reshape(2, 4, 3)
+        data = texels.png(values)
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        packed = data[data.index(b"IDAT") + 4:data.index(b"IEND") - 8]
+        rows = numpy.frombuffer(zlib.decompress(packed), numpy.uint8).reshape(2, 13)
+        numpy.testing.assert_array_equal(rows[:, 1:], values.reshape(2, 12))
+        self.assertEqual(rows[:, 0].tolist(), [0, 0])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
