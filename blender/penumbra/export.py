@@ -113,7 +113,7 @@ class SceneWriter:
         key = material.name_full if material else ""
         if key not in self._materials:
             texture = self._texture(look) if look.image else None
-            cuts = material is not None and material.blend_method == "CLIP" and (look.alpha < 1 or look.image_alpha)
+            cuts = getattr(material, "blend_method", "") == "CLIP" and (look.alpha < 1 or look.image_alpha)
             self._materials[key] = self.glb.material(
                 key or "Default", look.color, look.radiance, look.alpha,
                 material.alpha_threshold if cuts else None, texture, look.image_alpha)

@@ -266,7 +266,8 @@ class Reader:
             self.losses.refuse("lets light through (transmission)", self.name)
         if used("Metallic"):
             self.losses.mention("is metallic; every surface is diffuse here", self.name)
-        if used("Subsurface Weight", "Subsurface"):
+        if any(used(*names) for names in (("Subsurface Weight", "Subsurface"), ("Specular IOR Level", "Specular"),
+                                          ("Coat Weight", "Clearcoat"), ("Sheen Weight", "Sheen"))):
             self.losses.mention("is diffuse: gloss and what is below a surface are not rendered", self.name)
         if find_socket(node.inputs, "Normal").is_linked:
             self.losses.mention("has a normal or bump map, which is left out", self.name)

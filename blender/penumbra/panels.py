@@ -185,9 +185,10 @@ class PENUMBRA_PT_material_settings(_Panel, bpy.types.Panel):
 
     def draw(self, context):
         material, layout = context.material, self.split_layout()
-        layout.prop(material, "blend_method", text="Alpha")
-        if material.blend_method == "CLIP":
-            layout.prop(material, "alpha_threshold")
+        if hasattr(material, "blend_method"):
+            layout.prop(material, "blend_method", text="Alpha")
+            if material.blend_method == "CLIP":
+                layout.prop(material, "alpha_threshold")
         layout.prop(material, "pass_index")
 
 

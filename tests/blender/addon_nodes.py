@@ -71,7 +71,7 @@ class Materials(unittest.TestCase):
         """Principled BSDF as Blender 4 names its inputs; in a language of its own, too, whose identifiers stay."""
         def four(translate=str, **values):
             defaults = dict(Base_Color=(0.8, 0.8, 0.8, 1), Metallic=0.0, Roughness=0.5, IOR=1.5, Alpha=1.0, Normal=None,
-                            Subsurface_Weight=0.0, Specular_IOR_Level=0.5, Transmission_Weight=0.0, Coat_Weight=0.0,
+                            Subsurface_Weight=0.0, Specular_IOR_Level=0.0, Transmission_Weight=0.0, Coat_Weight=0.0,
                             Sheen_Weight=0.0, Emission_Color=(1, 1, 1, 1), Emission_Strength=0.0)
             made = node("BSDF_PRINCIPLED", **{**defaults, **values})
             made.inputs = Inputs({translate(name): socket for name, socket in made.inputs.items()})
@@ -85,7 +85,8 @@ class Materials(unittest.TestCase):
             self.assertFalse(lost.refused or lost.mentioned)
             self.assertEqual(look(four(translate))[0].radiance, (0, 0, 0))
             self.assertTrue(look(four(translate, Transmission_Weight=0.5))[1].refused)
-            self.assertTrue(look(four(translate, Subsurface_Weight=0.5))[1].mentioned)
+            for name in ("Subsurface_Weight", "Specular_IOR_Level", "Coat_Weight", "Sheen_Weight"):
+                self.assertTrue(look(four(translate, **{name: 0.5}))[1].mentioned, name)
             lit, dark = (box(use_nodes=True, node_tree=box(nodes=[four(translate, Emission_Strength=x)])) for x in (1.0, 0.0))
             self.assertEqual((materials.may_shine(lit), materials.may_shine(dark)), (True, False))
         self.assertTrue(materials.may_shine(box(use_nodes=True, node_tree=box(nodes=[principled(Emission=(1, 0, 0, 1))]))))
