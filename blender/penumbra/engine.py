@@ -104,7 +104,13 @@ class PenumbraEngine(bpy.types.RenderEngine):
                 whole.stamp_data_add_field(name, f"{layer}.{text}" if name.endswith("/name") else text)
 
     def update_render_passes(self, scene=None, renderlayer=None):
-        """What the compositor's node has sockets for."""
+        """What the compositor's node has sockets for. As with render, no exception leaves it."""
+        try:
+            self._register_passes(scene, renderlayer)
+        except Exception:
+            traceback.print_exc()
+
+    def _register_passes(self, scene, renderlayer):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         if renderlayer.use_pass_z:
             self.register_pass(scene, renderlayer, "Depth", 1, "Z", "VALUE")

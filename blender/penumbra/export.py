@@ -34,6 +34,8 @@ class SceneWriter:
 
     def _object(self, instance):
         thing = instance.object
+        if lamps.is_linked(thing):
+            self.losses.refuse("is linked to some objects alone (Object, Shading, Light Linking), which is not done", thing.name)
         if thing.type == "LIGHT":
             if thing.visible_diffuse:
                 self._balls += lamps.write_lamp(thing.data, thing.name, instance.matrix_world, self.glb, self.losses)
@@ -158,7 +160,7 @@ class SceneWriter:
                 self.losses.mention(f"reaches beyond the clip end of camera '{camera.name}', and is shown there", placed.name)
 
     def _world(self):
-        world = self.scene.world
+        world = getattr(self.layer, "world_override", None) or self.scene.world
         if world is None:
             return
         try:
@@ -215,6 +217,20 @@ def encoded_image(image, look):
     return texels.png(texels.bytes_of(values)), "image/png"
 
 
+def shared(vertices, rows):
+    """What corners have, once each, and which of it is each corner's. `vertices`: the mesh's own, of each corner."""
+    first = numpy.zeros(int(vertices.max()) + 1, numpy.int64)
+    first[vertices[::-1]] = numpy.arange(len(vertices))[::-1]
+    if numpy.array_equal(rows, rows[first[vertices]]):  # quick, and the rule: a vertex has one normal, one place in a picture
+        used = numpy.unique(vertices)
+        number = numpy.zeros(len(first), numpy.int64)
+        number[used] = numpy.arange(len(used))
+        return rows[first[used]], number[vertices]
+    rows = numpy.ascontiguousarray(rows)
+    _, first, indices = numpy.unique(rows.view([("", f"V{rows.shape[1] * 4}")]).ravel(), return_index=True, return_inverse=True)
+    return rows[first], indices
+
+
 class Corners:
     """A mesh's triangles, corner by corner."""
 
@@ -259,11 +275,8 @@ class Corners:
         if look.attribute is not None:
             columns.append(self._colors(look, corners))
             names.append(("COLOR_0", "VEC4"))
-        rows = numpy.ascontiguousarray(numpy.hstack(columns))
-        # What is the same in all is one vertex.
-        _, first, indices = numpy.unique(rows.view([("", f"V{rows.shape[1] * 4}")]).ravel(), return_index=True,
-                                         return_inverse=True)
-        rows, at, attributes = rows[first], 0, {}
+        rows, indices = shared(self.vertices[corners], numpy.hstack(columns))
+        at, attributes = 0, {}
         for (name, shape), column in zip(names, columns):
             part = numpy.ascontiguousarray(rows[:, at:at + column.shape[1]], "<f4")
             at += column.shape[1]

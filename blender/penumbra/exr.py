@@ -54,9 +54,8 @@ def _unzip(block, size):
     """OpenEXR's ZIP: deflate of differences (plus 128) of bytes whose two halves were interleaved."""
     if len(block) == size:
         return block  # what would not get smaller is stored as it is
-    coded = numpy.frombuffer(zlib.decompress(block), numpy.uint8).astype(numpy.int64)
-    coded[1:] -= 128
-    plain = (numpy.cumsum(coded) & 255).astype(numpy.uint8)
+    plain = numpy.cumsum(numpy.frombuffer(zlib.decompress(block), numpy.uint8), dtype=numpy.uint8)
+    plain[1::2] ^= 128  # what was added to each, so often
     whole, half = numpy.empty_like(plain), (len(plain) + 1) // 2
     whole[0::2], whole[1::2] = plain[:half], plain[half:]
     return whole.tobytes()
@@ -73,20 +72,18 @@ def read(data):
     picture = Picture(width, height)
     picture.attributes = {name: value.decode("utf-8", "replace") for name, (kind, value) in entries.items() if kind == "string"}
     channels = _channels(entries["channels"][1])
-    for name, kind in channels:
-        picture.channels[name] = numpy.empty((height, width), kind)
+    rows = numpy.empty((len(channels), height, width), "<u4")
     lines = _LINES[compression]
     for (offset,) in struct.iter_unpack("<Q", data[table:table + 8 * -(-height // lines)]):
         y, size = struct.unpack_from("<ii", data, offset)
         here = min(lines, bottom + 1 - y)
         block = data[offset + 8:offset + 8 + size]
         if compression:
-            block = _unzip(block, here * width * sum(kind.itemsize for _, kind in channels))
-        at = 0
-        for line in range(y - top, y - top + here):
-            for name, kind in channels:
-                picture.channels[name][line] = numpy.frombuffer(block, kind, width, at)
-                at += width * kind.itemsize
+            block = _unzip(block, 4 * here * width * len(channels))
+        found = numpy.frombuffer(block, "<u4").reshape(here, len(channels), width)
+        rows[:, y - top:y - top + here] = found.transpose(1, 0, 2)
+    for (name, kind), values in zip(channels, rows):
+        picture.channels[name] = values.view(kind)
     return picture
 
 

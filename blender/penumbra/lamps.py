@@ -83,6 +83,12 @@ def power_of(lamp):
     return tuple(power * x for x in lamp.color)
 
 
+def is_linked(thing):
+    """Does an object, as Blenders from 4.0 on have it, light or shade some others alone?"""
+    linking = getattr(thing, "light_linking", None)
+    return linking is not None and (linking.receiver_collection is not None or linking.blocker_collection is not None)
+
+
 class Ball:
     """A lamp of some size. `is_disk`: Cycles has a disk that faces what it lights, which at distance d sends 1 + r² / d² times
     less; of spots the cone says so (visibility::spot_share)."""

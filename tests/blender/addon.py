@@ -77,6 +77,15 @@ class Lenses(unittest.TestCase):
         self.assertFalse(lamps.is_sheared(at(0, 0, 0, (2, 3, 4))))
         self.assertTrue(lamps.is_sheared([[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]))
 
+    def test_links_of_blender_4(self):
+        none, some = (box(receiver_collection=one, blocker_collection=None) for one in (None, "Lit"))
+        self.assertEqual([lamps.is_linked(thing) for thing in (box(), box(light_linking=none), box(light_linking=some))],
+                         [False, False, True])
+
+    def test_power_of_newer_blenders(self):
+        self.assertEqual(lamps.power_of(box(energy=3, color=(1, 0.5, 0))), (3, 1.5, 0))
+        self.assertEqual(lamps.power_of(box(energy=3, color=(1, 0.5, 0), exposure=2)), (12, 6, 0))
+
     def test_regions(self):
         """The middle of a region, from that of the whole, in heights of the region."""
         region = frames.Region((200, 100), (50, 20), 150, 10)

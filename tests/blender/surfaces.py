@@ -226,6 +226,16 @@ class Refusals(unittest.TestCase):
             bpy.data.objects[name].data.materials[0] = plain
         numpy.testing.assert_array_equal(overridden, colors(inside.channels(scene, out("plain.exr"))))
 
+    def test_each_view_layer_has_its_own_override(self):
+        scene = inside.fresh(scenes.area_square)
+        alone = inside.channels(scene, out("alone.exr"))
+        scene.view_layers.new("Clay").material_override = scenes.diffuse((0.2, 0.4, 0.6), "Override")
+        scene.render.filepath = out("layers.exr")
+        bpy.ops.render.render(write_still=True)
+        found = inside.read(out("layers.exr")).channels
+        numpy.testing.assert_array_equal(found["ViewLayer.Combined.R"], alone["Combined.R"])
+        self.assertFalse(numpy.array_equal(found["Clay.Combined.R"], alone["Combined.R"]))
+
     def test_collections_of_a_view_layer(self):
         for key, wanted in (("holdout", "'Block' is a holdout"), ("indirect_only", "'Block' is in a collection that is indirect")):
             scene = inside.fresh(scenes.area_square)
