@@ -127,9 +127,13 @@ class SceneWriter:
         if key not in self._images:
             try:
                 self._images[key] = self.glb.image(image.name, *encoded_image(image, look))
+                if image.is_float and texels.pixels(image)[..., :3].max() > 1.001:
+                    self.losses.refuse("is an image with colours above 1, which are cut off", image.name)
             except (OSError, RuntimeError) as error:
                 self.losses.refuse(f"is an image that cannot be read ({error})", image.name)
                 self._images[key] = None
+            if look.interpolation in ("Cubic", "Smart") and max(image.size) > texels.FINE // 2 and not look.image_alpha:
+                self.losses.mention(f"is an image of more than {texels.FINE // 2} pixels: interpolated linearly", image.name)
             if not texels.knows_space(image):
                 self.losses.refuse(f"is an image in the colour space {image.colorspace_settings.name}, which is not known", image.name)
         number = self._images[key]

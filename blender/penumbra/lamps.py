@@ -6,7 +6,7 @@ the radiance P / 4 A, a sun's strength is irradiance.
 
 from math import acos, cos, degrees, pi, radians, sqrt, tan
 
-from . import graph
+from . import graph, space
 
 # Wider suns are refused: from there on, as seen by a surface that they stand 45 degrees above, they are 2 % and more off.
 _WIDEST_SUN, _WIDE_SUN = radians(120), radians(90)
@@ -99,14 +99,12 @@ class Ball:
 
 def check_balls(balls, surfaces, losses):
     """`surfaces`: space.Placed. What stands within a ball would be black."""
+    surfaces = space.Surfaces(surfaces)
     for ball in balls:
-        nearest, name = 8 * ball.radius, None
-        for surface in surfaces:
-            distance = surface.distance_to(ball.center, nearest)
-            if distance < nearest:
-                nearest, name = distance, surface.name
-        if name is None:
+        surface, nearest = surfaces.nearest_to(ball.center, 8 * ball.radius)
+        if surface is None:
             continue
+        name = surface.name
         if nearest <= ball.radius:
             losses.refuse(f"is a lamp whose radius, {ball.radius:.3g}, reaches '{name}', {nearest:.3g} from its middle: what is "
                           "inside would be black; make it smaller", ball.name)

@@ -114,6 +114,8 @@ class Reader:
             self.losses.mention("is shown in its image's colour: its alpha alone was wanted", self.name)
         self._use_image(use, look)
         look.image_alpha, look.pixels = True, None
+        if not look.nearest:
+            self.losses.mention("has an image whose alpha is not interpolated: its nearest texel decides", self.name)
 
     def _use_image(self, use, look):
         node = use.node

@@ -10,7 +10,7 @@ class Placed:
         self.name, self.positions, self.vertices, self.matrix = name, positions, vertices, numpy.asarray(matrix, float)
         low, high = positions.min(axis=0), positions.max(axis=0)
         corners = numpy.array([[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)], float)
-        self.box = self.moved(corners)
+        self.box, self._bounds = self.moved(corners), None
 
     def moved(self, points):
         return points @ self.matrix[:3, :3].T + self.matrix[:3, 3]
@@ -19,11 +19,35 @@ class Placed:
         return self.moved(self.positions.astype(float))[self.vertices].reshape(-1, 3, 3)
 
     def distance_to(self, point, enough):
-        """From a point to the nearest triangle; more than `enough` may be any number above."""
-        low, high = self.box.min(axis=0), self.box.max(axis=0)
-        outside = numpy.maximum(numpy.maximum(low - point, point - high), 0)
-        least = float(numpy.linalg.norm(outside))
-        return least if least > enough else float(distances(self.triangles(), numpy.asarray(point, float)).min())
+        """From a point to the nearest triangle; where it is more than `enough`, infinite."""
+        if self._bounds is None:
+            triangles = self.triangles()
+            self._bounds = triangles.astype(numpy.float32), triangles.min(axis=1), triangles.max(axis=1)
+        triangles, low, high = self._bounds
+        near = triangles[((high >= point - enough) & (low <= point + enough)).all(axis=1)]
+        nearest = float(distances(near.astype(float), point).min()) if len(near) else numpy.inf
+        return nearest if nearest <= enough else numpy.inf
+
+
+class Surfaces:
+    """Placed objects, of which the nearest to a point is asked."""
+
+    def __init__(self, placed):
+        self._placed = placed
+        self._low, self._high = (numpy.array([bound(one.box, axis=0) for one in placed]).reshape(-1, 3)
+                                 for bound in (numpy.min, numpy.max))
+
+    def nearest_to(self, point, enough):
+        """The nearest object, and how near; (None, `enough`) if all are farther than that."""
+        point, found = numpy.asarray(point, float), None
+        least = numpy.linalg.norm(numpy.maximum(numpy.maximum(self._low - point, point - self._high), 0), axis=1)
+        for i in numpy.argsort(least, kind="stable"):
+            if least[i] > enough:
+                break
+            distance = self._placed[i].distance_to(point, enough)
+            if distance < enough:
+                enough, found = distance, self._placed[i]
+        return found, enough
 
 
 def distances(triangles, point):

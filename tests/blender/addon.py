@@ -110,8 +110,11 @@ class Space(unittest.TestCase):
         triangle = numpy.array([[(0, 0, 0), (4, 0, 0), (0, 4, 0)], [(0, 0, 1), (2, 0, 1), (4, 0, 1)]], float)
         for point, wanted in (((1, 1, 3), (3, 5 ** 0.5)), ((1, -2, 0), (2, 5 ** 0.5)), ((-3, -4, 0), (5, 26 ** 0.5))):
             numpy.testing.assert_allclose(space.distances(triangle, numpy.array(point, float)), wanted)
-        far = self.placed((9, 0, 0), (9, 1, 0), (9, 0, 1))
-        self.assertGreater(far.distance_to(numpy.zeros(3), 5), 5)
+        far, near = self.placed((9, 0, 0), (9, 1, 0), (9, 0, 1)), self.placed((0, 0, 3), (1, 0, 3), (0, 1, 3))
+        self.assertEqual(space.Surfaces([far, near]).nearest_to((0, 0, 0), 5), (near, 3))
+        self.assertEqual(space.Surfaces([near, far]).nearest_to((9, 0.2, 0.2), 5), (far, 0))
+        self.assertEqual(space.Surfaces([far, near]).nearest_to((0, 0, -3), 5), (None, 5))
+        self.assertEqual(space.Surfaces([]).nearest_to((0, 0, 0), 5), (None, 5))
 
     def test_what_a_camera_sees(self):
         """From the origin along −Z, half as wide as far on each side; a triangle around all of it counts, one beside it not."""
