@@ -19,6 +19,7 @@ class SceneWriter:
         self.glb = glb.Glb()
         self.background = (0.0, 0.0, 0.0)  # the colour that is seen behind everything
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
+        self._shines = False
         self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, whose distances are looked at
 
     def write(self, path, region):
@@ -26,6 +27,10 @@ class SceneWriter:
         for instance in self.depsgraph.object_instances:
             if instance.show_self:
                 self._object(instance)
+        if not self._shines and not self.glb.has_lamps:
+            raise ValueError("there is no light in the scene: no lamp and no emissive material that is shown in renders")
+        if not self._placed:
+            raise ValueError("there is no surface in the scene that is shown in renders")
         self._camera(region)
         self._world()
         lamps.check_balls(self._balls, self._placed, self.losses)
@@ -54,6 +59,7 @@ class SceneWriter:
         if mesh is None:
             return
         number, emits, corners = mesh
+        self._shines = self._shines or emits
         extras = {} if thing.visible_shadow else {"castsShadow": False}
         if owner.indirect_only_get(view_layer=self.layer):
             self.losses.refuse("is in a collection that is indirect only", thing.name)

@@ -24,6 +24,7 @@ class Glb:
     def __init__(self):
         self._binary = bytearray()
         self._extensions = set()
+        self.has_lamps = False
         self._document = {
             "asset": {"version": "2.0", "generator": "Penumbra for Blender"},
             "scene": 0,
@@ -111,6 +112,7 @@ class Glb:
     def lamp(self, name, matrix, kind, intensity, color, sizes, casts_shadow=True, cone=None):
         """A sun ("directional"), a sphere ("point") or one with a cone ("spot"; inner and outer half angle in
         radians). `sizes`: angle (degrees) or radius."""
+        self.has_lamps = True
         lamp = {"name": name, "type": kind, "intensity": intensity, "color": list(color), "extras": dict(sizes)}
         if cone is not None:
             lamp["spot"] = {"innerConeAngle": cone[0], "outerConeAngle": cone[1]}
@@ -122,6 +124,7 @@ class Glb:
 
     def area_lamp(self, name, matrix, shape, size, radiance, casts_shadow=True):
         """`shape`: "rectangle" or "ellipse"; shines along −Z of the matrix."""
+        self.has_lamps = True
         extras = {"areaLamp": {"shape": shape, "size": list(size), "radiance": list(radiance)}}
         self.node(name, matrix, {**extras, **_shadow(casts_shadow)})
 

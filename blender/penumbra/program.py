@@ -45,8 +45,6 @@ def arguments(program, scene, picture, size, settings):
 
 # What the program says of command lines and files, in the words of who sits before Blender.
 _IN_BLENDER = (
-    (re.compile(r"there is no light in the scene\..*"),
-     "there is no light in the scene: no lamp and no emissive material that is shown in renders"),
     (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
     (re.compile(r"--lenient"), "'Lenient'"),
     (re.compile(r"--light-samples( N)?"), "'Light samples'"),

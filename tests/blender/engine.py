@@ -123,6 +123,14 @@ class Engine(unittest.TestCase):
                 self.assertEqual(tuple(bpy.data.images.load(out("size.bmp")).size), asked[-1])
                 bpy.data.images.remove(bpy.data.images["size.bmp"])
             self.assertEqual(asked[-1], (896, 504))
+            scene.render.use_border = scene.render.use_crop_to_border = True
+            for i in range(30):
+                low, high = ((i * 0.618) % 1 * 0.5, 0.5 + (i * 0.414) % 1 * 0.5)
+                scene.render.border_min_x, scene.render.border_max_x = low, high
+                scene.render.border_min_y, scene.render.border_max_y = 1 - high, 1 - low
+                bpy.ops.render.render(write_still=True)
+                self.assertEqual(tuple(bpy.data.images.load(out("size.bmp")).size), asked[-1], f"region {low} to {high}")
+                bpy.data.images.remove(bpy.data.images["size.bmp"])
         finally:
             program.run = own
 
@@ -200,6 +208,11 @@ class Engine(unittest.TestCase):
         bpy.data.objects["Key"].hide_render = True
         said = self.refusal(scene)
         self.assertIn("there is no light in the scene", said)
+        scene = inside.fresh(scenes.area_square)
+        for name in ("Floor", "Block"):
+            bpy.data.objects[name].hide_render = True
+        said += self.refusal(scene)
+        self.assertIn("there is no surface in the scene", said)
         self.assertFalse([word for word in ("export", "glTF", "scene.glb", "/tmp") if word in said], said)
         scene = inside.fresh(scenes.area_square)
         bpy.context.preferences.addons["penumbra"].preferences.program = "/nowhere/penumbra"
