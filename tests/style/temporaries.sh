@@ -2,7 +2,7 @@
 # Views of temporaries that are gone: a range-for over what a temporary's function returned (C++20 keeps the last temporary of
 # a range alive, not those before it), and a span or string_view that is kept of a temporary that owns what it shows. Both
 # compile without a warning, and read a dead stack frame.
-#   temporaries.sh SOURCE BUILD
+#   temporaries.sh SOURCE BUILD [PATTERN]     of sources whose path it fits; default: all
 # By clang-query (packages.txt: clang-tidy's) over targets whose files are joined, as tidy.sh has them. BUILD must have been built.
 set -euo pipefail
 source=$(cd -- "$1" && pwd) build=$(cd -- "$2" && pwd)
@@ -13,7 +13,7 @@ cmake -S "$source" -B "$joined" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPENUMBRA_T
   -DPENUMBRA_JOIN=ON >"$build/temporaries.log" 2>&1 || { cat "$build/temporaries.log" >&2; exit 1; }
 sed -i "s,$joined/shaders,$build/shaders,g" "$joined/compile_commands.json"
 sources=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$joined/compile_commands.json" | sort -u)
-sources=$(grep -vF "$build/" <<<"$sources"; grep -F /Unity/ <<<"$sources")
+sources=$( (grep -vF "$build/" <<<"$sources"; grep -F /Unity/ <<<"$sources") | grep -E -- "${3:-.}")
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -27,8 +27,10 @@ let call cxxMemberCallExpr(onImplicitObjectArgument(anyOf(owner.bind("t"), impli
 m cxxForRangeStmt(unless(isExpansionInSystemHeader()), hasRangeInit(expr(anyOf(call, hasDescendant(call))).bind("init")))
 m varDecl(unless(isExpansionInSystemHeader()), hasType(hasUnqualifiedDesugaredType(recordType(hasDeclaration(kept)))), hasInitializer(expr(anyOf(call, hasDescendant(call), hasDescendant(cxxConstructExpr(hasType(hasUnqualifiedDesugaredType(recordType(hasDeclaration(kept)))), hasArgument(0, anyOf(owner.bind("t"), implicitCastExpr(has(owner.bind("t"))))))))).bind("init")))
 QUERY
-xargs -d '\n' -P "$(nproc)" -n 1 "$query" -p "$joined" -f "$work/query" --extra-arg=-Wno-unknown-warning-option <<<"$sources" \
-  >"$work/found" 2>/dev/null || true
+xargs -d '\n' -P "$(nproc)" -n 1 bash -c \
+  '"$1" -p "$2" -f "$3/query" --extra-arg=-Wno-unknown-warning-option "$4" >"$3/of.$$" 2>/dev/null || true' \
+  _ "$query" "$joined" "$work" <<<"$sources"
+cat "$work"/of.* >"$work/found"
 [[ $(grep -c 'matches\.\|match\.' "$work/found") -ge $(wc -l <<<"$sources") ]] || { echo 'style: clang-query did not run' >&2; exit 1; }
 python3 - "$work/found" "$source" <<'PYTHON'
 import re, sys
