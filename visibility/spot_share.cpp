@@ -67,18 +67,32 @@ double over_chord(const FacingDisk& disk, double y, double half) {
   return sum;
 }
 
-double mean_over(const FacingDisk& disk) {
-  // The farthest that a point's cosine can be from the middle's; most pixels are outside of the cone.
-  const double nearest = std::atan(disk.size), angle = std::atan2(disk.sine, disk.cosine);
-  if (std::cos(std::max(angle - nearest, 0.0)) * disk.scale + disk.offset <= 0) return 0;
-  // Chords at Chebyshev's points of the second kind, symmetric about y = 0: half of them suffice.
-  constexpr int kChords = 12;
+/// Over chords at Chebyshev's points of the second kind, symmetric about y = 0: half of them suffice.
+double mean_over_chords(const FacingDisk& disk, int chords) {
   double sum = 0;
-  for (int i = 0; i < kChords; ++i) {
-    const double place = std::numbers::pi * (i + 1) / (2 * kChords + 1), half = std::sin(place);
+  for (int i = 0; i < chords; ++i) {
+    const double place = std::numbers::pi * (i + 1) / (2 * chords + 1), half = std::sin(place);
     sum += half * over_chord(disk, std::cos(place), half);
   }
-  return 2 * sum / (2 * kChords + 1);
+  return 2 * sum / (2 * chords + 1);
+}
+
+double mean_over(const FacingDisk& disk) {
+  // The cosines of the points farthest from the cone's axis and nearest to it: the middle's angle, and the disk's about
+  // it.
+  const double rim = std::sqrt(1 + disk.size * disk.size), along = disk.cosine / rim,
+               across = disk.size * disk.sine / rim;
+  const double least = along - across, most = disk.sine > disk.size * disk.cosine ? along + across : 1.0;
+  const double darkest = least * disk.scale + disk.offset, brightest = most * disk.scale + disk.offset;
+  if (brightest <= 0) return 0;
+  if (darkest >= 1) {
+    // The means of 1 / way⁵ and of x² / way⁵ over the disk.
+    const double cube = rim * rim * rim, plain = (rim * rim + rim + 1) / (1.5 * cube * (rim + 1));
+    const double squared = (2 * rim + 1) / (3 * cube * (rim + 1) * (rim + 1));
+    return disk.cosine * plain - disk.tilt * disk.size * disk.sine * squared;
+  }
+  // Where no end of the cone's edge crosses the disk, all is smooth.
+  return mean_over_chords(disk, darkest >= 0 && brightest <= 1 ? 3 : 12);
 }
 
 }  // namespace
