@@ -17,7 +17,7 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::filesystem::path kCases = PENUMBRA_PUBLIC_CASES;
+const std::filesystem::path kSceneCases = PENUMBRA_PUBLIC_CASES;
 
 class PublicScenes : public ProgramTest {
  protected:
@@ -60,11 +60,11 @@ class PublicScenes : public ProgramTest {
 };
 
 TEST_F(PublicScenes, AreReadAsTheyWereMeant) {
-  std::ifstream table(kCases / "scenes.json");
+  std::ifstream table(kSceneCases / "scenes.json");
   const json cases = json::parse(table).at("cases");
   ASSERT_GT(cases.size(), 30u);
   for (const json& one : cases) {
-    const std::string file = (kCases / "scenes" / one.at("file").get<std::string>()).string();
+    const std::string file = (kSceneCases / "scenes" / one.at("file").get<std::string>()).string();
     SCOPED_TRACE(file + ": " + one.at("what").get<std::string>());
     std::vector<std::string> arguments =
         one.value("arguments", std::vector<std::string>{"convert", "FILE", "-o", "OUT.json"});
