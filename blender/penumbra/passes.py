@@ -17,9 +17,13 @@ def layers(picture):
     return [light["layer"] for light in json.loads(picture.attributes.get("penumbra.lights", "[]"))]
 
 
+_LONGEST_LAYER = 44  # bytes of UTF-8, as the program cuts them
+
+
 def layer_of(name):
     """A light's layer; a second light of that name gets another."""
-    return name.replace(".", "_").replace("/", "_")
+    plain = "".join("_" if letter in "./" or ord(letter) < 0x20 or ord(letter) == 0x7F else letter for letter in name)
+    return plain.encode()[:_LONGEST_LAYER].decode("utf-8", "ignore")
 
 
 def matte_groups(name, pixel_samples):

@@ -290,6 +290,7 @@ class Programs(unittest.TestCase):
 class Exr(unittest.TestCase):
     def test_names_of_layers(self):
         self.assertEqual(passes.layer_of("Plane.001/a"), "Plane_001_a")
+        self.assertEqual(len(passes.layer_of("\u00fc" * 40).encode()), 44)
 
     def test_long_names_are_shortened_and_stay_apart(self):
         names = passes.Names("ViewLayer")
