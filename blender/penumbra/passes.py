@@ -72,6 +72,8 @@ class Names:
         names = dict(_CHANNELS)
         names["V.X"] = "V"
         for layer in layers(picture):
+            if f"{layer}.V" not in picture.channels:
+                continue  # nobody asked for those of each light
             names[self._short(f"V {layer}") + ".X"] = f"{layer}.V"
             for letter in "RGB":
                 names[f"{self._short(f'Light {layer}')}.{letter}"] = f"{layer}.{letter}"

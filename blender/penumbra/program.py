@@ -23,9 +23,13 @@ def find(wanted):
     raise FileNotFoundError("penumbra is not found; say in the add-on's preferences where it is, or set PENUMBRA")
 
 
+# What passes are made of, but those of each light: of hundreds of lights those take longer than the picture.
+_WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
+
+
 def arguments(program, scene, picture, size, settings):
     """The command. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter, filter_width,
-    shading_normals, lenient, device."""
+    shading_normals, lenient, device, light_passes."""
     command = [program, "render", scene, "-o", picture, "--size", f"{size[0]}x{size[1]}"]
     if settings.method:
         command += ["--method", settings.method]
@@ -40,6 +44,8 @@ def arguments(program, scene, picture, size, settings):
         command += ["--lenient"]
     if settings.device:
         command += ["--device", settings.device]
+    if not settings.light_passes:
+        command += ["--layers", _WITHOUT_LIGHTS]
     return command
 
 

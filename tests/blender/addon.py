@@ -164,7 +164,7 @@ class Pictures(unittest.TestCase):
         with open(scene, "wb") as out:
             out.write(file.encoded())
         settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, pixel_filter=program.BOX, filter_width=1.5,
-                       shading_normals=False, lenient=False, device="")
+                       shading_normals=False, lenient=False, device="", light_passes=True)
         command = program.arguments(PENUMBRA, scene, picture, (40, 20), settings)
         code, cls.printed = program.run(command, lambda: False)
         assert code == 0, cls.printed
@@ -242,7 +242,7 @@ class Pictures(unittest.TestCase):
 class Programs(unittest.TestCase):
     def settings(self, **values):
         defaults = dict(method="", exactness=program.EXACT, light_samples=64, pixel_samples="1", pixel_filter=program.BOX,
-                        filter_width=1.5, shading_normals=False, lenient=False, device="")
+                        filter_width=1.5, shading_normals=False, lenient=False, device="", light_passes=True)
         return box(**{**defaults, **values})
 
     def test_arguments(self):
@@ -256,6 +256,9 @@ class Programs(unittest.TestCase):
             pixel_samples="4", pixel_filter=program.BLACKMAN_HARRIS, filter_width=1.6000000238))
         self.assertEqual(filtered[7:], ["--pixel-samples", "4", "--pixel-filter", "blackman-harris", "--filter-width", "1.6",
                                         "--normals", "geometric"])
+
+        alone = program.arguments("p", "s", "o", (3, 2), self.settings(light_passes=False))
+        self.assertEqual(alone[9:], ["--layers", "beauty,V,Z,P,N,Crypto*"])
 
     def test_matte_groups(self):
         self.assertEqual(passes.matte_groups("CryptoObject", "1"), ["CryptoObject00"])
