@@ -7,25 +7,32 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <vector>
 
 namespace penumbra::scenes {
 namespace {
 
-using Outline = std::vector<glm::dvec2>;
+/// A convex outline of few corners.
+struct Outline {
+  std::array<glm::dvec2, 8> corners{};
+  std::size_t count = 0;
+  void add(const glm::dvec2& corner) {
+    if (count < corners.size()) corners[count++] = corner;
+  }
+  [[nodiscard]] std::span<const glm::dvec2> all() const { return std::span(corners).first(count); }
+};
 
 /// The part of a convex outline where the coordinate `axis` is at least (or at most) `limit`: Sutherland and Hodgman.
 Outline cut(const Outline& outline, glm::length_t axis, double limit, bool at_least) {
   Outline kept;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+  for (std::size_t i = 0; i < outline.count; ++i) {
+    const glm::dvec2 &a = outline.corners[i], &b = outline.corners[(i + 1) % outline.count];
     const bool a_in = at_least ? a[axis] >= limit : a[axis] <= limit;
     const bool b_in = at_least ? b[axis] >= limit : b[axis] <= limit;
-    if (a_in) kept.push_back(a);
+    if (a_in) kept.add(a);
     if (a_in != b_in) {
       glm::dvec2 crossing = a + (limit - a[axis]) / (b[axis] - a[axis]) * (b - a);
       crossing[axis] = limit;
-      kept.push_back(crossing);
+      kept.add(crossing);
     }
   }
   return kept;
@@ -33,8 +40,8 @@ Outline cut(const Outline& outline, glm::length_t axis, double limit, bool at_le
 
 double area_of(const Outline& outline) {
   double twice = 0;
-  for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
-    const glm::dvec2 a = outline[i] - outline[0], b = outline[i + 1] - outline[0];
+  for (std::size_t i = 1; i + 1 < outline.count; ++i) {
+    const glm::dvec2 a = outline.corners[i] - outline.corners[0], b = outline.corners[i + 1] - outline.corners[0];
     twice += a.x * b.y - a.y * b.x;
   }
   return std::abs(twice) / 2;
@@ -44,95 +51,154 @@ struct Range {
   double first, last;
 };
 
+/// The least and the greatest coordinate of an outline.
+Range range_of(const Outline& outline, glm::length_t axis) {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const glm::dvec2& corner : outline.all()) {
+    range.first = std::min(range.first, corner[axis]);
+    range.last = std::max(range.last, corner[axis]);
+  }
+  return range;
+}
+
 /// The whole numbers between which an outline lies: cells first … last − 1 meet it.
 Range cells_of(const Outline& outline, glm::length_t axis) {
-  const auto [low, high] = std::ranges::minmax_element(outline, {}, [axis](const auto& p) { return p[axis]; });
-  return {std::floor((*low)[axis]), std::ceil((*high)[axis])};
+  const Range range = range_of(outline, axis);
+  return {std::floor(range.first), std::ceil(range.last)};
 }
 
 class Texels {
  public:
-  Texels(const Picture& picture, const PictureUse& use) : picture_(picture), use_(use) {
-    for (std::size_t i = 0; i < linear_.size(); ++i) linear_[i] = linear_of_srgb(static_cast<double>(i) / 255);
-  }
+  Texels(const Picture& picture, const PictureUse& use) : picture_(picture), use_(use) {}
   /// The colour of the cell that begins at (x, y), whole numbers of texels from the picture's top left.
   [[nodiscard]] glm::dvec3 at(double x, double y) const {
+    static const std::array<double, 256> linear = [] {
+      std::array<double, 256> values{};
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = linear_of_srgb(static_cast<double>(i) / 255);
+      return values;
+    }();
     const auto& texel = picture_.texels[texel_number(y, picture_.height, use_.wrap_t) * picture_.width +
                                         texel_number(x, picture_.width, use_.wrap_s)];
-    return {linear_[texel[0]], linear_[texel[1]], linear_[texel[2]]};
+    return {linear[texel[0]], linear[texel[1]], linear[texel[2]]};
   }
 
  private:
   const Picture& picture_;
   const PictureUse& use_;
-  std::array<double, 256> linear_{};
 };
 
-glm::dvec3 sampled_mean(const Texels& texels, const Outline& triangle) {
-  constexpr int kSteps = 1024;  // the middles of this many squared equal parts
+/// At the middles of steps² equal parts.
+glm::dvec3 sampled_mean(const Texels& texels, const Outline& triangle, int steps) {
   glm::dvec3 sum(0);
-  const glm::dvec2 u = (triangle[1] - triangle[0]) / double{kSteps}, v = (triangle[2] - triangle[0]) / double{kSteps};
-  for (int i = 0; i < kSteps; ++i) {
-    for (int j = 0; i + j < kSteps; ++j) {
+  const glm::dvec2 u = (triangle.corners[1] - triangle.corners[0]) / double(steps);
+  const glm::dvec2 v = (triangle.corners[2] - triangle.corners[0]) / double(steps);
+  for (int i = 0; i < steps; ++i) {
+    for (int j = 0; i + j < steps; ++j) {
       const auto add = [&](double s, double t) {
-        const glm::dvec2 at = triangle[0] + (i + s) * u + (j + t) * v;
+        const glm::dvec2 at = triangle.corners[0] + (i + s) * u + (j + t) * v;
         sum += texels.at(std::floor(at.x), std::floor(at.y));
       };
       add(1 / 3.0, 1 / 3.0);
-      if (i + j + 1 < kSteps) add(2 / 3.0, 2 / 3.0);
+      if (i + j + 1 < steps) add(2 / 3.0, 2 / 3.0);
     }
   }
-  return sum / (double{kSteps} * kSteps);
+  return sum / (double(steps) * steps);
 }
 
-/// Of a triangle in texels.
-glm::dvec3 mean_of(const Texels& texels, const Outline& triangle) {
-  constexpr double kMostCells = 1 << 22;
-  const glm::dvec2 middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
-  const Range rows = cells_of(triangle, 1), all = cells_of(triangle, 0);
-  if (area_of(triangle) == 0) return texels.at(std::floor(middle.x), std::floor(middle.y));
-  if ((rows.last - rows.first) * (all.last - all.first) > kMostCells) return sampled_mean(texels, triangle);
-  glm::dvec3 sum(0);
+struct Sum {
+  glm::dvec3 color{0};
   double area = 0;
-  for (double y = rows.first; y < rows.last; ++y) {
-    Outline row = cut(cut(triangle, 1, y, true), 1, y + 1, false);
-    if (row.size() < 3) continue;
-    const Range columns = cells_of(row, 0);
-    for (double x = columns.first; x < columns.last; ++x) {
-      const double share = area_of(cut(row, 0, x + 1, false));
-      sum += share * texels.at(x, y);
-      area += share;
-      row = cut(row, 0, x + 1, true);
-      if (row.size() < 3) break;
-    }
+  void add(const glm::dvec3& texel, double share) {
+    color += share * texel;
+    area += share;
   }
-  return area > 0 ? sum / area : texels.at(std::floor(middle.x), std::floor(middle.y));
+};
+
+/// Adds the texels of one row, of which `row` is the part within the triangle. Those between the ends of its upper and
+/// of its lower border are covered as a whole.
+void add_row(const Texels& texels, Outline row, double y, Sum& sum) {
+  Range whole{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  for (const double border : {y, y + 1}) {
+    Range at{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const glm::dvec2& corner : row.all()) {
+      if (corner.y == border) at = {std::min(at.first, corner.x), std::max(at.last, corner.x)};
+    }
+    whole = {std::max(whole.first, at.first), std::min(whole.last, at.last)};
+  }
+  whole = {std::ceil(whole.first), std::floor(whole.last)};
+  const Range columns = cells_of(row, 0);
+  for (double x = columns.first; x < columns.last && row.count >= 3; ++x) {
+    if (x == whole.first && whole.last > whole.first) {
+      for (; x < whole.last; ++x) sum.add(texels.at(x, y), 1);
+      row = cut(row, 0, x, true);
+      if (row.count < 3 || x >= columns.last) break;
+    }
+    sum.add(texels.at(x, y), area_of(cut(row, 0, x + 1, false)));
+    row = cut(row, 0, x + 1, true);
+  }
 }
 
 }  // namespace
 
-glm::dvec3 mean_over(const Picture& picture, const PictureUse& use, std::span<const PicturedTriangle> triangles) {
-  const Texels texels(picture, use);
-  const glm::dvec2 size(picture.width, picture.height);
+glm::dvec3 PictureMeans::over(const PictureUse& use, std::span<const PicturedTriangle> triangles) {
   glm::dvec3 sum(0);
   double area = 0;
   for (const PicturedTriangle& triangle : triangles) {
-    Outline places;
-    for (const glm::dvec2& place : triangle.places) {
-      glm::dvec2 at = place * size;
-      // Files hold single precision: an edge between texels is meant where a place is that near to it.
-      for (glm::length_t axis = 0; axis < 2; ++axis) {
-        const double rounding =
-            4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * std::max(size[axis], std::abs(at[axis]));
-        if (const double whole = std::round(at[axis]); std::abs(at[axis] - whole) <= rounding) at[axis] = whole;
-      }
-      places.push_back(at);
-    }
     if (!(triangle.area > 0)) continue;
-    sum += triangle.area * mean_of(texels, places);
+    std::array<double, 9> key{double(use.picture), double(int(use.wrap_s)), double(int(use.wrap_t))};
+    for (std::size_t k = 0; k < 3; ++k) {
+      key[3 + 2 * k] = triangle.places[k].x;
+      key[4 + 2 * k] = triangle.places[k].y;
+    }
+    const auto [known, is_new] = known_.try_emplace(key);
+    if (is_new) known->second = of_triangle(use, triangle.places);
+    sum += triangle.area * known->second;
     area += triangle.area;
   }
   return area > 0 ? sum / area : glm::dvec3(0);
+}
+
+glm::dvec3 PictureMeans::of_triangle(const PictureUse& use, const std::array<glm::dvec2, 3>& places) {
+  const Picture& picture = pictures_[use.picture];
+  const Texels texels(picture, use);
+  const glm::dvec2 size(picture.width, picture.height);
+  Outline triangle;
+  for (const glm::dvec2& place : places) {
+    glm::dvec2 at = place * size;
+    // Files hold single precision: an edge between texels is meant where a place is that near to it.
+    for (glm::length_t axis = 0; axis < 2; ++axis) {
+      const double rounding =
+          4 * static_cast<double>(std::numeric_limits<float>::epsilon()) * std::max(size[axis], std::abs(at[axis]));
+      if (const double whole = std::round(at[axis]); std::abs(at[axis] - whole) <= rounding) at[axis] = whole;
+    }
+    triangle.add(at);
+  }
+  // A picture that repeats, mirrored or not, is the same whole periods away.
+  for (glm::length_t axis = 0; axis < 2; ++axis) {
+    if ((axis == 0 ? use.wrap_s : use.wrap_t) == PictureUse::Wrap::clamp) continue;
+    const double periods = 2 * size[axis] * std::floor(range_of(triangle, axis).first / (2 * size[axis]));
+    for (std::size_t k = 0; k < 3; ++k) triangle.corners[k][axis] -= periods;
+  }
+  const glm::dvec2 middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
+  const glm::dvec3 at_middle = texels.at(std::floor(middle.x), std::floor(middle.y));
+  if (area_of(triangle) == 0) return at_middle;
+  const Range rows = cells_of(triangle, 1), columns = cells_of(triangle, 0);
+  const double cells = (rows.last - rows.first) * (columns.last - columns.first);
+  constexpr double kMostCells = 1 << 22, kFarthest = 1 << 30;
+  const bool far = std::max({std::abs(rows.first), std::abs(rows.last), std::abs(columns.first),
+                             std::abs(columns.last)}) > kFarthest;
+  if (far || !(cells <= std::min(kMostCells, cells_left_))) {
+    const int steps = cells_left_ > 0 ? 1024 : 64;
+    cells_left_ -= steps * steps;
+    return sampled_mean(texels, triangle, steps);
+  }
+  cells_left_ -= cells;
+  Sum sum;
+  for (double y = rows.first; y < rows.last; ++y) {
+    const Outline row = cut(cut(triangle, 1, y, true), 1, y + 1, false);
+    if (row.count >= 3) add_row(texels, row, y, sum);
+  }
+  return sum.area > 0 ? sum.color / sum.area : at_middle;
 }
 
 }  // namespace penumbra::scenes

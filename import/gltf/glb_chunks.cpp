@@ -54,6 +54,9 @@ GlbChunks glb_chunks(std::string_view bytes, const std::string& file) {
     throw InputError("{}: the GLB says it has {} bytes, but the file has {}; it is truncated", file, length,
                      bytes.size());
   }
+  if (length < kHeader + kChunkHeader) {
+    throw InputError("{}: the GLB says it has {} bytes, which is less than its header; it is damaged", file, length);
+  }
   bytes = bytes.substr(0, length);
   GlbChunks chunks;
   std::size_t number = 0;
@@ -68,9 +71,9 @@ GlbChunks glb_chunks(std::string_view bytes, const std::string& file) {
     if (number == 0) {
       if (type != kJson) throw InputError("{}: the GLB's first chunk is not its JSON; it is damaged", file);
       chunks.json = content;
-    } else if (number == 1 && type == kBinary) {
+    } else if (type == kBinary && chunks.binary.empty()) {
       chunks.binary = content;
-      chunks.strict &= size > 0;
+      chunks.strict &= number == 1 && size > 0;
     } else {
       chunks.strict &= number > 1;  // a parser may stop at the second chunk, not after it
     }

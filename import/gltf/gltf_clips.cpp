@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace penumbra::scenes {
@@ -66,11 +67,13 @@ ClipChoice choose_clips(const tinygltf::Model& model, const std::vector<std::str
 }
 
 std::string names_of_clips(const tinygltf::Model& model, const std::vector<std::size_t>& clips) {
+  constexpr std::size_t kMost = 24;
   std::string names;
-  for (const std::size_t clip : clips) {
+  for (const std::size_t clip : std::span(clips).first(std::min(kMost, clips.size()))) {
     const std::string& name = model.animations[clip].name;
     names += fmt::format("{}{}{}", names.empty() ? "" : ", ", clip, name.empty() ? "" : " '" + name + "'");
   }
+  if (clips.size() > kMost) names += fmt::format(" and {} more", clips.size() - kMost);
   return names;
 }
 

@@ -8,6 +8,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace penumbra::scenes {
@@ -50,7 +51,7 @@ std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, int number,
 
 void morph(const tinygltf::Model& model, const tinygltf::Node& node, const tinygltf::Primitive& primitive,
            const std::string& attribute, const std::string& place, std::span<glm::dvec3> vertices) {
-  if (primitive.targets.empty()) return;
+  if (primitive.targets.empty() || vertices.empty()) return;  // no normals to move, though a target has some
   const std::vector<double> weights = weights_of(model, node);
   for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
     const auto target = primitive.targets[t].find(attribute);
@@ -80,7 +81,7 @@ std::optional<Skinned> skin(const tinygltf::Model& model, const MeshNode& owner,
     if (share == primitive.attributes.end())
       throw InputError("{}/attributes: JOINTS_{} without WEIGHTS_{}", place, set, set);
     const Numbers numbers = read_numbers(model, number->second, {TINYGLTF_TYPE_VEC4}, "joints");
-    const Numbers weights = read_numbers(model, share->second, {TINYGLTF_TYPE_VEC4}, "weights");
+    const Numbers weights = read_numbers(model, share->second, {TINYGLTF_TYPE_VEC4}, "weights", NotFinite::keep);
     if (set == 0) {
       vertices.assign(numbers.count(), glm::dmat4(0));
       sums.assign(numbers.count(), 0);
@@ -90,7 +91,7 @@ std::optional<Skinned> skin(const tinygltf::Model& model, const MeshNode& owner,
                        weights.count(), set, vertices.size());
     }
     for (std::size_t i = 0; i < numbers.values.size(); ++i) {
-      if (weights.values[i] == 0) continue;
+      if (weights.values[i] == 0 || !std::isfinite(weights.values[i])) continue;
       const double joint = numbers.values[i];
       if (!(joint >= 0 && joint < static_cast<double>(joints.size())))
         throw InputError("{}/attributes/JOINTS_{}: joint {} of {}", place, set, joint, joints.size());

@@ -1,7 +1,5 @@
 #include "import/gltf/gltf_emission.hpp"
 
-#include "import/gltf/emissive_picture.hpp"
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -9,11 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace penumbra::scenes {
 
 glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::Triangle> triangles,
-                       const std::vector<Picture>& pictures) {
+                       PictureMeans& means) {
   const Look& look = vertices.look;
   if (!look.emission) return look.radiance;
   std::vector<PicturedTriangle> pictured;
@@ -27,7 +26,7 @@ glm::dvec3 radiance_of(const PrimitiveVertices& vertices, std::span<const mesh::
     one.area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])) / 2;
     pictured.push_back(one);
   }
-  return look.radiance * mean_over(pictures[look.emission->picture], *look.emission, pictured);
+  return look.radiance * means.over(*look.emission, pictured);
 }
 
 std::variant<Emitter, std::string> emitter_since(const Scene& scene, const SoupEnd& before, const PlacedNode& placed,

@@ -1,10 +1,12 @@
 #include "import/gltf/gltf_extensions.hpp"
 
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace penumbra::scenes {
 namespace {
@@ -65,32 +67,37 @@ constexpr std::array<std::string_view, 36> kWithoutEffect{
     "VRMC_vrm",
 };
 
-/// Light from all around, which is no light of this scene's.
-constexpr std::array<std::string_view, 3> kLight{"EXT_lights_ies", "EXT_lights_image_based", "KHR_environment_map"};
+/// What they change of the light, which is not done.
+constexpr std::array<std::pair<std::string_view, const char*>, 3> kLight{{
+    {"EXT_lights_ies", "shapes the light of lamps, which is not supported"},
+    {"EXT_lights_image_based", "lights the scene from all around, which is not supported"},
+    {"KHR_environment_map", "lights the scene from all around, which is not supported"},
+}};
 
-/// What ignoring an extension does.
-enum class Effect { none, light, unknown };
+/// What is not done of the light; nothing for an extension that changes none.
+const char* light_of(const std::string& extension) {
+  const auto found = std::ranges::find(kLight, extension, &std::pair<std::string_view, const char*>::first);
+  return found == kLight.end() ? nullptr : found->second;
+}
 
-Effect effect_of(const std::string& extension) {
+bool is_known(const std::string& extension) {
   const auto is_in = [&](const auto& list) { return std::ranges::find(list, extension) != list.end(); };
-  if (is_in(kUnderstood) || is_in(kWithoutEffect)) return Effect::none;
-  return is_in(kLight) ? Effect::light : Effect::unknown;
+  return is_in(kUnderstood) || is_in(kWithoutEffect) || light_of(extension) != nullptr;
 }
 
 }  // namespace
 
 void judge_extensions(const tinygltf::Model& model, bool as_mesh, Losses& losses, std::vector<std::string>& warnings) {
   for (const std::string& extension : model.extensionsRequired) {
-    if (effect_of(extension) == Effect::unknown)
+    if (!is_known(extension))
       losses.refuse("is an extension that the file requires (extensionsRequired) and that is not supported", extension);
   }
   std::string ignored;
   for (const std::string& extension : model.extensionsUsed) {
-    const Effect effect = effect_of(extension);
     const bool required = std::ranges::find(model.extensionsRequired, extension) != model.extensionsRequired.end();
-    if (effect == Effect::light && !as_mesh)
-      losses.refuse("is an extension that lights the scene from all around, which is not supported", extension);
-    else if (effect == Effect::unknown && (!required || as_mesh))
+    if (const char* const light = light_of(extension); light != nullptr && !as_mesh)
+      losses.refuse(fmt::format("is an extension that {}", light), extension);
+    else if (!is_known(extension) && (!required || as_mesh))
       ignored += (ignored.empty() ? "" : ", ") + extension;
   }
   if (!ignored.empty()) warnings.push_back("extensions ignored: " + ignored);

@@ -54,11 +54,13 @@ Scene import_for(Purpose purpose, const mesh::InputFile& input, const ReadOption
     if (bends(model) || (motion && options.time)) origin = middle_at_rest(model, {name, options});
     const auto scales = rest_scales(model);
     if (options.time) pose_model(model, *options.time, clips.played);
+    const std::vector<std::size_t> played = options.time ? clips.played : std::vector<std::size_t>();
     std::vector<std::optional<glm::dmat4>> unhidden;
     if (motion) unhidden = unhidden_places(model, scales);
     if (!model.animations.empty() && (purpose == Purpose::any_scene || purpose == Purpose::mesh))
-      warnings.push_back("at rest; its animation clips: " + names_of_clips(model, all_clips(model)));
-    auto [scene, left_vertices_out] = build_scene(model, {name, options, unhidden}, purpose, taken_out);
+      warnings.push_back("the file is read at rest; its animation clips are " +
+                         names_of_clips(model, all_clips(model)));
+    auto [scene, left_vertices_out] = build_scene(model, {name, options, unhidden, played}, purpose, taken_out);
     if (!origin && left_vertices_out && purpose != Purpose::mesh) origin = middle_at_rest(model, {name, options});
     scene.origin = origin;
     scene.motion = motion;

@@ -108,13 +108,16 @@ std::string decoded(std::string_view uri) {
   return text;
 }
 
-/// Without line ends, and without what a data URI holds.
+/// Without line ends, without the parser's numbers in brackets, and without what a data URI holds: its head is enough,
+/// and whatever follows it.
 std::string one_line(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
   std::ranges::replace(text, '\n', ' ');
-  for (std::size_t at = text.find(";base64,"); at != std::string::npos; at = text.find(";base64,", at)) {
-    at += std::string_view(";base64,").size();
-    text.replace(at, std::min(text.find(' ', at), text.size()) - at, "…");
+  if (text.starts_with('[')) text.erase(0, std::min(text.find("] "), text.size() - 2) + 2);
+  constexpr std::size_t kHead = 40;
+  if (const std::size_t at = text.find("data:"); at != std::string::npos && text.size() > at + kHead) {
+    text.resize(std::min(text.find(',', at), at + kHead));
+    text += "…";
   }
   return mesh::printable(text);
 }
@@ -165,7 +168,7 @@ nlohmann::json document_of(std::string_view text, const std::string& file, bool&
     if (!document.is_object()) throw InputError("{}: it is no glTF file: its JSON is no object", file);
     check_gltf_numbers(document, file);
     return document;
-  } catch (const nlohmann::json::parse_error& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw InputError("{}: {}", file, one_line(error.what()));
   }
 }

@@ -60,7 +60,7 @@ std::optional<std::string> pointer_of(json& target) {
 }
 
 /// Makes the target one of glTF 2.0's own. False: the channel is to go.
-bool mend_target(json& target, TakenOut& taken_out, bool& changed) {
+bool mend_target(json& target, std::size_t clip, TakenOut& taken_out, bool& changed) {
   const bool by_pointer = target.contains("path") && target["path"] == "pointer";
   if (!by_pointer) {
     if (target.contains("node")) return true;
@@ -68,12 +68,13 @@ bool mend_target(json& target, TakenOut& taken_out, bool& changed) {
     return false;
   }
   const std::string pointer = pointer_of(target).value_or("");
-  if (const auto found = node_path_of(pointer)) {
-    target["node"] = found->node;
-    target["path"] = found->path;
+  if (const auto path = node_path_of(pointer)) {
+    target["node"] = path->node;
+    target["path"] = path->path;
     return changed = true;
   }
-  if (std::ranges::find(taken_out.pointers, pointer) == taken_out.pointers.end()) taken_out.pointers.push_back(pointer);
+  const TakenOut::Pointer found{pointer, clip};
+  if (std::ranges::find(taken_out.pointers, found) == taken_out.pointers.end()) taken_out.pointers.push_back(found);
   return false;
 }
 
@@ -81,13 +82,13 @@ bool mend_animations(json& document, TakenOut& taken_out) {
   json* const animations = array_of(document, "animations");
   if (animations == nullptr) return false;
   bool changed = false;
-  for (json& animation : *animations) {
-    json* const channels = array_of(animation, "channels");
+  for (std::size_t clip = 0; clip < animations->size(); ++clip) {
+    json* const channels = array_of((*animations)[clip], "channels");
     if (channels == nullptr) continue;
     json kept = json::array();
     for (json& channel : *channels) {
       json* const target = object_of(channel, "target");
-      if (target == nullptr || mend_target(*target, taken_out, changed)) kept.push_back(std::move(channel));
+      if (target == nullptr || mend_target(*target, clip, taken_out, changed)) kept.push_back(std::move(channel));
     }
     changed |= kept.size() != channels->size();
     *channels = std::move(kept);
@@ -111,6 +112,23 @@ std::optional<DataUri> data_uri_of(std::string_view uri) {
   return DataUri{head, uri.substr(comma + 1)};
 }
 
+/// Without percent signs and blanks, which browsers take base64 with: the same bytes.
+std::string plain_base64(std::string_view text) {
+  std::string plain;
+  plain.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char letter = text[i];
+    if (unsigned code = 0;
+        letter == '%' && i + 2 < text.size() &&
+        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
+      letter = static_cast<char>(code);
+      i += 2;
+    }
+    if (letter != ' ' && letter != '\n' && letter != '\r' && letter != '\t') plain += letter;
+  }
+  return plain;
+}
+
 std::uint64_t decoded_size(std::string_view base64) {
   while (base64.ends_with('=')) base64.remove_suffix(1);
   return base64.size() / 4 * 3 + base64.size() % 4 * 3 / 4;
@@ -120,16 +138,24 @@ std::uint64_t decoded_size(std::string_view base64) {
 /// it is no data URI, 0 if it is one that is not in base64.
 std::optional<std::uint64_t> mend_uri(json& owner, bool& changed) {
   if (!owner.is_object() || !owner.contains("uri") || !owner["uri"].is_string()) return std::nullopt;
-  const auto& uri = owner["uri"].get_ref<const std::string&>();
-  if (!uri.starts_with("data:")) return std::nullopt;
+  auto& uri = owner["uri"].get_ref<std::string&>();
+  if (!uri.starts_with("data:")) {
+    // tinygltf takes a plus sign for a blank, as forms of web pages do; in the names of files it is itself.
+    for (std::size_t at = uri.find('+'); at != std::string::npos; at = uri.find('+', at)) {
+      uri.replace(at, 1, "%2B");
+      changed = true;
+    }
+    return std::nullopt;
+  }
   const auto data = data_uri_of(uri);
   if (!data) return 0;
-  const std::uint64_t size = decoded_size(data->content);
-  if (data->media_type != "application/octet-stream") {
-    owner["uri"] = fmt::format("data:application/octet-stream;base64,{}", data->content);
-    changed = true;
-  }
-  return size;
+  if (data->media_type == "application/octet-stream" &&
+      data->content.find_first_of("% \n\r\t") == std::string_view::npos)
+    return decoded_size(data->content);
+  const std::string content = plain_base64(data->content);
+  owner["uri"] = "data:application/octet-stream;base64," + content;
+  changed = true;
+  return decoded_size(content);
 }
 
 bool mend_uris(json& document, const std::string& file) {

@@ -60,7 +60,7 @@ std::vector<int> root_nodes(const tinygltf::Model& model, std::vector<std::strin
     warnings.push_back(fmt::format("{} of {} scenes ignored; '{}' (number {}) is rendered", scenes - 1, scenes,
                                    model.scenes[chosen].name, chosen));
   }
-  if (scenes > 0) return model.scenes[chosen].nodes;  // nodes of no scene are seen by nobody
+  if (scenes > 0) return model.scenes[chosen].nodes;
 
   warnings.emplace_back("there is no scene in the file; all its nodes are rendered");
   std::vector<bool> is_child(model.nodes.size(), false);
@@ -116,6 +116,13 @@ std::vector<PlacedNode> place_nodes(const tinygltf::Model& model, std::vector<st
     for (std::size_t i = children.size(); i-- > 0;) stack.push_back({children[i], node.to_world, node.visible});
     placed.push_back(node);
   }
+  const auto is_something = [](const tinygltf::Node& node) {
+    return node.mesh >= 0 || node.camera >= 0 || node.extensions.contains("KHR_lights_punctual");
+  };
+  std::size_t left = 0;
+  for (std::size_t i = 0; model.scenes.size() == 1 && i < visited.size(); ++i)
+    left += !visited[i] && is_something(model.nodes[i]) ? 1 : 0;
+  if (left > 0) warnings.push_back(fmt::format("{} nodes with meshes, lamps or cameras are in no scene", left));
   return placed;
 }
 

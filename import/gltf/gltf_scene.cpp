@@ -24,14 +24,35 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 namespace penumbra::scenes {
 namespace {
+
+/// May a diffuse picture change with what this JSON pointer leads to? Of materials what is seen of metal, gloss and
+/// relief does not count, of cameras where they clip.
+bool changes_light(std::string_view pointer) {
+  constexpr std::array<std::string_view, 12> kOthers{"metallicFactor",
+                                                     "roughnessFactor",
+                                                     "/normalTexture",
+                                                     "/occlusionTexture",
+                                                     "/metallicRoughnessTexture",
+                                                     "/KHR_materials_clearcoat",
+                                                     "/KHR_materials_specular",
+                                                     "/KHR_materials_sheen",
+                                                     "/KHR_materials_ior",
+                                                     "/KHR_materials_iridescence",
+                                                     "/znear",
+                                                     "/zfar"};
+  return std::ranges::none_of(kOthers,
+                              [&](std::string_view part) { return pointer.find(part) != std::string_view::npos; });
+}
 
 /// Builds the scene from a parsed model, node by node.
 class GltfScene {
@@ -48,13 +69,14 @@ class GltfScene {
   }
 
   /// What parsing left out.
-  void say_of(const TakenOut& taken_out, bool moves) {
+  void say_of(const TakenOut& taken_out, std::span<const std::size_t> played) {
     compressed_ = taken_out.compressed;
     for (const std::string& place : compressed_)
       losses_.refuse("is compressed with KHR_draco_mesh_compression, and left out", place);
-    for (const std::string& pointer : taken_out.pointers) {
+    for (const auto& [target, clip] : taken_out.pointers) {
       const std::string what = "is moved by KHR_animation_pointer, which is not done: it stays as the file has it";
-      moves ? losses_.refuse(what, pointer) : losses_.mention(what, pointer);
+      const bool moves = std::ranges::find(played, clip) != played.end() && changes_light(target);
+      moves ? losses_.refuse(what, target) : losses_.mention(what, target);
     }
     if (taken_out.no_utf8) scene_.warnings.emplace_back("some names are no UTF-8; '?' stands for their letters");
     if (taken_out.channels_without_node > 0) {
@@ -251,12 +273,13 @@ class GltfScene {
   }
 
   void add_object(const PrimitiveVertices& vertices, std::vector<mesh::Triangle> triangles, const std::string& name) {
-    const glm::dvec3 radiance = radiance_of(vertices, triangles, scene_.pictures);
-    if (vertices.look.emission && radiance != glm::dvec3(0))
-      losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
-    else if (vertices.look.emission)
-      note_refused_light(name, "its emissive picture is black where it lies on it");
     const Look& look = vertices.look;
+    const bool pictured = look.emission && !is_mesh();  // as a mesh it makes no light
+    const glm::dvec3 radiance = pictured ? radiance_of(vertices, triangles, means_) : look.radiance;
+    if (pictured && radiance != glm::dvec3(0))
+      losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
+    else if (pictured)
+      note_refused_light(name, "its emissive picture is black where it lies on it");
     if (look.picture || !look.normals.empty() || !look.colors.empty() || look.color != glm::dvec3(1)) ++looks_left_;
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     Object object;
@@ -352,6 +375,7 @@ class GltfScene {
   Losses losses_;
   PunctualLights lamps_;
   SurfaceReader surfaces_;
+  PictureMeans means_{scene_.pictures};
   UniqueNames object_names_, camera_names_, light_names_;
   std::string refused_lights_;
   SkippedPrimitives skipped_;
@@ -369,7 +393,7 @@ class GltfScene {
 BuiltScene build_scene(const tinygltf::Model& model, const SceneRequest& request, Purpose purpose,
                        const TakenOut& taken_out) {
   GltfScene builder(model, request, purpose);
-  builder.say_of(taken_out, request.options.time.has_value());
+  builder.say_of(taken_out, request.played);
   BuiltScene built;
   built.scene = builder.run();
   built.left_vertices_out = builder.left_vertices_out();

@@ -7,6 +7,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -25,6 +26,7 @@ struct SceneRequest {
   const std::string& name;  ///< the scene's
   const ReadOptions& options;
   std::span<const std::optional<glm::dmat4>> unhidden = {};  ///< see unhidden_places; empty: nothing moves
+  std::span<const std::size_t> played = {};                  ///< numbers of the animations that move it
 };
 
 struct BuiltScene {

@@ -178,13 +178,13 @@ TEST_F(Layers, NamesFitIntoHosts) {
   std::string cyrillic;
   for (int i = 0; i < 40; ++i) cyrillic += letters;
   const std::vector<std::string> names = {
-      std::string(60, 'a') + "1", std::string(60, 'a') + "2", cyrillic, "Combined", "Lampe \xc3\xbc", "a/b.c\n"};
+      std::string(60, 'a') + "1", std::string(60, 'a') + "2", cyrillic, "Combined", "Lampe \xc3\xbc", "a/b.c"};
   scene_with(names);
   const json lights = json::parse(render().attributes.at("penumbra.lights"));
   std::vector<std::string> layers;
   for (const json& light : lights) layers.push_back(light["layer"]);
   EXPECT_EQ(layers, (std::vector<std::string>{std::string(44, 'a'), std::string(42, 'a') + "_2", cyrillic.substr(0, 44),
-                                              "Combined_2", "Lampe \xc3\xbc", "a_b_c_"}));
+                                              "Combined_2", "Lampe \xc3\xbc", "a_b_c"}));
 }
 
 /// As floats have it: 2^24 + 1 is none of them.

@@ -344,7 +344,7 @@ TEST_F(GltfAnimation, OneOfSeveralClips) {
               HasSubstr("no animation clip \"Jump\"; there are 0 'Walk', 1 'Run', 2"));
   ReadOptions looked_at;
   looked_at.needs_light = false;
-  EXPECT_THAT(read_gltf(path, looked_at).warnings, Contains(HasSubstr("clips: 0 'Walk', 1 'Run', 2")));
+  EXPECT_THAT(read_gltf(path, looked_at).warnings, Contains(HasSubstr("clips are 0 'Walk', 1 'Run', 2")));
 }
 
 /// glTF 2.0, 3.11: a channel without a node is ignored. KHR_animation_pointer may name a node's own transform.
@@ -362,6 +362,14 @@ TEST_F(GltfAnimation, ChannelsWithoutANode) {
   Gltf other = pointing_to("/materials/1/emissiveFactor");
   EXPECT_THAT(refusal(other), HasSubstr("'/materials/1/emissiveFactor' is moved by KHR_animation_pointer"));
   EXPECT_THAT(read(other).warnings, Contains(HasSubstr("'/materials/1/emissiveFactor'"))) << "a still picture is drawn";
+  Gltf rough = pointing_to("/materials/0/pbrMetallicRoughness/roughnessFactor");
+  EXPECT_THAT(read(rough, 0.5).warnings, Contains(HasSubstr("roughnessFactor"))) << "it changes no shadow";
+  other.animate(0, "translation", {0, 1}, {4, 0, 0, 4, 0, 0});
+  ReadOptions second;
+  second.time = 0.5;
+  second.clips = {"1"};
+  EXPECT_EQ(read_gltf(write("scene.glb", other.glb()), second).soup.positions[1], glm::dvec3(5, 0, 0))
+      << "what is not played moves nothing";
   Gltf without;
   without.animate(0, "translation", {0, 1}, {4, 0, 0, 4, 0, 0});
   without.at("/animations/0/channels/0/target").erase("node");

@@ -50,6 +50,19 @@ TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
     gltf.at("/buffers/0/uri") = fmt::format("data:{};base64,{}", type, base64(gltf.data + "and more"));
     EXPECT_EQ(read_text(gltf).soup.triangles.size(), 3u) << type;
   }
+  // base64 in lines, as Python's encodebytes writes it, and with percent signs.
+  std::string lines = base64(gltf.data), percent = lines;
+  lines.insert(20, "\n");
+  for (std::size_t at = percent.find('A'); at < 60; at = percent.find('A', at + 1)) percent.replace(at, 1, "%41");
+  for (const std::string& text : {lines, percent}) {
+    gltf.at("/buffers/0/uri") = "data:application/octet-stream;base64," + text;
+    EXPECT_EQ(read_text(gltf).soup.triangles.size(), 3u) << text;
+  }
+  // A plus sign is no blank.
+  write("a+b.bin", gltf.data);
+  write("a b.bin", std::string(gltf.data.size(), '\0'));
+  gltf.at("/buffers/0/uri") = "a+b.bin";
+  EXPECT_EQ(read_text(gltf).soup.positions[1], glm::dvec3(1, 0, 0));
   write("short.bin", gltf.data.substr(0, size - 1));
   gltf.at("/buffers/0/uri") = "short.bin";
   EXPECT_THAT(refusal_of_text(gltf), HasSubstr("short.bin"));
@@ -63,6 +76,9 @@ TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
   EXPECT_THAT(refusal_of_text(gltf), HasSubstr("/buffers/0/uri: 48 bytes; byteLength says"));
   gltf.at("/buffers/0/uri") = "data:text/plain," + secret;
   EXPECT_THAT(refusal_of_text(gltf), Not(HasSubstr("QQQQQQQQ")));
+  const std::string text = gltf.document.dump();
+  const auto cut_off = write("scene.gltf", text.substr(0, text.find(secret) + 60));
+  EXPECT_THAT(test::input_error([&] { read_gltf(cut_off); }), Not(HasSubstr("QQQQQQQQ")));
   // A picture of a kind that is not read is only one that cannot be shown.
   for (const char* type : {"data:image/webp;base64,", "data:image/svg+xml,%3Csvg%3E"}) {
     Gltf painted;
@@ -105,6 +121,10 @@ TEST_F(GltfAsWritten, ChunksOfGlbs) {
   gltf.at("/buffers/0")["uri"] = "own.bin";
   EXPECT_EQ(triangles(glb(chunk("JSON", gltf.document.dump()) + chunk(binary, ""))), 3u) << views;
   EXPECT_EQ(triangles(glb(chunk("JSON", gltf.document.dump()) + chunk("ABCD", "1234"))), 3u);
+  EXPECT_EQ(triangles(glb(chunk("JSON", text + std::string((4 - text.size() % 4) % 4, ' ')) + chunk("ABCD", "1234") +
+                          chunk(binary, gltf.data + padding))),
+            3u)
+      << "what is unknown may stand anywhere";
   const auto path = write("scene.glb", glb(chunk("BLOB", text)));
   EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("first chunk is not its JSON"));
 }
@@ -137,6 +157,11 @@ TEST_F(GltfAsWritten, NumbersThatAreNotFinite) {
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.looks.normals[1], glm::vec3(0)) << "none: the triangle is flat";
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Body' has normals that are not finite")));
+  // A target's normals move nothing where there are none.
+  Gltf morphing;
+  morphing.at("/meshes/0/primitives/0")["targets"] = {{{"NORMAL", morphing.add_floats("VEC3", std::vector<float>(9))}}};
+  morphing.at("/meshes/0")["weights"] = {1};
+  EXPECT_EQ(read(morphing).soup.triangles.size(), 3u);
   attributes["POSITION"] = gltf.add_floats("VEC3", {0, 0, 0, kNan, 0, 0, 0, 1, 0, 0, 0, 0});
   EXPECT_THAT(refusal(gltf), HasSubstr("POSITION: vertex 1 is not finite: (nan, 0, 0)"));
 }

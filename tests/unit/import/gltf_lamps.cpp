@@ -24,6 +24,7 @@ Gltf with_lamp(const json& lamp) {
   Gltf gltf;
   gltf.at("/asset/generator") = "somebody else";
   gltf.at("/scenes/0/nodes") = {0, 2};
+  gltf.at("/nodes/1").erase("mesh");
   gltf.document["extensions"] = {{"KHR_lights_punctual", {{"lights", {lamp}}}}};
   gltf.document["extensionsUsed"].push_back("KHR_lights_punctual");
   gltf.at("/nodes/0")["extensions"] = {{"KHR_lights_punctual", {{"light", 0}}}};

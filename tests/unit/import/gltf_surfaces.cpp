@@ -255,6 +255,12 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   EXPECT_EQ(radiance(lit(whole, {{"scale", {0.5, 1}}, {"offset", {0.5, 0}}})), glm::dvec3(20, 10, 0));
   // One place for all corners, as of a palette.
   EXPECT_EQ(radiance(lit({0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f})), glm::dvec3(20 * dark, 0, 0));
+  // Where the picture repeats, and so far away that doubles have no more texels between them: it ends.
+  for (const double offset : {1e6, 9.1e15}) {
+    Gltf far = lit(whole, {{"scale", {64, 1}}, {"offset", {offset, 0}}});
+    far.at("/samplers/0/wrapS") = 10497;
+    EXPECT_NEAR(radiance(far).x, 20 * (dark + 1) / 2, offset < 1e7 ? 1e-6 : 10) << offset;
+  }
   // Where it is black, there is no light.
   Gltf black = lit({0, 1, 0.5f, 1, 0, 0, 0.5f, 0});
   black.at("/materials/1/emissiveFactor") = {0, 1, 1};
