@@ -31,9 +31,9 @@ class Compositor(unittest.TestCase):
         writer = export.SceneWriter(bpy.context.evaluated_depsgraph_get(), losses.Losses(), False)
         writer.write(out("scene.glb"), frames.Region(*[(inside.WIDTH, inside.HEIGHT)] * 2))
         cls.file = out("picture.exr")
-        command = [inside.PENUMBRA, "render", out("scene.glb"), "-o", cls.file, "--size", f"{inside.WIDTH}x{inside.HEIGHT}"]
-        subprocess.run([*command, "--pixel-samples", "9", "--layers", "*,*_light,*_V"], check=True)
-        subprocess.run([*command, "--pixel-samples", "9", "--compression", "dwaa", "-o", out("dwaa.exr")], check=True)
+        command = [inside.PENUMBRA, "render", out("scene.glb"), "--size", f"{inside.WIDTH}x{inside.HEIGHT}", "--pixel-samples", "9"]
+        subprocess.run([*command, "--layers", "*,*_light,*_V", "-o", cls.file], check=True)
+        subprocess.run([*command, "--compression", "dwaa", "-o", out("dwaa.exr")], check=True)
         cls.picture = inside.read(cls.file).channels
 
     def composite(self, node, prepare, socket, file=None):
