@@ -12,7 +12,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <ranges>
 #include <set>
 
 namespace penumbra::tests {
@@ -164,7 +163,8 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   std::size_t defects = 0;
   for_each_defect([&](const std::string& defect, const FlawedStage& stage) {
     std::vector<float> areas;
-    for (const auto& method : std::views::reverse(methods)) {  // `exact` comes first
+    for (std::size_t i = methods.size(); i-- > 0;) {  // `exact` comes first
+      const auto& method = methods[i];
       const visibility::MethodDescription& description = method->description();
       const std::string what = description.name + " of " + defect;
       const Verdict verdict = description.verdict_on(stage.diagnosis).verdict;

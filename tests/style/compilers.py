@@ -25,12 +25,22 @@ def configure(source, build, name, *options):
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0:
         sys.exit(done.stdout)
+    make_generated(folder)
     with open(os.path.join(folder, "compile_commands.json")) as file:
         entries = json.load(file)
     own = [entry for entry in entries if not entry["file"].startswith(build + os.sep) or f"{os.sep}Unity{os.sep}" in entry["file"]]
     for entry in own:
         entry["command"] = entry["command"].replace(os.path.join(folder, "shaders"), os.path.join(build, "shaders"))
     return folder, [entry for entry in own if entry["file"].endswith((".cpp", ".cxx"))]
+
+
+def make_generated(folder):
+    """Sources that the build writes itself: joined files include them."""
+    targets = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    written = [line.partition(": ")[0] for line in targets.splitlines() if line.endswith(": CUSTOM_COMMAND")]
+    sources = [name for name in written if name.endswith(".cpp") and not os.path.isabs(name)]
+    if sources:
+        subprocess.run(["ninja", "-C", folder, *sources], stdout=subprocess.DEVNULL, check=True)
 
 
 def is_highway(entry):

@@ -77,7 +77,7 @@ TEST(Exposure, PutsThe99thPercentileBelowWhite) {
 TEST(Exposure, IsThatOfSortedPixels) {
   constexpr unsigned kSeed = 5;
   std::mt19937 random(kSeed);
-  for (const std::size_t count : {1, 2, 99, 100, 101, 5000}) {
+  for (const std::size_t count : {1U, 2U, 99U, 100U, 101U, 5000U}) {
     std::vector<glm::vec3> linear;
     std::vector<std::uint8_t> left_out;
     std::vector<float> largest;

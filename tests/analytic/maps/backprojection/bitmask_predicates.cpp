@@ -74,8 +74,8 @@ scenes::Scene boards_one_behind_the_other() {
 // together hide what each hides alone, in a hemicube, too.
 TEST_F(MapsPredicates, LayersHideWhatTheirBodiesDo) {
   scenes::Scene both = boards_one_behind_the_other(), first = both, second = both;
-  for (const std::size_t i : {2, 3}) second.objects[i].casts_shadow = false;
-  for (const std::size_t i : {4, 5}) first.objects[i].casts_shadow = false;
+  for (const std::size_t i : {2U, 3U}) second.objects[i].casts_shadow = false;
+  for (const std::size_t i : {4U, 5U}) first.objects[i].casts_shadow = false;
   for (const bool on_the_floor : {false, true}) {
     const auto bits = [&](const scenes::Scene& scene, const char* layers) {
       const Stage stage =
