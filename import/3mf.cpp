@@ -6,6 +6,8 @@
 #include "import/zip_archive.hpp"
 
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <limits>
 #include <map>
 #include <optional>
@@ -15,34 +17,65 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Names in a package begin with a slash where they are paths, and without where they are entries of the archive.
-std::string entry_of(std::string_view path) {
-  return std::string(path.substr(path.starts_with('/') ? 1 : 0));
+/// A name as packages compare them: small letters, what percent signs stand for, slashes, and none at the beginning,
+/// where paths have one and entries of the archive have none.
+std::string compared(std::string_view path) {
+  std::string name;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    unsigned code = static_cast<unsigned char>(path[i]);
+    if (code == '%' && i + 2 < path.size()) {
+      const char* const digits = path.data() + i + 1;
+      unsigned undone = 0;
+      if (std::from_chars(digits, digits + 2, undone, 16).ptr == digits + 2) {
+        code = undone;
+        i += 2;
+      }
+    }
+    name += code == '\\' ? '/' : static_cast<char>(std::tolower(static_cast<int>(code)));
+  }
+  return name.substr(name.starts_with('/') ? 1 : 0);
 }
 
+/// The archive's entries by the names of a package.
+class Entries {
+ public:
+  explicit Entries(const ZipArchive& archive) {
+    for (const std::string& name : archive.names()) by_name_.emplace(compared(name), name);
+  }
+  /// The entry of that name as the archive writes it; `path` without its slash if there is none.
+  [[nodiscard]] std::string find(std::string_view path) const {
+    const auto found = by_name_.find(compared(path));
+    return found != by_name_.end() ? found->second : std::string(path.substr(path.starts_with('/') ? 1 : 0));
+  }
+
+ private:
+  std::map<std::string, std::string> by_name_;
+};
+
 /// The part with which the package begins.
-std::string find_start(const ZipArchive& archive, const std::string& file) {
-  constexpr std::string_view kRelationships = "_rels/.rels";
-  if (archive.contains(kRelationships)) {
-    const std::string text = archive.read(kRelationships);
-    const XmlText xml(text, fmt::format("{}: {}", file, kRelationships));
+std::string find_start(const ZipArchive& archive, const Entries& entries, const std::string& file) {
+  const std::string relationships = entries.find("_rels/.rels");
+  if (archive.contains(relationships)) {
+    const std::string text = archive.read(relationships);
+    const XmlText xml(text, fmt::format("{}: {}", file, relationships));
     for (const pugi::xml_node& relationship : children_named(xml.document().document_element(), "Relationship")) {
       if (std::string_view(relationship.attribute("Type").value()).ends_with("/3dmodel"))
-        return entry_of(relationship.attribute("Target").value());
+        return entries.find(relationship.attribute("Target").value());
     }
   }
   for (const std::string& name : archive.names()) {
-    if (name.ends_with(".model")) return name;
+    if (compared(name).ends_with(".model")) return name;
   }
   throw InputError("{}: a zip archive without a 3D model in it; this is no 3MF package", file);
 }
 
 class PackageReader {
  public:
-  PackageReader(const ZipArchive& archive, const std::string& file) : archive_(archive), file_(file) {}
+  PackageReader(const ZipArchive& archive, const std::string& file)
+      : archive_(archive), entries_(archive), file_(file) {}
 
   ImportedMesh read() {
-    const std::string start = find_start(archive_, file_);
+    const std::string start = find_start(archive_, entries_, file_);
     want(start);
     while (!wanted_.empty()) {
       const std::string entry = wanted_.back();
@@ -64,6 +97,7 @@ class PackageReader {
                        start, parts_.size());
     }
     ImportedMesh mesh = assemble(parts_, roots_, file_);
+    mesh.notes.insert(mesh.notes.end(), notes_.begin(), notes_.end());
     if (lattices_ > 0) mesh.notes.push_back(fmt::format("{} beam lattices skipped", lattices_));
     return mesh;
   }
@@ -86,6 +120,7 @@ class PackageReader {
     for (const pugi::xml_node& resources : children_named(model, "resources")) {
       for (const pugi::xml_node& object : children_named(resources, "object")) read_object(xml, object, entry);
     }
+    note_print_unit(model, notes_);
     if (!is_start) return;  // other models have a build of their own, which is not this package's
     for (const pugi::xml_node& build : children_named(model, "build")) {
       for (const pugi::xml_node& item : children_named(build, "item")) refer(xml, item, entry, std::nullopt);
@@ -108,7 +143,7 @@ class PackageReader {
     const std::size_t first = part.positions.size();
     for (const pugi::xml_node& vertices : children_named(mesh, "vertices")) {
       for (const pugi::xml_node& vertex : children_named(vertices, "vertex")) {
-        const auto at = [&](const char* name) { return xml.real(vertex, vertex.attribute(name).value(), name); };
+        const auto at = [&](const char* name) { return xml.coordinate(vertex, vertex.attribute(name).value(), name); };
         part.positions.emplace_back(at("x"), at("y"), at("z"));
       }
     }
@@ -128,7 +163,7 @@ class PackageReader {
   void refer(const XmlText& xml, const pugi::xml_node& node, const std::string& entry,
              std::optional<std::size_t> from) {
     const pugi::xml_attribute path = attribute_named(node, "path");  // of the production extension
-    const std::string target = path ? entry_of(path.value()) : entry;
+    const std::string target = path ? entries_.find(path.value()) : entry;
     want(target);
     references_.push_back({from, {target, node.attribute("objectid").value()}, read_transform(xml, node)});
   }
@@ -148,6 +183,7 @@ class PackageReader {
   }
 
   const ZipArchive& archive_;
+  const Entries entries_;
   const std::string& file_;
   std::set<std::string> known_;  ///< entries that were wanted once
   std::vector<std::string> wanted_;
@@ -155,6 +191,7 @@ class PackageReader {
   std::map<Target, std::size_t> numbers_;
   std::vector<Reference> references_;
   std::vector<PlacedPart> roots_;
+  std::vector<std::string> notes_;
   std::uint64_t lattices_ = 0;
 };
 

@@ -38,6 +38,7 @@ class AmfReader {
     }
     if (roots.empty() && !parts_.empty()) roots.push_back({0, glm::dmat4(1)});  // all are part of one another
     ImportedMesh mesh = assemble(parts_, roots, xml_.file());
+    note_print_unit(amf, mesh.notes);
     if (curved_ > 0)
       mesh.notes.push_back(fmt::format("{} normals and curved edges ignored: triangles are flat", curved_));
     return mesh;
@@ -79,14 +80,21 @@ class AmfReader {
     const pugi::xml_node coordinates = vertex.child("coordinates");
     if (!coordinates) xml_.fail(vertex, "the vertex has no <coordinates>");
     curved_ += vertex.child("normal") ? 1 : 0;
-    part.positions.push_back(read_vector(coordinates, {"x", "y", "z"}, true));
+    glm::dvec3 position;
+    constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const pugi::xml_node child = coordinates.child(kNames[i]);
+      if (!child) xml_.fail(coordinates, "there is no <{}>", kNames[i]);
+      position[static_cast<glm::length_t>(i)] = xml_.coordinate(child, child.child_value(), kNames[i]);
+    }
+    part.positions.push_back(position);
   }
 
-  glm::dvec3 read_vector(const pugi::xml_node& node, const std::array<const char*, 3>& names, bool required) const {
+  /// What is not there is 0.
+  glm::dvec3 read_vector(const pugi::xml_node& node, const std::array<const char*, 3>& names) const {
     glm::dvec3 vector(0);
     for (std::size_t i = 0; i < 3; ++i) {
       const pugi::xml_node child = node.child(names[i]);
-      if (!child && required) xml_.fail(node, "there is no <{}>", names[i]);
       if (child) vector[static_cast<glm::length_t>(i)] = xml_.real(child, child.child_value(), names[i]);
     }
     return vector;
@@ -98,9 +106,8 @@ class AmfReader {
       const auto found = numbers_.find(id);
       if (found == numbers_.end()) xml_.fail(instance, "there is no object or constellation with the id '{}'", id);
       // Turned around x, then y, then z, and then moved.
-      const glm::dvec3 degrees = read_vector(instance, {"rx", "ry", "rz"}, false);
-      glm::dmat4 placement =
-          glm::translate(glm::dmat4(1), read_vector(instance, {"deltax", "deltay", "deltaz"}, false));
+      const glm::dvec3 degrees = read_vector(instance, {"rx", "ry", "rz"});
+      glm::dmat4 placement = glm::translate(glm::dmat4(1), read_vector(instance, {"deltax", "deltay", "deltaz"}));
       for (glm::length_t axis = 2; axis >= 0; --axis) {
         glm::dvec3 around(0);
         around[axis] = 1;

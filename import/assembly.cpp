@@ -17,24 +17,26 @@ namespace {
 class Assembly {
  public:
   Assembly(std::span<const AssemblyPart> parts, const std::string& file)
-      : parts_(parts), file_(file), faces_(mesh_.soup), placed_(parts.size(), false) {}
+      : parts_(parts), file_(file), faces_(mesh_.soup), filled_(parts.size(), false), placed_(parts.size(), false) {}
 
-  ImportedMesh run(std::span<const PlacedPart> roots) {
-    refuse_cycles();
+  ImportedMesh run(std::span<const PlacedPart> roots, const std::string& instead) {
+    settle_order();
+    if (std::ranges::find(filled_, true) == filled_.end()) refuse_nothing(instead);
     std::vector<PlacedPart> stack(roots.rbegin(), roots.rend());
     while (!stack.empty()) {  // no recursion: a file may nest a million parts
       const PlacedPart next = stack.back();
       stack.pop_back();
-      add(parts_[next.part], next.placement);
+      add(next.part, next.placement);
       placed_[next.part] = true;
       const auto& children = parts_[next.part].children;
       for (std::size_t i = children.size(); i-- > 0;) {  // last first, so that they come off in the file's order
-        stack.push_back({children[i].part, next.placement * children[i].placement});
+        if (filled_[children[i].part]) stack.push_back({children[i].part, next.placement * children[i].placement});
       }
     }
     faces_.require_all(held_, file_);
-    if (mesh_.soup.triangles.empty()) throw InputError("{}: there are no triangles in it", file_);
+    if (mesh_.soup.triangles.empty()) refuse_nothing(instead);
     mesh_.notes = faces_.notes();
+    settle_unused_vertices(mesh_, [&](std::uint32_t v) { refuse_vertex(v); });
     std::uint64_t unplaced = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) unplaced += !placed_[i] && has_faces(parts_[i]) ? 1 : 0;
     if (unplaced > 0) {
@@ -48,8 +50,19 @@ class Assembly {
   }
 
  private:
-  /// Takes parts away whose children are all gone; what is left in the end is made of itself.
-  void refuse_cycles() const {
+  [[noreturn]] void refuse_nothing(const std::string& instead) const {
+    throw InputError("{}: there are no triangles in it{}", file_, instead.empty() ? "" : " (" + instead + ")");
+  }
+  [[noreturn]] void refuse_vertex(std::uint32_t v) const {
+    const Wild& wild = *std::ranges::find(wild_, v, &Wild::vertex);
+    const glm::dvec3& p = mesh_.soup.positions[v];
+    throw InputError("{}: {}: vertex {} is not finite where it is placed: ({}, {}, {})", file_, parts_[wild.part].name,
+                     wild.number, p.x, p.y, p.z);
+  }
+
+  /// Takes parts away whose children are all gone; what is left in the end is made of itself. A part is filled if it or
+  /// one of its children is: others need no place, however often they are shown.
+  void settle_order() {
     std::vector<std::size_t> waiting(parts_.size()), ready;
     std::vector<std::vector<std::size_t>> parents(parts_.size());
     for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -62,14 +75,18 @@ class Assembly {
       const std::size_t part = ready.back();
       ready.pop_back();
       ++gone;
+      filled_[part] = filled_[part] || has_faces(parts_[part]);
       for (const std::size_t parent : parents[part]) {
+        filled_[parent] = filled_[parent] || filled_[part];
         if (--waiting[parent] == 0) ready.push_back(parent);
       }
     }
     if (gone == parts_.size()) return;
     const auto left = std::ranges::find_if(waiting, [](std::size_t count) { return count > 0; });
     auto part = static_cast<std::size_t>(left - waiting.begin());
-    for (std::size_t step = 0; step < parts_.size(); ++step) {  // down to one that is in the circle, not above it
+    std::vector<bool> seen(parts_.size(), false);
+    while (!seen[part]) {  // down to one that is in the circle, not above it: the first that comes twice
+      seen[part] = true;
       const auto& children = parts_[part].children;
       part = std::ranges::find_if(children, [&](const PlacedPart& child) { return waiting[child.part] > 0; })->part;
     }
@@ -78,7 +95,8 @@ class Assembly {
 
   static bool has_faces(const AssemblyPart& part) { return !part.triangles.empty() || !part.face_ends.empty(); }
 
-  void add(const AssemblyPart& part, const glm::dmat4& placement) {
+  void add(std::size_t part_number, const glm::dmat4& placement) {
+    const AssemblyPart& part = parts_[part_number];
     if (!has_faces(part)) return;
     held_ += part.triangles.size() + part.face_ends.size();
     auto& positions = mesh_.soup.positions;
@@ -89,7 +107,7 @@ class Assembly {
     for (std::size_t i = 0; i < part.positions.size(); ++i) {
       const glm::dvec3 p(placement * glm::dvec4(part.positions[i], 1));
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-        throw InputError("{}: {}: vertex {} is not finite where it is placed", file_, part.name, i);
+        wild_.push_back({static_cast<std::uint32_t>(positions.size()), part_number, i});  // no matter, unless used
       }
       positions.push_back(p);
     }
@@ -115,15 +133,21 @@ class Assembly {
   const std::string& file_;
   ImportedMesh mesh_;
   FaceCollector faces_;
-  std::vector<bool> placed_;
-  std::uint64_t held_ = 0;  ///< faces of all parts, as often as they are placed
+  struct Wild {
+    std::uint32_t vertex = 0;          ///< of the mesh
+    std::size_t part = 0, number = 0;  ///< where it comes from
+  };
+  std::vector<Wild> wild_;             ///< vertices that are not finite
+  std::vector<bool> filled_, placed_;  ///< by part: there are faces in it or below it; it is shown
+  std::uint64_t held_ = 0;             ///< faces of all parts, as often as they are placed
   std::uint64_t mirrored_ = 0;
 };
 
 }  // namespace
 
-ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file) {
-  return Assembly(parts, file).run(roots);
+ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file,
+                      const std::string& instead) {
+  return Assembly(parts, file).run(roots, instead);
 }
 
 }  // namespace penumbra::mesh

@@ -31,7 +31,9 @@ struct AssemblyPart {
 
 /// The triangles of all `roots` and what they are made of, every part as often as it is placed. Parts that nothing
 /// places are counted in a note, and so are mirrored ones, whose windings are reversed. Throws InputError if a part is
-/// made of itself, or if a position is not finite where it is placed.
-ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file);
+/// made of itself, if a position that a face uses is not finite where it is placed, or if there are no triangles;
+/// `instead` says then what there is in their place.
+ImportedMesh assemble(std::span<const AssemblyPart> parts, std::span<const PlacedPart> roots, const std::string& file,
+                      const std::string& instead = "");
 
 }  // namespace penumbra::mesh

@@ -48,6 +48,10 @@ class ObjReader {
       throw InputError("{}: line {}: the face names vertex {}, but there are only {} (numbered from 1)", file_,
                        highest_line_, highest_named_, vertices());
     }
+    if (weightless_ > 0 && weightless_ < vertices()) {
+      throw InputError("{}: line {}: vertex {} has the weight 0, so it lies at infinity", file_,
+                       first_weightless_.second, first_weightless_.first);
+    }
     add_faces();
     faces_.require_all(statements_, file_);
     settle_unused_vertices(mesh_, [&](std::uint32_t v) { refuse_vertex(v); });
@@ -104,22 +108,24 @@ class ObjReader {
   void vertex(std::string_view line) {
     const std::uint64_t number = vertices() + 1;
     if (number > std::numeric_limits<std::uint32_t>::max()) fail("more than 4,294,967,295 vertices");
-    // x y z, x y z w, or a position and a colour. What colours say is no matter, and may be no number at all.
+    // x y z, x y z w, or a position and a colour. What colours say is no matter, and may be no number at all, and so
+    // is what more there is.
     std::array<double, 4> numbers{0, 0, 0, 1};
     std::array<std::string_view, 8> words;
     std::size_t count = 0;
     while (count < words.size() && !(words[count] = take_word(line)).empty()) ++count;
-    if (count != 3 && count != 4 && count != 6 && count != 7) {
-      fail("vertex {} has {}{} numbers; expected x y z, x y z w, or x y z and a colour of 3 or 4", number, count,
-           count == words.size() ? " or more" : "");
-    }
+    if (count < 3) fail("vertex {} has {} numbers; expected x y z, x y z w, or x y z and a colour", number, count);
     for (std::size_t i = 0; i < (count == 4 ? 4 : 3); ++i) {
       const auto value = parse_real(words[i]);
       if (!value) fail("vertex {}: '{}' is not a number", number, words[i]);
       numbers[i] = *value;
     }
-    colors_ += count >= 6 ? 1 : 0;
-    if (numbers[3] == 0) fail("vertex {} has the weight 0, so it lies at infinity", number);
+    colors_ += count == 6 || count == 7 ? 1 : 0;
+    longer_ += count == 5 || count == 8 ? 1 : 0;
+    if (numbers[3] == 0) {  // no weight, if all are so: that is seen at the end
+      if (weightless_++ == 0) first_weightless_ = {number, line_number_};
+      numbers[3] = 1;
+    }
     const glm::dvec3 position = glm::dvec3(numbers[0], numbers[1], numbers[2]) / numbers[3];
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
       wild_.emplace_back(static_cast<std::uint32_t>(vertices()), line_number_);  // no matter, unless a face uses it
@@ -185,6 +191,12 @@ class ObjReader {
     mention(uvs_, "texture coordinates");
     mention(colors_, "vertex colours");
     if (!ignored.empty()) mesh_.notes.push_back("ignored: " + ignored);
+    if (longer_ > 0)
+      mesh_.notes.push_back(fmt::format("{} vertices have 5, 8 or more numbers: the first three are taken", longer_));
+    if (weightless_ > 0) {
+      mesh_.notes.push_back(fmt::format(
+          "all {} vertices have the weight 0: it is taken for none, as if they had no weight", weightless_));
+    }
     if (free_form_ > 0) {
       mesh_.notes.push_back(fmt::format("{} free-form statements (curves, surfaces) skipped", free_form_));
     }
@@ -203,6 +215,8 @@ class ObjReader {
   std::size_t line_number_ = 0, highest_line_ = 0;
   std::uint64_t highest_named_ = 0;  ///< vertex, from 1, that a face before it names; 0 if there is none
   std::uint64_t normals_ = 0, uvs_ = 0, colors_ = 0, free_form_ = 0, unknown_ = 0;
+  std::uint64_t longer_ = 0, weightless_ = 0;  ///< vertices with numbers of no known meaning, and of weight 0
+  std::pair<std::uint64_t, std::size_t> first_weightless_;  ///< its number from 1, and its line
   std::string first_unknown_;
 };
 

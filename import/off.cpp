@@ -110,7 +110,7 @@ OffHeader read_header(OffWords& words) {
   OffHeader header;
   std::string_view word = words.next("the word OFF");
   const std::string_view whole = word;
-  if (word.ends_with("OFF")) {  // the word may be missing altogether
+  if (word.ends_with("OFF") || word == "off") {  // the word may be missing altogether
     word.remove_suffix(3);
     read_letters(word, header, words);
     // "OFF BINARY": the counts would be binary, too.
@@ -125,7 +125,16 @@ OffHeader read_header(OffWords& words) {
     header.vertices = *vertices;
   }
   header.faces = words.count("number of faces");
-  words.skip_rest_of_line();  // the number of edges, which nobody uses and some leave out
+  // The number of edges nobody uses, and some leave it out.
+  std::size_t more = 0;
+  while (parse_real(words.next_on_line())) ++more;
+  if (more > 3) {
+    words.fail(
+        "{} numbers follow the numbers of vertices, faces and edges on their line; the vertices must begin on the next "
+        "line",
+        more - 1);
+  }
+  words.skip_rest_of_line();
   // A vertex takes at least "0 0 0 ", a face "0 ": a header that lies about that must not make us allocate.
   if (header.vertices * 6ull + header.faces * 2ull > words.bytes_left() + 1ull) {
     words.fail(

@@ -20,10 +20,16 @@ namespace penumbra::mesh {
 namespace {
 
 /// Nodes whose children are shown as they are, whatever else they do (Collision and Billboard for a camera that moves).
-constexpr std::array<std::string_view, 16> kGroups = {
-    "Scene",    "Group",   "StaticGroup",    "Collision",   "Anchor", "Billboard", "PickableGroup", "CADAssembly",
-    "CADLayer", "CADFace", "ViewpointGroup", "LayoutGroup", "Layer",  "LayerSet",  "LayoutLayer",   "ScreenGroup"};
+constexpr std::array<std::string_view, 17> kGroups = {
+    "Scene",         "Group",       "StaticGroup", "Collision",   "Anchor",         "Billboard",
+    "PickableGroup", "CADAssembly", "CADLayer",    "CADFace",     "ViewpointGroup", "LayoutGroup",
+    "Layer",         "LayerSet",    "LayoutLayer", "ScreenGroup", "Viewport"};
 constexpr std::array<std::string_view, 2> kTransforms = {"Transform", "CADPart"};
+/// Nodes whose surfaces stand in another file or another node.
+constexpr std::array<std::string_view, 4> kElsewhere = {"Inline", "GeoLOD", "ProtoInstance", "ParticleSystem"};
+/// Nodes that name others by USE without showing them, and so does every sensor.
+constexpr std::array<std::string_view, 4> kTools = {"Script", "RigidBodyCollection", "CollisionCollection",
+                                                    "CollisionSpace"};
 
 template <std::size_t N>
 bool is_one_of(std::string_view name, const std::array<std::string_view, N>& names) {
@@ -41,6 +47,7 @@ class X3dReader {
     const pugi::xml_node scene = x3d.child("Scene");
     if (!scene) xml_.fail(x3d, "there is no <Scene>");
     find_names(scene);
+    read_units(x3d.child("head"));
     const std::size_t root = part_of(scene);
     while (!waiting_.empty()) {  // no recursion: a file may nest a million nodes
       const pugi::xml_node node = waiting_.back();
@@ -48,8 +55,9 @@ class X3dReader {
       expand(node, numbers_.at(node.hash_value()));
     }
     require_all_shapes();
-    if (lines_only()) throw InputError("{}: there are no triangles in it ({})", xml_.file(), listed(lines_));
-    ImportedMesh mesh = assemble(parts_, std::array{PlacedPart{root, glm::dmat4(1)}}, xml_.file());
+    const glm::dmat4 placement = glm::scale(glm::dmat4(1), glm::dvec3(metres_));
+    ImportedMesh mesh = assemble(parts_, std::array{PlacedPart{root, placement}}, xml_.file(), listed(lines_));
+    if (metres_ != 1) mesh.notes.push_back(fmt::format("a unit of {} m; positions times {}", metres_, metres_));
     if (curved_ > 0) {
       mesh.notes.push_back(
           fmt::format("{} spheres, cones, cylinders or disks became polygons of {} sides", curved_, kX3dSides));
@@ -60,24 +68,65 @@ class X3dReader {
           "{} of {} shapes are not shown by the file's own switches, levels of detail or visibility: left out",
           left_out_, shapes_));
     }
+    if (!missing_.empty()) {
+      mesh.notes.push_back(
+          fmt::format("{} USE of names that no node before has ({}): no surface that is shown needs them",
+                      missing_.size(), first_missing_));
+    }
     if (!ignored_.empty()) mesh.notes.push_back("ignored: " + listed(ignored_));
     return mesh;
   }
 
  private:
-  /// What each USE means: the last node before it that DEF gave this name.
-  void find_names(const pugi::xml_node& scene) {
-    std::map<std::string, pugi::xml_node> named;
-    for (pugi::xml_node node = scene; node; node = following(node, scene)) {
-      if (const pugi::xml_attribute use = node.attribute("USE")) {
-        const auto found = named.find(use.value());
-        if (found == named.end()) xml_.fail(node, "USE: there is no node '{}' before it", printable(use.value()));
-        uses_.emplace(node.hash_value(), found->second);
-      } else {
-        if (const pugi::xml_attribute name = node.attribute("DEF")) named[name.value()] = node;
-        shapes_ += local_name(node) == "Shape" ? 1 : 0;
-      }
+  /// The unit of length in metres, which X3D has if the file says nothing.
+  void read_units(const pugi::xml_node& head) {
+    for (const pugi::xml_node& unit : children_named(head, "unit")) {
+      const std::string_view category = unit.attribute("category").value();
+      if (category != "length" && category != "angle") continue;
+      const double factor = xml_.real(unit, unit.attribute("conversionFactor").as_string("1"), "conversionFactor");
+      if (!(factor > 0)) xml_.fail(unit, "conversionFactor is {}; expected a number above 0", factor);
+      if (category == "length")
+        metres_ = factor;
+      else if (factor != 1)
+        xml_.fail(unit, "a unit of angles other than the radian is not supported; write angles in radians");
     }
+  }
+
+  /// What each USE means: the last node before it that DEF gave this name. The body of a prototype has names of its
+  /// own.
+  void find_names(const pugi::xml_node& scene) {
+    struct Scope {
+      pugi::xml_node top;
+      std::map<std::string, pugi::xml_node> named = {};
+    };
+    std::vector<Scope> scopes = {{scene}};
+    for (pugi::xml_node node = scene; node;) {
+      if (local_name(node) == "ProtoBody") scopes.push_back({node});
+      find_name(node, scopes.back().named);
+      if (node.first_child()) {
+        node = node.first_child();
+        continue;
+      }
+      for (;; node = node.parent()) {  // up to one that has a neighbour
+        if (node == scene) return;
+        if (node == scopes.back().top) scopes.pop_back();
+        if (node.next_sibling()) break;
+      }
+      node = node.next_sibling();
+    }
+  }
+  void find_name(const pugi::xml_node& node, std::map<std::string, pugi::xml_node>& named) {
+    if (const pugi::xml_attribute use = node.attribute("USE")) {
+      const auto found = named.find(use.value());
+      if (found != named.end()) {
+        uses_.emplace(node.hash_value(), found->second);
+      } else if (missing_.insert(node.hash_value()).second && first_missing_.empty()) {
+        first_missing_ = fmt::format("the first is '{}' of a <{}>", printable(use.value()), local_name(node));
+      }
+      return;
+    }
+    if (const pugi::xml_attribute name = node.attribute("DEF")) named[name.value()] = node;
+    shapes_ += local_name(node) == "Shape" ? 1 : 0;
   }
   /// In document order, below `top`.
   static pugi::xml_node following(pugi::xml_node node, const pugi::xml_node& top) {
@@ -85,7 +134,17 @@ class X3dReader {
     while (node && node != top && !node.next_sibling()) node = node.parent();
     return node == top ? pugi::xml_node() : node.next_sibling();
   }
+  /// The node that a node among others means; itself if there is none, and none of its kind shows surfaces.
+  [[nodiscard]] pugi::xml_node meant(const pugi::xml_node& node) const {
+    const std::string_view name = local_name(node);
+    const bool may_show =
+        can_hold_shapes(node) || is_one_of(name, kElsewhere) || name.starts_with("Geo") || name.starts_with("HAnim");
+    return may_show || !missing_.contains(node.hash_value()) ? resolved(node) : node;
+  }
+  /// Of one that shows or holds surfaces; there must be one.
   [[nodiscard]] pugi::xml_node resolved(const pugi::xml_node& node) const {
+    if (missing_.contains(node.hash_value()))
+      xml_.fail(node, "USE: there is no node '{}' before it", printable(node.attribute("USE").value()));
     const auto found = uses_.find(node.hash_value());
     return found == uses_.end() ? node : found->second;
   }
@@ -125,7 +184,7 @@ class X3dReader {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const bool is_proxy = std::string_view(all[i].attribute("containerField").value()) == "proxy";
       const bool chosen = !(is_switch || is_detail) || static_cast<int>(i) == choice;
-      const pugi::xml_node child = resolved(all[i]);
+      const pugi::xml_node child = meant(all[i]);
       if (is_proxy || !chosen || !child.attribute("visible").as_bool(true))
         leave_out(all[i]);
       else if (can_hold_shapes(child))
@@ -144,30 +203,46 @@ class X3dReader {
   /// Shapes below a node that the file itself does not show.
   void leave_out(const pugi::xml_node& node) {
     for (pugi::xml_node below = node; below; below = following(below, node)) {
-      if (local_name(below) == "Shape" && !uses_.contains(below.hash_value()))
-        left_out_nodes_.insert(below.hash_value());
+      if (local_name(below) == "Shape" && !below.attribute("USE")) left_out_nodes_.insert(below.hash_value());
     }
   }
   void ignore(const pugi::xml_node& node) {
     const std::string_view name = local_name(node);
-    constexpr std::array<std::string_view, 3> kElsewhere = {"Inline", "ProtoInstance", "ParticleSystem"};
-    bool holds = is_one_of(name, kElsewhere);
     if (name == "ProtoDeclare" || name == "ExternProtoDeclare") return leave_out(node);  // shown by instances alone
-    for (pugi::xml_node below = node; below && !holds; below = following(below, node)) {
-      holds = local_name(below) == "Shape";
-    }
-    if (holds) {
+    if (may_show_surfaces(node)) {
       xml_.fail(node, "<{}> may hold surfaces, but is not supported; write what it shows as Transform and Shape", name);
     }
     ++ignored_[std::string(name)];
+  }
+
+  /// Is there a surface in a node of a kind that is not read, or below what it names by USE?
+  bool may_show_surfaces(const pugi::xml_node& top) {
+    const bool is_tool = is_one_of(local_name(top), kTools) || local_name(top).ends_with("Sensor");
+    std::vector<pugi::xml_node> stack = {top};
+    while (!stack.empty()) {
+      const pugi::xml_node node = stack.back();
+      stack.pop_back();
+      const std::string_view name = local_name(node);
+      if (is_tool ? name == "Shape" && !node.attribute("USE") : name == "Shape" || shows_elsewhere(node)) return true;
+      if (!is_tool && !without_surfaces_.insert(node.hash_value()).second) continue;
+      if (!is_tool && node.attribute("USE")) stack.push_back(meant(node));
+      for (const pugi::xml_node& child : node.children()) stack.push_back(child);
+    }
+    return false;
+  }
+  static bool shows_elsewhere(const pugi::xml_node& node) {
+    return is_one_of(local_name(node), kElsewhere) && !is_appearance(node);
+  }
+  static bool is_appearance(const pugi::xml_node& node) {
+    return std::string_view(node.attribute("containerField").value()) == "appearance";
   }
 
   void read_shape(const pugi::xml_node& shape, AssemblyPart& part) {
     ++reached_;
     for (const pugi::xml_node& child : shape.children()) {
       const std::string_view name = local_name(child);
-      if (child.type() != pugi::node_element || name == "Appearance" || name.starts_with("Metadata")) continue;
-      if (name == "ProtoInstance" && std::string_view(child.attribute("containerField").value()) == "appearance")
+      if (child.type() != pugi::node_element || name == "Appearance" || name == "AcousticProperties" ||
+          name.starts_with("Metadata") || (name == "ProtoInstance" && is_appearance(child)))
         continue;
       const pugi::xml_node geometry = resolved(child);
       switch (add_x3d_geometry(xml_, geometry, resolve_, part)) {
@@ -212,9 +287,6 @@ class X3dReader {
                        reached_ + left_out_);
     }
   }
-  [[nodiscard]] bool lines_only() const {
-    return std::ranges::all_of(parts_, [](const AssemblyPart& part) { return part.face_ends.empty(); });
-  }
   using Counts = std::map<std::string, std::uint64_t>;
   static std::string listed(const Counts& counts) {
     std::string list;
@@ -227,7 +299,10 @@ class X3dReader {
   X3dResolve resolve_;
   std::map<std::size_t, pugi::xml_node> uses_;  ///< by the hash of a node with USE: what it means
   std::map<std::size_t, std::size_t> numbers_;  ///< of parts, by their nodes' hashes
-  std::set<std::size_t> left_out_nodes_;
+  std::set<std::size_t> missing_;               ///< hashes of nodes whose USE names nothing
+  std::string first_missing_;
+  std::set<std::size_t> left_out_nodes_, without_surfaces_;
+  double metres_ = 1;                    ///< that a unit of length has
   std::vector<pugi::xml_node> waiting_;  ///< nodes whose parts have no content yet
   std::vector<AssemblyPart> parts_;
   std::uint64_t shapes_ = 0, reached_ = 0, left_out_ = 0, curved_ = 0;

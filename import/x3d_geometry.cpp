@@ -25,6 +25,14 @@ std::string_view take_value(std::string_view& text) {
   return word;
 }
 
+template <typename Value>
+std::vector<double> reals(const pugi::xml_node& node, const char* name, const Value& value_of) {
+  std::vector<double> values;
+  std::string_view text = node.attribute(name).value();
+  for (std::string_view word; !(word = take_value(text)).empty();) values.push_back(value_of(std::string(word)));
+  return values;
+}
+
 std::vector<std::int32_t> integers(const XmlText& xml, const pugi::xml_node& node, const char* name) {
   std::vector<std::int32_t> values;
   std::string_view text = node.attribute(name).value();
@@ -217,7 +225,9 @@ class Geometry {
       if (name == "Coordinate" || name == "CoordinateDouble") coordinates = resolve_(child);
       if (name == "GeoCoordinate") xml_.fail(child, "<GeoCoordinate> is not supported; write <Coordinate>");
     }
-    const std::vector<double> at = x3d_reals(xml_, coordinates, "point");
+    const std::vector<double> at = reals(coordinates, "point", [&](const std::string& word) {
+      return xml_.coordinate(coordinates, word.c_str(), "point");
+    });
     if (at.size() % 3 != 0) xml_.fail(coordinates, "point has {} numbers, which is no multiple of 3", at.size());
     for (std::size_t i = 0; i < at.size(); i += 3) part_.positions.emplace_back(at[i], at[i + 1], at[i + 2]);
   }
@@ -313,11 +323,7 @@ class Geometry {
 }  // namespace
 
 std::vector<double> x3d_reals(const XmlText& xml, const pugi::xml_node& node, const char* name) {
-  std::vector<double> values;
-  std::string_view text = node.attribute(name).value();
-  for (std::string_view word; !(word = take_value(text)).empty();)
-    values.push_back(xml.real(node, std::string(word).c_str(), name));
-  return values;
+  return reals(node, name, [&](const std::string& word) { return xml.real(node, word.c_str(), name); });
 }
 
 std::vector<double> x3d_reals(const XmlText& xml, const pugi::xml_node& node, const char* name,

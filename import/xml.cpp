@@ -25,13 +25,18 @@ std::size_t XmlText::line_of(std::ptrdiff_t offset) const {
   return 1 + static_cast<std::size_t>(std::ranges::count(text_.substr(0, end), '\n'));
 }
 
-double XmlText::real(const pugi::xml_node& node, const char* text, std::string_view what) const {
+double XmlText::coordinate(const pugi::xml_node& node, const char* text, std::string_view what) const {
   std::string_view rest = text;
   const std::string_view word = take_word(rest);
-  const auto value = parse_number<double>(word);
+  const auto value = parse_real(word);
   if (!value || !take_word(rest).empty()) fail(node, "{} is '{}'; expected a number", what, text);
-  if (!std::isfinite(*value)) fail(node, "{} is not finite: '{}'", what, text);
   return *value;
+}
+
+double XmlText::real(const pugi::xml_node& node, const char* text, std::string_view what) const {
+  const double value = coordinate(node, text, what);
+  if (!std::isfinite(value)) fail(node, "{} is not finite: '{}'", what, text);
+  return value;
 }
 
 std::uint32_t XmlText::index(const pugi::xml_node& node, const char* text, std::size_t count) const {
@@ -55,6 +60,13 @@ std::vector<pugi::xml_node> children_named(const pugi::xml_node& node, std::stri
     if (local_name(child) == name) found.push_back(child);
   }
   return found;
+}
+
+void note_print_unit(const pugi::xml_node& root, std::vector<std::string>& notes) {
+  const std::string_view unit = root.attribute("unit").value();
+  if (unit.empty() || unit == "millimeter") return;
+  std::string note = fmt::format("the file's unit is '{}': positions are its numbers as they stand", printable(unit));
+  if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
 }
 
 pugi::xml_attribute attribute_named(const pugi::xml_node& node, std::string_view name) {

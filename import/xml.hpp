@@ -30,7 +30,10 @@ class XmlText {
                      fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// The finite number in `text`, which belongs to `node` and is its `what`.
+  /// The number in `text`, which belongs to `node` and is its `what`; one that is not finite is no matter in a vertex
+  /// that no face uses.
+  [[nodiscard]] double coordinate(const pugi::xml_node& node, const char* text, std::string_view what) const;
+  /// The same, finite.
   [[nodiscard]] double real(const pugi::xml_node& node, const char* text, std::string_view what) const;
   /// The number of one of `count` things, from 0.
   [[nodiscard]] std::uint32_t index(const pugi::xml_node& node, const char* text, std::size_t count) const;
@@ -48,6 +51,9 @@ std::string_view local_name(const pugi::xml_node& node);
 
 /// The children of that name, whatever their prefix.
 std::vector<pugi::xml_node> children_named(const pugi::xml_node& node, std::string_view name);
+
+/// A file for printers has a unit, which is kept out of its positions: a note says so, once, where it is no millimetre.
+void note_print_unit(const pugi::xml_node& root, std::vector<std::string>& notes);
 
 /// The attribute of that name, whatever its prefix.
 pugi::xml_attribute attribute_named(const pugi::xml_node& node, std::string_view name);

@@ -54,9 +54,9 @@ TEST_F(MeshReaders, ObjInDoubleWithWeightsAndForwardReferences) {
   EXPECT_EQ(mesh.soup.positions[0], glm::dvec3(0.1, 0.2, 0.3));
   EXPECT_EQ(mesh.soup.positions[1], glm::dvec3(1, 2, 3));
   EXPECT_EQ(mesh.soup.positions[2], glm::dvec3(1e300, 0, 0));
-  expect_refused("weight.obj", "v 0 0 0\nv 1 0 0 0\nv 0 1 0\nf 1 2 3\n", {"line 2", "weight 0"});
+  expect_refused("weight.obj", "v 0 0 0\nv 1 0 0 0\nv 0 1 0 0\nf 1 2 3\n", {"line 2", "vertex 2 has the weight 0"});
   expect_refused("weight2.obj", "v 0 0 0\nv 1e300 0 0 1e-300\nv 0 1 0\nf 1 2 3\n", {"line 2", "not finite"});
-  expect_refused("five.obj", "v 0 0 0 0 0\n", {"line 1", "5 numbers"});
+  expect_refused("two.obj", "v 0 0\n", {"line 1", "2 numbers"});
   expect_refused("far.obj", "v 0 0 0\nf 1 1 4294967297\n", {"line 2", "vertex 4294967297", "only 1"});
   expect_refused("none.obj", "f 1 1 1\n", {"line 1", "vertex 1", "only 0"});
 }

@@ -15,7 +15,9 @@ namespace {
 
 using penumbra::test::corner;
 using ::testing::Contains;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class XmlReaders : public penumbra::test::FileTest {
  protected:
@@ -237,6 +239,48 @@ TEST_F(XmlReaders, X3dRefusalsSayTheLine) {
                  {"line 3", "<HAnimHumanoid>"});
   expect_refused("lines.x3d", x3d("<Shape><Text string='\"a\"'/></Shape>"), {"no triangles", "1 Text"});
   expect_refused("other.x3d", "<html/>", {"<html>", "expected <X3D>"});
+  expect_refused("coordinates.x3d", x3d("<Shape><IndexedFaceSet><Coordinate USE=\"none\"/></IndexedFaceSet></Shape>"),
+                 {"line 3", "no node 'none' before"});
+  const auto nothing = write("nothing.x3d", x3d("<Group/>"));
+  EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(nothing); }), EndsWith("there are no triangles in it"));
+}
+
+TEST_F(XmlReaders, X3dPrototypesHaveNamesOfTheirOwn) {
+  // What stands behind an inner prototype is of the outer one's names again, and no name of theirs is one of the scene.
+  const std::string inner =
+      "<ProtoDeclare><ProtoBody><Group DEF=\"A\"><Shape><Box/></Shape></Group></ProtoBody></ProtoDeclare>";
+  const std::string outer =
+      "<ProtoDeclare><ProtoBody><Group DEF=\"B\"/>" + inner + "<Group USE=\"B\"/></ProtoBody></ProtoDeclare>";
+  const ImportedMesh mesh =
+      read("scopes.x3d", x3d("<Group DEF=\"A\">" + triangle_shape() + "</Group>" + outer + "<Group USE=\"A\"/>"));
+  EXPECT_EQ(mesh.soup.triangles.size(), 2u);
+  EXPECT_THAT(mesh.notes, Not(Contains(HasSubstr("USE of names"))));
+  expect_refused("outside.x3d", x3d(outer + "\n<Group USE=\"B\"/>"), {"line 4", "no node 'B' before"});
+}
+
+TEST_F(XmlReaders, VerticesThatAreNotFiniteMatterToTheirFaces) {
+  expect_refused("nan.x3d",
+                 x3d("<Shape DEF=\"S\"><TriangleSet><Coordinate point=\"0 0 0 1 0 0 0 nan 0\"/></TriangleSet></Shape>"),
+                 {"'S': vertex 2 is not finite"});
+  std::string amf = "<amf>" + amf_object("1", 1) + "</amf>";
+  amf.replace(amf.find("<x>1"), 4, "<x>inf");
+  expect_refused("inf.amf", amf, {"object '1': vertex 1 is not finite"});
+  std::string nan = model(object("1"), "<item objectid=\"1\"/>");
+  nan.replace(nan.find("x=\"1\""), 5, "x=\"nan\"");
+  const auto path = write_zip("nan.3mf", {{"3D/3dmodel.model", nan}});
+  EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(path); }), HasSubstr("object '1': vertex 1 is not finite"));
+}
+
+/// Steps as the product of parts and children took a minute here; and what holds no face is placed nowhere, though it
+/// is shown a thousand billion times.
+TEST_F(XmlReaders, X3dGroupsTakeTheTimeOfTheirNumber) {
+  std::string wide = "<Group DEF=\"A\">" + triangle_shape();
+  for (int i = 0; i < 100000; ++i) wide += "<Group/>";
+  expect_refused("wide.x3d", x3d(wide + "<Group USE=\"A\"/></Group>"), {"'A' is made of itself"});
+  std::string doubled = triangle_shape() + "<Group DEF=\"G0\"><Shape><PointSet/></Shape></Group>";
+  for (int i = 1; i <= 40; ++i)
+    doubled += fmt::format("<Group DEF=\"G{0}\"><Group USE=\"G{1}\"/><Group USE=\"G{1}\"/></Group>", i, i - 1);
+  EXPECT_EQ(read("doubled.x3d", x3d(doubled)).soup.triangles.size(), 1u);
 }
 
 }  // namespace
