@@ -24,8 +24,8 @@ using visibility::Output;
 using visibility::PixelClass;
 using visibility::Tile;
 
-/// Of a round light V is a sum of arcs in double, off by up to 16 · 2⁻⁵³ a corner (DiskPart): what is below this is
-/// rounding, as where a sphere touches the receiver's plane from below.
+/// The smallest V of a round light that is no rounding error. V is a sum of arcs in double, off by up to 16 · 2⁻⁵³ a
+/// corner (DiskPart); smaller values appear where a sphere touches the receiver's plane from below.
 constexpr float kLeastRoundShare = 0x1p-44F;
 
 /// Form factors are sums of terms up to 1/2, each off by a few roundings (visibility/lights/form_factor.hpp).
@@ -228,7 +228,7 @@ class Host {
       refuse(light, first + i, fmt::format("V = {}, which is no share of a light (0 to 1)", values[i]));
     }
   }
-  /// What sees nothing of a light gets nothing of it, and nothing gets less.
+  /// Sets form factors to 0 where V is 0, and where they are negative by rounding; refuses other negative numbers.
   void settle_form_factors(const Light& light, std::size_t first, std::span<const float> values) {
     for (std::size_t i = 0; i < form_factors_.size(); ++i) {
       glm::dvec3& f = form_factors_[i];

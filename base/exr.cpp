@@ -46,7 +46,7 @@ class MemoryInput : public Imf::IStream {
   std::size_t position_ = 0;
 };
 
-/// Of an InputFile or InputPart: adds what the file has not read yet.
+/// Reads the channels of an InputFile or InputPart that `file` does not have yet.
 template <typename Input>
 void read_channels(Input& input, const std::string& shown, const ExrSelection& selection, ExrFile& file) {
   const Imf::Header& header = input.header();

@@ -32,8 +32,8 @@ struct ExrChannel {
   bool exact = false;  ///< no lossy compression may touch it, nor the others of its layer
 };
 
-/// As the file's header calls them. DWAA is lossy for what it takes for colours by their names (R, G, B and Y of any
-/// layer), and as exact as ZIP for all else.
+/// Compressions, by the names that the file's header uses. DWAA is lossy for channels that it takes for colours by
+/// their names (R, G, B and Y of any layer), and as exact as ZIP for all others.
 enum class ExrCompression { zip, zips, dwaa, none };
 
 /// What goes into an OpenEXR file. Names of channels are unique; dots make layers ("P.X").

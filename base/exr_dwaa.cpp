@@ -43,7 +43,7 @@ class Output : public Imf::OStream {
   }
   std::uint64_t tellp() override { return place_; }
   void seekp(std::uint64_t place) override { place_ = place; }
-  /// What a write threw.
+  /// The exception that a write threw; null if none did.
   [[nodiscard]] const std::exception_ptr& thrown() const { return thrown_; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace penumbra {
 
-/// What an OpenEXR file is made of: numbers as a little-endian machine has them, and text that a zero byte ends.
+/// Collects the bytes of an OpenEXR header: little-endian numbers, and text that ends with a zero byte.
 class ExrBytes {
  public:
   template <typename Number>

@@ -14,8 +14,8 @@ struct FrameFiles {
   [[nodiscard]] std::vector<std::pair<const char*, std::filesystem::path>> all() const;
   /// Are all that are wanted there, each whole and as `render` writes it?
   [[nodiscard]] bool all_there() const;
-  /// Those that are there and not like that: cut off, or written by something else. An empty file keeps a place, and is
-  /// none of them.
+  /// Files that exist but are incomplete, or were written by another program. Empty files only reserve a name for a
+  /// running process, and are not listed.
   [[nodiscard]] std::vector<std::filesystem::path> spoilt() const;
 };
 

@@ -15,8 +15,8 @@
 namespace penumbra::app {
 namespace {
 
-/// What the picture has beside lights, and what hosts call channels without a layer: Blender "Combined" and "Depth",
-/// Nuke the others.
+/// Layer names that no light may take: the picture's own layers, and the names under which programs show channels
+/// without a layer ("Combined" and "Depth" in Blender, the others in Nuke).
 constexpr std::array kOwnLayers = {"P",
                                    "Prel",
                                    "N",
@@ -89,7 +89,7 @@ bool asks_for(const std::string& wish, const std::string& channel) {
          without_dots(wish) == layer_of(channel);  // the light's own name
 }
 
-/// What there is, each layer once; long lists are cut.
+/// Lists the picture's layers, each once, for a message; long lists are cut.
 std::string list_of(std::span<const PictureChannel> channels, bool on_request) {
   constexpr std::size_t kMost = 40;
   std::vector<std::string> names;

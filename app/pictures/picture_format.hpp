@@ -43,7 +43,7 @@ struct PictureChannel {
 std::vector<PictureChannel> picture_channels(std::span<const std::string> lights, bool several,
                                              std::uint64_t triangles);
 
-/// Those that are written. Throws UsageError for a wish that fits none.
+/// Names of the channels that are written. Throws UsageError for a requested layer that the picture does not have.
 std::set<std::string> wanted_channels(const PictureFormat& format, std::span<const PictureChannel> channels);
 
 /// Are 16 bits enough for what it shows?
@@ -51,7 +51,8 @@ bool stands_half(const std::string& channel);
 /// Is it wrong if it is off by a little?
 bool must_be_exact(const std::string& channel);
 
-/// Of `id` as floats: its number from 1, and 0 where there is no triangle, in steps that a float has.
+/// Triangle numbers as floats, for programs that drop integer channels: `id` + 1, and 0 where there is no triangle. A
+/// float holds each whole number below this one exactly; larger numbers are split into low and high parts.
 constexpr std::uint64_t kFloatNumbers = std::uint64_t{1} << 24;
 constexpr float low_number(std::int64_t triangle) {
   return static_cast<float>(static_cast<std::uint64_t>(triangle + 1) % kFloatNumbers);

@@ -4,7 +4,7 @@
 
 namespace penumbra::app {
 
-/// What ends a command after SIGINT, SIGTERM or SIGHUP where it must unwind (UnwindsAfterSignals).
+/// Thrown to end a command after SIGINT, SIGTERM or SIGHUP where it must unwind (UnwindsAfterSignals).
 class Interrupted : public Error {
  public:
   Interrupted() : Error(ExitCode::interrupted, "interrupted; no output file was left half-written") {}
