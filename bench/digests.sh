@@ -1,50 +1,77 @@
 #!/bin/bash
-# digests.sh BUILD [SCENE.json…]: one line a method and scene with a digest of the picture's channels and of the mask.
-# Two builds whose lists are the same compute the same masks, V and beauty on this device:
+# digests.sh BUILD [SCENE…]: one line a picture, with a digest of its channels and of its mask. Two builds whose lists are the
+# same compute the same masks, V and beauty on this device:
 #   bench/digests.sh build >before.txt; …; bench/digests.sh build | diff before.txt -
-# A method that refuses a scene has its exit code instead. Without scenes: all that ship.
+# The methods are those of `penumbra methods --json`: each on every scene, and under each single light of the scene that has all
+# kinds of light; each choice of its options, each two of them together, and another value of each number on one scene. A method
+# that refuses has its exit code instead of a digest. Without scenes: all that ship.
 set -euo pipefail
 export LC_ALL=C
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
-build=${1:?usage: digests.sh BUILD [SCENE.json…]}
+
+# --one BUILD SCENE LIGHT PATTERN ENTRY: prints the line of one picture; of all lights if LIGHT is `-`.
+if [[ ${1:-} == --one ]]; then
+  build=$2 scene=$3 light=$4 pattern=$5 entry=$6 samples=64 code=0 options=()
+  work=$(mktemp -d)
+  trap 'rm -rf -- "$work"' EXIT
+  IFS=: read -ra words <<<"$entry"
+  for word in "${words[@]:1}"; do options+=(--method-option "$word"); done
+  if [[ $entry == *forest* || $entry == *counter-bits* ]]; then samples=16; fi  # as many as such counters hold
+  if [[ $scene == *.gltf ]]; then options+=(--frame 8 --lamp-radius 0.05 --sun-angle 2); fi  # in the midst of its animation
+  if [[ $light != - ]]; then options+=(--light "$light"); fi
+  command=("$build/penumbra" --quiet render "$scene" -o "$work/out.exr" --size 64x64 --method "${words[0]}" "${options[@]}"
+           --light-samples "$samples" --sample-pattern "$pattern")
+  # A method without a mask refuses --bits, and is then asked for its picture alone.
+  "${command[@]}" --bits "$work/out.bits" 2>/dev/null || "${command[@]}" 2>/dev/null || code=$?
+  picture="exit $code" mask=-
+  if ((code == 0)); then picture=$("$build/exr_digest" "$work"/*.exr | cut -d' ' -f1); fi
+  if compgen -G "$work/*.bits" >/dev/null; then mask=$(cat "$work"/*.bits | sha256sum | cut -c1-16); fi
+  printf '%-16s %-6s %-6s %-52s %-16s %s\n' "$(basename "${scene%.*}")" "$light" "$pattern" "$entry" "$picture" "$mask"
+  exit
+fi
+
+build=$(cd -- "${1:?usage: digests.sh BUILD [SCENE…]}" && pwd)
 shift
 if (($# == 0)); then
-  for scene in "$root"/scenes/*.json; do [[ $scene == *.schema.json ]] || set -- "$@" "$scene"; done
+  for scene in "$root"/scenes/*.json "$root"/scenes/*.gltf; do [[ $scene == *.schema.json ]] || set -- "$@" "$scene"; done
 fi
-work=$(mktemp -d)
-trap 'rm -rf -- "$work"' EXIT
+list=$(mktemp)
+trap 'rm -f -- "$list"' EXIT
+"$build/penumbra" methods --json | python3 -c '
+import itertools, json, pathlib, sys
 
-# Each method with the options that choose other code; those that need another number of light samples say so.
-entries=(
-  edge-scatter:engine=native edge-scatter:engine=vulkan edge-scatter:rows=exact
-  view-sample:engine=native view-sample:engine=vulkan
-  depth-complexity depth-complexity:crop=off depth-complexity:variant=laine depth-complexity:variant=forest@16
-  soft-volume soft-volume:coverage=table soft-volume:split=3 soft-volume:construction=tight soft-volume:wedges=host
-  soft-volume:tests=both soft-volume-blend wedge-ramp hard-volume
-  shadow-map pcf pcf:receiverPlane=off pcss vssm vssm:moments=lvsm vssm:moments=csm:filter=mip vssm:moments=esm
-  vssm:moments=evsm:filter=n-buffer convolution occlusion-textures accumulate soft-shadow-map adaptive-light deep-penumbra layered-attenuation
-  bitmask:size=128 backproject:size=128 backproject-peel:size=128 raytrace exact contour:size=128 packet:size=128
-)
+def another(number):
+    """A value of an option that is a number, other than the one it has by itself."""
+    least, most, whole = (number["range"][key] for key in ("least", "most", "whole"))
+    default = float(number["default"])
+    for value in (default / 2, default * 2, default + 1, (least + most) / 2):
+        value = float(int(value)) if whole else value
+        if least <= value <= most and value != default:
+            return format(value, "g")
 
-# render SCENE ENTRY PATTERN: prints its line.
-digest() {
-  local scene=$1 entry=$2 pattern=$3 samples=64 code=0 options=() out=$work/out.exr bits=$work/out.bits
-  [[ $entry == *@* ]] && samples=${entry#*@}
-  local words=() word
-  IFS=: read -ra words <<<"${entry%@*}"
-  for word in "${words[@]:1}"; do options+=(--method-option "$word"); done
-  rm -f -- "$out" "$bits"
-  local command=("$build/penumbra" --quiet render "$scene" -o "$out" --size 64x64 --method "${words[0]}" "${options[@]}"
-                 --light-samples "$samples" --sample-pattern "$pattern")
-  # A method without a mask refuses --bits, and is then asked for its picture alone.
-  "${command[@]}" --bits "$bits" 2>/dev/null || "${command[@]}" 2>/dev/null || code=$?
-  local picture="exit $code" mask=-
-  if ((code == 0)); then picture=$("$build/exr_digest" "$out" | cut -d' ' -f1); fi
-  if [[ -s $bits ]]; then mask=$(sha256sum <"$bits" | cut -c1-16); fi
-  printf '%-20s %-36s %-6s %-16s %s\n' "$(basename "$scene" .json)" "$entry" "$pattern" "$picture" "$mask"
-}
+def show(scene, light, pattern, entry):
+    sys.stdout.write("\0".join([str(scene), light, pattern, entry]) + "\0")
 
-for scene in "$@"; do
-  for entry in "${entries[@]}"; do digest "$scene" "$entry" rows; done
-  for entry in view-sample depth-complexity accumulate raytrace; do digest "$scene" "$entry" sobol; done
-done
+methods = json.load(sys.stdin)["methods"]
+for method in methods:  # maps so small that loops over their texels end soon
+    method["entry"] = method["name"] + (":size=128" if any(option["name"] == "size" for option in method["options"]) else "")
+for scene in map(pathlib.Path, sys.argv[1:]):
+    lights = ["-"]
+    if scene.name == "lights.json":
+        lights = [light["name"] for light in json.loads(scene.read_text())["lights"]]
+    for light, method in itertools.product(lights, methods):
+        show(scene, light, "rows", method["entry"])
+        if method["output"] != "scalar" and method["anyPattern"]:
+            show(scene, light, "sobol", method["entry"])
+    if scene.name != "room.json":
+        continue
+    for method in methods:
+        choices = [[(option["name"], value) for value in option["choices"] if value != option["default"]]
+                   for option in method["options"] if "choices" in option]
+        numbers = [(option["name"], another(option)) for option in method["options"]
+                   if "range" in option and option["name"] != "size"]
+        pairs = [itertools.product(a, b) for a, b in itertools.combinations(choices, 2)]
+        for entry in itertools.chain(([change] for change in itertools.chain(*choices, numbers)), *pairs):
+            show(scene, "-", "rows", ":".join([method["entry"], *(f"{name}={value}" for name, value in entry)]))
+' "$@" >"$list"
+xargs -0 -n 4 -P "$(nproc)" -a "$list" "$0" --one "$build" | sort
