@@ -1,5 +1,5 @@
 # The program as a user meets it: exit codes, messages, files.
-penumbra_test(cli PREFIX cli. FULL *EveryTriple*
+penumbra_test(cli FULL *EveryTriple*
   SOURCES
   cli/alpha.cpp
   cli/bad_input.cpp

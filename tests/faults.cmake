@@ -1,5 +1,5 @@
 # The program where the system says no: limits, streams, disks, kills. The long searches are those called Long….
-penumbra_test(faults PREFIX faults. FULL *Long*
+penumbra_test(faults FULL *Long*
   SOURCES
   faults/child.cpp
   faults/disks.cpp

@@ -1,6 +1,6 @@
 # Meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges, diagnosis, repair.
 find_package(CGAL REQUIRED)
-penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
+penumbra_test(mesh FULL CgalMeshes.All
   SOURCES
   agreement/mesh/face_counters_binary.cpp
   agreement/mesh/face_counters_text.cpp
@@ -25,17 +25,9 @@ penumbra_test(mesh ELSEWHERE Diagnosis.* Seeds/Soups.* CgalMeshes.*
   # GMP's rationals are the judge of the exact predicates: another library, another formula.
   LIBRARIES penumbra_mesh CGAL::CGAL PkgConfig::MINIZIP nlohmann_json::nlohmann_json ${RAPIDCHECK} TBB::tbb gmpxx gmp)
 penumbra_cgal_corpus(mesh_test)
-# Two tests to ctest: hundreds of processes for as many seeds would take longer than the seeds.
-add_test(NAME mesh_diagnosis.closed_forms COMMAND mesh_test --gtest_filter=Diagnosis.*)
-add_test(NAME mesh_diagnosis.lattice_soups COMMAND mesh_test --gtest_filter=Seeds/Soups.*)
-set_tests_properties(mesh_diagnosis.closed_forms mesh_diagnosis.lattice_soups PROPERTIES LABELS quick)
 if(PENUMBRA_WITH_CGAL_GPL)
   # Polygon_mesh_processing is GPL: the test, never the program without repair, links it.
   target_compile_definitions(mesh_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
   target_sources(mesh_test PRIVATE agreement/mesh/diagnosis_cgal.cpp)
   set_source_files_properties(agreement/mesh/diagnosis_cgal.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  add_test(NAME mesh_diagnosis_cgal.small COMMAND mesh_test --gtest_filter=CgalMeshes.Small)
-  add_test(NAME mesh_diagnosis_cgal.all COMMAND mesh_test --gtest_filter=CgalMeshes.All)
-  set_tests_properties(mesh_diagnosis_cgal.small PROPERTIES LABELS quick)
-  set_tests_properties(mesh_diagnosis_cgal.all PROPERTIES LABELS full TIMEOUT 3600)
 endif()
