@@ -1,5 +1,5 @@
 # The program as a user meets it: exit codes, messages, files.
-penumbra_test(cli FULL *EveryTriple*
+penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTogether=2
   SOURCES
   cli/alpha.cpp
   cli/bad_input.cpp

@@ -28,7 +28,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
 
-// Tests that share the rows, so that they run side by side. To find the rows of `compare` takes each three seconds.
+// Tests that share the rows, so that processes run them side by side (SHARDS in cli.cmake). Each process finds the rows
+// once.
 constexpr std::size_t kParts = 8, kCompareParts = 4;
 const char* const kOn = "on";
 
@@ -107,6 +108,19 @@ class OptionsTogether : public ProgramTest {
     for (const std::string& name : files()) EXPECT_THAT(name, Not(HasSubstr(".part"))) << "left behind";
   }
 
+  /// The covering array of the factors with every allowed combination of `strength` of them. Found once a process in
+  /// `found`, by strength, because finding it takes seconds.
+  const std::vector<Choices>& rows_of(std::map<std::size_t, std::vector<Choices>>& found, std::size_t strength,
+                                      const Allowed& allowed) {
+    const auto [rows, is_new] = found.try_emplace(strength);
+    if (is_new) {
+      rows->second = covering_array(factors_, strength, allowed);
+      EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows->second), 0U);
+    }
+    RecordProperty("rows", static_cast<int>(rows->second.size()));
+    return rows->second;
+  }
+
   MethodTable table_;
   std::vector<LitScene> scenes_;
   std::vector<Factor> factors_;
@@ -129,9 +143,8 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
       add_options_of(table_.all()[i], {{of_method, i + 1}}, group_of, true);
     }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
-    const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
-    EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows), 0U);
-    RecordProperty("rows", static_cast<int>(rows.size()));
+    static std::map<std::size_t, std::vector<Choices>> found;
+    const std::vector<Choices>& rows = rows_of(found, strength, allowed);
     for (std::size_t i = GetParam(); i < rows.size(); i += kParts) render(Row(factors_, rows[i]));
   }
 
@@ -204,9 +217,8 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
           method, {}, [&](const std::string& /*factor*/) -> const std::string& { return group; }, strength > 2);
     }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
-    const std::vector<Choices> rows = covering_array(factors_, strength, allowed);
-    EXPECT_EQ(uncovered_combinations(factors_, strength, allowed, rows), 0U);
-    RecordProperty("rows", static_cast<int>(rows.size()));
+    static std::map<std::size_t, std::vector<Choices>> found;
+    const std::vector<Choices>& rows = rows_of(found, strength, allowed);
     // A method need not be in a row that tells nothing new of it.
     const std::vector<std::set<std::string>> news = groups_with_news(factors_, strength, rows);
     for (std::size_t i = GetParam(); i < rows.size(); i += kCompareParts) {
