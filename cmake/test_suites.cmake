@@ -25,6 +25,7 @@ else()
   include("@file@.cmake")
 endif()
 ]])
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PENUMBRA_TEST_SUITES_SCRIPT})  # so that its changes count
     set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file}_include.cmake)
   endfunction()
   return()
